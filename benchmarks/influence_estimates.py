@@ -28,7 +28,7 @@ from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis import check_request
 from fe_contact.analysis.ablation import EffectAblation, ablate
 from fe_contact.analysis.model_choice import decide
-from fe_contact.effects import EFFECTS, FaceLoadDistribution, FiniteWidth
+from fe_contact.effects import FaceLoadDistribution, FiniteWidth
 from fe_contact.effects.influence import EstimatedInfluence, estimate_influences
 from fe_contact.options import Run
 
@@ -71,7 +71,7 @@ def study(cases: Sequence[PairCase], folder: Path) -> list[LoadedInfluence]:
         made = ablate(case.pair, *case.request(level="draft"), Run(cache=folder))
         checked = check_request(case.pair, *case.request(level="draft"))
         names = [entry.name for entry in made.effects]
-        estimates = estimate_influences(checked.request.scene, checked.decided, names, EFFECTS)
+        estimates = estimate_influences(checked.request.scene, checked.decided, names)
         wishes = {
             tol: check_request(case.pair, *case.request(tolerance=AllowedError(tol))) for tol in TOLERANCES
         }

@@ -14,11 +14,13 @@ from unittest import mock
 from benchmarks.example_pair import TORQUES
 from benchmarks.figures import Figure
 from benchmarks.run_up import SCENE
-from dynamics.effects import ledger
+from dynamics.assembly import assemble
+from dynamics.effects import EFFECTS as SCENE_EFFECTS
+from dynamics.effects import RotorEffect
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
 from fe_contact import Gear, GearPair, analyze
-from fe_contact.analysis import assumptions, influences, operating_points, request, request_check
+from fe_contact.analysis import request
 from fe_contact.effects import EFFECTS
 from service.client.portable import scene_of
 from service.convert.scene import dynamic_scene
@@ -51,14 +53,14 @@ def _table() -> tuple[float, float]:
         def run() -> None:
             analyze(PAIR, torques=[10.0, 100.0], level="draft", receipt="minimal", cache=Path(folder))
 
-        modules = (assumptions, influences, request, request_check, operating_points)
-        return _compared(run, [mock.patch.object(module, "EFFECTS", remaining) for module in modules])
+        return _compared(run, [mock.patch.object(request, "EFFECTS", remaining)])
 
 
 def _run() -> tuple[float, float]:
     """Compare the start of the example run-up, the effects of meshes off."""
     scene = _scene()
-    patches = [mock.patch.object(ledger, "MESH_EFFECTS", ())]
+    on_rotors = tuple(effect for effect in SCENE_EFFECTS if isinstance(effect, RotorEffect))
+    patches = [mock.patch.object(assemble, "EFFECTS", on_rotors)]
     return _compared(lambda: simulate(scene), patches)
 
 

@@ -13,7 +13,7 @@ import model_studies
 from dynamics.ablation.figures import SETTLED, RunFigures, run_figures
 from dynamics.assembly.assemble import assemble
 from dynamics.checks import chosen
-from dynamics.effects import EFFECTS, MESH_EFFECTS
+from dynamics.effects import EFFECTS
 from dynamics.errors import InputError, SolveError
 from dynamics.influence import Influence, decide_effects, estimate_influences
 from dynamics.results import RunResult
@@ -105,8 +105,7 @@ def ablate(scene: Scene, only: Sequence[str] | None = None, progress: Progress =
     SolveError
         The scene itself has no equilibrium or stops early.
     """
-    known = [*(effect.name for effect in EFFECTS), *(effect.name for effect in MESH_EFFECTS)]
-    names = chosen("only", only, known)
+    names = chosen("only", only, [effect.name for effect in EFFECTS])
     scene = assemble(decide_effects(scene).scene).resolved_scene  # one output grid for all runs
     scene = replace(scene, on_violation="report", tolerance=None)
     result, seconds = _timed(scene)

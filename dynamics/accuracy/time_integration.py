@@ -9,7 +9,7 @@ import numpy as np
 from dynamics.accuracy.vibration import Blocks, Vibration, vibration_of
 from dynamics.assembly.assemble import System, assemble
 from dynamics.assembly.decimated_tables import with_decimated_tables
-from dynamics.effects import EFFECTS, MESH_EFFECTS
+from dynamics.effects import EFFECTS
 from dynamics.errors import SolveError
 from dynamics.integrators import Trajectory, integrate, static_equilibrium
 from dynamics.motion.observation import observe
@@ -57,7 +57,7 @@ class TimeIntegration:
         if self.tolerance is not None:
             integration = replace(integration, tolerance=self.tolerance)
         if self.effects is not None:
-            names = [*(effect.name for effect in EFFECTS), *(effect.name for effect in MESH_EFFECTS)]
+            names = [effect.name for effect in EFFECTS]
             effects |= {name: "off" for name in names if name not in self.effects}
         outputs = Outputs(scene.outputs.sample_rate, energy_audit=False, receipt="minimal", anti_alias=False)
         return replace(scene, integration=integration, effects=effects, outputs=outputs)

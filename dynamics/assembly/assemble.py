@@ -10,16 +10,16 @@ from dynamics.arrays.arrays import SystemArrays
 from dynamics.arrays.elements import Element
 from dynamics.assembly.bearing_force import BearingForce, bearing_force_map
 from dynamics.assembly.bearing_rest import linear_scene
-from dynamics.assembly.connections import forces_on_ground
-from dynamics.assembly.flanks import Flanks
 from dynamics.assembly.force_elements import force_elements
 from dynamics.assembly.model import Model, decide_model
 from dynamics.assembly.system_arrays import system_arrays
+from dynamics.effects import EFFECTS, EffectLedger
 from dynamics.effects.bearing_clearance import BearingClearance
-from dynamics.effects.ledger import EffectLedger
 from dynamics.mechanism.base_pitches import Corrections
 from dynamics.mechanism.bearing_elements import BearingElement
+from dynamics.mechanism.connections import forces_on_ground
 from dynamics.mechanism.coupling_rows import CouplingRows
+from dynamics.mechanism.flanks import Flanks
 from dynamics.mechanism.freedoms import Freedoms
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.line_of_action import LineOfAction
@@ -126,7 +126,7 @@ def assemble(scene: Scene) -> System:
         If parts do not fit each other, or a free direction has no inertia.
     """
     system = _assemble(scene)
-    if not system.bearings or scene.effects.get(BearingClearance().name) != "off":
+    if not system.bearings or scene.effects.get(BearingClearance.name) != "off":
         return system
     linear = _assemble(_with_linear_bearings(system))
     return replace(linear, ledger=system.ledger, corrected=system.corrected)
@@ -134,7 +134,7 @@ def assemble(scene: Scene) -> System:
 
 def _assemble(scene: Scene) -> System:
     """Assemble `scene` as it is."""
-    model = decide_model(gather_mechanism(scene))
+    model = decide_model(gather_mechanism(scene), EFFECTS)
     elements, laws = force_elements(model)
     return _put_together(model, elements, system_arrays(model, elements, laws))
 

@@ -7,13 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from dynamics.arrays.elements import Element
-from dynamics.assembly.flanks import Flanks
 from dynamics.forces.element_laws import Law
-from dynamics.mechanism.columns import Wrench, gear_row
+from dynamics.mechanism.flank_gradients import approach
+from dynamics.mechanism.flanks import Flanks
 from dynamics.mechanism.line_of_action import LineOfAction, line_of_action
 from dynamics.mechanism.rotor import Rotor
 from dynamics.scene.scene import Scene
-from dynamics.types import FloatArray
 
 
 def flank_elements(
@@ -40,13 +39,3 @@ def flank_elements(
         gradient = approach(scene, rotors, index, line)[None, :]
         coasting.append(Element(Law.FLANK, entry, index, gradient, np.array([-gap])))
     return (*driving, *coasting)
-
-
-def approach(scene: Scene, rotors: Sequence[Rotor], index: int, line: LineOfAction) -> FloatArray:
-    """Return the derivative of the approach along `line` of mesh `index` in all rotors' freedoms, (N,)."""
-    mesh = scene.meshes[index]
-    sides: list[tuple[str, Wrench]] = [
-        (mesh.driver, line.gradient),
-        (mesh.driven, lambda center: -line.gradient(center)),
-    ]
-    return gear_row(scene, rotors, sides)

@@ -15,15 +15,12 @@ from dynamics.mechanism.bearing_elements import bearing_elements, tilt_lever
 
 def force_elements(model: Model) -> tuple[tuple[Element, ...], ElementLaws]:
     """Return the driving flanks of all meshes, then everything else, and their laws."""
-    mechanism, flanks, ledger = model.mechanism, model.flanks, model.ledger
+    mechanism, flanks = model.mechanism, model.flanks
     scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
-    senses, vectors, joined = kinematics.mesh_sense, mechanism.vectors, model.connections
-    plain = flank_elements(scene, rotors, senses, mechanism.lines, flanks)
-    in_space, spatial = spatial_elements(scene, rotors, senses, flanks, plain, ledger, vectors)
+    plain = flank_elements(scene, rotors, kinematics.mesh_sense, mechanism.lines, flanks)
+    in_space, spatial = spatial_elements(model, plain)
     by_speed, speed = speed_elements(scene, rotors, kinematics)
-    in_frames, rotating_frame = rotating_frame_elements(
-        scene, rotors, kinematics, vectors, model.freedoms, joined.supports, joined.seats, ledger
-    )
+    in_frames, rotating_frame = rotating_frame_elements(model)
     on_bearings, contact, curve = bearing_elements(scene, rotors, mechanism.bearings, mechanism.bearing_load)
     across, frame = frame_coupling_elements(scene, rotors, tilt_lever(scene))
     laws = ElementLaws(flanks.law, speed, contact, curve, spatial, rotating_frame, frame)

@@ -6,18 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from bounds import above
-from dynamics.assembly.connections import Connections, gather_connections
-from dynamics.assembly.flanks import Flanks, flank_laws, with_coast_flanks
-from dynamics.assembly.loaded_meshes import loaded_meshes
-from dynamics.assembly.mesh_axes import mesh_axes
-from dynamics.assembly.rotor_rotations import rotor_rotations
-from dynamics.assembly.shaft_bending import bending_shafts, with_elastic
-from dynamics.assembly.supported_rotors import supported_rotors
-from dynamics.effects import BendingShaft
-from dynamics.effects.flexible_shafts import FlexibleShafts
-from dynamics.effects.ledger import EffectLedger, keep_ledger, with_mesh_effects
+from dynamics.effects import Effect, EffectLedger, MeshEffect, RotorEffect
+from dynamics.effects.ledger import check_choices
+from dynamics.effects.loaded_meshes import LoadedTrain
+from dynamics.effects.loaded_rotors import loaded_rotors
 from dynamics.errors import InputError
 from dynamics.mechanism.columns import mass_terms
+from dynamics.mechanism.connections import Connections, gather_connections
+from dynamics.mechanism.flanks import Flanks, flank_laws
 from dynamics.mechanism.freedoms import Freedoms, find_freedoms
 from dynamics.mechanism.mechanism import GIVE_INERTIA, Mechanism
 from dynamics.mechanism.rotor import Rotor
@@ -44,7 +40,7 @@ class Model:
     ledger: EffectLedger
 
 
-def decide_model(mechanism: Mechanism) -> Model:
+def decide_model(mechanism: Mechanism, registry: Sequence[Effect]) -> Model:
     """Decide the effects of rotors, which give the freedoms, and then those of meshes, which look at them.
 
     Raises
@@ -52,17 +48,16 @@ def decide_model(mechanism: Mechanism) -> Model:
     InputError
         If a choice is unknown, a free direction has no inertia, or a table does not fit its mesh.
     """
+    check_choices(mechanism.scene.effects, registry)
     flanks = _flanks(mechanism)
-    bending = bending_shafts(mechanism, flanks)
-    ledger = _on_rotors(mechanism, bending)
-    mechanism = _with_flexible_shafts(mechanism, bending, ledger)
-    freedoms = find_freedoms(mechanism.rotors, mechanism.kinematics, ledger)
+    mechanism, ledger = _on_rotors(mechanism, flanks, [e for e in registry if isinstance(e, RotorEffect)])
+    added = [ledger.on_rotor(rotor.shaft.name) for rotor in mechanism.rotors]
+    kinds = [{kind for effect in own for kind in effect.adds} for own in added]
+    freedoms = find_freedoms(mechanism.rotors, mechanism.kinematics, kinds)
     _check_mass(freedoms, mechanism.rotors)
-    connections = gather_connections(mechanism.scene, mechanism.rotors)
-    ledger = _on_meshes(mechanism, freedoms, connections, flanks, ledger)
-    meshes = mechanism.scene.meshes
-    coast = [index for index, mesh in enumerate(meshes) if ledger.on("backlash", mesh.name)]
-    return Model(mechanism, freedoms, connections, with_coast_flanks(flanks, meshes, coast), ledger)
+    train = LoadedTrain(mechanism, freedoms, gather_connections(mechanism.scene, mechanism.rotors), flanks)
+    flanks, ledger = _on_meshes(train, ledger, [e for e in registry if isinstance(e, MeshEffect)])
+    return Model(mechanism, freedoms, train.connections, flanks, ledger)
 
 
 def _flanks(mechanism: Mechanism) -> Flanks:
@@ -71,37 +66,33 @@ def _flanks(mechanism: Mechanism) -> Flanks:
     return flank_laws(scene, kinematics, mechanism.nominal_force, mechanism.polar_inertia)
 
 
-def _on_rotors(mechanism: Mechanism, bending: Sequence[BendingShaft]) -> EffectLedger:
-    """Decide the effects of rotors."""
-    scene, rotors = mechanism.scene, mechanism.rotors
-    turns = rotor_rotations(scene, mechanism.kinematics, rotors)
-    forces, loads = mechanism.nominal_force, mechanism.bearing_load
-    found = supported_rotors(scene, rotors, mechanism.lines, forces, loads, turns, bending)
-    return keep_ledger(scene.effects, found)
-
-
-def _with_flexible_shafts(
-    mechanism: Mechanism, bending: Sequence[BendingShaft], ledger: EffectLedger
-) -> Mechanism:
-    """Give the shafts on which it is on their elastic coordinates."""
-    names = [shaft.name for shaft in mechanism.scene.shafts]
-    on = [ledger.on(FlexibleShafts().name, name) for name in names]
-    if not any(on):
-        return mechanism
-    pairs = zip(on, bending, strict=True)
-    return with_elastic(mechanism, [shaft.elastic if flexible else None for flexible, shaft in pairs])
+def _on_rotors(
+    mechanism: Mechanism, flanks: Flanks, registry: Sequence[RotorEffect]
+) -> tuple[Mechanism, EffectLedger]:
+    """Decide the effects of rotors, and add to the mechanism what they add."""
+    ledger, choices = EffectLedger(), mechanism.scene.effects
+    rotors = loaded_rotors(mechanism, flanks)
+    names = [rotor.shaft.name for rotor in mechanism.rotors]
+    for effect in registry:
+        verdicts = dict(zip(names, effect.verdicts(rotors), strict=True))
+        ledger = ledger.decide(effect, choices.get(effect.name, "auto"), verdicts)
+    for effect in registry:
+        on = [entry.verdict if entry.on else None for entry in ledger.of(effect.name)]
+        mechanism = effect.extend(mechanism, on)
+    return mechanism, ledger
 
 
 def _on_meshes(
-    mechanism: Mechanism, freedoms: Freedoms, connections: Connections, flanks: Flanks, ledger: EffectLedger
-) -> EffectLedger:
-    """Decide the effects of meshes too."""
-    scene, kinematics, rotors = mechanism.scene, mechanism.kinematics, mechanism.rotors
-    senses, supports = kinematics.mesh_sense, connections.supports
-    axes = mesh_axes(scene, rotors, senses, mechanism.lines, freedoms, supports, flanks)
-    inertia = mechanism.rotational_inertia
-    meshes = loaded_meshes(scene, kinematics, flanks, mechanism.polar_inertia, inertia, axes)
-    return with_mesh_effects(ledger, scene.effects, meshes)
+    train: LoadedTrain, ledger: EffectLedger, registry: Sequence[MeshEffect]
+) -> tuple[Flanks, EffectLedger]:
+    """Decide the effects of meshes too, and add the flanks that they add."""
+    flanks, scene, meshes = train.flanks, train.mechanism.scene, train.meshes
+    for effect in registry:
+        verdicts = {mesh.mesh.name: effect.called_for(mesh) for mesh in meshes}
+        ledger = ledger.decide(effect, scene.effects.get(effect.name, "auto"), verdicts)
+        on = [index for index, mesh in enumerate(scene.meshes) if ledger.on(effect.name, mesh.name)]
+        flanks = effect.extend(flanks, scene.meshes, on)
+    return flanks, ledger
 
 
 def _check_mass(freedoms: Freedoms, rotors: Sequence[Rotor]) -> None:

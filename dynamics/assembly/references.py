@@ -9,10 +9,10 @@ import numpy as np
 
 from dynamics.arrays.arrays import Drives, Loads, Reference
 from dynamics.arrays.law_arrays import pack_laws, revolutions
-from dynamics.assembly.connections import Connections
 from dynamics.assembly.frame_couplings import frame_turns
 from dynamics.joints import ImposedRotation
 from dynamics.mechanism.columns import column_count, elastic_columns, elastic_terms, times_mass, turn_row
+from dynamics.mechanism.connections import Connections
 from dynamics.mechanism.freedoms import ROTATION, Freedoms
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.mechanism import Mechanism

@@ -9,15 +9,14 @@ import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.arrays.elements import Element, gradients, pack_elements
-from dynamics.assembly.connections import elastic_matrices, linear_matrices
 from dynamics.assembly.frame_couplings import frame_turns
 from dynamics.assembly.model import Model
 from dynamics.assembly.references import drive_springs, lay_out_drives, lay_out_loads, lay_out_reference
-from dynamics.effects import FREEDOMS
 from dynamics.forces.by_address import by_address
 from dynamics.forces.element_laws import ElementLaws
 from dynamics.mechanism.columns import column_count, times_mass, turn_row
-from dynamics.mechanism.freedoms import ROTATION, Freedoms, row_reach, shared_blocks
+from dynamics.mechanism.connections import elastic_matrices, linear_matrices
+from dynamics.mechanism.freedoms import FREEDOMS, ROTATION, Freedoms, row_reach, shared_blocks
 from dynamics.mechanism.kinematics import Kinematics, mesh_shafts
 from dynamics.mechanism.rotor import Rotor
 from dynamics.scene.scene import Scene

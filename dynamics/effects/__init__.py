@@ -1,31 +1,7 @@
 """Optional physics of the multibody model: one effect per file, a registry, a ledger."""
 
-from dynamics.effects.effect import (
-    FREEDOMS,
-    BendingShaft,
-    Effect,
-    LoadedMesh,
-    MeshAxes,
-    MeshEffect,
-    MeshOnRotor,
-    RotorRotation,
-    SupportedRotor,
-    Verdict,
-)
-from dynamics.effects.registry import EFFECTS, LEFT_OUT, MESH_EFFECTS
+from dynamics.effects.effect import Effect, MeshEffect, RotorEffect, Verdict
+from dynamics.effects.ledger import EffectLedger
+from dynamics.effects.registry import EFFECTS, LEFT_OUT
 
-__all__ = [
-    "EFFECTS",
-    "FREEDOMS",
-    "LEFT_OUT",
-    "MESH_EFFECTS",
-    "BendingShaft",
-    "Effect",
-    "LoadedMesh",
-    "MeshAxes",
-    "MeshEffect",
-    "MeshOnRotor",
-    "RotorRotation",
-    "SupportedRotor",
-    "Verdict",
-]
+__all__ = ["EFFECTS", "LEFT_OUT", "Effect", "EffectLedger", "MeshEffect", "RotorEffect", "Verdict"]

@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dynamics.effects.effect import RotorEffect, Verdict
+from dynamics.effects.loaded_rotors import LoadedRotor
 
-from dynamics.effects.effect import SupportedRotor, Verdict
 
-
-@dataclass(frozen=True)
-class Axial:
+class Axial(RotorEffect):
     """One displacement along the axis."""
 
-    name: str = "axial"
-    adds: tuple[str, ...] = ("z",)
-    cost: str = "one freedom per shaft"
+    name = "axial"
+    adds = ("z",)
+    cost = "one freedom per shaft"
 
-    def called_for(self, rotor: SupportedRotor) -> Verdict:
+    def called_for(self, rotor: LoadedRotor) -> Verdict:
         """Call for it where a helical mesh pushes along an axis that bushings hold."""
-        if rotor.axial_stiffness == 0.0:
+        stiffness = rotor.rotor.axial_stiffness
+        if stiffness == 0.0:
             return Verdict(False, False, "no bushing with axial stiffness: held rigidly", 0.0)
-        influence = sum(mesh.force * mesh.axial**2 for mesh in rotor.meshes) / rotor.axial_stiffness
+        influence = sum(mesh.force * mesh.axial**2 for mesh in rotor.meshes) / stiffness
         if influence == 0.0:
             return Verdict(False, True, "spur: no force along the axis", 0.0)
         return Verdict(True, True, "a helical mesh pushes along the axis", influence)

@@ -2,17 +2,30 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from collections.abc import Sequence
+from dataclasses import replace
 
-from dynamics.effects.effect import LoadedMesh, Verdict
+import numpy as np
+
+from dynamics.effects.effect import MeshEffect, Verdict
+from dynamics.effects.loaded_meshes import LoadedMesh
+from dynamics.errors import InputError
+from dynamics.forces.coast_flank import mirrored
+from dynamics.forces.flank_force import FlankLaws
+from dynamics.forces.gear_mesh import GearMesh
+from dynamics.forces.packed_tables import pack_tables
+from dynamics.forces.table_lookup import table_deflection
+from dynamics.forces.technique import PlainTable, table_at
+from dynamics.mechanism.flanks import Flanks, mesh_mobility, with_technique
 
 
-@dataclass(frozen=True)
-class Backlash:
+class Backlash(MeshEffect):
     """One force element per mesh: the coast flank."""
 
-    name: str = "backlash"
-    cost: str = "one table look-up per mesh and stage"
+    name = "backlash"
+    cost = "one table look-up per mesh and stage"
+    linear = False
 
     def called_for(self, mesh: LoadedMesh) -> Verdict:
         """Call for it where the run can take the load off the driving flank.
@@ -22,12 +35,55 @@ class Backlash:
         the mesh stiffness and amplified by 1/(2 zeta) as in resonance, bounds the dynamic force of one
         harmonic.
         """
-        if mesh.backlash is None:
+        if mesh.mesh.coast is None:
             return Verdict(False, False, "no coast flank given: flanks that part find nothing behind", 0.0)
-        if mesh.least_force <= 0.0:
-            reason = f"the load reverses: the mean force falls to {mesh.least_force:.4g} N"
-            return Verdict(True, True, reason, mesh.backlash)
-        text = f"the mean force stays above {mesh.least_force:.4g} N, resonance swings it by up to "
-        if mesh.force_swing >= mesh.least_force:
-            return Verdict(True, True, f"{text}{mesh.force_swing:.4g} N: flanks can part", mesh.backlash)
-        return Verdict(False, True, f"{text}{mesh.force_swing:.4g} N only: flanks stay together", 0.0)
+        backlash, least = mesh.mesh.coast.backlash, float(np.min(mesh.train.mean_force[mesh.index]))
+        if least <= 0.0:
+            return Verdict(True, True, f"the load reverses: the mean force falls to {least:.4g} N", backlash)
+        swing = _force_swing(mesh)
+        text = f"the mean force stays above {least:.4g} N, resonance swings it by up to "
+        if swing >= least:
+            return Verdict(True, True, f"{text}{swing:.4g} N: flanks can part", backlash)
+        return Verdict(False, True, f"{text}{swing:.4g} N only: flanks stay together", 0.0)
+
+    def extend(self, flanks: Flanks, meshes: Sequence[GearMesh], on: Sequence[int]) -> Flanks:
+        """Return `flanks` with the coast flanks of the meshes `on`, damped as their driving flanks."""
+        if not on:
+            return flanks
+        backs = []
+        for index in on:
+            try:
+                backs.append(_coast_table(meshes[index], flanks, index))
+            except InputError as error:
+                raise error.within(f"meshes[{index}]") from None
+        chosen = [*range(len(meshes)), *on]
+        tables = (*flanks.used, *backs)
+        law = FlankLaws(pack_tables(tables), flanks.law.damping[chosen], flanks.law.reach[chosen])
+        return replace(flanks, law=law, coast=tuple(on), tables=tables)
+
+
+def _force_swing(mesh: LoadedMesh) -> float:
+    """Half the peak-to-peak transmission error times stiffness, amplified as in resonance, N."""
+    mechanism, flanks, index = mesh.train.mechanism, mesh.train.flanks, mesh.index
+    damping = float(flanks.law.damping[index])
+    mass = 1.0 / mesh_mobility(mechanism.scene, mechanism.kinematics, index, mechanism.polar_inertia)
+    ratio = damping / (2.0 * math.sqrt(mesh.stiffness * mass))
+    positions = flanks.used[index].position
+    error = [table_deflection(flanks.static, index, x, mesh.force) for x in positions]
+    swing = mesh.stiffness * (0.5 * float(np.ptp(error)))
+    return swing / (2.0 * ratio) if ratio > 0.0 else (math.inf if swing > 0.0 else 0.0)
+
+
+def _coast_table(mesh: GearMesh, flanks: Flanks, index: int) -> PlainTable:
+    """Return the table of a coast flank against the position of the driving flank.
+
+    Seen turned about the line of centers, the gap of a misalignment grows towards the other end.
+    """
+    back = mesh.coast
+    if back is None:
+        raise InputError("coast", None, "given", "Give the backlash and the thickness of the driver's teeth.")
+    if back.table is None and np.size(mesh.table.misalignment) == 1:
+        return mirrored(flanks.used[index], back.thickness)
+    table = table_at(back.table or mesh.table, -mesh.misalignment, mesh.center_distance_change)
+    used = with_technique(mesh.technique, table, float(flanks.nominal_force[index]))
+    return mirrored(used, back.thickness)

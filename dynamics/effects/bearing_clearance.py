@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dynamics.effects.effect import RotorEffect, Verdict
+from dynamics.effects.loaded_rotors import LoadedRotor
+from dynamics.mechanism.bearing_elements import nonlinear_influences
 
-from dynamics.effects.effect import SupportedRotor, Verdict
 
-
-@dataclass(frozen=True)
-class BearingClearance:
+class BearingClearance(RotorEffect):
     """One force element per rolling contact and per curve."""
 
-    name: str = "bearing_clearance"
-    adds: tuple[str, ...] = ()
-    cost: str = "one force element of one or two rows per law"
+    name = "bearing_clearance"
+    cost = "one force element of one or two rows per law"
+    linear = False
 
-    def called_for(self, rotor: SupportedRotor) -> Verdict:
-        """Call for it wherever a bearing states a law that is not linear."""
-        if not rotor.nonlinear:
+    def called_for(self, rotor: LoadedRotor) -> Verdict:
+        """Call for it wherever a bearing states a law that is not linear.
+
+        Its influence is the most that the tangent of a law misses of the displacement under the load.
+        """
+        mechanism = rotor.mechanism
+        missed = nonlinear_influences(mechanism.scene, mechanism.bearing_load)
+        own = [influence for shaft, influence in missed if shaft == rotor.rotor.shaft.name]
+        if not own:
             return Verdict(False, False, "no bearing with clearance or a law that is not linear", 0.0)
         reason = "bearings with clearance or laws that are not linear; off: their tangents at the load"
-        return Verdict(True, True, reason, max(rotor.nonlinear))
+        return Verdict(True, True, reason, max(own))

@@ -2,25 +2,33 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import numpy as np
 
-from dynamics.effects.effect import LoadedMesh, Verdict
+from dynamics.effects.effect import MeshEffect, Verdict
+from dynamics.effects.flank_terms import CENTER_DISTANCE, FlankInSpace, FlankTerms
+from dynamics.effects.loaded_meshes import LoadedMesh
+from dynamics.mechanism.flank_gradients import distance_gradient
 
 
-@dataclass(frozen=True)
-class DynamicCenterDistance:
+class DynamicCenterDistance(MeshEffect):
     """One more local coordinate of the flank."""
 
-    name: str = "dynamic_center_distance"
-    cost: str = "a table look-up over one more axis, twice the numbers"
+    name = "dynamic_center_distance"
+    cost = "a table look-up over one more axis, twice the numbers"
 
     def called_for(self, mesh: LoadedMesh) -> Verdict:
         """Call for it where the table has the axis and a shaft can move along the line of centers."""
-        axes = mesh.axes
-        if axes.center_distances == 1:
+        if np.size(mesh.mesh.table.center_distance_change) == 1:
             return Verdict(False, False, "the table has one center distance only", 0.0)
-        if reason := axes.not_read():
+        if reason := mesh.not_read():
             return Verdict(False, False, reason, 0.0)
-        if not axes.moves_apart:
+        if not mesh.moves(CENTER_DISTANCE):
             return Verdict(False, False, "no shaft can move along the line of centers", 0.0)
-        return Verdict(True, True, "shafts move along the line of centers, and the table knows", axes.apart)
+        reason = "shafts move along the line of centers, and the table knows"
+        return Verdict(True, True, reason, mesh.change_along(CENTER_DISTANCE))
+
+    def contribute(self, terms: FlankTerms, flank: FlankInSpace) -> FlankTerms:
+        """Let the force follow the axis."""
+        mechanism = flank.mechanism
+        gradient = distance_gradient(mechanism.scene, mechanism.rotors, flank.index, flank.line)
+        return terms.following(CENTER_DISTANCE, flank, gradient)

@@ -2,25 +2,35 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import numpy as np
 
-from dynamics.effects.effect import LoadedMesh, Verdict
+from dynamics.effects.effect import MeshEffect, Verdict
+from dynamics.effects.flank_terms import MISALIGNMENT, FlankInSpace, FlankTerms
+from dynamics.effects.loaded_meshes import LoadedMesh
+from dynamics.mechanism.flank_gradients import misalignment_gradient
 
 
-@dataclass(frozen=True)
-class DynamicMisalignment:
+class DynamicMisalignment(MeshEffect):
     """One more local coordinate of the flank."""
 
-    name: str = "dynamic_misalignment"
-    cost: str = "a table look-up over one more axis, twice the numbers"
+    name = "dynamic_misalignment"
+    cost = "a table look-up over one more axis, twice the numbers"
 
     def called_for(self, mesh: LoadedMesh) -> Verdict:
         """Call for it where the table has the axis and a shaft can tilt in the plane of action."""
-        axes = mesh.axes
-        if axes.misalignments == 1:
+        if np.size(mesh.mesh.table.misalignment) == 1:
             return Verdict(False, False, "the table has one misalignment only", 0.0)
-        if reason := axes.not_read():
+        if reason := mesh.not_read():
             return Verdict(False, False, reason, 0.0)
-        if not axes.tilts:
+        if not mesh.moves(MISALIGNMENT):
             return Verdict(False, False, "no shaft can tilt in the plane of action", 0.0)
-        return Verdict(True, True, "shafts tilt in the plane of action, and the table knows", axes.misaligned)
+        reason = "shafts tilt in the plane of action, and the table knows"
+        return Verdict(True, True, reason, mesh.change_along(MISALIGNMENT))
+
+    def contribute(self, terms: FlankTerms, flank: FlankInSpace) -> FlankTerms:
+        """Let the force follow the axis."""
+        mechanism = flank.mechanism
+        gradient = misalignment_gradient(
+            mechanism.scene, mechanism.rotors, flank.index, flank.line, flank.sense
+        )
+        return terms.following(MISALIGNMENT, flank, gradient)

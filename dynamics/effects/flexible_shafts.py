@@ -2,30 +2,141 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
-from dynamics.effects.effect import SupportedRotor, Verdict
+import numpy as np
+
+from dynamics.bodies import ElasticShaft
+from dynamics.effects.effect import RotorEffect, Verdict
+from dynamics.effects.loaded_rotors import LoadedRotor
+from dynamics.joints.seat import SEAT
+from dynamics.mechanism.columns import column_count, elastic_columns, elastic_terms, section_rows, turn_row
+from dynamics.mechanism.connections import gather_connections
+from dynamics.mechanism.flank_gradients import approach, misalignment_gradient
+from dynamics.mechanism.flanks import Flanks
+from dynamics.mechanism.mechanism import Mechanism
+from dynamics.mechanism.points_of_application import elastic_of, why_rigid
+from dynamics.types import FloatArray
 
 SHARE = 0.05
 """Least displacement at a mesh, over what the mesh itself yields, that calls for it."""
+ROUNDING = 1e-9
+NOTHING_BENDS = (
+    "forces act at one position of the shaft alone, or it is not held there: nothing bends or twists it"
+)
 
 
 @dataclass(frozen=True)
-class FlexibleShafts:
+class Bending(Verdict):
+    """A decision with the elastic coordinates that it is made by; None: the shaft is rigid."""
+
+    elastic: ElasticShaft | None = None
+
+
+class FlexibleShafts(RotorEffect):
     """Elastic coordinates of every shaft with sections, and the rigid freedoms that bending needs."""
 
-    name: str = "flexible_shafts"
-    adds: tuple[str, ...] = ()
-    cost: str = "five to thirty freedoms per shaft, all in one block"
+    name = "flexible_shafts"
+    cost = "five to thirty freedoms per shaft, all in one block"
 
-    def called_for(self, rotor: SupportedRotor) -> Verdict:
+    def verdicts(self, rotors: Sequence[LoadedRotor]) -> Sequence[Verdict]:
         """Call for it where the nominal force bends and twists a shaft by a share of what its mesh yields."""
-        shaft = rotor.bending
-        if shaft.refusal:
-            return Verdict(False, False, shaft.refusal, 0.0)
-        reason = (
-            f"the nominal force bends and twists the shaft by {1e6 * shaft.moved:.3g} um along the line of "
-            f"action, {100.0 * shaft.share:.3g} % of what the mesh yields, and misaligns the gear by "
-            f"{1e6 * shaft.misaligned:.3g} um over the face"
-        )
-        return Verdict(shaft.share > SHARE, True, reason, shaft.moved)
+        mechanism, flanks = rotors[0].mechanism, rotors[0].flanks
+        refusals = [why_rigid(mechanism, index) for index in range(len(rotors))]
+        elastic = [None if refusal else elastic_of(mechanism, i) for i, refusal in enumerate(refusals)]
+        for index, part in enumerate(elastic):
+            if part is not None and part.mass.size == 0:
+                refusals[index], elastic[index] = NOTHING_BENDS, None
+        flexible = _with_elastic(mechanism, elastic)
+        held = _held(flexible) if any(part is not None for part in elastic) else np.empty((0, 0))
+        return [
+            Bending(False, False, refusal, 0.0)
+            if part is None
+            else _influence(flexible, flanks, index, held, part)
+            for index, (refusal, part) in enumerate(zip(refusals, elastic, strict=True))
+        ]
+
+    def extend(self, mechanism: Mechanism, decided: Sequence[Verdict | None]) -> Mechanism:
+        """Give the shafts on which it is on their elastic coordinates."""
+        elastic = [verdict.elastic if isinstance(verdict, Bending) else None for verdict in decided]
+        return mechanism if all(part is None for part in elastic) else _with_elastic(mechanism, elastic)
+
+
+def _with_elastic(mechanism: Mechanism, elastic: Sequence[ElasticShaft | None]) -> Mechanism:
+    """Return the mechanism with its rotors' elastic coordinates."""
+    pairs = zip(mechanism.rotors, elastic, strict=True)
+    return replace(mechanism, rotors=tuple(replace(rotor, elastic=part) for rotor, part in pairs))
+
+
+def _influence(
+    mechanism: Mechanism, flanks: Flanks, index: int, held: FloatArray, elastic: ElasticShaft
+) -> Bending:
+    """Assess the bending of the shaft `index` by the nominal forces, its neighbors at rest."""
+    scene, rotors = mechanism.scene, mechanism.rotors
+    rigid = _held_kinds(mechanism, index)
+    coordinates = elastic_columns(rotors, index)
+    own = np.array([*rigid, *range(coordinates.start, coordinates.stop)])
+    rows = {
+        mesh: approach(scene, rotors, mesh, mechanism.lines[mesh])[own] for mesh in _meshes(mechanism, index)
+    }
+    force = _torques(mechanism, index)[own] - sum(
+        (mechanism.nominal_force[mesh] * row for mesh, row in rows.items()), start=np.zeros(own.size)
+    )
+    moved = np.linalg.lstsq(held[np.ix_(own, own)], force, rcond=1e-13)[0]
+    moved[: len(rigid)] -= np.linalg.lstsq(held[np.ix_(rigid, rigid)], force[: len(rigid)], rcond=1e-13)[0]
+    away, share, tilted = 0.0, 0.0, 0.0
+    for mesh, row in rows.items():
+        here = abs(float(row @ moved))
+        pressed = float(mechanism.nominal_force[mesh] / flanks.mean_stiffness[mesh])
+        sense = mechanism.kinematics.mesh_sense[mesh]
+        turn = misalignment_gradient(scene, rotors, mesh, mechanism.lines[mesh], sense)[own]
+        away, tilted = max(away, here), max(tilted, abs(float(turn @ moved)))
+        share = max(share, here / pressed if pressed > 0.0 else 0.0)
+    tilted = tilted if tilted > ROUNDING * away else 0.0
+    reason = (
+        f"the nominal force bends and twists the shaft by {1e6 * away:.3g} um along the line of "
+        f"action, {100.0 * share:.3g} % of what the mesh yields, and misaligns the gear by "
+        f"{1e6 * tilted:.3g} um over the face"
+    )
+    return Bending(share > SHARE, True, reason, away, elastic)
+
+
+def _meshes(mechanism: Mechanism, index: int) -> list[int]:
+    """Return the meshes of the shaft `index`."""
+    scene, name = mechanism.scene, mechanism.scene.shafts[index].name
+    pairs = [(scene.gear(mesh.driver).shaft, scene.gear(mesh.driven).shaft) for mesh in scene.meshes]
+    return [mesh for mesh, pair in enumerate(pairs) if name in pair]
+
+
+def _held_kinds(mechanism: Mechanism, index: int) -> list[int]:
+    """Return the rigid freedoms of the shaft `index` that bearings hold; it does not turn."""
+    rotor = mechanism.rotors[index]
+    across = [0, 1, 3, 4] if rotor.rigid_kinds else []
+    along = [2] if rotor.elastic is not None and rotor.elastic.extension.mass.size else []
+    return [6 * index + kind for kind in (*across, *along)]
+
+
+def _torques(mechanism: Mechanism, index: int) -> FloatArray:
+    """Return the loads at t = 0 on all freedoms, (N,)."""
+    scene, rotors = mechanism.scene, mechanism.rotors
+    force = np.zeros(column_count(rotors))
+    for load in scene.loads:
+        if load.shaft == scene.shafts[index].name:
+            torque = -mechanism.kinematics.sense[index] * float(load.torque(0.0))
+            force += torque * turn_row(rotors, index, load.position)
+    return force
+
+
+def _held(mechanism: Mechanism) -> FloatArray:
+    """Stiffness of bearings, at their typical load, and of shafts, on all freedoms, (N, N)."""
+    rotors = mechanism.rotors
+    joined = gather_connections(mechanism.scene, rotors)
+    supports, seats = joined.supports, joined.seats
+    found = supports.matrix(supports.stiffness, supports.motion, supports.motion)
+    found += seats.motion.T @ seats.stiffness @ seats.motion + np.diag(elastic_terms(rotors)[0])
+    for index, rotor in enumerate(rotors):
+        for stiffness, lever in rotor.curved:
+            rows = section_rows(rotors, index, rotor.center[2] + lever)[:SEAT]
+            found += rows.T @ stiffness @ rows
+    return found

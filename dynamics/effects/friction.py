@@ -2,23 +2,67 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import replace
 
-from dynamics.effects.effect import LoadedMesh, Verdict
+import numpy as np
+
+from dynamics.effects.effect import MeshEffect, Verdict
+from dynamics.effects.flank_terms import SLIDING, FlankInSpace, FlankTerms
+from dynamics.effects.loaded_meshes import LoadedMesh
+from dynamics.mechanism.columns import gear_row
+from dynamics.mechanism.flank_gradients import UNIT_Z, table_sense
+from dynamics.mechanism.freedoms import ROTATION
+from dynamics.types import FloatArray
 
 
-@dataclass(frozen=True)
-class Friction:
+class Friction(MeshEffect):
     """Two more local coordinates of a flank; their rates are its sliding."""
 
-    name: str = "friction"
-    cost: str = "two more rows per flank and eight numbers more per look-up"
+    name = "friction"
+    cost = "two more rows per flank and eight numbers more per look-up"
 
     def called_for(self, mesh: LoadedMesh) -> Verdict:
-        """Call for it where a coefficient is given."""
-        axes = mesh.axes
-        if axes.friction is None:
+        """Call for it where a coefficient is given; the influence is that of the largest friction torque."""
+        coefficient = mesh.mesh.friction
+        if coefficient is None:
             return Verdict(False, False, "no coefficient of friction given", 0.0)
-        if not axes.slides:
+        arm = getattr(mesh.mesh.table, "sliding_lever", None)
+        if arm is None:
             return Verdict(False, False, "the table does not say where along the path the load slides", 0.0)
-        return Verdict(True, True, f"a coefficient of {axes.friction:g} is given", axes.slowed)
+        radius = mesh.train.mechanism.scene.gear(mesh.mesh.driven).base_radius
+        share = coefficient * float(np.max(np.asarray(arm))) / radius
+        reason = f"a coefficient of {coefficient:g} is given"
+        return Verdict(True, True, reason, share * mesh.force / mesh.stiffness)
+
+    def contribute(self, terms: FlankTerms, flank: FlankInSpace) -> FlankTerms:
+        """Give the flank its sliding, and the force that resists it."""
+        scene = flank.mechanism.scene
+        mesh = scene.meshes[flank.index]
+        helix = scene.gear(mesh.driver).base_helix_angle
+        coefficient = (mesh.friction or 0.0) / math.cos(helix)
+        return replace(terms.with_rows(SLIDING, sliding_gradients(flank)), friction=coefficient)
+
+
+def sliding_gradients(flank: FlankInSpace) -> FloatArray:
+    """Return the derivatives of sliding at the pitch point and of rolling on it, (2, N).
+
+    A contact at y n from the pitch point slides at (w_1 - w_2) y along z x n, whichever flank it is on: the
+    first row is the relative displacement along that direction, the second the relative rotation times the
+    driver's base radius, each in the sense in which the load slides at the y > 0 of the table. Where a ring
+    gear drives, that y runs against n and w_1 - w_2 against the sense of the driving flank.
+    """
+    scene, rotors, line = flank.mechanism.scene, flank.mechanism.rotors, flank.line
+    mesh = scene.meshes[flank.index]
+    sign = table_sense(scene, flank.index, flank.driving)
+    across = flank.driving * np.cross(UNIT_Z, line.force * np.array([1.0, 1.0, 0.0]))
+    radius = scene.gear(mesh.driver).base_radius
+    rolled = np.zeros(6)
+    rolled[ROTATION] = sign * radius
+
+    def slid(center: FloatArray) -> FloatArray:
+        return np.concatenate([across, np.cross(line.point - center, across)])
+
+    sliding = gear_row(scene, rotors, [(mesh.driver, slid), (mesh.driven, lambda c: -slid(c))])
+    rolling = gear_row(scene, rotors, [(mesh.driver, lambda _: rolled), (mesh.driven, lambda _: -rolled)])
+    return np.stack([sliding, rolling])

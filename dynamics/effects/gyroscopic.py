@@ -2,37 +2,124 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from collections.abc import Sequence
 
-from dynamics.effects.effect import SupportedRotor, Verdict
+import numpy as np
+
+from dynamics.effects.effect import RotorEffect, Verdict
+from dynamics.effects.frame_term import FrameTerm, frame_lever
+from dynamics.effects.loaded_rotors import LoadedRotor
+from dynamics.mechanism.columns import column_count
+from dynamics.mechanism.connections import Connections
+from dynamics.mechanism.mechanism import Mechanism
+from dynamics.mechanism.rotor import Rotor
+from dynamics.mechanism.spun_shaft import spun_pairs
+from dynamics.types import FloatArray
 
 SHARE = 0.01
 """Least shift of a natural frequency, over the frequency, that calls for it."""
+LATERAL, TILT = (0, 1), (3, 4)
 
 
-@dataclass(frozen=True)
-class Gyroscopic:
+class Gyroscopic(RotorEffect):
     """One force element of two rows per tilting shaft, and one or more per member of a planetary set."""
 
-    name: str = "gyroscopic"
-    adds: tuple[str, ...] = ()
-    cost: str = "a force element of two rows per tilting shaft; in rotating frames one or more per member"
+    name = "gyroscopic"
+    cost = "a force element of two rows per tilting shaft; in rotating frames one or more per member"
 
-    def called_for(self, rotor: SupportedRotor) -> Verdict:
+    def called_for(self, rotor: LoadedRotor) -> Verdict:
         """Call for it where it shifts a natural frequency by more than a share.
 
         A tilting shaft of spin w whirls at its frequency f times 1 +- I_p w/(2 sqrt(I_t k_t)); one seen from
         a frame of speed W at f +- W/(2 pi).
         """
-        rotation = rotor.rotation
-        if rotor.tilt_stiffness == 0.0 and not rotation.framed:
+        own, mechanism = rotor.rotor, rotor.mechanism
+        if own.tilt_stiffness == 0.0 and own.frame is None:
             return Verdict(False, False, "the bushings do not hold tilt: held rigidly", 0.0)
-        if rotation.framed and rotation.free:
+        free = bool(mechanism.freely_turned[rotor.index if own.frame is None else own.frame])
+        if own.frame is not None and free:
             reason = "left out: torques alone turn the carrier's frame, whose speed is then unknown"
             return Verdict(False, False, reason, 0.0)
-        if rotation.free:
+        if free:
             return Verdict(True, True, "torques alone turn the shaft: its speed is not known before", 0.0)
-        share = max(rotation.tilt_share if rotor.tilt_stiffness > 0.0 else 0.0, rotation.frame_share)
-        held = rotor.pushed / rotor.radial_stiffness if rotor.radial_stiffness > 0.0 else 0.0
+        share = max(_tilt_share(rotor), _frame_share(rotor))
+        held = rotor.pushed / own.radial_stiffness if own.radial_stiffness > 0.0 else 0.0
         reason = f"rotation shifts natural frequencies by up to {share:.2g} of them"
         return Verdict(share > SHARE, True, reason, min(share, 1.0) * held)
+
+    def frame_terms(self, mechanism: Mechanism, connections: Connections, index: int) -> Sequence[FrameTerm]:
+        """Return the terms of a shaft of spin w in a frame of speed W (0: fixed), with J = z x.
+
+        lateral:  m (2 W J u' - W^2 u),     tilt:  (2 I_t W - I_p w) J a' + (I_p w W - I_t W^2) a,
+
+        and of a ground damper seen from the frame c W J u.
+        """
+        rotor, lever = mechanism.rotors[index], frame_lever(mechanism.scene)
+        mass, polar, across = rotor.inertia.mass, rotor.inertia.polar, rotor.inertia.transverse
+        own = np.eye(column_count(mechanism.rotors))[6 * index : 6 * index + 6]
+        found = []
+        if rotor.frame is not None:
+            found.append(FrameTerm(own[list(LATERAL)], (0.0, 2.0 * mass, 0.0, -mass, 0.0)))
+        if rotor.elastic is not None and rotor.elastic.bends:
+            return [*found, *_along_the_shaft(mechanism, index, lever)]
+        square = lever**2
+        tilt = (-polar / square, 2.0 * across / square, polar / square, -across / square, 0.0)
+        found.append(FrameTerm(lever * own[list(TILT)], tilt))
+        return [*found, *_dampers(connections, index, lever)]
+
+
+def _tilt_share(rotor: LoadedRotor) -> float:
+    """I_p w/(2 sqrt(I_t k_t)) at the largest speed w of the run."""
+    own, speed = rotor.rotor, rotor.mechanism.largest_speed
+    held = math.sqrt(own.inertia.transverse * own.tilt_stiffness)
+    return own.inertia.polar * float(speed[rotor.index]) / (2.0 * held) if held > 0.0 else 0.0
+
+
+def _frame_share(rotor: LoadedRotor) -> float:
+    """Largest W/omega of all members of its frame: its speed over their lateral natural frequency."""
+    frame, speed = rotor.rotor.frame, rotor.mechanism.largest_speed
+    if frame is None:
+        return 0.0
+    members = [other for other in rotor.mechanism.rotors if other.frame == frame]
+    return max(_over_lateral(member, float(speed[frame])) for member in members)
+
+
+def _over_lateral(rotor: Rotor, speed: float) -> float:
+    """Return the `speed` of a rotor's frame over its lateral natural frequency; 0 where it is not held."""
+    if rotor.radial_stiffness <= 0.0:
+        return 0.0
+    return speed * math.sqrt(rotor.inertia.mass / rotor.radial_stiffness)
+
+
+def _along_the_shaft(mechanism: Mechanism, index: int, lever: float) -> list[FrameTerm]:
+    """Return the terms of a shaft in the fixed frame whose tilt differs along it."""
+    free = mechanism.freely_turned[index]
+    fastest = math.inf if free else float(mechanism.largest_speed[index])
+    return [
+        FrameTerm(lever * rows, (-polar / lever**2, 0.0, 0.0, 0.0, 0.0))
+        for rows, polar in spun_pairs(mechanism.rotors, index, fastest)
+    ]
+
+
+def _dampers(connections: Connections, index: int, lever: float) -> list[FrameTerm]:
+    """Return what ground dampers of a rotor in a rotating frame are.
+
+    A bushing's damping matrix, alike in all directions, is a damper at a point of the axis and one of tilt.
+    """
+    supports, seats = connections.supports, connections.seats
+    found: list[tuple[FloatArray, float]] = []
+    for support, frame in enumerate(supports.frame):
+        rows = supports.motion[support, :2]
+        if frame is not None and np.any(rows[:, 6 * index]):
+            found.append((rows, float(supports.damping[support, 0])))
+    for seat, frame in enumerate(seats.frame):
+        first = 5 * seat
+        motion, c = seats.motion[first : first + 5], seats.damping[first : first + 5, first : first + 5]
+        if frame is None or not np.any(motion[:2, 6 * index]):
+            continue
+        away = float(c[0, 4] / c[0, 0]) if c[0, 0] > 0.0 else 0.0
+        at = motion[:2] + away * np.array([motion[4], -motion[3]])
+        found.append((at, float(c[0, 0])))
+        found.append((lever * motion[3:5], float(c[3, 3] - c[0, 0] * away**2) / lever**2))
+    return [FrameTerm(rows, (0.0, 0.0, 0.0, 0.0, damping)) for rows, damping in found if damping != 0.0]

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from dynamics.checks import one_of
-from dynamics.effects.effect import Effect, LoadedMesh, MeshEffect, SupportedRotor, Verdict
-from dynamics.effects.registry import EFFECTS, LEFT_OUT, MESH_EFFECTS
+from dynamics.effects.effect import Effect, MeshEffect, RotorEffect, Verdict
+from dynamics.effects.registry import LEFT_OUT
 from dynamics.types import Json
 
 CHOICES = ("auto", "on", "off")
@@ -19,31 +19,65 @@ class LedgerEntry:
 
     Attributes
     ----------
-    effect, part : str
-        What, and for which shaft or mesh.
+    decided : Effect
+    part : str
+        The shaft or the mesh that it is decided for.
     choice : str
         What the scene requests: ``"auto"``, ``"on"``, ``"off"``.
-    on : bool
-        What was done.
-    reason : str
-        Why.
-    influence : float
-        Static displacement along the line of action that the effect adds at the nominal force, m.
-    called_for, possible : bool
-        What the scene calls for, and whether it has the freedom or the data at all.
-    cost : str
-        In words.
+    verdict : Verdict
+        What the scene calls for.
     """
 
-    effect: str
+    decided: Effect
     part: str
     choice: str
-    on: bool
-    reason: str
-    influence: float
-    called_for: bool
-    possible: bool
-    cost: str
+    verdict: Verdict
+
+    @property
+    def effect(self) -> str:
+        """Name of the effect."""
+        return self.decided.name
+
+    @property
+    def on(self) -> bool:
+        """What is done: an explicit choice is obeyed as far as the scene allows, else the verdict."""
+        obeyed = self.choice != "auto" and self.possible
+        return self.choice == "on" if obeyed else self.called_for
+
+    @property
+    def reason(self) -> str:
+        """Why."""
+        if self.on == self.called_for:
+            return self.verdict.reason
+        reason = self.verdict.reason
+        return f"requested; else: {reason}" if self.on else f"switched off, though: {reason}"
+
+    @property
+    def called_for(self) -> bool:
+        """Whether the scene calls for it."""
+        return self.verdict.on
+
+    @property
+    def possible(self) -> bool:
+        """Whether the scene has the freedom or the data at all."""
+        return self.verdict.possible
+
+    @property
+    def influence(self) -> float:
+        """Static displacement along the line of action that the effect adds at the nominal force, m."""
+        return self.verdict.influence
+
+    @property
+    def cost(self) -> str:
+        """In words."""
+        return self.decided.cost
+
+    @property
+    def price(self) -> str:
+        """What a choice against the scene costs; empty where it does not."""
+        if self.on == self.called_for:
+            return ""
+        return self.cost if self.on else f"{1e6 * self.influence:.3g} um of static displacement left out"
 
     def to_json(self) -> Json:
         """Return plain JSON; the influence has the key ``worth``."""
@@ -60,28 +94,35 @@ class LedgerEntry:
             "price": self.price,
         }
 
-    @property
-    def price(self) -> str:
-        """What a choice against the scene costs; empty where it does not."""
-        if self.on == self.called_for:
-            return ""
-        return self.cost if self.on else f"{1e6 * self.influence:.3g} um of static displacement left out"
-
 
 @dataclass(frozen=True)
 class EffectLedger:
     """All decisions, and what this model leaves out."""
 
-    entries: tuple[LedgerEntry, ...]
+    entries: tuple[LedgerEntry, ...] = ()
 
-    def freedoms(self, shaft: str) -> tuple[str, ...]:
-        """Return the names of the freedoms that effects give `shaft`."""
-        on = {entry.effect for entry in self.entries if entry.on and entry.part == shaft}
-        return tuple(freedom for effect in EFFECTS if effect.name in on for freedom in effect.adds)
+    def decide(self, effect: Effect, choice: str, verdicts: Mapping[str, Verdict]) -> EffectLedger:
+        """Return the ledger with the decisions on one more effect, by part."""
+        made = (LedgerEntry(effect, part, choice, verdict) for part, verdict in verdicts.items())
+        return EffectLedger((*self.entries, *made))
 
-    def on(self, effect: str, mesh: str) -> bool:
-        """Whether an effect of a mesh is on."""
-        return any(entry.on and entry.part == mesh for entry in self.entries if entry.effect == effect)
+    def on_rotor(self, shaft: str) -> list[RotorEffect]:
+        """Return the effects of rotors that are on for `shaft`."""
+        own = [entry.decided for entry in self.entries if entry.on and entry.part == shaft]
+        return [effect for effect in own if isinstance(effect, RotorEffect)]
+
+    def on_mesh(self, mesh: str) -> list[MeshEffect]:
+        """Return the effects of meshes that are on for `mesh`."""
+        own = [entry.decided for entry in self.entries if entry.on and entry.part == mesh]
+        return [effect for effect in own if isinstance(effect, MeshEffect)]
+
+    def of(self, effect: str) -> list[LedgerEntry]:
+        """Return the decisions on one effect, one per part."""
+        return [entry for entry in self.entries if entry.effect == effect]
+
+    def on(self, effect: str, part: str) -> bool:
+        """Whether an effect is on for a part."""
+        return any(entry.on and entry.part == part for entry in self.of(effect))
 
     def to_json(self) -> Json:
         """Return plain lists and dictionaries."""
@@ -89,47 +130,14 @@ class EffectLedger:
         return {"entries": entries, "left_out": dict(LEFT_OUT)}
 
 
-def keep_ledger(choices: Mapping[str, str], rotors: Sequence[SupportedRotor]) -> EffectLedger:
-    """Decide the effects of every rotor.
+def check_choices(choices: Mapping[str, str], registry: Sequence[Effect]) -> None:
+    """Refuse unknown effects and choices.
 
     Raises
     ------
     InputError
-        If `choices` names an unknown effect or choice.
     """
-    names = [*(effect.name for effect in EFFECTS), *(effect.name for effect in MESH_EFFECTS)]
+    names = [effect.name for effect in registry]
     for name, choice in choices.items():
         one_of("effects", name, names)
         one_of(f"effects.{name}", choice, CHOICES)
-    on_rotors = [
-        _decide(effect, rotor.name, effect.called_for(rotor), choices)
-        for effect in EFFECTS
-        for rotor in rotors
-    ]
-    return EffectLedger(tuple(on_rotors))
-
-
-def with_mesh_effects(
-    ledger: EffectLedger, choices: Mapping[str, str], meshes: Sequence[LoadedMesh]
-) -> EffectLedger:
-    """Decide the effects of every mesh, which look at the freedoms that the rotors have."""
-    on_meshes = [
-        _decide(effect, mesh.name, effect.called_for(mesh), choices)
-        for effect in MESH_EFFECTS
-        for mesh in meshes
-    ]
-    return EffectLedger((*ledger.entries, *on_meshes))
-
-
-def _decide(
-    effect: Effect | MeshEffect, part: str, verdict: Verdict, choices: Mapping[str, str]
-) -> LedgerEntry:
-    """Obey an explicit choice as far as the scene allows, else follow the verdict."""
-    choice = choices.get(effect.name, "auto")
-    on, reason = verdict.on, verdict.reason
-    if choice != "auto" and verdict.possible:
-        on = choice == "on"
-        if on != verdict.on:
-            reason = f"requested; else: {verdict.reason}" if on else f"switched off, though: {verdict.reason}"
-    decided = (effect.name, part, choice, on, reason, verdict.influence)
-    return LedgerEntry(*decided, called_for=verdict.on, possible=verdict.possible, cost=effect.cost)

@@ -2,28 +2,47 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 
-from dynamics.effects.effect import LoadedMesh, Verdict
+import numpy as np
+
+from dynamics.effects.effect import MeshEffect, Verdict
+from dynamics.effects.flank_terms import MISALIGNMENT, FlankInSpace, FlankTerms
+from dynamics.effects.loaded_meshes import LoadedMesh
+from dynamics.mechanism.flank_gradients import common_face_width, misalignment_gradient
 
 CENTERED = 1e-9  # of the face width
 
 
-@dataclass(frozen=True)
-class MovingApplicationPoint:
+class MovingApplicationPoint(MeshEffect):
     """A moment of the mesh force in the plane of action."""
 
-    name: str = "moving_application_point"
-    cost: str = "one more row per flank and four numbers more per look-up"
+    name = "moving_application_point"
+    cost = "one more row per flank and four numbers more per look-up"
 
     def called_for(self, mesh: LoadedMesh) -> Verdict:
-        """Call for it where the load's centroid leaves mid-face and a shaft can tilt."""
-        lever, influence = mesh.axes.lever, mesh.axes.moment
-        if lever is None or influence is None:
+        """Call for it where the load's centroid leaves mid-face and a shaft can tilt.
+
+        Its influence is the displacement along the line of action at the centroid that its moment makes.
+        """
+        centroid = getattr(mesh.mesh.table, "face_centroid", None)
+        if centroid is None:
             return Verdict(False, False, "the table does not say where along the face the load acts", 0.0)
-        if not mesh.axes.tilts:
+        if not mesh.moves(MISALIGNMENT):
             return Verdict(False, False, "no shaft can tilt in the plane of action", 0.0)
+        lever = float(np.max(np.abs(np.asarray(centroid)[..., mesh.level])))
+        lever = lever / common_face_width(mesh.train.mechanism.scene, mesh.index)
         if lever <= CENTERED:
             return Verdict(False, True, "the load stays centered on the face", 0.0)
         reason = f"the load's centroid leaves mid-face by up to {100.0 * lever:.3g} % of the face"
-        return Verdict(True, True, reason, influence)
+        tilts = mesh.axes[MISALIGNMENT]
+        return Verdict(
+            True, True, reason, mesh.force * lever**2 * float(tilts @ mesh.train.compliance @ tilts)
+        )
+
+    def contribute(self, terms: FlankTerms, flank: FlankInSpace) -> FlankTerms:
+        """Let the force act at the centroid."""
+        scene, rotors = flank.mechanism.scene, flank.mechanism.rotors
+        tilts = misalignment_gradient(scene, rotors, flank.index, flank.line, flank.sense)
+        per_face = 1.0 / common_face_width(scene, flank.index)
+        return replace(terms.with_rows(MISALIGNMENT, tilts[None, :]), per_face=per_face)

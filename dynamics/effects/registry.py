@@ -5,9 +5,10 @@ from __future__ import annotations
 from dynamics.effects.axial import Axial
 from dynamics.effects.backlash import Backlash
 from dynamics.effects.bearing_clearance import BearingClearance
+from dynamics.effects.centrifugal_load import CentrifugalLoad
 from dynamics.effects.dynamic_center_distance import DynamicCenterDistance
 from dynamics.effects.dynamic_misalignment import DynamicMisalignment
-from dynamics.effects.effect import Effect, MeshEffect
+from dynamics.effects.effect import Effect
 from dynamics.effects.flexible_shafts import FlexibleShafts
 from dynamics.effects.friction import Friction
 from dynamics.effects.gyroscopic import Gyroscopic
@@ -21,10 +22,8 @@ EFFECTS: tuple[Effect, ...] = (
     Tilt(),
     BearingClearance(),
     Gyroscopic(),
+    CentrifugalLoad(),
     FlexibleShafts(),
-)
-
-MESH_EFFECTS: tuple[MeshEffect, ...] = (
     Backlash(),
     DynamicMisalignment(),
     DynamicCenterDistance(),
@@ -33,7 +32,6 @@ MESH_EFFECTS: tuple[MeshEffect, ...] = (
 )
 
 LEFT_OUT: dict[str, str] = {
-    "centrifugal loads": "of planets on their pins; the terms of displacements are in the effect gyroscopic",
     "gravity": "weights are small against mesh forces",
     "friction of bearings": "bearings turn without loss",
     "point of application along the path of contact": "the mesh force acts at the operating pitch point",

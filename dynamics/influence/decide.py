@@ -6,16 +6,13 @@ import time as clock
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from dynamics.effects.backlash import Backlash
-from dynamics.effects.bearing_clearance import BearingClearance
+from dynamics.effects import EFFECTS
 from dynamics.influence.estimate import Influence, estimate_influences
 from dynamics.scene import Scene
 
 SHARE = 0.1
 """Of the tolerance, for all neglected effects together: estimates may be wrong by a factor of two and
 more, and neglected effects must stay invisible."""
-KEPT = (Backlash().name, BearingClearance().name)
-"""Effects of impacts, of which linear theory says nothing."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +64,8 @@ def decide_effects(scene: Scene) -> Decided:
         if not influence.on and influence.largest > allowed
     }
     choices, total = dict.fromkeys(automatic, "on"), 0.0
-    candidates = {name: influence for name, influence in free.items() if influence.on and name not in KEPT}
+    linear = {effect.name for effect in EFFECTS if effect.linear}
+    candidates = {name: influence for name, influence in free.items() if influence.on and name in linear}
     for name, influence in sorted(candidates.items(), key=lambda item: item[1].largest):
         total += influence.largest
         if total <= allowed:

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from dynamics.assembly.assemble import System, assemble
-from dynamics.effects import EFFECTS, MESH_EFFECTS
 from dynamics.errors import InputError, SolveError
 from dynamics.influence.linear_figures import LinearFigures, linear_figures
 from dynamics.influence.operating_conditions import operating_conditions
@@ -104,17 +103,18 @@ def estimate_influences(scene: Scene, settled: float = 0.0) -> dict[str, Influen
             figures = linear_figures(other, conditions)
         except (InputError, SolveError):
             continue
-        found[name] = influence_of(system, on, *((whole, figures) if on else (figures, whole)))
+        both = (whole, figures) if on else (figures, whole)
+        found[name] = influence_of(system, on, *both)
     return found
 
 
 def switchable(system: System) -> dict[str, bool]:
     """Return the effects that a part of a system can have and would feel, and whether any has them on."""
     found: dict[str, bool] = {}
-    for name in [*(effect.name for effect in EFFECTS), *(effect.name for effect in MESH_EFFECTS)]:
-        able = [one for one in system.ledger.entries if one.effect == name and one.possible]
-        if any(one.on or one.influence > 0.0 for one in able):
-            found[name] = any(one.on for one in able)
+    for name in dict.fromkeys(entry.effect for entry in system.ledger.entries):
+        able = [entry for entry in system.ledger.of(name) if entry.possible]
+        if any(entry.on or entry.influence > 0.0 for entry in able):
+            found[name] = any(entry.on for entry in able)
     return found
 
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.effects.backlash import Backlash
 from dynamics.effects.gyroscopic import Gyroscopic
 from dynamics.influence.operating_conditions import OperatingCondition
 from dynamics.linearize.harmonic_response import HarmonicResponse, extremes
@@ -72,7 +71,7 @@ def linear_figures(system: System, conditions: Sequence[OperatingCondition]) -> 
     for some in conditions:
         at = excited(system, some.time, ORDERS, POSITIONS)
         condition = some.passing(resonances(at)) if some.speed.size > 1 else some
-        answer = parametric_response(at, condition.speed, condition.rate, ORDERS, Gyroscopic().name in on)
+        answer = parametric_response(at, condition.speed, condition.rate, ORDERS, Gyroscopic.name in on)
         found, static = answer.harmonics, [float(np.mean(cycle.static_error)) for cycle in at.cycles]
         rest = np.array(static)[:, None] + answer.mean_shift
         least, most = extremes(found.dynamic_transmission_error, found.order)
@@ -84,7 +83,7 @@ def linear_figures(system: System, conditions: Sequence[OperatingCondition]) -> 
         parted = np.maximum(parted, pull / np.maximum(found.mean_stiffness, 1e-300))
     size = system.arrays.mass.shape[0], system.arrays.direction.shape[0]
     force = np.sqrt(np.sum(amplitude**2, axis=(1, 2)))
-    return LinearFigures(mean, high - low, force, parted, *size, Backlash().name in on)
+    return LinearFigures(mean, high - low, force, parted, *size, bool(system.flanks.coast))
 
 
 def resonances(at: Excited) -> FloatArray:

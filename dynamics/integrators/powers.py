@@ -27,7 +27,7 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
     Drives supply the torque on their own shafts times their speeds. A table V(x, d) exerts dV/dd only along
     the line of action; what dV/dx stores as the position moves on is counted as supplied by the position,
     and likewise along the table's other axes, less the work of forces along them. The rotation of frames
-    counts with the position.
+    and the change of its speed count with the position.
     """
     velocity = work.stage_v[stage]
     laws = work.motion.shape[0]
@@ -51,7 +51,7 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
     axes, position = 0.0, 0.0
     for e in range(system.elements.law.size):
         axes -= power_along_axes(system.elements, work.local, e)
-        position += power_by_frames(system.elements, work.local, e)
+        position += power_by_frames(system.elements, work.local, e) + _by_frame_speed(system, work, e)
     work.power[stage, Power.DRIVE] = drives
     work.power[stage, Power.LOAD] = loads
     work.power[stage, Power.POSITION] = position
@@ -59,6 +59,19 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
     work.power[stage, Power.MESH] = mesh
     work.power[stage, Power.AXES] = axes
     work.power[stage, Power.FRICTION] = friction
+
+
+@inner
+def _by_frame_speed(system: SystemArrays, work: Workspace, e: int) -> float:
+    """Return what a changing speed W of a frame stores in the load l W^2 of element `e`, -2 W W' l y, W."""
+    if system.elements.law[e] != ROTATING_FRAME:
+        return 0.0
+    entry, row, gain = system.elements.entry[e], system.elements.first[e], 0.0
+    for k in range(work.motion.shape[0]):
+        gain += system.elements.speed[e, 1, k] * work.motion[k, ACCELERATION]
+    load, y = system.elements.laws.rotating_frame.load, work.local.coordinate
+    pulled = load[entry, 0] * y[row] + load[entry, 1] * y[row + 1]
+    return float(-2.0 * work.local.speed[e, 1] * gain * pulled)
 
 
 @inner

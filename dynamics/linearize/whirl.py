@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.assembly.assemble import System
-from dynamics.assembly.spun_shaft import pair_rows, spun_inertia
 from dynamics.joints.seat import SEAT
 from dynamics.linearize.linear_system import LinearSystem, linearize
 from dynamics.mechanism.columns import column_count
+from dynamics.mechanism.spun_shaft import pair_rows, spun_inertia
 from dynamics.motion.force_balance import block_diagonal, swept_by_frames
 from dynamics.motion.observation import local_state, observe_laws
 from dynamics.types import FloatArray

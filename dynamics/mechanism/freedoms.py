@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.effects import FREEDOMS
-from dynamics.effects.ledger import EffectLedger
 from dynamics.mechanism.columns import elastic_columns
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.planets import carried_motion
 from dynamics.mechanism.rotor import Rotor
 from dynamics.types import BoolArray, FloatArray, IntArray
 
+FREEDOMS = ("x", "y", "z", "tilt_x", "tilt_y", "rotation")
 ROTATION = FREEDOMS.index("rotation")
 COUPLED = ("x", "tilt_y", "bending_x", "y", "tilt_x", "bending_y", "z", "stretch", "rotation", "twist")
 """Order of a flexible shaft's freedoms: what bearings couple stays together, in the smallest blocks."""
@@ -52,11 +51,13 @@ class Freedoms:
         return int(found[0]) if found.size else -1
 
 
-def find_freedoms(rotors: Sequence[Rotor], kinematics: Kinematics, ledger: EffectLedger) -> Freedoms:
-    """Gather the freedoms that effects add, and the rotation of every shaft without a rigid drive."""
+def find_freedoms(
+    rotors: Sequence[Rotor], kinematics: Kinematics, added: Sequence[Collection[str]]
+) -> Freedoms:
+    """Gather the freedoms `added` to each rotor, and the rotation of every shaft without a rigid drive."""
     found: list[tuple[str, int, bool]] = []
     for index, rotor in enumerate(rotors):
-        free = {*ledger.freedoms(rotor.shaft.name), *rotor.rigid_kinds}
+        free = {*added[index], *rotor.rigid_kinds}
         if index not in kinematics.imposed:
             free.add("rotation")
         own = [(kind, 6 * index + k, k == ROTATION) for k, kind in enumerate(FREEDOMS) if kind in free]

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from bounds import above
 from dynamics.errors import InputError
 from dynamics.mechanism.base_pitches import Corrections, with_common_base_pitches
@@ -23,7 +25,7 @@ from dynamics.mechanism.rotor import Rotor, build_rotor
 from dynamics.mechanism.supports import gather_supports
 from dynamics.mechanism.thrust_check import check_thrust
 from dynamics.scene.scene import Scene
-from dynamics.types import FloatArray
+from dynamics.types import BoolArray, FloatArray
 
 GIVE_INERTIA = "Give the shaft or its gears mass and inertia (see hollow_cylinder)."
 
@@ -66,6 +68,17 @@ class Mechanism:
     def rotational_inertia(self) -> FloatArray:
         """Of each rotor with the planets it takes along, (r,), kg m^2."""
         return rotational_inertia(self.rotors)
+
+    @property
+    def largest_speed(self) -> FloatArray:
+        """Of each shaft in the kinematic motion, (s,), rad/s."""
+        extreme = np.array([abs(part.speed.extreme) for part in self.scene.references])
+        return np.asarray(np.abs(self.kinematics.float_ratio) @ extreme)
+
+    @property
+    def freely_turned(self) -> BoolArray:
+        """Whether free rotations turn each shaft, (s,)."""
+        return np.asarray(np.any(self.kinematics.float_ratio[:, len(self.scene.drives) :] != 0.0, axis=1))
 
     @property
     def vectors(self) -> FloatArray:

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from dynamics.effects.axial import Axial
 from dynamics.errors import InputError
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.line_of_action import LineOfAction
@@ -44,7 +43,7 @@ def check_thrust(
     ------
     InputError
     """
-    if scene.effects.get(Axial().name) == "off":
+    if scene.effects.get("axial") == "off":
         return
     size = np.where(forces > 0.0, forces, 1.0)
     for rotor, sense in zip(rotors, kinematics.sense, strict=True):

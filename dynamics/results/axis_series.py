@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.assembly.mesh_axes import common_face_width, table_sense
 from dynamics.forces.element_laws import SPATIAL_FLANK
+from dynamics.mechanism.flank_gradients import common_face_width, table_sense
 from dynamics.types import FloatArray
 
 FIELDS = ("misalignment", "center_distance_change")

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.assembly.mesh_axes import distance_gradient, misalignment_gradient
 from dynamics.forces import GearMesh
 from dynamics.forces.operating_point_table import table_at_operating_point
+from dynamics.mechanism.flank_gradients import distance_gradient, misalignment_gradient
 from dynamics.results.axis_checks import WHAT
 from dynamics.results.axis_series import EFFECTS, FIELDS
 from dynamics.types import FloatArray, Json

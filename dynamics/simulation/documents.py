@@ -105,7 +105,7 @@ def _modes(system: System) -> Json:
     found = natural_modes(linear)
     most = np.argmax(found.kinetic_energy, axis=1) if found.frequency.size else []
     rotating = any(part.speed.extreme != 0.0 for part in system.scene.references) and any(
-        entry.effect == Gyroscopic().name and entry.on for entry in system.ledger.entries
+        entry.effect == Gyroscopic.name and entry.on for entry in system.ledger.entries
     )
     return {
         "frequency": [float(value) for value in found.frequency],

@@ -14,7 +14,7 @@ from fe_contact.analysis.request import Checked
 from fe_contact.analysis.solved_table import SolvedTable
 from fe_contact.analysis.tip_edges import assemble_edges, deepest_edge
 from fe_contact.contact import ContactProblem, ContactSolution
-from fe_contact.effects import EFFECTS, FaceLoadDistribution, FiniteWidth
+from fe_contact.effects import FaceLoadDistribution, FiniteWidth
 from fe_contact.effects.across_face import across_face
 from fe_contact.effects.corner_contact import CornerContact
 from fe_contact.effects.influence import EstimatedInfluence, estimate_influence
@@ -138,7 +138,7 @@ def _neglected(run: SolvedTable) -> Iterator[Assumption]:
     """Effects neglected for the tolerance: their influence beside what was computed."""
     request = run.checked.request
     for name in request.neglected:
-        influence = estimate_influence(*run.checked.assessing(name), name, EFFECTS)
+        influence = estimate_influence(*run.checked.assessing(name), name)
         if influence is not None:
             change = _relative(influence, run)
             reason = f"estimated at {100 * change:.2g} % of the computed mean or peak-to-peak"

@@ -12,15 +12,13 @@ from fe_contact.analysis.condensed_pair import CondensedPair
 from fe_contact.analysis.pair_contact import bodies_are_kept, pair_contact
 from fe_contact.analysis.request import Checked, Request
 from fe_contact.analysis.request_check import check_asked
-from fe_contact.effects import FaceLoadDistribution, FiniteWidth
-from fe_contact.effects.bore_seat import BoreSeatElasticity
-from fe_contact.effects.thin_rim import ThinRim
+from fe_contact.effects import EFFECTS
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions
 from fe_contact.planning import Plan, make_plan
 from fe_contact.ste import SteDatabase
 
-OF_BODIES = (FaceLoadDistribution.name, FiniteWidth.name, ThinRim.name, BoreSeatElasticity.name)
+OF_BODIES = tuple(effect.name for effect in EFFECTS if effect.of_bodies)
 """Effects that decide which finite elements there are."""
 
 

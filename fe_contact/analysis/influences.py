@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from fe_contact.analysis.request import Checked
-from fe_contact.effects import EFFECTS, ContactScene
+from fe_contact.effects import ContactScene
 from fe_contact.effects.influence import (
     EstimatedInfluence,
     Influence,
@@ -29,13 +29,13 @@ def estimated_influences(checked: Checked, names: Iterable[str] | None = None) -
         At the highest load and the largest misalignment in size. None where one of the two states cannot be
         had, as a plane with what acts across the face, or the springs do not know it.
     """
-    wanted = [effect.name for effect in EFFECTS] if names is None else list(names)
+    wanted = [effect.name for effect in checked.request.registry] if names is None else list(names)
     neglected = [name for name in wanted if name in checked.request.neglected]
     own = [name for name in wanted if name not in neglected]
-    influences = estimate_influences(checked.request.scene.at_nominal_load, checked.decided, own, EFFECTS)
+    influences = estimate_influences(checked.request.scene.at_nominal_load, checked.decided, own)
     for name in neglected:
         scene, decided = checked.assessing(name)
-        influences[name] = estimate_influence(scene.at_nominal_load, decided, name, EFFECTS)
+        influences[name] = estimate_influence(scene.at_nominal_load, decided, name)
     asked = checked.request.whole_scene
     return {
         name: None if influence is None else _influence(influence, asked)

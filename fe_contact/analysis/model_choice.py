@@ -15,7 +15,6 @@ from fe_contact.analysis.decided import FACE, WIDTH, Decided, model_name
 from fe_contact.analysis.request import Checked, Request
 from fe_contact.analysis.request_check import check_asked
 from fe_contact.analysis.ripple import expected_curves
-from fe_contact.effects import EFFECTS
 from fe_contact.effects.influence import estimate_influence
 from fe_contact.options import LEVELS, AnalysisOptions
 from fe_contact.planning import ExpectedCurves, MeshChoice, chosen_mesh, make_plan
@@ -150,7 +149,7 @@ def _width_is_small(checked: Checked) -> bool:
     tolerance = checked.request.options.tolerance
     if tolerance is None:
         return True
-    influence = estimate_influence(*checked.assessing(WIDTH), WIDTH, EFFECTS, tolerance.least_scale)
+    influence = estimate_influence(*checked.assessing(WIDTH), WIDTH, tolerance.least_scale)
     return influence is not None and influence.largest <= WIDTH_SHARE * tolerance.relative
 
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from fe_contact.allowed_error import AllowedError
-from fe_contact.effects import EFFECTS, ContactScene, LedgerEntry
+from fe_contact.effects import ContactScene, LedgerEntry
 from fe_contact.effects.influence import EstimatedInfluence, estimate_influences
-from fe_contact.effects.neglect import WITHOUT
 
 SHARE = 0.1
 """Part of the tolerance that all neglected effects together may change by their estimates, which are right
@@ -34,9 +33,10 @@ def neglected_effects(
     """
     if tolerance is None:
         return {}
-    able = [entry.name for entry in ledger if entry.on and entry.choice == "auto" and entry.name in WITHOUT]
+    automatic = [entry.name for entry in ledger if entry.on and entry.choice == "auto"]
+    able = [name for name in automatic if scene.effect(name).without(scene) is not None]
     decided = {entry.name: "on" if entry.on else "off" for entry in ledger}
-    found = estimate_influences(scene, decided, able, EFFECTS, tolerance.least_scale)
+    found = estimate_influences(scene, decided, able, tolerance.least_scale)
     neglected: dict[str, str] = {}
     total = 0.0
     influences = [(name, influence) for name, influence in found.items() if influence is not None]

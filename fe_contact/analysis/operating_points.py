@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from fe_contact.analysis.pair_contact import PairContact
 from fe_contact.contact import ContactModel, ContactProblem, ContactSolution, Start
-from fe_contact.effects import EFFECTS, ContactScene, compose
+from fe_contact.effects import ContactScene, compose
 from fe_contact.types import FloatArray, IntArray
 from fe_contact.workers import InProcess, Workers
 
@@ -124,14 +124,15 @@ def operating_points(
     workers : Workers
         Who solves them.
     """
-    _, ledger = compose(scene, choices, EFFECTS)
+    _, ledger = compose(scene, choices)
     decided = {entry.name: "on" if entry.on else "off" for entry in ledger}
     contacts = list(_contacts(nominal, scene.center_distance_change))
     places = []
     for misalignment in scene.misalignment:
         for contact in contacts:
-            here = ContactScene(contact.pair, scene.torque, np.array([misalignment]), pitches=scene.pitches)
-            places.append(OperatingPoint(contact, compose(here, decided, EFFECTS)[0]))
+            one = np.array([misalignment]), np.zeros(1)
+            here = replace(scene, pair=contact.pair, misalignment=one[0], center_distance_change=one[1])
+            places.append(OperatingPoint(contact, compose(here, decided)[0]))
     return OperatingPoints((scene.misalignment.size, len(contacts)), tuple(places), nominal, workers)
 
 

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
 
 from bounds import Finding
 from fe_contact.contact import ContactModel
-from fe_contact.effects import EFFECTS, ContactScene, FaceLoadDistribution, FiniteWidth, LedgerEntry, compose
-from fe_contact.effects.neglect import WITHOUT
+from fe_contact.effects import (
+    EFFECTS,
+    ContactScene,
+    Effect,
+    FaceLoadDistribution,
+    FiniteWidth,
+    LedgerEntry,
+    compose,
+)
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning import CycleCost
@@ -36,6 +43,8 @@ class Request:
         without them showed that it does, and why.
     loads_as : str
         How the caller gave the load: "torques" or "normal_forces".
+    registry : sequence of Effect
+        The effects that there are.
     """
 
     pair: ParallelAxes
@@ -47,6 +56,7 @@ class Request:
     neglected: Mapping[str, str] = field(default_factory=dict)
     turned_on: Mapping[str, str] = field(default_factory=dict)
     loads_as: str = "torques"
+    registry: Sequence[Effect] = field(default_factory=lambda: EFFECTS)
 
     @classmethod
     def over(cls, pair: ParallelAxes, axes: TableAxes, options: AnalysisOptions) -> Request:
@@ -74,14 +84,14 @@ class Request:
     def whole_scene(self) -> ContactScene:
         """What the effects assess by, before any was neglected."""
         alignments = self.misalignment, self.center_distance_change
-        return ContactScene(self.pair, self.torque, *alignments, pitches=self.pitches)
+        return ContactScene(self.pair, self.torque, self.registry, *alignments, pitches=self.pitches)
 
     @property
     def scene(self) -> ContactScene:
         """What the effects assess by: what is neglected is not in it."""
         scene = self.whole_scene
         for name in self.neglected:
-            scene = WITHOUT[name](scene)
+            scene = scene.effect(name).without(scene) or scene
         return scene
 
     @property
@@ -137,5 +147,5 @@ class Checked:
         request = self.request
         if name not in request.neglected:
             return request.scene, self.decided
-        _, ledger = compose(request.whole_scene, request.asked_choices, EFFECTS)
+        _, ledger = compose(request.whole_scene, request.asked_choices)
         return request.whole_scene, {entry.name: "on" if entry.on else "off" for entry in ledger}

@@ -10,7 +10,7 @@ from fe_contact.analysis.plane_limits import refuse_beyond_plane
 from fe_contact.analysis.request import Checked, Request
 from fe_contact.compliance.rounding import LARGEST_ROUNDING, least_face_width
 from fe_contact.contact import ContactModel
-from fe_contact.effects import EFFECTS, LedgerEntry, compose
+from fe_contact.effects import LedgerEntry, compose
 from fe_contact.errors import InputError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.mesh import SectorRecipe
@@ -66,7 +66,7 @@ def check_asked(request: Request, *, whole_table: bool = True, spare: bool = Tru
     With a tolerance, automatic effects that it does not need are then neglected.
     """
     composed, ledger = _composed(request)
-    refuse_beyond_plane(request.scene, composed)
+    refuse_beyond_plane(request.scene, composed, ledger)
     if spare and not (request.neglected or request.turned_on):
         request = replace(
             request, neglected=neglected_effects(request.scene, ledger, request.options.tolerance)
@@ -82,13 +82,10 @@ def check_asked(request: Request, *, whole_table: bool = True, spare: bool = Tru
 
 def _composed(request: Request) -> tuple[ContactModel, tuple[LedgerEntry, ...]]:
     """Compose the model; the ledger says what was requested, and of what is neglected what the scene held."""
-    composed, ledger = compose(request.scene, request.choices, EFFECTS)
+    composed, ledger = compose(request.scene, request.choices)
     asked, overrides = request.asked_choices, {**request.neglected, **request.turned_on}
-    whole = {
-        effect.name: effect.called_for(request.whole_scene)
-        for effect in EFFECTS
-        if effect.name in request.neglected
-    }
+    scene = request.whole_scene
+    whole = {name: scene.effect(name).called_for(scene) for name in request.neglected}
     return composed, tuple(
         replace(
             entry,

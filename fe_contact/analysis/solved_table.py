@@ -138,7 +138,7 @@ def _condensed(pair: ParallelAxes, plan: Plan, coarse: bool, changes: FloatArray
 
 def _same_bodies(one: Plan, other: Plan) -> bool:
     """Whether two plans of one pair have the same finite elements."""
-    first, second = ((plan.discretization, plan.thin_rim, plan.bore_seat) for plan in (one, other))
+    first, second = ((plan.discretization, plan.parts) for plan in (one, other))
     return first == second
 
 

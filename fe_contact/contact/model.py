@@ -122,10 +122,9 @@ class ContactModel:
     finite_width : bool
         The plane stands in for gears of finite width: their compliance is that of plane strain and what
         their free ends add. In three dimensions it is in the compliance anyway.
-    thin_rim : bool
-        Bodies have the rim and web of their blank; else they are solid.
-    bore_seat : bool
-        Bores rest on their seats; else they are fixed all over.
+    parts : tuple of str
+        Parts of the gears' bodies that are in their compliance (`Toothing.with_parts`); without any they are
+        solid, their bores fixed all over.
     gaps : tuple of GapTerm
     tooth_gaps : tuple of ToothGap
     compliances : tuple of ComplianceTerm
@@ -135,8 +134,7 @@ class ContactModel:
     corner_contact: bool = False
     across_face: bool = False
     finite_width: bool = False
-    thin_rim: bool = False
-    bore_seat: bool = False
+    parts: tuple[str, ...] = ()
     gaps: tuple[GapTerm, ...] = ()
     tooth_gaps: tuple[ToothGap, ...] = ()
     compliances: tuple[ComplianceTerm, ...] = ()

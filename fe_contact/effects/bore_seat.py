@@ -6,12 +6,13 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from fe_contact.contact.model import ContactModel
-from fe_contact.effects.effect import ContactScene, Verdict
+from fe_contact.effects.effect import ContactScene, Effect, Verdict
+from fe_contact.errors import InputError
 from fe_contact.geometry import CLAMPED
 
 
 @dataclass(frozen=True)
-class BoreSeatElasticity:
+class BoreSeatElasticity(Effect):
     """A bore that is not fixed all over lets the gear turn, shift and tilt."""
 
     name: ClassVar[str] = "bore_seat"
@@ -20,6 +21,7 @@ class BoreSeatElasticity:
     cost: ClassVar[str] = "none beside the three-dimensional model it calls for"
     sources: ClassVar[tuple[str, ...]] = ("docs/effects/bore_seat.md",)
     valid_for: ClassVar[str] = "external gears; a seat that pulls as well as it pushes"
+    of_bodies: ClassVar[bool] = True
 
     def called_for(self, scene: ContactScene) -> Verdict:
         """On where either bore has a seat that is not fixed all over."""
@@ -31,4 +33,20 @@ class BoreSeatElasticity:
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Ask for the seats."""
-        return replace(model, bore_seat=True)
+        return replace(model, parts=(*model.parts, "seat"))
+
+    def across_face(self, scene: ContactScene) -> str | None:
+        """Say so where there is one."""
+        seated = any(gear.seat != CLAMPED for gear in (scene.pair.pinion, scene.pair.wheel))
+        return "a seat of the bore" if seated else None
+
+    def estimable(self, scene: ContactScene) -> bool:
+        """Return False for a seat on part of the face."""
+        return all(gear.seat.width is None for gear in (scene.pair.pinion, scene.pair.wheel))
+
+    def refuse_plane(self, scene: ContactScene) -> None:
+        """Refuse seats of bores: in the plane every bore is fixed."""
+        for name, gear in (("pinion", scene.pair.pinion), ("wheel", scene.pair.wheel)):
+            if gear.seat != CLAMPED:
+                advice = "Use the 3-D model for it."
+                raise InputError(f"{name}.seat", "given", "left out for a plane model", advice)

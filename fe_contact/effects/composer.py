@@ -63,27 +63,24 @@ class LedgerEntry:
         }
 
 
-def compose(
-    scene: ContactScene, choices: Mapping[str, str], registry: Sequence[Effect]
-) -> tuple[ContactModel, tuple[LedgerEntry, ...]]:
-    """Apply every effect that is on.
+def compose(scene: ContactScene, choices: Mapping[str, str]) -> tuple[ContactModel, tuple[LedgerEntry, ...]]:
+    """Apply every effect of the scene's registry that is on.
 
     Parameters
     ----------
     scene : ContactScene
     choices : mapping of str to str
         Effect name to "on", "off" or "auto"; names left out are "auto".
-    registry : sequence of Effect
 
     Raises
     ------
     InputError
         Unknown effect or choice.
     """
-    check_choices(choices, registry)
+    check_choices(choices, scene.registry)
     model = ContactModel()
     ledger = []
-    for effect in registry:
+    for effect in scene.registry:
         choice = choices.get(effect.name, "auto")
         verdict = effect.called_for(scene)
         on = verdict.on if choice == "auto" else choice == "on"
@@ -94,7 +91,8 @@ def compose(
     gaps = tuple(sorted(model.gaps, key=repr))
     tooth_gaps = tuple(sorted(model.tooth_gaps, key=repr))
     compliances = tuple(sorted(model.compliances, key=repr))
-    return replace(model, gaps=gaps, tooth_gaps=tooth_gaps, compliances=compliances), tuple(ledger)
+    terms = replace(model, gaps=gaps, tooth_gaps=tooth_gaps, compliances=compliances)
+    return replace(terms, parts=tuple(sorted(model.parts))), tuple(ledger)
 
 
 def check_choices(choices: Mapping[str, str], registry: Sequence[Effect]) -> None:

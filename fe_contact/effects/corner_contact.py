@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from fe_contact.contact.model import ContactModel
-from fe_contact.effects.effect import ContactScene, Verdict
+from fe_contact.effects.effect import ContactScene, Effect, Verdict
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.hertz import relative_radius
 
@@ -17,7 +17,7 @@ _ALONG_FLANK = 401
 
 
 @dataclass(frozen=True)
-class CornerContact:
+class CornerContact(Effect):
     """Tip edges on the mating flanks, with exact rigid gaps and the edge law of `hertz.edge_contact`."""
 
     name: ClassVar[str] = "corner_contact"
@@ -44,6 +44,10 @@ class CornerContact:
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Let tip edges touch."""
         return replace(model, corner_contact=True)
+
+    def without(self, scene: ContactScene) -> ContactScene:
+        """Return the scene itself: nothing in it stands for the effect alone."""
+        return scene
 
 
 def _least_tip_gap(pair: ParallelAxes) -> float:

@@ -1,18 +1,20 @@
 """What an effect is: one optional piece of physics that can be switched on or off.
 
-An effect is a frozen dataclass in a file of its own. The composer knows none by name and applies them in any
-order. Neutral settings (nothing to contribute) leave the results bit-identical.
+An effect is a file: its decision, what it contributes, what of it acts across the face, and the scene without
+it. The composer knows none by name and applies them in any order. Neutral settings (nothing to contribute)
+leave the results bit-identical.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import ClassVar, Protocol
+from typing import ClassVar
 
 import numpy as np
 
 from fe_contact.contact.model import ContactModel
-from fe_contact.geometry import ParallelAxes
+from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.types import FloatArray
 
 
@@ -25,6 +27,8 @@ class ContactScene:
     pair : GearPair or InternalGearPair
     torque : ndarray
         Torques on the driving gear, N m.
+    registry : sequence of Effect
+        The effects that there are.
     misalignment : ndarray
         Misalignments of the table axis, m: growth of the gap over the common face width in the plane of
         action, zero at its middle.
@@ -36,6 +40,7 @@ class ContactScene:
 
     pair: ParallelAxes
     torque: FloatArray
+    registry: Sequence[Effect]
     misalignment: FloatArray = field(default_factory=lambda: np.zeros(1))
     center_distance_change: FloatArray = field(default_factory=lambda: np.zeros(1))
     pitches: int | None = None
@@ -44,6 +49,16 @@ class ContactScene:
     def largest_misalignment(self) -> float:
         """The misalignment that is largest in size, m; of two of one size the positive one."""
         return float(max(self.misalignment, key=lambda growth: (abs(growth), growth)))
+
+    def effect(self, name: str) -> Effect:
+        """Return the effect of a name."""
+        return next(effect for effect in self.registry if effect.name == name)
+
+    def with_gears(self, change: Callable[[Toothing], dict[str, object]]) -> ContactScene:
+        """Return the scene with some fields of both gears changed."""
+        gears = {"pinion": self.pair.pinion, "wheel": self.pair.wheel}
+        changed = {name: replace(gear, **change(gear)) for name, gear in gears.items()}  # type: ignore[arg-type]
+        return replace(self, pair=replace(self.pair, **changed))
 
     @property
     def at_nominal_load(self) -> ContactScene:
@@ -69,11 +84,12 @@ class Verdict:
     neutral: bool = False
 
 
-class Effect(Protocol):
-    """Interface of an effect.
+class Effect:
+    """An effect; what it does not say itself is as of one that the flanks and the plane hold.
 
     Class attributes: `name`; `needs` and `adds` (terms such as "position", "load", "gap", "coupling",
-    "candidates", "table axis"); `cost` in words; `sources`; `valid_for`, the range in which it may be used.
+    "candidates", "table axis"); `cost` in words; `sources`; `valid_for`, the range in which it may be used;
+    `of_bodies`, whether finite elements have it.
     """
 
     name: ClassVar[str]
@@ -82,11 +98,35 @@ class Effect(Protocol):
     cost: ClassVar[str]
     sources: ClassVar[tuple[str, ...]]
     valid_for: ClassVar[str]
+    of_bodies: ClassVar[bool] = False
 
     def called_for(self, scene: ContactScene) -> Verdict:
         """Assess whether `scene` needs this effect, and why."""
-        ...
+        raise NotImplementedError
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Return `model` with this effect in it."""
-        ...
+        raise NotImplementedError
+
+    def across_face(self, scene: ContactScene) -> str | None:
+        """Say what of it acts across the face, so that a plane cannot hold it; None: nothing."""
+        return None
+
+    def refuse_plane(self, scene: ContactScene) -> None:
+        """Refuse what of it a plane model cannot hold, by field name.
+
+        Raises
+        ------
+        InputError
+        """
+
+    def without(self, scene: ContactScene) -> ContactScene | None:
+        """Return the scene as if there were nothing for the effect.
+
+        None: a tolerance does not neglect it; it costs nothing, or its influence is estimated coarsely.
+        """
+        return None
+
+    def estimable(self, scene: ContactScene) -> bool:
+        """Whether springs for teeth can tell its influence."""
+        return True

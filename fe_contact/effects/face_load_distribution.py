@@ -7,11 +7,11 @@ from typing import ClassVar
 
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects.across_face import across_face
-from fe_contact.effects.effect import ContactScene, Verdict
+from fe_contact.effects.effect import ContactScene, Effect, Verdict
 
 
 @dataclass(frozen=True)
-class FaceLoadDistribution:
+class FaceLoadDistribution(Effect):
     """Finite face width with free ends, contact in slices, load distributed among them."""
 
     name: ClassVar[str] = "face_load_distribution"
@@ -20,6 +20,7 @@ class FaceLoadDistribution:
     cost: ClassVar[str] = "1 to 5 CPU s of finite elements instead of about 0.5; 90 candidates a pair"
     sources: ClassVar[tuple[str, ...]] = ("docs/effects/face_load_distribution.md",)
     valid_for: ClassVar[str] = "every pair"
+    of_bodies: ClassVar[bool] = True
 
     def called_for(self, scene: ContactScene) -> Verdict:
         """On where anything acts across the face."""
@@ -31,3 +32,7 @@ class FaceLoadDistribution:
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Ask for three dimensions."""
         return replace(model, across_face=True)
+
+    def estimable(self, scene: ContactScene) -> bool:
+        """Return False where a plane would stand for what acts across the face."""
+        return not across_face(scene)

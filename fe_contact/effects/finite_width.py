@@ -7,11 +7,11 @@ from typing import ClassVar
 
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects.across_face import across_face
-from fe_contact.effects.effect import ContactScene, Verdict
+from fe_contact.effects.effect import ContactScene, Effect, Verdict
 
 
 @dataclass(frozen=True)
-class FiniteWidth:
+class FiniteWidth(Effect):
     """Compliance of the free ends under even loads, from a coarse solid, added to that of plane strain."""
 
     name: ClassVar[str] = "finite_width"
@@ -20,6 +20,7 @@ class FiniteWidth:
     cost: ClassVar[str] = "0.2 to 0.5 CPU s of finite elements for two gears; no more candidates"
     sources: ClassVar[tuple[str, ...]] = ("docs/effects/finite_width.md",)
     valid_for: ClassVar[str] = "spur pairs with nothing acting across the face"
+    of_bodies: ClassVar[bool] = True
 
     def called_for(self, scene: ContactScene) -> Verdict:
         """On where the plane can stand in for three dimensions."""
@@ -32,3 +33,7 @@ class FiniteWidth:
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Ask for the correction."""
         return replace(model, finite_width=True)
+
+    def without(self, scene: ContactScene) -> ContactScene:
+        """Return the scene itself: nothing in it stands for the effect alone."""
+        return scene

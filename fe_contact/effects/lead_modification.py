@@ -6,12 +6,12 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from fe_contact.contact.model import ContactModel
-from fe_contact.effects.effect import ContactScene, Verdict
+from fe_contact.effects.effect import ContactScene, Effect, Verdict
 from fe_contact.effects.modification_gap import ModificationGap
 
 
 @dataclass(frozen=True)
-class LeadModification:
+class LeadModification(Effect):
     """Designed deviations of either flank that differ over its face."""
 
     name: ClassVar[str] = "lead_modification"
@@ -34,3 +34,12 @@ class LeadModification:
         gears = (scene.pair.pinion, scene.pair.wheel)
         term = ModificationGap(*(gear.modification.along_face for gear in gears))
         return replace(model, gaps=(*model.gaps, term))
+
+    def across_face(self, scene: ContactScene) -> str | None:
+        """Say so where there is one."""
+        gears = (scene.pair.pinion, scene.pair.wheel)
+        return "lead modification" if any(gear.modification.varies_along_face for gear in gears) else None
+
+    def without(self, scene: ContactScene) -> ContactScene:
+        """Return the scene with plain leads."""
+        return scene.with_gears(lambda gear: {"modification": gear.modification.along_profile})

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from fe_contact.contact.model import Break, ContactModel
-from fe_contact.effects.effect import ContactScene, Verdict
+from fe_contact.effects.effect import ContactScene, Effect, Verdict
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray
 
@@ -32,7 +32,7 @@ class MisalignmentGap:
 
 
 @dataclass(frozen=True)
-class Misalignment:
+class Misalignment(Effect):
     """Contributes the gap of the scene's single misalignment value; the table runs over its axis."""
 
     name: ClassVar[str] = "misalignment"
@@ -55,3 +55,11 @@ class Misalignment:
         if growth == 0.0:
             return model
         return replace(model, gaps=(*model.gaps, MisalignmentGap(growth)))
+
+    def across_face(self, scene: ContactScene) -> str | None:
+        """Say so where there is any."""
+        return "misalignment" if np.any(scene.misalignment != 0.0) else None
+
+    def without(self, scene: ContactScene) -> ContactScene:
+        """Return the scene with aligned gears."""
+        return replace(scene, misalignment=np.zeros_like(scene.misalignment))

@@ -9,7 +9,8 @@ from typing import ClassVar
 import numpy as np
 
 from fe_contact.contact.model import ContactModel
-from fe_contact.effects.effect import ContactScene, Verdict
+from fe_contact.effects.effect import ContactScene, Effect, Verdict
+from fe_contact.geometry import PitchDeviation
 from fe_contact.types import FloatArray, IntArray
 
 
@@ -37,7 +38,7 @@ class PitchGap:
 
 
 @dataclass(frozen=True)
-class PitchError:
+class PitchError(Effect):
     """Cumulative pitch deviations of both gears; the table then covers more than one base pitch."""
 
     name: ClassVar[str] = "pitch_error"
@@ -69,6 +70,10 @@ class PitchError:
             for gear in gears
         )
         return replace(model, tooth_gaps=(*model.tooth_gaps, PitchGap(first, second, _period(scene))))
+
+    def without(self, scene: ContactScene) -> ContactScene:
+        """Return the scene with all teeth in their places."""
+        return scene.with_gears(lambda _: {"pitch_deviation": PitchDeviation()})
 
 
 def _period(scene: ContactScene) -> int:

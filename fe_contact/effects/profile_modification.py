@@ -6,12 +6,12 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from fe_contact.contact.model import ContactModel
-from fe_contact.effects.effect import ContactScene, Verdict
+from fe_contact.effects.effect import ContactScene, Effect, Verdict
 from fe_contact.effects.modification_gap import ModificationGap
 
 
 @dataclass(frozen=True)
-class ProfileModification:
+class ProfileModification(Effect):
     """Designed deviations of either flank from the involute."""
 
     name: ClassVar[str] = "profile_modification"
@@ -34,3 +34,7 @@ class ProfileModification:
         gears = (scene.pair.pinion, scene.pair.wheel)
         term = ModificationGap(*(gear.modification.along_profile for gear in gears))
         return replace(model, gaps=(*model.gaps, term))
+
+    def without(self, scene: ContactScene) -> ContactScene:
+        """Return the scene with plain profiles."""
+        return scene.with_gears(lambda gear: {"modification": gear.modification.along_face})

@@ -9,12 +9,12 @@ from typing import ClassVar
 import numpy as np
 
 from fe_contact.contact.model import ContactModel
-from fe_contact.effects.effect import ContactScene, Verdict
+from fe_contact.effects.effect import ContactScene, Effect, Verdict
 from fe_contact.effects.shaft_compliance import SeatCompliance, ShaftCompliance
 
 
 @dataclass(frozen=True)
-class ShaftDeflection:
+class ShaftDeflection(Effect):
     """Misalignment in proportion to the load, and the mean deflection that goes with it."""
 
     name: ClassVar[str] = "shaft_deflection"
@@ -37,6 +37,14 @@ class ShaftDeflection:
         if not any(scene.pair.shafts):
             return model
         return replace(model, compliances=(*model.compliances, _term(scene)))
+
+    def across_face(self, scene: ContactScene) -> str | None:
+        """Say so where there is one."""
+        return "shafts that bend" if any(scene.pair.shafts) else None
+
+    def without(self, scene: ContactScene) -> ContactScene:
+        """Return the scene on rigid shafts."""
+        return replace(scene, pair=replace(scene.pair, shafts=(None, None)))  # type: ignore[call-arg]  # a field of pairs
 
 
 def _term(scene: ContactScene) -> ShaftCompliance:

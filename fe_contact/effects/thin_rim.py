@@ -6,11 +6,12 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from fe_contact.contact.model import ContactModel
-from fe_contact.effects.effect import ContactScene, Verdict
+from fe_contact.effects.effect import ContactScene, Effect, Verdict
+from fe_contact.errors import InputError
 
 
 @dataclass(frozen=True)
-class ThinRim:
+class ThinRim(Effect):
     """A rim on a web gives way where a solid body does not."""
 
     name: ClassVar[str] = "thin_rim"
@@ -19,6 +20,7 @@ class ThinRim:
     cost: ClassVar[str] = "none beside the three-dimensional model it calls for"
     sources: ClassVar[tuple[str, ...]] = ("docs/effects/thin_rim.md", "ISO 6336-1: gear blank factor C_R")
     valid_for: ClassVar[str] = "external gears; rim and hub as wide as the face, web a plain disc"
+    of_bodies: ClassVar[bool] = True
 
     def called_for(self, scene: ContactScene) -> Verdict:
         """On where either gear has a web."""
@@ -30,4 +32,15 @@ class ThinRim:
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Ask for the bodies as drawn."""
-        return replace(model, thin_rim=True)
+        return replace(model, parts=(*model.parts, "blank"))
+
+    def across_face(self, scene: ContactScene) -> str | None:
+        """Say so where there is one."""
+        return "a web narrower than the face" if scene.pair.pinion.web or scene.pair.wheel.web else None
+
+    def refuse_plane(self, scene: ContactScene) -> None:
+        """Refuse a web that tilts its gear: the plane has no tilt."""
+        for name, gear in (("pinion", scene.pair.pinion), ("wheel", scene.pair.wheel)):
+            if gear.web is not None and gear.web.low + gear.web.high != 0.0:
+                offset, advice = 0.5 * (gear.web.low + gear.web.high), "Use the 3-D model for it."
+                raise InputError(f"{name}.blank.web_offset", offset, "0 for a plane model", advice)

@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from fe_contact.contact.model import ContactModel
-from fe_contact.effects.effect import ContactScene, Verdict
+from fe_contact.effects.effect import ContactScene, Effect, Verdict
 
 
 @dataclass(frozen=True)
-class ToothCoupling:
+class ToothCoupling(Effect):
     """Cross-tooth blocks of the compliance; two teeth apart it is still three quarters (body twist)."""
 
     name: ClassVar[str] = "tooth_coupling"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -155,13 +156,12 @@ class Gear(Toothing):
             return None
         return self.blank.web(self.face_width, self.root_radius, self.bore_diameter)
 
-    def solid(self) -> Gear:
-        """Return the gear with a solid body."""
-        return self if self.blank is None else replace(self, blank=None)
-
-    def clamped(self) -> Gear:
-        """Return the gear with its whole bore fixed."""
-        return self if self.seat == CLAMPED else replace(self, seat=CLAMPED)
+    def with_parts(self, parts: Collection[str]) -> Gear:
+        """Return the gear without the optional parts of its body that are not among `parts`."""
+        plain = {"blank": None, "seat": CLAMPED}
+        left_out = {name: value for name, value in plain.items() if name not in parts}
+        same = all(getattr(self, name) == value for name, value in left_out.items())
+        return self if same else replace(self, **left_out)  # type: ignore[arg-type]
 
     def right_handed(self) -> Gear:
         """Return the gear itself, or the mirror image in the plane of mid-face if it is left-handed."""

@@ -7,6 +7,7 @@ numbers and radii are positive and `sign` carries the standard's sign.
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Self
@@ -146,12 +147,12 @@ class Toothing:
         """Return the gear if it is spur or right hand, else its mirror image."""
         return replace(self, helix_angle=abs(self.helix_angle))  # type: ignore[call-arg]  # a field of the kinds
 
-    def solid(self) -> Toothing:
-        """Return the gear with a solid body."""
-        return self
+    def with_parts(self, parts: Collection[str]) -> Toothing:
+        """Return the gear without the optional parts of its body that are not among `parts`.
 
-    def clamped(self) -> Toothing:
-        """Return the gear with its whole bore fixed."""
+        An external gear has a ``blank`` (without it the body is solid) and a ``seat`` (without it the whole
+        bore is fixed); other kinds have none.
+        """
         return self
 
     @property

@@ -122,8 +122,8 @@ class Evaluator:
     ) -> tuple[ParallelAxes, ContactProblem, ContactSolution]:
         """Solve one node; nodes of one modification share its touching points."""
         pair, skew = self.scattered(values, node), self.misalignment + self.nodes.misalignment[node]
-        scene = ContactScene(pair, pair.torque(self.load), np.array([skew]))
-        model, _ = compose(scene, self.choices, EFFECTS)
+        scene = ContactScene(pair, pair.torque(self.load), EFFECTS, np.array([skew]))
+        model, _ = compose(scene, self.choices)
         bodies = self.contact.problem(replace(model, gaps=(), tooth_gaps=()), self.position)
         moving = tuple(term for term in model.gaps if term.along_profile)
         steady = tuple(term for term in model.gaps if not term.along_profile)

@@ -106,10 +106,8 @@ class Plan:
         Requested normal forces F_bn in N.
     support : ndarray
         Further loads in N that carry the force extraction down to lift-off and into overload.
-    thin_rim : bool
-        Bodies have the rim and web of their blank; else they are solid.
-    bore_seat : bool
-        Bores rest on their seats; else they are fixed all over.
+    parts : tuple of str
+        Parts of the gears' bodies that the finite elements have, as in `ContactModel`.
     level : str
         "draft", "standard" or "fine": that of the meshes.
     """
@@ -120,18 +118,12 @@ class Plan:
     nodes: NodeRule
     load: FloatArray
     support: FloatArray
-    thin_rim: bool = True
-    bore_seat: bool = True
+    parts: tuple[str, ...]
     level: str = "standard"
 
     def bodies(self, pair: ParallelAxes) -> tuple[Toothing, Toothing]:
         """Return both gears as their finite elements have them."""
-        return self._body(pair.pinion), self._body(pair.wheel)
-
-    def _body(self, gear: Toothing) -> Toothing:
-        """Return a gear without what is left out of it."""
-        body = gear if self.thin_rim else gear.solid()
-        return body if self.bore_seat else body.clamped()
+        return pair.pinion.with_parts(self.parts), pair.wheel.with_parts(self.parts)
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -160,8 +152,8 @@ def make_plan(
         Requested normal forces in N, increasing, > 0.
     options : AnalysisOptions
     model : ContactModel
-        `across_face` asks for three dimensions, `finite_width` for a plane corrected towards them, `thin_rim`
-        for the blanks, `bore_seat` for the seats.
+        `across_face` asks for three dimensions, `finite_width` for a plane corrected towards them, `parts`
+        for what the bodies have.
     level : str
         Of the meshes, unless the accuracy names one; `fe_contact.planning.planned` chooses it by the
         accuracy.
@@ -189,8 +181,7 @@ def make_plan(
         nodes,
         levels,
         support,
-        model.thin_rim,
-        model.bore_seat,
+        model.parts,
         level,
     )
 

@@ -6,10 +6,10 @@ import math
 from pathlib import Path
 from typing import Any
 
-from dynamics.assembly.flanks import DAMPING_REACH
 from dynamics.engines import MeshElement
 from dynamics.engines.fmu import export_fmu
 from dynamics.forces import CoastFlank
+from dynamics.mechanism.flanks import DAMPING_REACH
 from fe_contact.ste import SteDatabase
 from service.cli.output import check_writable, console, print_json
 from service.cli.ste import open_ste

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, spring_table, with_gear, with_mesh
 
+from dynamics.assembly import assemble
 from dynamics.bodies import TimeLaw
-from dynamics.effects import EFFECTS, MESH_EFFECTS, ledger
+from dynamics.effects import EFFECTS
 from dynamics.forces import CoastFlank
 from dynamics.influence import decide_effects, estimate_influences
 from dynamics.scene import Scene
@@ -30,15 +31,14 @@ def everything() -> Scene:
     return with_mesh(scene, coast=CoastFlank(backlash=10e-6, thickness=0.48))
 
 
-@pytest.mark.parametrize("name", [effect.name for effect in (*EFFECTS, *MESH_EFFECTS)])
+@pytest.mark.parametrize("name", [effect.name for effect in EFFECTS])
 def test_a_run_with_an_effect_off_is_that_of_a_build_without_it(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     scene = everything()
     off = simulate(replace(scene, effects={name: "off"}))
-    for registry in ("EFFECTS", "MESH_EFFECTS"):
-        remaining = tuple(effect for effect in getattr(ledger, registry) if effect.name != name)
-        monkeypatch.setattr(ledger, registry, remaining)
+    remaining = tuple(effect for effect in EFFECTS if effect.name != name)
+    monkeypatch.setattr(assemble, "EFFECTS", remaining)
     without = simulate(scene)
     assert name not in {entry["effect"] for entry in without.effect_ledger["entries"]}
     assert off.freedom == without.freedom
@@ -65,7 +65,7 @@ def test_a_run_with_an_effect_neglected_for_a_tolerance_is_that_of_a_build_witho
     assert set(decided.neglected) <= left
     assert "gyroscopic" in left
     remaining = tuple(effect for effect in EFFECTS if effect.name not in left)
-    monkeypatch.setattr(ledger, "EFFECTS", remaining)
+    monkeypatch.setattr(assemble, "EFFECTS", remaining)
     without = simulate(scene)
     for series in SERIES:
         np.testing.assert_array_equal(getattr(off, series), getattr(without, series), err_msg=series)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fe_contact import FlankModification, Gear, GearPair, PitchDeviation, Shaft, SteDatabase, analyze
-from fe_contact.analysis import assumptions, influences, operating_points, request, request_check
+from fe_contact.analysis import request
 from fe_contact.effects import EFFECTS
 from fe_contact.types import Json
 
@@ -28,7 +28,6 @@ SCENES: dict[str, tuple[GearPair, Json]] = {
     "plane": (IN_THE_PLANE, {}),
     "face": (ALL_OVER_THE_FACE, {"misalignments": [20e-6], "pitches": 2}),
 }
-REGISTRIES = (assumptions, influences, request, request_check, operating_points)
 
 
 @pytest.fixture(scope="module")
@@ -58,8 +57,7 @@ def test_a_table_with_an_effect_off_is_that_of_a_build_without_it(
         pytest.skip("no plane holds what acts across the face")
     off = table(scene, cache, {name: "off"})
     remaining = tuple(effect for effect in EFFECTS if effect.name != name)
-    for module in REGISTRIES:
-        monkeypatch.setattr(module, "EFFECTS", remaining)
+    monkeypatch.setattr(request, "EFFECTS", remaining)
     without = table(scene, cache, {})
     assert name not in {entry["name"] for entry in without.metadata.effect_ledger}
     compared = 0
@@ -69,12 +67,8 @@ def test_a_table_with_an_effect_off_is_that_of_a_build_without_it(
     assert compared > 100
 
 
-def test_every_registry_of_the_analysis_is_replaced() -> None:
+def test_the_registry_goes_with_the_request() -> None:
     """A module that reads the registry by itself would escape the test above."""
     folder = Path(request.__file__).parent
-    reading = {file.stem for file in folder.rglob("*.py") if "import EFFECTS" in file.read_text()
-               or "EFFECTS," in file.read_text()}  # fmt: skip
-    told = {module.__name__.rpartition(".")[2] for module in REGISTRIES}
-    assert (
-        reading - {"ablation", "model_choice", "neglected_effects"} == told
-    )  # those run with a tolerance or by name
+    reading = {file.stem for file in folder.rglob("*.py") if "EFFECTS" in file.read_text()}
+    assert reading - {"ablation", "condensed_lookup"} == {"request"}  # those read names

@@ -7,8 +7,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_contact.effects.across_face import across_face
-from fe_contact.effects.bore_seat import BoreSeatElasticity
 from fe_contact.effects.composer import compose
 from fe_contact.effects.effect import ContactScene, Effect
 from fe_contact.effects.face_load_distribution import FaceLoadDistribution
@@ -43,7 +41,6 @@ def estimate_influence(
     scene: ContactScene,
     decided: Mapping[str, str],
     name: str,
-    registry: Sequence[Effect],
     least: float = 0.0,
 ) -> EstimatedInfluence | None:
     """Estimate what leaving the effect `name` out of the model changes.
@@ -54,7 +51,6 @@ def estimate_influence(
     decided : mapping of str to str
         Every effect "on" or "off"; all but `name` stay so.
     name : str
-    registry : sequence of Effect
     least : float
         Size in m that smaller means and ripples count as where a change is a part of them.
 
@@ -64,14 +60,13 @@ def estimate_influence(
         None: one of the two states cannot be had, as a plane with what acts across the face, or the springs
         do not know it.
     """
-    return estimate_influences(scene, decided, [name], registry, least)[name]
+    return estimate_influences(scene, decided, [name], least)[name]
 
 
 def estimate_influences(
     scene: ContactScene,
     decided: Mapping[str, str],
     names: Sequence[str],
-    registry: Sequence[Effect],
     least: float = 0.0,
 ) -> dict[str, EstimatedInfluence | None]:
     """Estimate several effects; parameters of `estimate_influence`."""
@@ -81,14 +76,14 @@ def estimate_influences(
     def curves(choices: Mapping[str, str]) -> list[EstimatedCurve]:
         key = tuple(sorted(choices.items()))
         if key not in known:
-            known[key] = _curves(scene, choices, registry, springs)
+            known[key] = _curves(scene, choices, springs)
         return known[key]
 
     def influence_of(effect: Effect) -> EstimatedInfluence | None:
-        if _unknown(scene, effect.name):
+        if not effect.estimable(scene):
             return None
         if effect.name == FaceLoadDistribution.name and _uncorrected(decided):
-            return influence_of(next(one for one in registry if one.name == FiniteWidth.name))
+            return influence_of(scene.effect(FiniteWidth.name))
         if effect.name == FaceLoadDistribution.name or effect.called_for(scene).neutral:
             # with nothing across the face the corrected plane stands in for three dimensions
             return _compared(curves(decided), curves(decided), least)
@@ -98,7 +93,7 @@ def estimate_influences(
         )
         return _compared(with_it, without, least)
 
-    return {effect.name: influence_of(effect) for effect in registry if effect.name in names}
+    return {effect.name: influence_of(effect) for effect in scene.registry if effect.name in names}
 
 
 def _uncorrected(decided: Mapping[str, str]) -> bool:
@@ -106,17 +101,7 @@ def _uncorrected(decided: Mapping[str, str]) -> bool:
     return decided[FaceLoadDistribution.name] == "off" and decided.get(FiniteWidth.name) == "off"
 
 
-def _unknown(scene: ContactScene, name: str) -> bool:
-    """Whether the springs cannot tell: a plane for what acts across the face, a seat on part of it."""
-    if name == FaceLoadDistribution.name:
-        return bool(across_face(scene))
-    gears = (scene.pair.pinion, scene.pair.wheel)
-    return name == BoreSeatElasticity.name and any(gear.seat.width is not None for gear in gears)
-
-
-def _curves(
-    scene: ContactScene, choices: Mapping[str, str], registry: Sequence[Effect], springs: Springs
-) -> list[EstimatedCurve]:
+def _curves(scene: ContactScene, choices: Mapping[str, str], springs: Springs) -> list[EstimatedCurve]:
     """Estimate the curves at both ends of the misalignments, the larger one last."""
     other = scene.misalignment[0] if scene.largest_misalignment > 0.0 else scene.misalignment[-1]
     ends = list(dict.fromkeys((float(other), scene.largest_misalignment)))
@@ -125,7 +110,7 @@ def _curves(
     models = []
     for growth in ends:
         here = replace(scene, misalignment=np.array([growth]))
-        model = compose(here, choices, registry)[0]
+        model = compose(here, choices)[0]
         models.append(repr(model))
         if models[-1] not in found:  # without misalignment both ends are one
             found[models[-1]] = springs.curve(model, load)

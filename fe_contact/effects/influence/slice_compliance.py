@@ -68,7 +68,7 @@ def _of_gear(
 ) -> FloatArray:
     """One gear's share."""
     bending = tooth_bending(gear)
-    blank = blank_factor(gear) if model.thin_rim else 1.0
+    blank = blank_factor(gear.with_parts(model.parts))
     root = np.sqrt(bending.at(bending.tooth, s) + bending.at(bending.foundation, s) / blank)
     apart = np.abs(slices.pair[:, None] - slices.pair)
     face = slices.face_position
@@ -100,8 +100,8 @@ def _body(gear: Toothing, slices: LoadedSlices, model: ContactModel) -> FloatArr
     near = np.maximum(np.log(2.0 * depth / (np.maximum(apart, 1) * pitch)), 0.0)
     here = max(math.log(depth / (SUNK_DEPTH * gear.normal_module)), 0.0)
     sunk = half_plane(gear) * np.where(apart == 0, here, near)
-    whole = WEB_EXCESS * web_compliance(gear) if model.thin_rim else 0.0
-    whole += _seat(gear) if model.bore_seat else 0.0
+    body = gear.with_parts(model.parts)
+    whole = WEB_EXCESS * web_compliance(body) + _seat(body)
     transverse, axial = math.cos(gear.base_helix_angle) ** 2, math.sin(gear.base_helix_angle) ** 2
     elastic = transverse * (rigid + sunk) + axial * _axial_shear(gear, apart)
     elastic = elastic * _along_face(face, BODY_DECAY * depth, slices.slice_width)

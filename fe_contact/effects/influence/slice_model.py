@@ -79,7 +79,7 @@ class Springs:
 
     def _springs(self, model: ContactModel) -> ContactProblem:
         """Return the springs of a model in one base pitch, flanks as plain involutes."""
-        bodies = (model.couple_teeth, model.finite_width, model.thin_rim, model.bore_seat)
+        bodies = (model.couple_teeth, model.finite_width, model.parts)
         key = (model.corner_contact, model.across_face, *bodies)
         if key not in self._known:
             plain = self._candidates(model)

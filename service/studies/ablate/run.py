@@ -10,7 +10,6 @@ from bounds.types import Json
 from dynamics.ablation import Ablation as SceneAblation
 from dynamics.ablation import ablate as ablate_scene
 from dynamics.effects import EFFECTS as SCENE_EFFECTS
-from dynamics.effects import MESH_EFFECTS
 from dynamics.scene import Scene
 from fe_contact.analysis.ablation import Ablation, ablate
 from fe_contact.checks import chosen
@@ -60,7 +59,7 @@ def requested(only: Sequence[str] | None, *, of_scene: bool) -> list[str]:
     """
     known = [effect.name for effect in EFFECTS]
     if of_scene:
-        known = [*(effect.name for effect in SCENE_EFFECTS), *(effect.name for effect in MESH_EFFECTS)]
+        known = [effect.name for effect in SCENE_EFFECTS]
     with boundary_errors():
         return chosen("only", only, known, "Or leave it out: all are toggled.")
 

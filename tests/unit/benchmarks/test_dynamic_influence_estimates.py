@@ -12,7 +12,7 @@ from benchmarks.assessed_influence import AssessedEffect
 from benchmarks.dynamic_influence_estimates import STUDY, assess, markdown
 from dynamics.ablation import ablate
 from dynamics.assembly.assemble import assemble
-from dynamics.effects import EFFECTS, MESH_EFFECTS
+from dynamics.effects import EFFECTS
 from dynamics.forces import straight_table
 
 
@@ -43,7 +43,10 @@ def test_an_ablation_is_assessed_beside_its_estimate() -> None:
 
 
 def test_every_effect_can_be_on_in_some_scene(monkeypatch: pytest.MonkeyPatch) -> None:
-    """On tables in closed form: what needs a table's axes or its ripple is left to the study itself."""
+    """On tables in closed form: what needs a table's axes or its ripple is left to the study itself.
+
+    The study has no planetary set.
+    """
     monkeypatch.setattr(dynamic_influence_cases, "table", lambda *_: straight_table(3e8))
     on = {
         entry.effect
@@ -51,6 +54,6 @@ def test_every_effect_can_be_on_in_some_scene(monkeypatch: pytest.MonkeyPatch) -
         for entry in assemble(scene).ledger.entries
         if entry.on
     }
-    names = {effect.name for effect in EFFECTS} | {effect.name for effect in MESH_EFFECTS}
+    names = {effect.name for effect in EFFECTS}
     by_tables = {"dynamic_misalignment", "dynamic_center_distance", "moving_application_point", "friction"}
-    assert on >= names - by_tables - {"backlash"}
+    assert on >= names - by_tables - {"backlash", "centrifugal_load"}

@@ -23,7 +23,7 @@ def contact(tmp_path_factory):
     cache: Path = tmp_path_factory.mktemp("compliance")
     gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
     pair = GearPair(gear, gear, 80e-3)
-    model, _ = compose(ContactScene(pair, pair.torque(LOAD)), {}, EFFECTS)
+    model, _ = compose(ContactScene(pair, pair.torque(LOAD), EFFECTS), {})
     plan = make_plan(pair, LOAD, AnalysisOptions(), model)
 
     def solve(factor: float, position: np.ndarray, load: np.ndarray) -> np.ndarray:

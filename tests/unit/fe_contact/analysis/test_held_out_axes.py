@@ -9,7 +9,7 @@ import pytest
 
 from fe_contact import Gear, GearPair, analyze
 from fe_contact.analysis.held_out_axes import _around, held_out_axes
-from fe_contact.effects import ContactScene
+from fe_contact.effects import EFFECTS, ContactScene
 from fe_contact.types import Status
 
 TORQUES = (50.0, 100.0, 200.0)
@@ -125,7 +125,7 @@ def test_a_table_that_cannot_be_interpolated_has_no_estimate(coarse):
     falling = replace(
         coarse, static_transmission_error=coarse.static_transmission_error[:, ::-1], support_force=np.empty(0)
     )
-    scene = ContactScene(None, np.array(TORQUES))  # type: ignore[arg-type]  # never looked at
+    scene = ContactScene(None, np.array(TORQUES), EFFECTS)  # type: ignore[arg-type]  # never looked at
     assert held_out_axes(failed, None, scene, {}, ()) == {}  # type: ignore[arg-type]
     assert held_out_axes(falling, None, scene, {}, ()) == {}  # type: ignore[arg-type]
     with pytest.raises(AttributeError):  # a good table asks its places

@@ -10,7 +10,7 @@ import pytest
 from fe_contact import BoreSeat, Gear, GearPair
 from fe_contact.analysis.request_check import check_request
 from fe_contact.contact import ContactModel
-from fe_contact.effects import ContactScene
+from fe_contact.effects import EFFECTS, ContactScene
 from fe_contact.effects.bore_seat import BoreSeatElasticity
 from fe_contact.errors import InputError
 from fe_contact.options import AnalysisOptions, TableAxes
@@ -22,17 +22,17 @@ FIXED, PAIR = GearPair(GEAR, GEAR), GearPair(SEATED, GEAR)
 
 
 def test_called_for_by_a_seat_only() -> None:
-    off, on = (BoreSeatElasticity().called_for(ContactScene(p, np.array([100.0]))) for p in (FIXED, PAIR))
+    off, on = (
+        BoreSeatElasticity().called_for(ContactScene(p, np.array([100.0]), EFFECTS)) for p in (FIXED, PAIR)
+    )
     assert (off.on, off.neutral) == (False, True)
     assert (on.on, on.reason) == (True, "pinion on a seat of the bore")
 
 
 def test_contributes_nothing_else_and_off_is_the_fixed_bore() -> None:
     model = ContactModel()
-    after = BoreSeatElasticity().contribute(ContactScene(PAIR, np.array([100.0])), model)
-    assert [f.name for f in fields(model) if getattr(after, f.name) != getattr(model, f.name)] == [
-        "bore_seat"
-    ]
+    after = BoreSeatElasticity().contribute(ContactScene(PAIR, np.array([100.0]), EFFECTS), model)
+    assert [f.name for f in fields(model) if getattr(after, f.name) != getattr(model, f.name)] == ["parts"]
     loads = np.array([1e3])
     assert make_plan(PAIR, loads, AnalysisOptions(), model).bodies(PAIR) == (GEAR, GEAR)
     assert make_plan(PAIR, loads, AnalysisOptions(), after).bodies(PAIR) == (SEATED, GEAR)

@@ -9,7 +9,7 @@ import pytest
 
 from fe_contact.contact import PatchRule, Slices, contact_candidates, with_gaps
 from fe_contact.contact.model import ContactModel
-from fe_contact.effects import ContactScene
+from fe_contact.effects import EFFECTS, ContactScene
 from fe_contact.effects.corner_contact import CornerContact
 from fe_contact.effects.profile_modification import ProfileModification
 from fe_contact.effects.tooth_coupling import ToothCoupling
@@ -25,7 +25,7 @@ def scene(
     pinion: FlankModification | None = None, wheel: FlankModification | None = None, torque: float = 100.0
 ) -> ContactScene:
     gears = (replace(GEAR, modification=m or FlankModification()) for m in (pinion, wheel))
-    return ContactScene(GearPair(*gears, center_distance=80e-3), np.array([torque]))
+    return ContactScene(GearPair(*gears, center_distance=80e-3), np.array([torque]), EFFECTS)
 
 
 def candidates(case: ContactScene, model: ContactModel):

@@ -10,7 +10,7 @@ from analysis_requests import table_request
 
 from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.analysis import check_request
-from fe_contact.effects import ContactScene, FaceLoadDistribution, FiniteWidth
+from fe_contact.effects import EFFECTS, ContactScene, FaceLoadDistribution, FiniteWidth
 from fe_contact.geometry.finite_width import finite_width_excess
 from fe_contact.material import Material
 from fe_contact.planning import make_plan
@@ -25,7 +25,7 @@ def model(**options: object):
 
 
 def test_an_aligned_spur_pair_is_corrected_and_nothing_else() -> None:
-    scene = ContactScene(PAIR, np.array([100.0]))
+    scene = ContactScene(PAIR, np.array([100.0]), EFFECTS)
     assert FiniteWidth().called_for(scene).on
     assert not FaceLoadDistribution().called_for(scene).on
     crowned = dataclasses.replace(GEAR, modification=FlankModification(helix_crowning=5e-6))

@@ -14,7 +14,6 @@ from fe_contact.analysis import check_request
 from fe_contact.analysis.pair_contact import pair_contact
 from fe_contact.compliance import flank_compliance
 from fe_contact.contact import ContactModel, PatchRule, Slices, contact_candidates, contact_problem
-from fe_contact.effects import EFFECTS
 from fe_contact.effects.influence import EstimatedInfluence, estimate_influence
 from fe_contact.effects.influence.axial_compliance import _bent
 from fe_contact.effects.influence.slice_compliance import slice_compliance
@@ -32,7 +31,7 @@ HELICAL = GearPair(replace(GEAR, helix_angle=0.35), replace(GEAR, helix_angle=-0
 def influence(pair: GearPair, name: str, **asked: object) -> EstimatedInfluence:
     """Estimate one effect of a request at one load."""
     checked = check_request(pair, *table_request(**{"normal_forces": [2000.0]} | asked))  # type: ignore[arg-type]
-    found = estimate_influence(checked.request.scene, checked.decided, name, EFFECTS)
+    found = estimate_influence(checked.request.scene, checked.decided, name)
     assert found is not None
     return found
 
@@ -137,9 +136,7 @@ def test_what_a_scene_does_not_hold_changes_nothing() -> None:
     for name in ("lead_modification", "misalignment", "pitch_error", "shaft_deflection", "thin_rim"):
         assert influence(PAIR, name).largest == 0.0
     checked = check_request(HELICAL, TableAxes(normal_forces=[2000.0]))
-    assert (
-        estimate_influence(checked.request.scene, checked.decided, "face_load_distribution", EFFECTS) is None
-    )
+    assert estimate_influence(checked.request.scene, checked.decided, "face_load_distribution") is None
 
 
 def test_misalignment_changes_more_the_larger_it_is() -> None:

@@ -24,7 +24,7 @@ TWIST = 30e-6
 
 def scene(torque: float = 100.0, **modification: Any) -> ContactScene:
     gear = replace(GEAR, modification=FlankModification(**modification))
-    return ContactScene(GearPair(gear, GEAR, center_distance=80e-3), np.array([torque]))
+    return ContactScene(GearPair(gear, GEAR, center_distance=80e-3), np.array([torque]), EFFECTS)
 
 
 def candidates(case: ContactScene, model: ContactModel):
@@ -37,7 +37,7 @@ def test_twist_calls_for_the_lead_and_not_for_the_profile():
     twisted = scene(flank_twist=TWIST)
     assert LeadModification().called_for(twisted).on
     assert not ProfileModification().called_for(twisted).on
-    model, ledger = compose(twisted, {}, EFFECTS)
+    model, ledger = compose(twisted, {})
     assert model.across_face
     assert len(model.gaps) == 1
     assert {entry.name for entry in ledger if entry.on} >= {"lead_modification", "face_load_distribution"}
@@ -78,6 +78,8 @@ def test_a_tip_edge_is_clear_only_if_it_is_so_all_over_the_face():
     relief = {"tip_relief": 200e-6, "tip_relief_length": 1e-3}
     deep = replace(GEAR, modification=FlankModification(**relief))
     low = replace(GEAR, modification=FlankModification(**relief, flank_twist=200e-6))
-    clear, touching = (ContactScene(GearPair(deep, g, 80e-3), np.array([100.0])) for g in (deep, low))
+    clear, touching = (
+        ContactScene(GearPair(deep, g, 80e-3), np.array([100.0]), EFFECTS) for g in (deep, low)
+    )
     assert not CornerContact().called_for(clear).on
     assert CornerContact().called_for(touching).on

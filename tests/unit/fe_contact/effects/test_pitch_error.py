@@ -66,7 +66,7 @@ def perfect(solved):
 
 
 def composed(pair, pitches=None):
-    return compose(ContactScene(pair, np.array([100.0]), pitches=pitches), {}, EFFECTS)[0]
+    return compose(ContactScene(pair, np.array([100.0]), EFFECTS, pitches=pitches), {})[0]
 
 
 def turned(teeth, by, pitches):
@@ -250,12 +250,12 @@ def test_neutral_or_off_is_the_perfect_pair_to_the_bit(solved, perfect):
 
 def test_the_verdict_gives_the_figures_of_the_standard():
     pair = GearPair(gear(Z1, one_tooth(Z1, 3, 5e-6)), gear(Z2))
-    verdict = PitchError().called_for(ContactScene(pair, np.array([100.0])))
+    verdict = PitchError().called_for(ContactScene(pair, np.array([100.0]), EFFECTS))
     assert verdict.on
     assert "pinion f_p 5 um, F_p 5 um" in verdict.reason
     assert verdict.reason.endswith("over 20 base pitches")
     plain = GearPair(gear(Z1), gear(Z2))
-    assert not PitchError().called_for(ContactScene(plain, np.array([100.0]))).on
+    assert not PitchError().called_for(ContactScene(plain, np.array([100.0]), EFFECTS)).on
 
 
 def test_periods_of_several_terms_multiply():

@@ -194,7 +194,7 @@ def problem_of(pair: GearPair) -> ContactProblem:
 
 
 def scene(*shafts: Shaft | None) -> ContactScene:
-    return ContactScene(make_pair(shafts=shafts), np.array([100.0]))
+    return ContactScene(make_pair(shafts=shafts), np.array([100.0]), EFFECTS)
 
 
 def test_without_shafts_the_problem_is_untouched_and_with_ever_stiffer_ones_nothing_is_added():
@@ -231,11 +231,14 @@ def test_a_shaft_calls_for_its_deflection_and_for_three_dimensions():
     assert (
         verdict.reason == f"pinion on a shaft that bends: {skew:.3g} um of misalignment at the largest load"
     )
-    model, ledger = compose(scene(SHAFT, None), {}, EFFECTS)
+    model, ledger = compose(scene(SHAFT, None), {})
     assert model.across_face
     assert len(model.compliances) == 1
-    assert compose(scene(SHAFT, None), {"shaft_deflection": "off"}, EFFECTS)[0].compliances == ()
-    assert compose(scene(SHAFT, SHAFT), {}, EFFECTS[::-1])[0] == compose(scene(SHAFT, SHAFT), {}, EFFECTS)[0]
+    assert compose(scene(SHAFT, None), {"shaft_deflection": "off"})[0].compliances == ()
+    assert (
+        compose(replace(scene(SHAFT, SHAFT), registry=EFFECTS[::-1]), {})[0]
+        == compose(scene(SHAFT, SHAFT), {})[0]
+    )
     assert {entry.name for entry in ledger if entry.on} >= {"shaft_deflection", "face_load_distribution"}
 
 

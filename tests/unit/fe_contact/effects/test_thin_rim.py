@@ -10,7 +10,7 @@ import pytest
 from fe_contact import Gear, GearBlank, GearPair, analyze
 from fe_contact.analysis.request_check import check_request
 from fe_contact.contact import ContactModel
-from fe_contact.effects import ContactScene
+from fe_contact.effects import EFFECTS, ContactScene
 from fe_contact.effects.thin_rim import ThinRim
 from fe_contact.errors import InputError
 from fe_contact.geometry import web_compliance
@@ -18,12 +18,14 @@ from fe_contact.options import AnalysisOptions, TableAxes
 
 PINION = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 WHEEL = replace(PINION, teeth=30, blank=GearBlank(8e-3, 8e-3, 50e-3))
-SOLID, WEBBED = GearPair(PINION, WHEEL.solid()), GearPair(PINION, WHEEL)
+SOLID, WEBBED = GearPair(PINION, WHEEL.with_parts(("seat",))), GearPair(PINION, WHEEL)
 COARSE = {"torques": [100.0], "level": "draft", "positions": 8}
 
 
 def test_called_for_by_a_web_only() -> None:
-    off, on = (ThinRim().called_for(ContactScene(p, np.array([50.0, 100.0]))) for p in (SOLID, WEBBED))
+    off, on = (
+        ThinRim().called_for(ContactScene(p, np.array([50.0, 100.0]), EFFECTS)) for p in (SOLID, WEBBED)
+    )
     assert (off.on, off.neutral) == (False, True)
     assert on.on
     assert on.reason == "wheel with rim and web"
@@ -31,8 +33,8 @@ def test_called_for_by_a_web_only() -> None:
 
 def test_contributes_nothing_else() -> None:
     model = ContactModel()
-    after = ThinRim().contribute(ContactScene(WEBBED, np.array([100.0])), model)
-    assert [f.name for f in fields(model) if getattr(after, f.name) != getattr(model, f.name)] == ["thin_rim"]
+    after = ThinRim().contribute(ContactScene(WEBBED, np.array([100.0]), EFFECTS), model)
+    assert [f.name for f in fields(model) if getattr(after, f.name) != getattr(model, f.name)] == ["parts"]
 
 
 def test_off_is_the_solid_pair_and_on_for_it_changes_no_bit() -> None:
@@ -50,7 +52,7 @@ def test_a_web_acts_across_the_face() -> None:
     assert not check_request(SOLID, TableAxes(torques=[1.0])).model.across_face
     checked = check_request(WEBBED, TableAxes(torques=[1.0]))
     assert checked.model.across_face
-    assert checked.model.thin_rim
+    assert checked.model.parts == ("blank",)
 
 
 def test_a_web_off_the_middle_is_refused_in_the_plane_unless_it_is_left_out() -> None:

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from dynamics.errors import InputError
-from dynamics.forces.coast_flank import mirrored
 from dynamics.forces.flank_force import FlankLaws
-from dynamics.forces.gear_mesh import GearMesh
 from dynamics.forces.packed_tables import PackedTables, pack_tables
 from dynamics.forces.table_lookup import table_deflection, table_force
 from dynamics.forces.technique import PlainTable, secant_table, table_at
@@ -66,7 +64,7 @@ def flank_laws(
     for index, mesh in enumerate(scene.meshes):
         try:
             static.append(table_at(mesh.table, mesh.misalignment, mesh.center_distance_change))
-            used.append(_apply_technique(mesh.technique, static[-1], nominal[index]))
+            used.append(with_technique(mesh.technique, static[-1], nominal[index]))
         except InputError as error:
             raise error.within(f"meshes[{index}]") from None
     packed = pack_tables(static)
@@ -81,37 +79,6 @@ def flank_laws(
     return Flanks(nominal, stiffness, tuple(used), law, (), packed, tuple(used))
 
 
-def with_coast_flanks(flanks: Flanks, meshes: Sequence[GearMesh], coast: Sequence[int]) -> Flanks:
-    """Return `flanks` with the coast flanks of the meshes `coast`, damped as their driving flanks."""
-    if not coast:
-        return flanks
-    backs = []
-    for index in coast:
-        try:
-            backs.append(_coast_table(meshes[index], flanks, index))
-        except InputError as error:
-            raise error.within(f"meshes[{index}]") from None
-    chosen = [*range(len(meshes)), *coast]
-    tables = (*flanks.used, *backs)
-    law = FlankLaws(pack_tables(tables), flanks.law.damping[chosen], flanks.law.reach[chosen])
-    return replace(flanks, law=law, coast=tuple(coast), tables=tables)
-
-
-def _coast_table(mesh: GearMesh, flanks: Flanks, index: int) -> PlainTable:
-    """Return the table of a coast flank against the position of the driving flank.
-
-    Seen turned about the line of centers, the gap of a misalignment grows towards the other end.
-    """
-    back = mesh.coast
-    if back is None:
-        raise InputError("coast", None, "given", "Give the backlash and the thickness of the driver's teeth.")
-    if back.table is None and np.size(mesh.table.misalignment) == 1:
-        return mirrored(flanks.used[index], back.thickness)
-    table = table_at(back.table or mesh.table, -mesh.misalignment, mesh.center_distance_change)
-    used = _apply_technique(mesh.technique, table, float(flanks.nominal_force[index]))
-    return mirrored(used, back.thickness)
-
-
 def mean_stiffness(packed: PackedTables, flank: int, force: float, positions: FloatArray) -> float:
     """Return the tangent stiffness at `force`, mean over `positions`, N/m."""
     deflections = [table_deflection(packed, flank, x, force) for x in positions]
@@ -120,8 +87,8 @@ def mean_stiffness(packed: PackedTables, flank: int, force: float, positions: Fl
     )
 
 
-def _apply_technique(technique: str, table: PlainTable, force: float) -> PlainTable:
-    """Return the table a mesh runs on."""
+def with_technique(technique: str, table: PlainTable, force: float) -> PlainTable:
+    """Return the table that a mesh of the nominal `force` (N) runs on."""
     if technique == "variable_torque":
         return table
     if force <= 0.0:

@@ -1,0 +1,61 @@
+"""Centrifugal load of planets: the carrier's rotation presses them outwards on their pins."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from dynamics.effects.effect import RotorEffect, Verdict
+from dynamics.effects.frame_term import FrameTerm
+from dynamics.effects.loaded_rotors import LoadedRotor
+from dynamics.mechanism.columns import column_count
+from dynamics.mechanism.connections import Connections
+from dynamics.mechanism.mechanism import Mechanism
+
+SHARE = 0.01
+"""Least load, over what the nominal mesh forces push the planet by, that calls for it."""
+
+
+class CentrifugalLoad(RotorEffect):
+    """A force m r W^2 away from the axis of a carrier of speed W, on a planet of mass m at the radius r."""
+
+    name = "centrifugal_load"
+    cost = "none beside the effect gyroscopic; without it a force element of two rows per planet"
+
+    def called_for(self, rotor: LoadedRotor) -> Verdict:
+        """Call for it where the load at the largest speed is a share of what meshes push the planet by.
+
+        Its influence is how far that load, held by the bearing alone, moves it along a line of action.
+        """
+        own, mechanism = rotor.rotor, rotor.mechanism
+        if own.carrier is None:
+            return Verdict(False, False, "no planet: the shaft's axis is its frame's", 0.0)
+        if own.radial_stiffness == 0.0:
+            return Verdict(False, False, "no bearing with radial stiffness: held rigidly", 0.0)
+        if mechanism.freely_turned[own.carrier]:
+            reason = "left out: torques alone turn the carrier's frame, whose speed is then unknown"
+            return Verdict(False, False, reason, 0.0)
+        x, y = _arm(mechanism, rotor.index, own.carrier)
+        radius = math.hypot(x, y)
+        force = own.inertia.mass * radius * float(mechanism.largest_speed[own.carrier]) ** 2
+        along = [abs(x * mesh.direction[0] + y * mesh.direction[1]) / radius for mesh in rotor.meshes]
+        reason = f"up to {force:.3g} N away from the carrier's axis, meshes push by {rotor.pushed:.3g} N"
+        influence = force / own.radial_stiffness * max(along, default=0.0)
+        return Verdict(force > SHARE * rotor.pushed, True, reason, influence)
+
+    def frame_terms(self, mechanism: Mechanism, connections: Connections, index: int) -> Sequence[FrameTerm]:
+        """Return -m r W^2, r from the carrier's axis to the planet's."""
+        rotor = mechanism.rotors[index]
+        if rotor.carrier is None:
+            return ()
+        own = np.eye(column_count(mechanism.rotors))[6 * index : 6 * index + 2]
+        x, y = _arm(mechanism, index, rotor.carrier)
+        return [FrameTerm(own, load=(rotor.inertia.mass * x, rotor.inertia.mass * y))]
+
+
+def _arm(mechanism: Mechanism, planet: int, carrier: int) -> tuple[float, float]:
+    """Return where the axis of a planet is from its carrier's, along x and y, m."""
+    away = mechanism.rotors[planet].center - mechanism.rotors[carrier].center
+    return float(away[0]), float(away[1])

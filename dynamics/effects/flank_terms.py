@@ -1,0 +1,99 @@
+"""What effects make of the force of one flank: the table it reads, what it follows, where and how it acts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from dynamics.errors import InputError
+from dynamics.forces.coast_flank import mirrored
+from dynamics.forces.mesh_table import MeshTable
+from dynamics.mechanism.line_of_action import LineOfAction, line_of_action
+from dynamics.mechanism.mechanism import Mechanism
+from dynamics.types import FloatArray
+
+MISALIGNMENT, CENTER_DISTANCE, SLIDING = range(3)
+"""Kinds of rows of a flank in space, in their order after the row of the deflection."""
+
+
+@dataclass(frozen=True)
+class FlankTerms:
+    """A flank of the plane and what effects add to it.
+
+    Attributes
+    ----------
+    table : MeshTable
+        What it reads: of the plane, at one operating point.
+    rows : three (k, N) arrays or None
+        Gradients of each kind of row in all rotors' freedoms; None: it has none.
+    follows : (int, int)
+        1 where the force follows misalignment and center distance, 0 where it stays at the mesh's value.
+    per_face : float
+        1/(face width), 1/m; 0: the force acts at mid-face.
+    friction : float
+        Friction force over the transverse force of a pair.
+    """
+
+    table: MeshTable
+    rows: tuple[FloatArray | None, FloatArray | None, FloatArray | None] = (None, None, None)
+    follows: tuple[int, int] = (0, 0)
+    per_face: float = 0.0
+    friction: float = 0.0
+
+    def with_rows(self, kind: int, gradients: FloatArray) -> FlankTerms:
+        """Return the terms with the rows (k, N) of a kind."""
+        first, second, third = (gradients if k == kind else row for k, row in enumerate(self.rows))
+        return replace(self, rows=(first, second, third))
+
+    def following(self, axis: int, flank: FlankInSpace, gradient: FloatArray) -> FlankTerms:
+        """Return the terms with the table over its axes, of which the force follows one if it has knots."""
+        table = flank.whole_table
+        over = replace(self, table=table)
+        if np.size((table.misalignment, table.center_distance_change)[axis]) == 1:
+            return over
+        first, second = (1 if k == axis else follows for k, follows in enumerate(self.follows))
+        return replace(over.with_rows(axis, gradient[None, :]), follows=(first, second))
+
+
+@dataclass(frozen=True)
+class FlankInSpace:
+    """One flank of a mesh among its bodies.
+
+    Attributes
+    ----------
+    mechanism : Mechanism
+    index : int
+        Its mesh.
+    coast : bool
+        Whether it is the coast flank.
+    """
+
+    mechanism: Mechanism
+    index: int
+    coast: bool
+
+    @property
+    def driving(self) -> int:
+        """Sense about +z in which the driving flank pushes, +1 or -1."""
+        return self.mechanism.kinematics.mesh_sense[self.index]
+
+    @property
+    def sense(self) -> int:
+        """Sense about +z in which the flank pushes, +1 or -1."""
+        return -self.driving if self.coast else self.driving
+
+    @property
+    def line(self) -> LineOfAction:
+        """Its line of action."""
+        return line_of_action(self.mechanism.scene, self.index, self.sense)
+
+    @property
+    def whole_table(self) -> MeshTable:
+        """The table over all its axes."""
+        mesh = self.mechanism.scene.meshes[self.index]
+        if not self.coast:
+            return mesh.table
+        if mesh.coast is None:
+            raise InputError(f"meshes[{self.index}].coast", None, "given")
+        return mirrored(mesh.coast.table or mesh.table, mesh.coast.thickness)

@@ -1,0 +1,128 @@
+"""What the effects of meshes look at: a mesh under its nominal force, on bodies that yield."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from dynamics.forces.gear_mesh import GearMesh
+from dynamics.mechanism.connections import Connections, elastic_matrices
+from dynamics.mechanism.flank_gradients import approach, distance_gradient, misalignment_gradient
+from dynamics.mechanism.flanks import Flanks
+from dynamics.mechanism.freedoms import Freedoms
+from dynamics.mechanism.mechanism import Mechanism
+from dynamics.mechanism.nominal_forces import mean_forces, telling_moments
+from dynamics.types import FloatArray
+
+
+@dataclass(frozen=True)
+class LoadedTrain:
+    """A mechanism with its freedoms under the nominal mesh forces.
+
+    Attributes
+    ----------
+    mechanism : Mechanism
+    freedoms : Freedoms
+    connections : Connections
+    flanks : Flanks
+    """
+
+    mechanism: Mechanism
+    freedoms: Freedoms
+    connections: Connections
+    flanks: Flanks
+
+    @property
+    def meshes(self) -> tuple[LoadedMesh, ...]:
+        """All meshes."""
+        return tuple(LoadedMesh(self, index) for index in range(len(self.mechanism.scene.meshes)))
+
+    def bends(self, gradient: FloatArray) -> FloatArray:
+        """Return a gradient (N,) in the freedoms that do not turn or twist."""
+        return self.freedoms.keep(gradient)[~self.freedoms.turns]
+
+    @cached_property
+    def compliance(self) -> FloatArray:
+        """Displacements and tilts per force and moment on supports and shafts, in m, rad, N."""
+        freedoms, supports, bends = self.freedoms, self.connections.supports, ~self.freedoms.turns
+        moves = freedoms.keep(supports.motion)
+        held = supports.matrix(supports.stiffness, moves, moves)
+        held = held + elastic_matrices(self.mechanism.rotors, freedoms)[0]
+        return np.asarray(np.linalg.pinv(held[np.ix_(bends, bends)]))
+
+    @cached_property
+    def mean_force(self) -> FloatArray:
+        """What balances loads and imposed accelerations over the run, (m, T), N; < 0: the coast flank's."""
+        scene, inertia = self.mechanism.scene, self.mechanism.rotational_inertia
+        return mean_forces(scene, self.mechanism.kinematics, inertia, telling_moments(scene))
+
+
+@dataclass(frozen=True)
+class LoadedMesh:
+    """A mesh of a train.
+
+    Attributes
+    ----------
+    train : LoadedTrain
+    index : int
+    """
+
+    train: LoadedTrain
+    index: int
+
+    @property
+    def mesh(self) -> GearMesh:
+        """The mesh itself."""
+        return self.train.mechanism.scene.meshes[self.index]
+
+    @property
+    def force(self) -> float:
+        """Nominal transverse force, N."""
+        return float(self.train.flanks.nominal_force[self.index])
+
+    @property
+    def stiffness(self) -> float:
+        """Tangent stiffness, mean over the positions, N/m."""
+        return float(self.train.flanks.mean_stiffness[self.index])
+
+    @property
+    def level(self) -> int:
+        """Load level of the table nearest to the nominal force."""
+        return int(np.argmin(np.abs(np.asarray(self.mesh.table.level) - self.force)))
+
+    @cached_property
+    def axes(self) -> tuple[FloatArray, FloatArray]:
+        """Derivatives of misalignment and center distance in the freedoms that do not turn, (b,) each."""
+        mechanism, index = self.train.mechanism, self.index
+        scene, rotors, line = mechanism.scene, mechanism.rotors, mechanism.lines[index]
+        sense = mechanism.kinematics.mesh_sense[index]
+        tilts = misalignment_gradient(scene, rotors, index, line, sense)
+        return self.train.bends(tilts), self.train.bends(distance_gradient(scene, rotors, index, line))
+
+    def moves(self, axis: int) -> bool:
+        """Whether freedoms change the misalignment (0) or the center distance (1)."""
+        return bool(np.any(self.axes[axis] != 0.0))
+
+    def not_read(self) -> str | None:
+        """Why the table cannot be read along its axes as bodies move; None where it can."""
+        if self.mesh.technique != "variable_torque":
+            return "the constant-torque technique has one stiffness per position"
+        if getattr(self.mesh.table, "deflection_derivative", None) is None:
+            return "the table has no derivatives along its axes"
+        return None
+
+    def change_along(self, axis: int) -> float:
+        """Return how the mean transmission error changes as the nominal force moves the bodies, m.
+
+        Along one axis of the table: misalignment (0) or center distance (1).
+        """
+        mesh, mechanism = self.mesh, self.train.mechanism
+        pushed = approach(mechanism.scene, mechanism.rotors, self.index, mechanism.lines[self.index])
+        moved = -self.force * float(self.axes[axis] @ self.train.compliance @ self.train.bends(pushed))
+        knots = np.asarray((mesh.table.misalignment, mesh.table.center_distance_change)[axis], dtype=float)
+        at = (mesh.misalignment, mesh.center_distance_change)[axis]
+        mean = np.mean(np.asarray(mesh.table.deflection)[..., self.level], axis=-1)
+        along = mean.mean(axis=1 - axis)
+        return float(abs(np.interp(at + moved, knots, along) - np.interp(at, knots, along)))

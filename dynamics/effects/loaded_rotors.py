@@ -1,0 +1,89 @@
+"""What the effects of rotors look at: a rotor on its supports and the meshes it carries."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.mechanism.flanks import Flanks
+from dynamics.mechanism.mechanism import Mechanism
+from dynamics.mechanism.rotor import Rotor
+
+
+@dataclass(frozen=True)
+class MeshOnRotor:
+    """A mesh as its rotor feels it.
+
+    Attributes
+    ----------
+    force : float
+        Nominal transverse mesh force, N.
+    lever : float
+        Axial distance from the rotor's center of mass, m.
+    axial : float
+        Axial over transverse force, tan(base helix angle), >= 0.
+    radius : float
+        Operating pitch radius, m: the axial force's lever across the shaft.
+    direction : (float, float)
+        Unit vector across the axis of the force on the rotor, along x and y.
+    """
+
+    force: float
+    lever: float
+    axial: float
+    radius: float
+    direction: tuple[float, float] = (1.0, 0.0)
+
+
+@dataclass(frozen=True)
+class LoadedRotor:
+    """A rotor of a mechanism under the nominal mesh forces.
+
+    Attributes
+    ----------
+    mechanism : Mechanism
+    flanks : Flanks
+    index : int
+    meshes : tuple of MeshOnRotor
+    """
+
+    mechanism: Mechanism
+    flanks: Flanks
+    index: int
+    meshes: tuple[MeshOnRotor, ...]
+
+    @property
+    def rotor(self) -> Rotor:
+        """The rotor itself."""
+        return self.mechanism.rotors[self.index]
+
+    @property
+    def pushed(self) -> float:
+        """Resultant across the axis of all nominal mesh forces, N: around a sun they cancel."""
+        along_x, along_y = (sum(mesh.force * mesh.direction[k] for mesh in self.meshes) for k in (0, 1))
+        return math.hypot(along_x, along_y)
+
+
+def loaded_rotors(mechanism: Mechanism, flanks: Flanks) -> tuple[LoadedRotor, ...]:
+    """Return all rotors; a carrier feels the meshes of its planets at their pins."""
+    scene, rotors = mechanism.scene, mechanism.rotors
+    meshes: list[list[MeshOnRotor]] = [[] for _ in rotors]
+    for mesh, line, force in zip(scene.meshes, mechanism.lines, mechanism.nominal_force, strict=True):
+        for name, sign in ((mesh.driver, -1.0), (mesh.driven, 1.0)):
+            gear = scene.gear(name)
+            index = scene.shaft_index(gear.shaft)
+            lever = float(line.point[2] - rotors[index].center[2])
+            radius = gear.base_radius / math.cos(line.working_pressure_angle)
+            axial = abs(float(line.force[2]))
+            direction = (sign * float(line.force[0]), sign * float(line.force[1]))
+            meshes[index].append(MeshOnRotor(float(force), lever, axial, radius, direction))
+            carrier = rotors[index].carrier
+            if carrier is not None:
+                arm = rotors[index].center - rotors[carrier].center
+                arms = float(arm[2]), axial, float(np.hypot(arm[0], arm[1]))
+                meshes[carrier].append(MeshOnRotor(float(force), *arms, direction))
+    return tuple(
+        LoadedRotor(mechanism, flanks, index, tuple(on_rotor)) for index, on_rotor in enumerate(meshes)
+    )
