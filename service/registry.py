@@ -45,7 +45,11 @@ class Study:
     from_file : bool
         Whether the inputs are a file of the verb and a mapping of the client, rather than options.
     further : tuple of str
-        Endings of files that the verb writes beside those of all studies.
+        Endings of files that the verb writes beside those of all studies. CSV can be printed too.
+    several : bool
+        Whether the verb takes several files.
+    aliases : tuple of str
+        Other names of the verb's option ``--output``.
     """
 
     name: str
@@ -62,11 +66,18 @@ class Study:
     folder: str = ""
     from_file: bool = False
     further: tuple[str, ...] = ()
+    several: bool = False
+    aliases: tuple[str, ...] = ()
 
     @property
     def argument(self) -> str:
         """Name of what is studied, as the client's method and the verb have it."""
         return "given" if self.subject == "case or scene" else self.subject
+
+    @property
+    def package(self) -> str:
+        """Name of its package, and of what belongs to it in Python."""
+        return self.name.replace("-", "_")
 
     @property
     def endings(self) -> tuple[str, ...]:
@@ -91,12 +102,50 @@ class Study:
     def _part(self, module: str, name: str) -> Any:
         """Load a module of the package; return what it offers."""
         with LOADING:
-            return getattr(import_module(f"service.studies.{self.name}{module}"), name)
+            return getattr(import_module(f"service.studies.{self.package}{module}"), name)
 
 
 STUDIES: dict[str, Study] = {
     study.name: study
     for study in (
+        Study(
+            "flank",
+            "case",
+            "Flank results of a gear pair",
+            "Compute pressure, line load and gap on the flanks at one load: contact pattern and K_Hbeta.",
+            "examples/palermo_spur_20_20.toml --torque 100 -o flank.nc",
+            kind="flanks",
+            collection="flanks",
+            stages=(("compliance", 0.9), ("contact", 0.1)),
+            media_type=NETCDF,
+        ),
+        Study(
+            "sensitivity",
+            "case",
+            "Sensitivity to misalignment and center distance",
+            "Vary misalignment and center distance of a case at its highest load: peak-to-peak STE.",
+            "examples/sensitivity_wind_turbine.toml -o sensitivity",
+            kind="sensitivity",
+            collection="sensitivities",
+            stages=(("tables", 1.0),),
+            media_type=NETCDF,
+            shared=True,
+            folder="sensitivity",
+            further=(".csv",),
+            several=True,
+        ),
+        Study(
+            "root-stress",
+            "case",
+            "Tooth-root stress of a gear pair",
+            "Compute the stress of the tooth roots at one load: peaks, where they are, and their history.",
+            "examples/palermo_spur_20_20.toml --torque 100 -o root.png",
+            kind="root_stress",
+            collection="root-stresses",
+            stages=(("compliance", 0.5), ("contact", 0.1), ("root stress", 0.4)),
+            further=(".csv",),
+            aliases=("--image",),
+        ),
         Study(
             "ablate",
             "case or scene",

@@ -19,7 +19,7 @@ from service.registry import studies_of
 from service.schemas import Case, read_table, validated
 from service.schemas.result_kinds import RESULT_KINDS
 
-_OF_CASES = ("analyze", "flank", "sensitivity", *studies_of("case"))
+_OF_CASES = ("analyze", *studies_of("case"))
 _OF_SCENES = ("simulate", *studies_of("scene"))
 _OF_BOTH = studies_of("case or scene")
 

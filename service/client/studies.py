@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from inspect import Parameter, Signature
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from service.client.jobs import JobClient
-from service.client.portable import CaseLike, case_of, inputs_of
-from service.client.status import Watch
+from service.client.portable import inputs_of
 from service.registry import JSON, STUDIES, Study
 
 
@@ -24,41 +22,6 @@ class Studies(JobClient):
 
         def __getattr__(self, name: str) -> Callable[..., Any]:
             """Methods of studies come from their rows."""
-
-    def flank_file(self, case: CaseLike, progress: Watch | None = None, **point: float) -> Path:
-        """Return the file of a case's flank results: submit, wait, fetch.
-
-        Parameters
-        ----------
-        case : Case, mapping or Path
-        progress : callable, optional
-        **point : float
-            ``torque_n_m`` or ``normal_force_n``, ``misalignment_um``, ``center_distance_change_mm``; what is
-            left out is taken from the case. Read the file with `fe_contact.LoadDistribution.from_netcdf`.
-        """
-        return self._study("flank", case, progress, point)
-
-    def sensitivity_file(
-        self, case: CaseLike, progress: Watch | None = None, **deviations: Sequence[float]
-    ) -> Path:
-        """Return the file of a case's sensitivity study: submit, wait, fetch.
-
-        Parameters
-        ----------
-        case : Case, mapping or Path
-        progress : callable, optional
-        **deviations : sequence of float
-            ``misalignment_um``, ``center_distance_change_percent``. ``loa report`` draws the file.
-        """
-        return self._study(
-            "sensitivity", case, progress, {name: list(values) for name, values in deviations.items()}
-        )
-
-    def _study(self, process: str, case: CaseLike, progress: Watch | None, further: dict[str, Any]) -> Path:
-        """Submit a case with further inputs, wait, fetch the file."""
-        inputs = {"case": case_of(case).model_dump(mode="json"), **further}
-        result = self.obtain(process, inputs, progress)
-        return self.fetch_file(result.key, result.kind)
 
 
 def _method(study: Study) -> Callable[..., Any]:
@@ -83,7 +46,7 @@ def _method(study: Study) -> Callable[..., Any]:
         file = self.fetch_file(result.key, result.kind)
         return json.loads(file.read_bytes()) if study.media_type == JSON else file
 
-    run.__name__ = study.name if study.media_type == JSON else f"{study.name}_file"
+    run.__name__ = study.package if study.media_type == JSON else f"{study.package}_file"
     run.__qualname__, run.__doc__ = f"Studies.{run.__name__}", _METHOD.format(study=study)
     run.__signature__ = signature  # type: ignore[attr-defined]
     return run

@@ -11,20 +11,13 @@ from service.jobs.key import content_key
 from service.loading import LOADING
 from service.problems import NoSuchProcess
 from service.schemas.model import BoundaryModel
+from service.stages import Stage, overall
 
 if TYPE_CHECKING:
     from service.store import ResultStore
 
 Json = dict[str, Any]
 Prepare = Callable[[BoundaryModel, "ResultStore"], Json]
-
-
-@dataclass(frozen=True)
-class Stage:
-    """A stage of the work and its share of the time (the shares of a process sum to 1)."""
-
-    name: str
-    share: float
 
 
 @dataclass(frozen=True)
@@ -73,12 +66,7 @@ class Process:
 
     def overall(self, stage: str, fraction: float) -> float | None:
         """Return the fraction of the whole job, None for a stage that was not declared."""
-        done = 0.0
-        for known in self.stages:
-            if known.name == stage:
-                return min(1.0, done + known.share * fraction)
-            done += known.share
-        return None
+        return overall(self.stages, stage, fraction)
 
 
 def on_demand(entry: str) -> Callable[..., Any]:

@@ -37,9 +37,7 @@ RESULT_KINDS: dict[str, ResultKind] = {
     kind.name: kind
     for kind in (
         ResultKind("database", "/v1/databases"),
-        ResultKind("flanks", "/v1/flanks"),
         ResultKind("run", "/v1/runs"),
-        ResultKind("sensitivity", "/v1/sensitivities"),
         *(ResultKind(row.kind, f"/v1/{row.collection}", row.media_type) for row in STUDIES.values()),
     )
 }

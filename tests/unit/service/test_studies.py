@@ -50,7 +50,8 @@ def test_its_verb_has_an_option_for_everything_that_is_varied(study: Study) -> N
 
 @EVERY
 def test_the_client_has_a_method_that_says_what_it_takes(study: Study) -> None:
-    method = getattr(LineOfActionClient, study.name if study.media_type == JSON else f"{study.name}_file")
+    ending = "" if study.media_type == JSON else "_file"
+    method = getattr(LineOfActionClient, f"{study.package}{ending}")
     names = list(signature(method).parameters)
     expected = ["study", "progress"] if study.from_file else ["progress", "options"]
     assert names == ["self", study.argument, *expected]
