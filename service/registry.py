@@ -30,8 +30,8 @@ class Study:
         A noun, and an imperative sentence of what is done.
     example : str
         Arguments of the verb.
-    kind, collection : str
-        Kind of the result, which is the process' output too; its path is ``/v1/COLLECTION/HASH``.
+    kind : str
+        Kind of the result, which is the process' output too.
     stages : tuple of (str, float)
         Stages of the work, in order, and their shares of the time.
     version : str
@@ -44,6 +44,8 @@ class Study:
         Name of the files, but for their endings, that the verb writes to a folder; empty: it writes one file.
     from_file : bool
         Whether the inputs are a file of the verb and a mapping of the client, rather than options.
+    collection : str
+        See `service.schemas.result_kinds.ResultKind`.
     further : tuple of str
         Endings of files that the verb writes beside those of all studies. CSV can be printed too.
     several : bool
@@ -58,13 +60,13 @@ class Study:
     description: str
     example: str
     kind: str
-    collection: str
     stages: tuple[tuple[str, float], ...]
     version: str = "2"
     media_type: str = JSON
     shared: bool = False
     folder: str = ""
     from_file: bool = False
+    collection: str = ""
     further: tuple[str, ...] = ()
     several: bool = False
     aliases: tuple[str, ...] = ()
@@ -141,7 +143,6 @@ STUDIES: dict[str, Study] = {
             "Compute the stress of the tooth roots at one load: peaks, where they are, and their history.",
             "examples/palermo_spur_20_20.toml --torque 100 -o root.png",
             kind="root_stress",
-            collection="root-stresses",
             stages=(("compliance", 0.5), ("contact", 0.1), ("root stress", 0.4)),
             further=(".csv",),
             aliases=("--image",),

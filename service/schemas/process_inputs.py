@@ -46,4 +46,4 @@ def study_inputs(study: Study) -> type[BoundaryModel]:
     """Return the model of the inputs of a study's process: what is studied, and what is varied."""
     bases = (study.inputs, _SUBJECTS[study.subject])
     text = f"Inputs of the process {study.name}."
-    return create_model(f"{study.package.title().replace('_', '')}Inputs", __base__=bases, __doc__=text)
+    return create_model(f"{study.name.title().replace('-', '')}Inputs", __base__=bases, __doc__=text)

@@ -61,7 +61,7 @@ def test_flank_results_are_those_of_python(served: tuple[LineOfActionClient, Tes
     assert found.metadata.content_hash == here.metadata.content_hash
     assert [state.progress for state in seen] == sorted(state.progress for state in seen)
     result = client.result(seen[-1].id)
-    facts = http.get(f"/v1/flanks/{result.key}").json()
+    facts = http.get(f"/v1/results/{result.key}").json()
     assert {name: facts[name] for name in flank_json(found)} == flank_json(found)
     assert facts["size"] == file.stat().st_size
 
@@ -94,7 +94,7 @@ def test_a_study_comes_with_all_its_curves(served: tuple[LineOfActionClient, Tes
         assert np.all(curves.misalignment.peak_to_peak > 1e-7)
     progress = [state.progress for state in seen]
     assert progress == sorted(progress) and progress[-1] == 100
-    (pair,) = http.get(f"/v1/sensitivities/{client.result(seen[-1].id).key}").json()["pairs"]
+    (pair,) = http.get(f"/v1/results/{client.result(seen[-1].id).key}").json()["pairs"]
     assert pair["curves"][1]["corner_contact"] is True
     assert pair["curves"][0]["misalignment"]["misalignment_um"] == pytest.approx([0.0, 20.0])
 
@@ -112,7 +112,7 @@ def test_the_root_stress_is_that_of_python(served: tuple[LineOfActionClient, Tes
     assert found["receipt"]["cpu_seconds"] > 0.0
     (job,) = (j for j in http.get("/v1/jobs").json()["jobs"] if j["processID"] == "root-stress")
     key = client.result(job["jobID"]).key
-    figures = http.get(f"/v1/root-stresses/{key}/figures").json()
+    figures = http.get(f"/v1/results/{key}/figures").json()
     assert [figure["key"] for s in figures["sections"] for figure in s["figures"]] == ["root_stress"]
 
 

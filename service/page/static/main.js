@@ -135,7 +135,7 @@ class Page {
 
   /** An earlier job is shown: a table takes the page with its design, anything else stands below the list. */
   async showReopened(target, reference, signal) {
-    if (!reference.href.includes("/databases/")) return this.show(target, reference, signal);
+    if (reference.kind !== "database") return this.show(target, reference, signal);
     const names = { database: reference.hash, analyze: null, job: null, ...OF_RESULT };
     this.address.replace(names, { fields: undefined, ofResult: undefined });
     return this.render();

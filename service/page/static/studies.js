@@ -68,7 +68,7 @@ export const STUDIES = [
 
 /** Show a result of any kind but a table; `take` is given the flanks of an optimisation. */
 export async function showResult(target, reference, { take, signal }) {
-  if (reference.href.includes("/optimisations/")) await showOptimisation(target, reference, { take, signal });
+  if (reference.kind === "optimisation") await showOptimisation(target, reference, { take, signal });
   else await showReport(target, reference, { signal });
 }
 
