@@ -26,8 +26,8 @@ class Study:
         Of package, process and verb; the client's method adds ``_file`` where the result is netCDF.
     subject : "case", "scene" or "case or scene"
         What is studied.
-    title, description : str
-        A noun, and an imperative sentence of what is done.
+    title, action, description : str
+        A noun, what the button of the page says, and an imperative sentence of what is done.
     example : str
         Arguments of the verb.
     kind : str
@@ -57,6 +57,7 @@ class Study:
     name: str
     subject: Literal["case", "scene", "case or scene"]
     title: str
+    action: str
     description: str
     example: str
     kind: str
@@ -113,7 +114,8 @@ STUDIES: dict[str, Study] = {
         Study(
             "flank",
             "case",
-            "Flank results of a gear pair",
+            "Flank pressure",
+            "Compute flank pressure",
             "Compute pressure, line load and gap on the flanks at one load: contact pattern and K_Hbeta.",
             "examples/palermo_spur_20_20.toml --torque 100 -o flank.nc",
             kind="flanks",
@@ -122,9 +124,33 @@ STUDIES: dict[str, Study] = {
             media_type=NETCDF,
         ),
         Study(
+            "ablate",
+            "case or scene",
+            "Effects",
+            "Toggle every effect",
+            "Toggle each effect of a case or a scene: what it changes, what was estimated, what it costs.",
+            "examples/palermo_spur_20_20.toml -o ablation.png",
+            kind="ablation",
+            collection="ablations",
+            stages=(("analysis", 0.1), ("ablation", 0.9)),
+        ),
+        Study(
+            "frontier",
+            "case or scene",
+            "Accuracy frontier",
+            "Run the accuracy study",
+            "Study the accuracy of a case (ISO 6336 to fine finite elements) or a scene: error against time.",
+            "examples/palermo_spur_20_20.toml -o frontier",
+            kind="frontier",
+            collection="frontiers",
+            stages=(("analysis", 0.1), ("ladder", 0.9)),
+            folder="frontier",
+        ),
+        Study(
             "sensitivity",
             "case",
-            "Sensitivity to misalignment and center distance",
+            "Sensitivity",
+            "Study the sensitivity",
             "Vary misalignment and center distance of a case at its highest load: peak-to-peak STE.",
             "examples/sensitivity_wind_turbine.toml -o sensitivity",
             kind="sensitivity",
@@ -139,7 +165,8 @@ STUDIES: dict[str, Study] = {
         Study(
             "root-stress",
             "case",
-            "Tooth-root stress of a gear pair",
+            "Tooth-root stress",
+            "Compute the root stress",
             "Compute the stress of the tooth roots at one load: peaks, where they are, and their history.",
             "examples/palermo_spur_20_20.toml --torque 100 -o root.png",
             kind="root_stress",
@@ -148,30 +175,10 @@ STUDIES: dict[str, Study] = {
             aliases=("--image",),
         ),
         Study(
-            "ablate",
-            "case or scene",
-            "What each effect of a case or a scene changes",
-            "Toggle each effect of a case or a scene: what it changes, what was estimated, what it costs.",
-            "examples/palermo_spur_20_20.toml -o ablation.png",
-            kind="ablation",
-            collection="ablations",
-            stages=(("analysis", 0.1), ("ablation", 0.9)),
-        ),
-        Study(
-            "frontier",
-            "case or scene",
-            "What accuracy costs in time on a case or a scene",
-            "Study the accuracy of a case (ISO 6336 to fine finite elements) or a scene: error against time.",
-            "examples/palermo_spur_20_20.toml -o frontier",
-            kind="frontier",
-            collection="frontiers",
-            stages=(("analysis", 0.1), ("ladder", 0.9)),
-            folder="frontier",
-        ),
-        Study(
             "optimise",
             "case",
-            "Micro-geometry of least transmission error",
+            "Optimise the flanks",
+            "Search better flanks",
             "Choose flank modifications for the least peak-to-peak STE over torques and scatter.",
             "examples/palermo_spur_20_20.toml examples/optimise_tip_relief.toml -o best",
             kind="optimisation",
@@ -186,7 +193,8 @@ STUDIES: dict[str, Study] = {
         Study(
             "scatter",
             "case",
-            "Transmission error within tolerances",
+            "Tolerances",
+            "Draw pairs within tolerances",
             "Draw pairs within tolerances (Monte Carlo): distribution of peak-to-peak STE with confidence "
             "bounds.",
             "examples/sensitivity_automotive.toml --samples 400 -o scatter.png",
@@ -198,7 +206,8 @@ STUDIES: dict[str, Study] = {
         Study(
             "modes",
             "scene",
-            "Modes of a geared system",
+            "Modes",
+            "Find the modes",
             "Find natural modes about the loaded equilibrium, whirl modes over speed, and critical speeds.",
             "examples/palermo_scene.toml --speed-rpm 0:15000:250 -o modes.png",
             kind="modes",
@@ -209,7 +218,8 @@ STUDIES: dict[str, Study] = {
         Study(
             "response",
             "scene",
-            "Forced response of a geared system",
+            "Forced response",
+            "Find the response",
             "Find the linear response to the transmission error over speed: mesh and bearing forces by "
             "order.",
             "examples/palermo_scene.toml --speed-rpm 100:6000:25 -o response.png",
@@ -221,7 +231,8 @@ STUDIES: dict[str, Study] = {
         Study(
             "steady",
             "scene",
-            "Periodic steady states of a geared system",
+            "Steady states",
+            "Find the steady states",
             "Find periodic steady states at rising and falling speeds by shooting: stability, jumps, "
             "contact.",
             "scene.toml --speed-rpm 11000:13500:100 -o steady.png",

@@ -49,6 +49,7 @@ def study_process(study: Study) -> Process:
         prepare=partial(on_demand("service.jobs.study_work:prepare"), study),
         entry=f"service.jobs.study_work:{study.name}",
         stages=tuple(Stage(*stage) for stage in study.stages),
+        action=study.action,
     )
 
 

@@ -41,6 +41,8 @@ class Process:
         ``"module:function"`` of the work, called as ``function(order, progress)`` in a process of its own.
     stages : tuple[Stage, ...]
         What the work reports, in order.
+    action : str
+        What a button for it says; empty: it is no study.
     name_result : callable, optional
         Normalized inputs to the result's content hash, where the work itself defines one; default: the hash
         of the inputs with the process and the version of the program.
@@ -56,6 +58,7 @@ class Process:
     prepare: Prepare
     entry: str
     stages: tuple[Stage, ...]
+    action: str = ""
     name_result: Callable[[Json], str] | None = None
 
     def key(self, inputs: Json) -> str:

@@ -37,6 +37,7 @@ _SUMMARY: Json = {
     "jobControlOptions": ["async-execute", "dismiss"],
     "outputTransmission": ["value", "reference"],
     "links": [_LINK | {"href": "/v1/processes/analyze", "title": "Description"}],
+    "additionalParameters": {"title": "Card", "parameters": []},
 }
 _OUTPUT = {"type": "string", "contentEncoding": "binary", "contentMediaType": "application/x-netcdf"}
 _RESULT: Json = {"hash": HASH, "sha256": HASH[::-1], "size": 153_344}

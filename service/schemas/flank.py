@@ -15,6 +15,7 @@ class FlankPoint(BoundaryModel):
 
     torque_n_m: Annotated[float | None, Spelling("--torque")] = Field(
         default=None,
+        title="Torque on the pinion, N m",
         gt=0.0,
         le=1e9,
         description="Torque on the driving gear in N m; no load given: the case's highest",
@@ -25,6 +26,7 @@ class FlankPoint(BoundaryModel):
     )
     misalignment_um: float | None = Field(
         default=None,
+        title="Misalignment, µm",
         ge=-10_000.0,
         le=10_000.0,
         description="Misalignment in um; left out: the case's value nearest to 0",

@@ -18,6 +18,7 @@ class Inputs(BoundaryModel):
 
     misalignment_um: Annotated[tuple[Misalignment, ...], Strict(False)] = Field(
         default=(0.0, 15.0, 30.0, 45.0, 60.0),
+        title="Misalignments, µm",
         min_length=1,
         max_length=64,
         description="Misalignments in um, increasing",
@@ -25,6 +26,7 @@ class Inputs(BoundaryModel):
     )
     center_distance_change_percent: Annotated[tuple[Percent, ...], Strict(False)] = Field(
         default=(-0.2, -0.1, 0.0, 0.1, 0.2),
+        title="Changes of the center distance, %",
         min_length=1,
         max_length=64,
         description="Changes of the center distance in per cent of the nominal one, increasing",
