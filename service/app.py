@@ -20,6 +20,8 @@ from service.routes import (
     databases,
     effects,
     events,
+    figures,
+    former_results,
     health,
     job_results,
     jobs,
@@ -33,7 +35,6 @@ from service.routes import (
 from service.routes.access import Access
 from service.routes.context import Context
 from service.routes.errors import documented, install_error_handlers
-from service.routes.figures import figures_router
 from service.routes.metrics import Metrics
 from service.routes.middleware import API_PREFIX, Guard
 from service.routes.openapi import install_description
@@ -95,8 +96,8 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
     app.add_middleware(Access, keyring=keyring, always=not settings.loopback or bool(keyring))
     app.add_middleware(Guard, body_limit=settings.body_limit, metrics=app.state.metrics)
     jobs_shown = (landing.router, processes_router(offered), jobs.router, job_results.router, events.router)
-    stored = (databases.router, results.router, figures_router(), queries.router, live.router)
-    for router in (*jobs_shown, *stored, cases.router, scenes.router, effects.router):
+    stored = (databases.router, results.router, figures.router, queries.router, live.router)
+    for router in (*jobs_shown, *stored, cases.router, scenes.router, effects.router, former_results.router):
         app.include_router(router, prefix=API_PREFIX, responses=documented(503))
     app.include_router(page.router)
     app.include_router(health.router)

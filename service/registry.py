@@ -26,12 +26,12 @@ class Study:
         Of package, process and verb; the client's method adds ``_file`` where the result is netCDF.
     subject : "case", "scene" or "case or scene"
         What is studied.
-    title, description : str
-        A noun, and an imperative sentence of what is done.
+    title, action, description : str
+        A noun, what the button of the page says, and an imperative sentence of what is done.
     example : str
         Arguments of the verb.
-    kind, collection : str
-        Kind of the result, which is the process' output too; its path is ``/v1/COLLECTION/HASH``.
+    kind : str
+        Kind of the result, which is the process' output too.
     stages : tuple of (str, float)
         Stages of the work, in order, and their shares of the time.
     version : str
@@ -44,29 +44,43 @@ class Study:
         Name of the files, but for their endings, that the verb writes to a folder; empty: it writes one file.
     from_file : bool
         Whether the inputs are a file of the verb and a mapping of the client, rather than options.
+    collection : str
+        See `service.schemas.result_kinds.ResultKind`.
     further : tuple of str
-        Endings of files that the verb writes beside those of all studies.
+        Endings of files that the verb writes beside those of all studies. CSV can be printed too.
+    several : bool
+        Whether the verb takes several files.
+    aliases : tuple of str
+        Other names of the verb's option ``--output``.
     """
 
     name: str
     subject: Literal["case", "scene", "case or scene"]
     title: str
+    action: str
     description: str
     example: str
     kind: str
-    collection: str
     stages: tuple[tuple[str, float], ...]
     version: str = "2"
     media_type: str = JSON
     shared: bool = False
     folder: str = ""
     from_file: bool = False
+    collection: str = ""
     further: tuple[str, ...] = ()
+    several: bool = False
+    aliases: tuple[str, ...] = ()
 
     @property
     def argument(self) -> str:
         """Name of what is studied, as the client's method and the verb have it."""
         return "given" if self.subject == "case or scene" else self.subject
+
+    @property
+    def package(self) -> str:
+        """Name of its package, and of what belongs to it in Python."""
+        return self.name.replace("-", "_")
 
     @property
     def endings(self) -> tuple[str, ...]:
@@ -91,16 +105,29 @@ class Study:
     def _part(self, module: str, name: str) -> Any:
         """Load a module of the package; return what it offers."""
         with LOADING:
-            return getattr(import_module(f"service.studies.{self.name}{module}"), name)
+            return getattr(import_module(f"service.studies.{self.package}{module}"), name)
 
 
 STUDIES: dict[str, Study] = {
     study.name: study
     for study in (
         Study(
+            "flank",
+            "case",
+            "Flank pressure",
+            "Compute flank pressure",
+            "Compute pressure, line load and gap on the flanks at one load: contact pattern and K_Hbeta.",
+            "examples/palermo_spur_20_20.toml --torque 100 -o flank.nc",
+            kind="flanks",
+            collection="flanks",
+            stages=(("compliance", 0.9), ("contact", 0.1)),
+            media_type=NETCDF,
+        ),
+        Study(
             "ablate",
             "case or scene",
-            "What each effect of a case or a scene changes",
+            "Effects",
+            "Toggle every effect",
             "Toggle each effect of a case or a scene: what it changes, what was estimated, what it costs.",
             "examples/palermo_spur_20_20.toml -o ablation.png",
             kind="ablation",
@@ -110,7 +137,8 @@ STUDIES: dict[str, Study] = {
         Study(
             "frontier",
             "case or scene",
-            "What accuracy costs in time on a case or a scene",
+            "Accuracy frontier",
+            "Run the accuracy study",
             "Study the accuracy of a case (ISO 6336 to fine finite elements) or a scene: error against time.",
             "examples/palermo_spur_20_20.toml -o frontier",
             kind="frontier",
@@ -119,9 +147,38 @@ STUDIES: dict[str, Study] = {
             folder="frontier",
         ),
         Study(
+            "sensitivity",
+            "case",
+            "Sensitivity",
+            "Study the sensitivity",
+            "Vary misalignment and center distance of a case at its highest load: peak-to-peak STE.",
+            "examples/sensitivity_wind_turbine.toml -o sensitivity",
+            kind="sensitivity",
+            collection="sensitivities",
+            stages=(("tables", 1.0),),
+            media_type=NETCDF,
+            shared=True,
+            folder="sensitivity",
+            further=(".csv",),
+            several=True,
+        ),
+        Study(
+            "root-stress",
+            "case",
+            "Tooth-root stress",
+            "Compute the root stress",
+            "Compute the stress of the tooth roots at one load: peaks, where they are, and their history.",
+            "examples/palermo_spur_20_20.toml --torque 100 -o root.png",
+            kind="root_stress",
+            stages=(("compliance", 0.5), ("contact", 0.1), ("root stress", 0.4)),
+            further=(".csv",),
+            aliases=("--image",),
+        ),
+        Study(
             "optimise",
             "case",
-            "Micro-geometry of least transmission error",
+            "Optimise the flanks",
+            "Search better flanks",
             "Choose flank modifications for the least peak-to-peak STE over torques and scatter.",
             "examples/palermo_spur_20_20.toml examples/optimise_tip_relief.toml -o best",
             kind="optimisation",
@@ -136,7 +193,8 @@ STUDIES: dict[str, Study] = {
         Study(
             "scatter",
             "case",
-            "Transmission error within tolerances",
+            "Tolerances",
+            "Draw pairs within tolerances",
             "Draw pairs within tolerances (Monte Carlo): distribution of peak-to-peak STE with confidence "
             "bounds.",
             "examples/sensitivity_automotive.toml --samples 400 -o scatter.png",
@@ -148,7 +206,8 @@ STUDIES: dict[str, Study] = {
         Study(
             "modes",
             "scene",
-            "Modes of a geared system",
+            "Modes",
+            "Find the modes",
             "Find natural modes about the loaded equilibrium, whirl modes over speed, and critical speeds.",
             "examples/palermo_scene.toml --speed-rpm 0:15000:250 -o modes.png",
             kind="modes",
@@ -159,7 +218,8 @@ STUDIES: dict[str, Study] = {
         Study(
             "response",
             "scene",
-            "Forced response of a geared system",
+            "Forced response",
+            "Find the response",
             "Find the linear response to the transmission error over speed: mesh and bearing forces by "
             "order.",
             "examples/palermo_scene.toml --speed-rpm 100:6000:25 -o response.png",
@@ -171,7 +231,8 @@ STUDIES: dict[str, Study] = {
         Study(
             "steady",
             "scene",
-            "Periodic steady states of a geared system",
+            "Steady states",
+            "Find the steady states",
             "Find periodic steady states at rising and falling speeds by shooting: stability, jumps, "
             "contact.",
             "scene.toml --speed-rpm 11000:13500:100 -o steady.png",

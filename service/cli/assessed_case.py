@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from service.cli.warned import warn
-from service.convert.flanks import case_at
+from service.convert.case import case_at
 from service.convert.plausibility import case_warnings
 from service.schemas import Case, read_model
 from service.schemas.flank import FlankPoint

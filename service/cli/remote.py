@@ -14,12 +14,11 @@ from service.cli.output import Report, check_writable, console, print_json, prog
 from service.cli.warned import warn
 from service.client import JobState, LineOfActionClient, Result
 from service.convert.stamp import stamped
-from service.problems import BadInput, NotFound, ResultNotReady
+from service.problems import BadInput, ResultNotReady
 from service.registry import studies_of
 from service.schemas import Case, read_table, validated
-from service.schemas.result_kinds import RESULT_KINDS
 
-_OF_CASES = ("analyze", "flank", "sensitivity", *studies_of("case"))
+_OF_CASES = ("analyze", *studies_of("case"))
 _OF_SCENES = ("simulate", *studies_of("scene"))
 _OF_BOTH = studies_of("case or scene")
 
@@ -113,23 +112,13 @@ def run_fetch(name: str, output: Path, service: str, *, as_json: bool) -> None:
     check_writable(output)
     with LineOfActionClient(service) as client:
         if re.fullmatch("[0-9a-f]{64}", name):
-            file, key, kind = _by_hash(client, name)
+            key, (file, kind) = name, client.fetch_result(name)
         else:
             found = _ended(client, name)
             file, key, kind = client.fetch_file(found.key, found.kind), found.key, found.kind
     shutil.copyfile(file, output)
     warn(stamped(output))
     _show({"hash": key, "kind": kind, "file": str(output)}, as_json)
-
-
-def _by_hash(client: LineOfActionClient, key: str) -> tuple[Path, str, str]:
-    """Return the result of a hash, whichever kind it is."""
-    for kind in RESULT_KINDS:
-        try:
-            return client.fetch_file(key, kind), key, kind
-        except NotFound:
-            continue
-    raise NotFound(f"The service has no result {key}. Submit its case or scene again.")
 
 
 def _ended(client: LineOfActionClient, job: str) -> Result:

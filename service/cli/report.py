@@ -12,16 +12,19 @@ from pydantic import ValidationError
 from fe_contact.analysis import LoadDistribution
 from service.cli.output import Report, check_writable, console, print_json, progress_bar
 from service.cli.warned import warn
-from service.convert.flanks import case_at, flanks_of
+from service.convert.case import case_at
 from service.convert.stamp import stamped
 from service.directories import cache_home
 from service.problems import BadInput
+from service.registry import STUDIES
 from service.report.aligned import aligned, headline_load
 from service.report.content import nominal_force
 from service.report.inputs import Inputs, read_inputs
+from service.report.stored_study import page_beside
 from service.report.write import write_page
 from service.schemas import Case
 from service.schemas.flank import FlankPoint
+from service.studies.flank.run import flanks_of
 
 
 def run_report(
@@ -30,19 +33,22 @@ def run_report(
     """Write the page, and the pictures if asked; compute the flank results if asked."""
     for file in files:
         if not file.is_file():
-            raise BadInput.of("file", str(file), "an STE database, flank results or a run", "Check the path.")
+            raise BadInput.of("file", str(file), "a file of results", "Check the path.")
     check_writable(output)
     read = read_inputs(files)
     warn(warning for file in files for warning in stamped(file))
+    spent = 0.0
     if flank:
         with progress_bar() as report:
-            read = replace(read, flanks=_flanks(read, report))
+            found = _flanks(read, report)
+        page = page_beside(STUDIES["flank"], found, read.database)
+        read = replace(read, pages={**read.pages, "flanks": page})
+        spent = found.metadata.receipt["cpu_seconds"]
     written = write_page(read, output, images)
     if as_json:
         print_json({"file": str(output), "written": [str(path) for path in written]})
         return
-    if flank and read.flanks is not None:
-        spent = read.flanks.metadata.receipt["cpu_seconds"]
+    if flank:
         console().print(f"flank results {spent:.3g} CPU s", highlight=False)
     for path in written:
         console().print(f"written to {path}", highlight=False)
@@ -57,7 +63,7 @@ def _flanks(read: Inputs, report: Report) -> LoadDistribution:
         There is no database to take the case from, or flank results are there already.
     """
     database = read.database
-    if read.flanks is not None:
+    if "flanks" in read.pages:
         raise BadInput.of("--flank", True, "left out with a file of flank results", "Name one or the other.")
     if database is None:
         raise BadInput.of("--flank", True, "given with an STE database", "Its case says what to compute.")

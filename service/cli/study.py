@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
-from service.cli.assessed_case import assessed_case
 from service.cli.interrupt import until_interrupted
 from service.cli.number_list import number_list
-from service.cli.output import check_writable, console, output_files, print_json, progress_bar, table
+from service.cli.output import (
+    Report,
+    check_writable,
+    console,
+    csv_text,
+    output_files,
+    print_json,
+    progress_bar,
+    table,
+)
 from service.cli.scene_tables import scene_with_tables
-from service.cli.warned import messages, warnings_so_far
+from service.cli.warned import messages, warn, warnings_so_far
 from service.client.portable import scene_of
+from service.convert.plausibility import case_warnings
 from service.convert.stamp import stamp
 from service.convert.task_workers import ExecutorChoice, open_executor
 from service.directories import cache_home
@@ -32,30 +42,45 @@ Writer = Callable[[Any, Path], object]
 
 def run_study(study: Study, given: Json) -> None:
     """Run a study as its verb was called; `given` holds argument and options by their names."""
-    subject, folder = _read(study, given[study.argument])
+    files = given[study.argument] if study.several else [given[study.argument]]
+    read = [_read(study, file) for file in files]
     inputs = _inputs(study, given)
+    subjects = [(_assessed(study.run.narrowed(subject, inputs)), folder) for subject, folder in read]
     targets = _targets(study, given["output"])
-    study.run.check(subject, inputs)
+    for subject, _ in subjects:
+        study.run.check(subject, inputs)
     executor = ExecutorChoice(given.get("workers", 1), given.get("dask"))
     stopping = until_interrupted if study.run.interruptible else nullcontext
     with open_executor(executor) as workers, progress_bar() as report, stopping() as cancel:
-        made: Any = subject
-        if not isinstance(subject, Case):
-            made = scene_with_tables(subject, folder, given["service"], report)
-        found = study.run.compute(made, inputs, Means(cache_home(), report, workers, cancel))
+        means = Means(cache_home(), report, workers, cancel)
+        results = [
+            study.run.compute(_made(subject, folder, given, report), inputs, means)
+            for subject, folder in subjects
+        ]
         interrupted = cancel is not None and cancel()
+    found = results[0]
+    if study.several:
+        found = study.run.joined(dict(zip(_names(study, files), results, strict=True)))
+    warn(study.run.warnings(found) or ())
+    _tell(study, found, targets, given)
+    if interrupted:
+        raise KeyboardInterrupt("interrupted. What is above is the best of what was computed so far.")
+    if failure := study.run.failure(found):
+        raise JobFailed(failure)
+
+
+def _tell(study: Study, found: Any, targets: list[Path], given: Json) -> None:
+    """Write the files, and print the result in the form that was requested."""
     for target in targets:
         target.parent.mkdir(exist_ok=True)
         _writers(study)[target.suffix](found, target)
         stamp(target, warnings_so_far())
     if given["json"]:
         print_json(_written(study, targets) | study.run.facts(found))
+    elif given.get("csv"):
+        sys.stdout.write(_csv(study, found))
     else:
         _show(study, found, targets)
-    if interrupted:
-        raise KeyboardInterrupt("interrupted. What is above is the best of what was computed so far.")
-    if failure := study.run.failure(found):
-        raise JobFailed(failure)
 
 
 def _inputs(study: Study, given: Json) -> Any:
@@ -73,7 +98,7 @@ def _fields(study: Study, given: Json) -> Json:
         if spelling and spelling.value is not None:
             value = spelling.value if value else field.default
         elif value is not None and (kind := item_type(field)):
-            option = f"--{name.replace('_', '-')}"
+            option = spelling.option if spelling else f"--{name.replace('_', '-')}"
             words = [part.strip() for part in value.split(",")]
             value = number_list(option, value) if kind is float else words
         if value is not None:
@@ -82,10 +107,30 @@ def _fields(study: Study, given: Json) -> Json:
 
 
 def _read(study: Study, file: Path) -> tuple[Case | SceneInput, Path]:
-    """Return the case or the scene in a file and its folder; what is implausible about a case is said."""
+    """Return the case or the scene in a file, and its folder."""
     if study.subject == "scene" or (study.subject != "case" and "shafts" in read_table(file)):
         return scene_of(file)
-    return assessed_case(file), file.parent
+    return read_model(Case, file), file.parent
+
+
+def _assessed(subject: Case | SceneInput) -> Case | SceneInput:
+    """Return what is studied; what is implausible about a case is said, about a scene with its tables."""
+    if isinstance(subject, Case):
+        warn(case_warnings(subject))
+    return subject
+
+
+def _made(subject: Case | SceneInput, folder: Path, given: Json, report: Report) -> Any:
+    """Return the case, or the scene with its tables."""
+    if isinstance(subject, Case):
+        return subject
+    return scene_with_tables(subject, folder, given["service"], report)
+
+
+def _names(study: Study, files: Sequence[Path]) -> list[str]:
+    """Return names of results: what tells their files apart."""
+    names = [file.stem.removeprefix(f"{study.name}_").replace("_", " ") for file in files]
+    return [str(file) for file in files] if len(set(names)) < len(names) else names
 
 
 def _targets(study: Study, output: Path | None) -> list[Path]:
@@ -108,8 +153,15 @@ def _writers(study: Study) -> dict[str, Writer]:
         ".json": run.save_facts,
         ".png": lambda found, file: file.write_bytes(png(page.figure(found))),
         ".html": lambda found, file: write_whole(page.page(found), file, warnings=messages()),
+        ".csv": lambda found, file: file.write_text(_csv(study, found), encoding="utf-8"),
         **run.writers,
     }
+
+
+def _csv(study: Study, found: Any) -> str:
+    """Return the numbers of the plot as CSV."""
+    series = study.page.series(found)
+    return csv_text(series.head, series.rows)
 
 
 def _written(study: Study, targets: list[Path]) -> Json:

@@ -27,21 +27,21 @@ class ResultCache:
         self._directory = directory
 
     @contextmanager
-    def incoming(self, kind: str) -> Iterator[BinaryIO]:
-        """Yield a file to write a result of a kind into; it is gone afterwards unless it was kept.
+    def incoming(self) -> Iterator[BinaryIO]:
+        """Yield a file to write a result into; it is gone afterwards unless it was kept.
 
         Raises
         ------
         BadInput
             The directory cannot be written.
         """
-        with self._part(self._directory / kind) as stream:
+        with self._part(self._directory) as stream:
             yield stream
 
     def keep(self, kind: str, key: str, stream: BinaryIO, digest: str) -> Path:
         """Keep what was written into the file of `incoming`; `digest` is its SHA-256, hexadecimal."""
         file = self._folder(kind, key) / f"{digest}{suffix_of(kind)}"
-        file.parent.mkdir(exist_ok=True)
+        file.parent.mkdir(parents=True, exist_ok=True)
         _settle(stream, file)
         return file
 

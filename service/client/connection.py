@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import ipaddress
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
 from email.utils import parsedate_to_datetime
 from typing import Any, BinaryIO, TypeVar
@@ -90,13 +90,13 @@ class Connection:
             raise stranger(response)
         return response.content
 
-    def download(self, path: str, media_type: str, into: BinaryIO) -> tuple[str, str]:
+    def download(self, path: str, media_type: str, into: BinaryIO) -> tuple[str, Mapping[str, str]]:
         """Write the file that a path answers with, piece by piece.
 
         Returns
         -------
-        tuple of str
-            SHA-256 of what was written, hexadecimal, and the ``Content-Digest`` that was announced.
+        tuple of str and mapping
+            SHA-256 of what was written, hexadecimal, and the headers of the answer.
 
         Raises
         ------
@@ -104,7 +104,7 @@ class Connection:
             As `request`.
         """
 
-        def once() -> tuple[str, str]:
+        def once() -> tuple[str, Mapping[str, str]]:
             into.seek(0)
             into.truncate()
             digest = hashlib.sha256()
@@ -115,7 +115,7 @@ class Connection:
                 for piece in response.iter_bytes(_CHUNK):
                     digest.update(piece)
                     into.write(piece)
-            return digest.hexdigest(), response.headers.get("content-digest", "")
+            return digest.hexdigest(), response.headers
 
         return self._patiently(once)
 
@@ -141,7 +141,7 @@ def _checked(response: httpx2.Response) -> httpx2.Response:
     """Return an answer that is what was requested; raises what it says otherwise."""
     if response.status_code in _TRY_AGAIN:
         raise _TryAgain(response)
-    if not response.is_success:  # a redirection too: this service has none
+    if not response.is_success:  # a redirection too: those are for others
         raise problem_of(response)
     return response
 

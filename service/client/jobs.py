@@ -17,8 +17,9 @@ from service.client.connection import Connection
 from service.client.status import JobState, OfflineWarning, Result, Watch
 from service.client.waiting import Pace, ended
 from service.directories import cache_home
-from service.problems import BadInput, DamagedFile, ServiceError, Unreachable
-from service.schemas.result_kinds import RESULT_KINDS
+from service.problems import BadInput, DamagedFile, NotFound, ServiceError, Unreachable
+from service.registry import NETCDF
+from service.schemas.result_kinds import RESULT_KINDS, RESULTS
 from service.version import solver_version
 
 _LONGEST_PAUSE_S = 2.0
@@ -187,15 +188,24 @@ class JobClient:
         BadInput
             The cache cannot be written.
         """
-        cached = self._cache.get(kind, key)
-        if cached is not None:
-            return cached
-        where = RESULT_KINDS[kind]
-        with self._cache.incoming(kind) as file:
-            digest, announced = self._connection.download(f"{where.path}/{key}", where.media_type, file)
-            if announced != f"sha-256=:{base64.b64encode(bytes.fromhex(digest)).decode()}:":
+        return self.fetch_result(key, kind)[0]
+
+    def fetch_result(self, key: str, *kinds: str) -> tuple[Path, str]:
+        """Return the file of a result of one of some kinds, default all, and its kind; as `fetch_file`."""
+        kinds = kinds or tuple(RESULT_KINDS)
+        for kind in kinds:
+            cached = self._cache.get(kind, key)
+            if cached is not None:
+                return cached, kind
+        with self._cache.incoming() as file:
+            digest, headers = self._connection.download(f"{RESULTS}/{key}", NETCDF, file)
+            kind = headers.get("result-kind", kinds[0])
+            if kind not in kinds:
+                raise NotFound(f"Result {key!r} is no {kinds[0]}, but of the kind {kind}.")
+            coded = base64.b64encode(bytes.fromhex(digest)).decode()
+            if headers.get("content-digest") != f"sha-256=:{coded}:":
                 raise DamagedFile(f"The file of {kind} {key} was damaged on its way. Fetch it again.")
-            return self._cache.keep(kind, key, file, digest)
+            return self._cache.keep(kind, key, file, digest), kind
 
     def _note_other_version(self, error: BadInput) -> None:
         """Add to a refusal that client and service are of different versions, if they are."""

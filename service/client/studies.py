@@ -2,114 +2,18 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from inspect import Parameter, Signature
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
 from service.client.jobs import JobClient
-from service.client.portable import CaseLike, case_of, inputs_of
-from service.client.status import Watch
-from service.registry import JSON, STUDIES, Study
+from service.client.study_method import study_method
+from service.registry import STUDIES
 
 
 class Studies(JobClient):
     """Studies of cases and scenes by a service: each submits, waits and fetches.
 
-    There is a method for each row of `service.registry.STUDIES`.
+    There is a method for each row of `service.registry.STUDIES`. Their types are in ``studies.pyi``, which
+    ``scripts/client_studies.py`` writes.
     """
 
-    if TYPE_CHECKING:
 
-        def __getattr__(self, name: str) -> Callable[..., Any]:
-            """Methods of studies come from their rows."""
-
-    def flank_file(self, case: CaseLike, progress: Watch | None = None, **point: float) -> Path:
-        """Return the file of a case's flank results: submit, wait, fetch.
-
-        Parameters
-        ----------
-        case : Case, mapping or Path
-        progress : callable, optional
-        **point : float
-            ``torque_n_m`` or ``normal_force_n``, ``misalignment_um``, ``center_distance_change_mm``; what is
-            left out is taken from the case. Read the file with `fe_contact.LoadDistribution.from_netcdf`.
-        """
-        return self._study("flank", case, progress, point)
-
-    def sensitivity_file(
-        self, case: CaseLike, progress: Watch | None = None, **deviations: Sequence[float]
-    ) -> Path:
-        """Return the file of a case's sensitivity study: submit, wait, fetch.
-
-        Parameters
-        ----------
-        case : Case, mapping or Path
-        progress : callable, optional
-        **deviations : sequence of float
-            ``misalignment_um``, ``center_distance_change_percent``. ``loa report`` draws the file.
-        """
-        return self._study(
-            "sensitivity", case, progress, {name: list(values) for name, values in deviations.items()}
-        )
-
-    def _study(self, process: str, case: CaseLike, progress: Watch | None, further: dict[str, Any]) -> Path:
-        """Submit a case with further inputs, wait, fetch the file."""
-        inputs = {"case": case_of(case).model_dump(mode="json"), **further}
-        result = self.obtain(process, inputs, progress)
-        return self.fetch_file(result.key, result.kind)
-
-
-def _method(study: Study) -> Callable[..., Any]:
-    """Return the method of a study: submit, wait, and read the JSON or return the netCDF file."""
-    signature = Signature(
-        [
-            Parameter("self", Parameter.POSITIONAL_ONLY),
-            Parameter(study.argument, Parameter.POSITIONAL_OR_KEYWORD),
-            *([Parameter("study", Parameter.POSITIONAL_OR_KEYWORD)] if study.from_file else []),
-            Parameter("progress", Parameter.POSITIONAL_OR_KEYWORD, default=None),
-            *([] if study.from_file else [Parameter("options", Parameter.VAR_KEYWORD)]),
-        ]
-    )
-
-    def run(self: Studies, *arguments: Any, **named: Any) -> Any:
-        bound = signature.bind(self, *arguments, **named).arguments
-        options = {
-            name: _plain(value) for name, value in bound.get("study", bound.get("options", {})).items()
-        }
-        inputs = inputs_of(bound[study.argument]) | options
-        result = self.obtain(study.name, inputs, bound.get("progress"))
-        file = self.fetch_file(result.key, result.kind)
-        return json.loads(file.read_bytes()) if study.media_type == JSON else file
-
-    run.__name__ = study.name if study.media_type == JSON else f"{study.name}_file"
-    run.__qualname__, run.__doc__ = f"Studies.{run.__name__}", _METHOD.format(study=study)
-    run.__signature__ = signature  # type: ignore[attr-defined]
-    return run
-
-
-_METHOD = """{study.description}
-
-        Submits, waits, and returns what ``loa {study.name} --json`` prints, or the path of the netCDF file.
-
-        Parameters
-        ----------
-        {study.argument} : model, mapping or Path
-        progress : callable, optional
-            Called with every state seen.
-        study or **options
-            What is varied: as in the file of the verb, or its options by name. What is left out has its
-            default.
-        """
-
-
-def _plain(value: Any) -> Any:
-    """Return a value of JSON: any sequence as a list."""
-    is_sequence = isinstance(value, Iterable) and not isinstance(value, str | Mapping)
-    return list(value) if is_sequence else value
-
-
-for _study in STUDIES.values():
-    _function = _method(_study)
-    setattr(Studies, _function.__name__, _function)
+for _method in map(study_method, STUDIES.values()):
+    setattr(Studies, _method.__name__, _method)

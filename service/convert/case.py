@@ -33,11 +33,14 @@ from service.schemas import (
     AccuracyInput,
     BoreSeatInput,
     Case,
+    ErrorsInput,
+    LoadInput,
     MaterialInput,
     PairInput,
     ToothingInput,
     WheelInput,
 )
+from service.schemas.flank import FlankPoint
 from service.units import DEGREE, MM, NM, UM
 
 Json = dict[str, Any]
@@ -184,6 +187,31 @@ def analysis_options(case: Case) -> AnalysisOptions:
 def study_options(case: Case) -> AnalysisOptions:
     """Return the options of a case for a study, which measures its errors and repeats what it must."""
     return replace(analysis_options(case), receipt="full", on_violation="repeat")
+
+
+def case_at(case: Case, point: FlankPoint) -> Case:
+    """Return the case with the one load and the one alignment of a point.
+
+    What the point leaves open is the case's highest load, and its deviations nearest to zero.
+    """
+    load, errors = case.load, case.errors
+    if point.torque_n_m is not None:
+        load = LoadInput(torque_n_m=(point.torque_n_m,))
+    elif point.normal_force_n is not None:
+        load = LoadInput(normal_force_n=(point.normal_force_n,))
+    elif load.torque_n_m is not None:
+        load = LoadInput(torque_n_m=load.torque_n_m[-1:])
+    elif load.normal_force_n is not None:
+        load = LoadInput(normal_force_n=load.normal_force_n[-1:])
+    skew, change = point.misalignment_um, point.center_distance_change_mm
+    here = ErrorsInput(
+        misalignment_um=(min(errors.misalignment_um, key=abs) if skew is None else skew,),
+        center_distance_change_mm=(
+            min(errors.center_distance_change_mm, key=abs) if change is None else change,
+        ),
+    )
+    accuracy = case.accuracy.model_copy(update={"positions": None})  # a cycle is always the same 64
+    return case.model_copy(update={"load": load, "errors": here, "accuracy": accuracy})
 
 
 def operating_point(case: Case) -> OperatingPoint:

@@ -11,7 +11,6 @@ from typing import Any
 from bounds import Unit, finding_of
 from dynamics.plausibility import scene_findings
 from dynamics.scene import Scene
-from fe_contact.analysis import LoadDistribution
 from fe_contact.plausibility import pair_findings
 from fe_contact.ste import SteDatabase
 from service.convert.case import gear_pair, table_axes
@@ -36,7 +35,7 @@ def case_warnings(case: Case) -> list[Json]:
     pair, axes = gear_pair(case), table_axes(case)
     alignments = axes.misalignment, axes.center_distance_change
     found = pair_findings(pair, axes.load(pair), *alignments, loads_as=axes.loads_as)
-    return phrased([finding.to_json() for finding in found], _field_in(case))
+    return phrased_for(case, [finding.to_json() for finding in found])
 
 
 def scene_warnings(
@@ -78,15 +77,14 @@ def within(warning: Json, place: str) -> Json:
     return warning | {"field": field, "message": warning["message"].replace(warning["field"], field, 1)}
 
 
-def phrased_flanks(found: LoadDistribution, case: Case) -> LoadDistribution:
-    """Return flank results whose warnings are in the fields and units of their case."""
-    warnings = phrased(found.metadata.warnings, _field_in(case))
-    return replace(found, metadata=replace(found.metadata, warnings=warnings))
+def phrased_for(case: Case, findings: Iterable[Json]) -> list[Json]:
+    """Return findings of a library about a case in its fields and units."""
+    return phrased(findings, _field_in(case))
 
 
 def phrased_database(database: SteDatabase, case: Case) -> SteDatabase:
     """Return a database whose warnings are in the fields and units of its case."""
-    warnings = phrased(database.metadata.warnings, _field_in(case))
+    warnings = phrased_for(case, database.metadata.warnings)
     return replace(database, metadata=replace(database.metadata, warnings=warnings))
 
 

@@ -4,15 +4,10 @@ from __future__ import annotations
 
 from functools import partial
 
-from service.jobs.process import Process, Registry, Stage, on_demand
+from service.jobs.process import Process, Registry, on_demand
 from service.registry import STUDIES, Study
-from service.schemas.process_inputs import (
-    AnalyzeInputs,
-    FlankInputs,
-    SensitivityInputs,
-    SimulateInputs,
-    study_inputs,
-)
+from service.schemas.process_inputs import AnalyzeInputs, SimulateInputs, study_inputs
+from service.stages import TABLE_STAGES, Stage
 
 ANALYZE = Process(
     id="analyze",
@@ -24,33 +19,8 @@ ANALYZE = Process(
     kind="database",
     prepare=on_demand("service.jobs.preparations:prepare_analyze"),
     entry="service.jobs.analysis_work:analyze_case",
-    stages=(Stage("compliance", 0.6), Stage("contact", 0.15), Stage("error estimate", 0.25)),
+    stages=TABLE_STAGES,
     name_result=on_demand("service.jobs.preparations:name_database"),
-)
-FLANK = Process(
-    id="flank",
-    title="Flank results of a gear pair",
-    description="Pressure, line load and gap on the flanks over one mesh cycle, at one load and alignment.",
-    version="2",
-    inputs=FlankInputs,
-    output="flanks",
-    kind="flanks",
-    prepare=on_demand("service.jobs.preparations:prepare_flank"),
-    entry="service.jobs.study_work:study_flanks",
-    stages=(Stage("compliance", 0.9), Stage("contact", 0.1)),
-)
-SENSITIVITY = Process(
-    id="sensitivity",
-    title="Sensitivity to misalignment and center distance",
-    description="Peak-to-peak transmission error over misalignment and center distance, varied one at a "
-    "time, without and with corner contact.",
-    version="2",
-    inputs=SensitivityInputs,
-    output="sensitivity",
-    kind="sensitivity",
-    prepare=on_demand("service.jobs.preparations:prepare_sensitivity"),
-    entry="service.jobs.study_work:study_sensitivity_of",
-    stages=(Stage("tables", 1.0),),
 )
 SIMULATE = Process(
     id="simulate",
@@ -79,10 +49,11 @@ def study_process(study: Study) -> Process:
         prepare=partial(on_demand("service.jobs.study_work:prepare"), study),
         entry=f"service.jobs.study_work:{study.name}",
         stages=tuple(Stage(*stage) for stage in study.stages),
+        action=study.action,
     )
 
 
 def default_registry() -> Registry:
     """Return the processes every service offers."""
     studies = map(study_process, STUDIES.values())
-    return Registry(ANALYZE, FLANK, SENSITIVITY, SIMULATE, *studies)
+    return Registry(ANALYZE, SIMULATE, *studies)

@@ -10,36 +10,13 @@ from typing import Any
 from fe_contact.analysis.compute_database import SOLVER_VERSION
 from fe_contact.ste.content_hash import content_hash
 from fe_contact.ste.facts import SCHEMA_VERSION
-from service.convert.case import case_json
 from service.convert.checks import check_case
-from service.convert.flanks import case_at
-from service.convert.sensitivity import Deviations, check_study
 from service.jobs.scene_inputs import check_scene_inputs
 from service.schemas.model import BoundaryModel
-from service.schemas.process_inputs import (
-    AnalyzeInputs,
-    FlankInputs,
-    SensitivityInputs,
-    SimulateInputs,
-)
+from service.schemas.process_inputs import AnalyzeInputs, SimulateInputs
 from service.store import ResultStore
 
 Json = dict[str, Any]
-
-
-def prepare_flank(inputs: BoundaryModel, _store: ResultStore) -> Json:
-    """Check that the pair exists; return the case of this one load and alignment, with all defaults."""
-    assert isinstance(inputs, FlankInputs)
-    case = case_at(inputs.case, inputs)
-    check_case(case, whole_table=False)
-    return {"case": case_json(case)}
-
-
-def prepare_sensitivity(inputs: BoundaryModel, _store: ResultStore) -> Json:
-    """Check that the pair exists at every deviation; return the inputs with all defaults."""
-    assert isinstance(inputs, SensitivityInputs)
-    check_study(inputs.case, Deviations(inputs.misalignment_um, inputs.center_distance_change_percent))
-    return inputs.model_dump(mode="json")
 
 
 def prepare_analyze(inputs: BoundaryModel, _store: ResultStore) -> Json:

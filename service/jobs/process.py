@@ -11,20 +11,13 @@ from service.jobs.key import content_key
 from service.loading import LOADING
 from service.problems import NoSuchProcess
 from service.schemas.model import BoundaryModel
+from service.stages import Stage, overall
 
 if TYPE_CHECKING:
     from service.store import ResultStore
 
 Json = dict[str, Any]
 Prepare = Callable[[BoundaryModel, "ResultStore"], Json]
-
-
-@dataclass(frozen=True)
-class Stage:
-    """A stage of the work and its share of the time (the shares of a process sum to 1)."""
-
-    name: str
-    share: float
 
 
 @dataclass(frozen=True)
@@ -48,6 +41,8 @@ class Process:
         ``"module:function"`` of the work, called as ``function(order, progress)`` in a process of its own.
     stages : tuple[Stage, ...]
         What the work reports, in order.
+    action : str
+        What a button for it says; empty: it is no study.
     name_result : callable, optional
         Normalized inputs to the result's content hash, where the work itself defines one; default: the hash
         of the inputs with the process and the version of the program.
@@ -63,6 +58,7 @@ class Process:
     prepare: Prepare
     entry: str
     stages: tuple[Stage, ...]
+    action: str = ""
     name_result: Callable[[Json], str] | None = None
 
     def key(self, inputs: Json) -> str:
@@ -73,12 +69,7 @@ class Process:
 
     def overall(self, stage: str, fraction: float) -> float | None:
         """Return the fraction of the whole job, None for a stage that was not declared."""
-        done = 0.0
-        for known in self.stages:
-            if known.name == stage:
-                return min(1.0, done + known.share * fraction)
-            done += known.share
-        return None
+        return overall(self.stages, stage, fraction)
 
 
 def on_demand(entry: str) -> Callable[..., Any]:

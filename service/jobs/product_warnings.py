@@ -10,14 +10,11 @@ from service.jobs.process import on_demand
 stamp = on_demand("service.convert.stamp:stamp")
 case_warnings = on_demand("service.jobs.input_warnings:warnings_of_case")
 
-SAY_IT_THEMSELVES = ("database", "flanks")
-"""Kinds of files that hold the warnings of their case and of their own figures."""
-
 
 def stamp_products(order: WorkOrder, products: Sequence[Product]) -> None:
-    """Write into each file what is implausible about what it was made from."""
+    """Write into each file what is implausible about what it was made from; a database says so itself."""
     for product in products:
         if product.warnings is not None:
             stamp(product.file, product.warnings)
-        elif product.kind not in SAY_IT_THEMSELVES and "case" in order.inputs:
+        elif product.kind != "database" and "case" in order.inputs:
             stamp(product.file, list(case_warnings(order.inputs["case"])))

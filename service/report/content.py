@@ -5,12 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from fe_contact.ste import PairFacts
 from service.report.dynamic_part import dynamic_alarms, dynamic_headlines, dynamic_making, dynamic_results
-from service.report.flank_part import flank_alarms, flank_headlines, flank_making, flank_results_section
 from service.report.inputs import Inputs
 from service.report.page import Headline, Page, Section
-from service.report.sensitivity import sensitivity_figure
+from service.report.pair import pair_lead, pair_title
 from service.report.static_part import static_alarms, static_headlines, static_making, static_results
 
 
@@ -27,7 +25,7 @@ def _page_of(read: Inputs) -> Page:
     """Put the page together, without what the files warn of."""
     if read.only_page is not None:
         return read.only_page
-    database, flanks, run = read.database, read.flanks, read.run
+    database, run = read.database, read.run
     headlines: list[Headline] = []
     results: list[Section] = []
     making: list[Section] = []
@@ -37,16 +35,10 @@ def _page_of(read: Inputs) -> Page:
         results += static_results(database)
         making += static_making(database)
         alarms += static_alarms(database)
-    if flanks is not None:
-        headlines += flank_headlines(flanks)
-        results += flank_results_section(flanks)
-        making += flank_making(flanks, alone=database is None)
-        alarms += flank_alarms(flanks, database)
-    if read.studies:
-        results.append(Section("Sensitivity", figures=(sensitivity_figure(read.studies),)))
-    for study in read.pages:
+    for study in read.pages.values():
         headlines += study.headlines
         results += study.sections
+        alarms += study.alarms
     if run is not None:
         headlines += dynamic_headlines(run)
         results += dynamic_results(run)
@@ -63,31 +55,20 @@ def nominal_force(read: Inputs) -> float | None:
 
 
 def _title(read: Inputs) -> str:
-    """Name the pair, or the run."""
-    facts = pair_facts(read)
-    if facts is None:
-        if read.studies or read.pages:
-            return "Studies of gear pairs" if read.pages else "Sensitivity of gear pairs"
-        return "Dynamics of geared shafts"
-    one, other = facts.teeth
-    return f"Gear pair {one}/{other}, internal" if facts.internal else f"Gear pair {one}/{other}"
-
-
-def pair_facts(read: Inputs) -> PairFacts | None:
-    """Return the facts of the pair, if anything but a run was read."""
-    found = read.database or (read.flanks.scene if read.flanks is not None else None)
-    return None if found is None else found.facts
+    """Name the pair, the one study, or the run."""
+    if read.database is not None:
+        return pair_title(read.database.facts)
+    titles = [page.title for page in read.pages.values()] or ["Dynamics of geared shafts"]
+    return titles[0] if len(titles) == 1 else "Studies of gear pairs"
 
 
 def _lead(read: Inputs) -> str:
     """Say in one line what was computed."""
     parts = []
-    facts = pair_facts(read)
-    if facts is not None:
-        parts.append(
-            f"center distance {1e3 * facts.center_distance:.6g} mm, "
-            f"face width {1e3 * facts.face_width:.6g} mm, base pitch {1e3 * facts.base_pitch:.5g} mm"
-        )
+    if read.database is not None:
+        parts.append(pair_lead(read.database.facts))
+    elif len(read.pages) == 1:
+        parts += [page.lead for page in read.pages.values() if page.lead]
     if read.run is not None:
         parts.append(f"{read.run.time[-1]:.6g} s of motion at {read.run.sample_rate:.6g} samples per second")
     return "; ".join(parts)

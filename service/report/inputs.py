@@ -1,9 +1,9 @@
-"""What a report is made from: a database, flank results, studies, a run; the files say which they are."""
+"""What a report is made from: a database, studies, a run; the files say which they are."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -11,60 +11,39 @@ import h5netcdf
 
 from dynamics.errors import DynamicsError
 from dynamics.results import RunResult
-from fe_contact.analysis import LoadDistribution
 from fe_contact.errors import FeContactError
 from fe_contact.ste import SteDatabase
-from service.convert.sensitivity import PairStudy
-from service.convert.sensitivity_file import read_studies
 from service.convert.stamp import stamped
 from service.problems import BadInput
+from service.registry import STUDIES, Study
 from service.report.page import Page
 from service.report.stored_study import marked_study, stored_study, study_page
 
-_KINDS = {
-    ("format", "lineofaction STE database"): "database",
-    ("format", "lineofaction flank results"): "flank results",
-    ("format", "lineofaction sensitivity study"): "sensitivity study",
-    ("schema", "lineofaction dynamics run"): "run",
+_BOUND = f"an STE database, a run, or the result of a study ({', '.join(STUDIES)})"
+_READERS: dict[str, tuple[tuple[str, str], Callable[[Path], Any]]] = {
+    "database": (("format", "lineofaction STE database"), SteDatabase.from_netcdf),
+    "run": (("schema", "lineofaction dynamics run"), RunResult.from_netcdf),
 }
-_BOUND = (
-    "an STE database, flank results, a study (sensitivity, modes, response, steady states; as JSON an "
-    "ablation, an accuracy study, an optimisation, a tolerance Monte Carlo) or a run"
-)
-_READERS: dict[str, Callable[[Path], Any]] = {
-    "database": SteDatabase.from_netcdf,
-    "flank results": LoadDistribution.from_netcdf,
-    "sensitivity study": read_studies,
-    "run": RunResult.from_netcdf,
-}
-_FIELDS = {
-    "database": "database",
-    "flank results": "flanks",
-    "sensitivity study": "studies",
-    "run": "run",
-}
+"""Attribute of the file, and what reads it."""
 
 
 @dataclass(frozen=True)
 class Inputs:
     """What was read; at least one of them.
 
-    `pages` are those of studies; `warnings` are those of all files, in words.
+    `pages` are those of studies, by the kind of their results; `warnings` are those of all files, in words.
     """
 
     database: SteDatabase | None = None
-    flanks: LoadDistribution | None = None
-    studies: tuple[PairStudy, ...] = ()
     run: RunResult | None = None
-    pages: tuple[Page, ...] = ()
+    pages: Mapping[str, Page] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
 
     @property
     def only_page(self) -> Page | None:
         """The page of a study, if nothing else was read."""
-        others = (self.database, self.flanks, self.run)
-        alone = len(self.pages) == 1 and not self.studies and all(one is None for one in others)
-        return self.pages[0] if alone else None
+        alone = len(self.pages) == 1 and self.database is None and self.run is None
+        return next(iter(self.pages.values())) if alone else None
 
 
 def read_inputs(files: Sequence[Path]) -> Inputs:
@@ -77,30 +56,33 @@ def read_inputs(files: Sequence[Path]) -> Inputs:
     """
     if not files:
         raise BadInput.of("file", None, _BOUND, "Name at least one file.")
-    read: dict[str, Any] = {}
-    pages: dict[str, Page] = {}
+    by_kind: dict[str, tuple[Study | None, Path]] = {}
     for file in files:
-        kind, content = _content(file)
-        if kind in read or kind in pages:
+        study, kind = _kind(file)
+        if kind in by_kind:
             advice = "One page shows one file of each kind."
             raise BadInput.of("file", str(file), f"the only {kind}", advice)
-        (read if kind in _FIELDS else pages)[kind] = content
+        by_kind[kind] = study, file
     warnings = tuple(dict.fromkeys(one["message"] for file in files for one in stamped(file)))
-    fields = {_FIELDS[kind]: content for kind, content in read.items()}
-    return Inputs(**fields, pages=tuple(pages.values()), warnings=warnings)
+    read = {kind: _read(file, kind) for kind, (study, file) in by_kind.items() if study is None}
+    database = read.get("database")
+    pages = {kind: study_page(study, file, database) for kind, (study, file) in by_kind.items() if study}
+    return Inputs(**read, pages=pages, warnings=warnings)
 
 
-def _content(file: Path) -> tuple[str, Any]:
-    """Return the kind of a file, and what it holds; of a study the page."""
+def _kind(file: Path) -> tuple[Study | None, str]:
+    """Return the study that made a file, if one did, and the kind of the file."""
     if file.suffix == ".json" and file.is_file():
-        return stored_study(file)
-    attributes = _attributes(file)
-    if study := marked_study(attributes):
-        return study.kind, study_page(study, file)
-    kinds = [kind for (name, value), kind in _KINDS.items() if attributes.get(name) == value]
+        study: Study | None = stored_study(file)
+    else:
+        attributes = _attributes(file)
+        study = marked_study(attributes)
+    if study is not None:
+        return study, study.kind
+    kinds = [kind for kind, ((name, value), _) in _READERS.items() if attributes.get(name) == value]
     if not kinds:
         raise BadInput.of("file", str(file), _BOUND, "It is a netCDF file of another kind.")
-    return kinds[0], _read(file, kinds[0])
+    return None, kinds[0]
 
 
 def _attributes(file: Path) -> dict[str, str]:
@@ -123,6 +105,6 @@ def _attributes(file: Path) -> dict[str, str]:
 def _read(file: Path, kind: str) -> Any:
     """Read a file of a known kind."""
     try:
-        return _READERS[kind](file)
+        return _READERS[kind][1](file)
     except (FeContactError, DynamicsError) as error:
         raise BadInput.of("file", str(file), f"an undamaged {kind}", f"{error}.") from None

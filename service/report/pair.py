@@ -1,4 +1,4 @@
-"""The gear pair behind a database, as far as its metadata tells."""
+"""The gear pair behind a result: its name and dimensions, and itself as far as metadata tell."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from fe_contact.geometry import (
 )
 from fe_contact.geometry.iso6336_stiffness import iso6336_stiffness
 from fe_contact.material import Material
-from fe_contact.ste import SteDatabase
+from fe_contact.ste import PairFacts, SteDatabase
 from fe_contact.types import Json
 from service.convert.case import gear_pair
 from service.schemas import Case
@@ -69,3 +69,17 @@ def _fields(content: Json) -> Json:
     """Fields of one gear, its parts rebuilt."""
     parts = {name: kind(**content[name]) for name, kind in _PARTS.items() if content.get(name) is not None}
     return content | parts
+
+
+def pair_title(facts: PairFacts) -> str:
+    """Name a pair by its teeth."""
+    one, other = facts.teeth
+    return f"Gear pair {one}/{other}, internal" if facts.internal else f"Gear pair {one}/{other}"
+
+
+def pair_lead(facts: PairFacts) -> str:
+    """Say the dimensions of a pair."""
+    return (
+        f"center distance {1e3 * facts.center_distance:.6g} mm, "
+        f"face width {1e3 * facts.face_width:.6g} mm, base pitch {1e3 * facts.base_pitch:.5g} mm"
+    )

@@ -9,6 +9,7 @@ from typing import Any, cast
 
 from dynamics.errors import DynamicsError
 from fe_contact.errors import FeContactError
+from fe_contact.ste import SteDatabase
 from service.problems import BadInput
 from service.registry import STUDIES, Study
 from service.report.page import Page
@@ -23,8 +24,8 @@ def marked_study(content: Mapping[str, object]) -> Study | None:
     return None
 
 
-def study_page(study: Study, file: Path) -> Page:
-    """Return the page of a study's file.
+def study_page(study: Study, file: Path, database: SteDatabase | None = None) -> Page:
+    """Return the page of a study's file; beside a database, if there is one.
 
     Raises
     ------
@@ -32,19 +33,26 @@ def study_page(study: Study, file: Path) -> Page:
         It is damaged.
     """
     try:
-        return cast(Page, study.page.page(study.run.read(file)))
+        return page_beside(study, study.run.read(file), database)
     except (KeyError, TypeError, ValueError, FeContactError, DynamicsError) as error:
         advice = f"Something is missing or not as written ({type(error).__name__}: {error})."
         raise BadInput.of("file", str(file), f"an undamaged {study.kind}", advice) from None
 
 
-def stored_study(file: Path) -> tuple[str, Page]:
-    """Return which kind of study a JSON file holds, and its page.
+def page_beside(study: Study, found: object, database: SteDatabase | None) -> Page:
+    """Return the page of a study's result; beside a database, if there is one."""
+    if database is None or study.page.beside is None:
+        return cast(Page, study.page.page(found))
+    return cast(Page, study.page.beside(found, database))
+
+
+def stored_study(file: Path) -> Study:
+    """Return which study a JSON file holds.
 
     Raises
     ------
     BadInput
-        It holds none, or a damaged one.
+        It holds none.
     """
     bound = "a study in JSON, as the verbs of loa write it"
     try:
@@ -54,4 +62,4 @@ def stored_study(file: Path) -> tuple[str, Page]:
     study = marked_study(content if isinstance(content, dict) else {})
     if study is None:
         raise BadInput.of("file", str(file), bound, "It is JSON of another kind.")
-    return study.kind, study_page(study, file)
+    return study

@@ -9,12 +9,12 @@ from service.routes.context import Ctx
 from service.routes.cursor import Cursor, Limit, mark_of, page_links
 from service.routes.errors import documented
 from service.schemas.database_list import DatabaseEntry, DatabaseList
-from service.schemas.result_kinds import RESULT_KINDS
+from service.schemas.result_kinds import RESULTS
 from service.store import IndexLine, Mark, ResultStore
 from service.store.files import WrongContent
 
 router = APIRouter(tags=["results"])
-_PATH = RESULT_KINDS["database"].path
+_PATH = "/v1/databases"
 
 
 @router.get("/databases", summary="STE databases", responses=documented(422))
@@ -37,5 +37,5 @@ def _entry(store: ResultStore, mark: Mark, line: IndexLine) -> DatabaseEntry:
     except (FileNotFoundError, WrongContent):
         case = None
     return DatabaseEntry(
-        hash=line.key, href=f"{_PATH}/{line.key}", created=mark.created, size=line.size, case=case
+        hash=line.key, href=f"{RESULTS}/{line.key}", created=mark.created, size=line.size, case=case
     )

@@ -13,11 +13,12 @@ from starlette.responses import Response
 from service.jobs.live_order import LiveOrder
 from service.routes.context import Ctx
 from service.routes.errors import documented
-from service.routes.results import Key
-from service.schemas.result_kinds import RESULT_KINDS, ResultKind
+from service.routes.results import Key, known_result
 from service.version import solver_version
 
 FIGURES = "service.report.as_json:stored_figures"
+
+router = APIRouter(tags=["results"])
 
 
 class ReportBody(BaseModel):
@@ -32,38 +33,23 @@ class ReportBody(BaseModel):
     )
 
 
-def figures_router() -> APIRouter:
-    """Return the routes, one for each kind of results."""
-    router = APIRouter(tags=["results"])
-    for kind in RESULT_KINDS.values():
-        router.add_api_route(
-            f"{kind.path.removeprefix('/v1')}/{{key}}/figures",
-            _handler(kind),
-            methods=["GET"],
-            name=f"figures_{kind.name}",
-            summary=f"Figures of a result: {kind.name}",
-            response_class=Response,
-            responses={
-                200: {"model": ReportBody, "description": "The report"},
-                304: {"description": "Not modified"},
-                **documented(404, 422, 429, 500, 503),
-            },
-        )
-    return router
-
-
-def _handler(kind: ResultKind) -> Any:
-    """Return the handler of one kind of results."""
-
-    async def figures(key: Key, request: Request, context: Ctx) -> Response:
-        """Every plot as data and layout for plotly.js, with its words and numbers."""
-        stored = await run_in_threadpool(context.store.verified, key, kind.name)
-        tag = f'"{stored.sha256}-figures-{solver_version()}"'
-        headers = {"ETag": tag, "Cache-Control": "no-cache"}
-        if tag in request.headers.get("if-none-match", ""):
-            return Response(status_code=304, headers=headers)
-        order = LiveOrder(FIGURES, {"file": str(stored.path)})
-        body = await asyncio.wrap_future(context.live.ask(order))
-        return Response(body, media_type="application/json", headers=headers)
-
-    return figures
+@router.get(
+    "/results/{key}/figures",
+    summary="Figures of a result",
+    response_class=Response,
+    responses={
+        200: {"model": ReportBody, "description": "The report"},
+        304: {"description": "Not modified"},
+        **documented(404, 422, 429, 500, 503),
+    },
+)
+async def figures(key: Key, request: Request, context: Ctx) -> Response:
+    """Every plot as data and layout for plotly.js, with its words and numbers."""
+    stored = await run_in_threadpool(known_result, context, key)
+    tag = f'"{stored.sha256}-figures-{solver_version()}"'
+    headers = {"ETag": tag, "Cache-Control": "no-cache"}
+    if tag in request.headers.get("if-none-match", ""):
+        return Response(status_code=304, headers=headers)
+    order = LiveOrder(FIGURES, {"file": str(stored.path)})
+    body = await asyncio.wrap_future(context.live.ask(order))
+    return Response(body, media_type="application/json", headers=headers)

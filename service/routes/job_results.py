@@ -18,7 +18,7 @@ from service.routes.errors import documented
 from service.routes.media_types import JSON
 from service.routes.results import file_response
 from service.schemas.ogc import ResultReference
-from service.schemas.result_kinds import RESULT_KINDS, ResultKind
+from service.schemas.result_kinds import RESULT_KINDS, RESULTS, ResultKind
 
 router = APIRouter(prefix="/jobs", tags=["jobs"])
 
@@ -56,7 +56,7 @@ def results(
     kind = RESULT_KINDS[process.kind]
     form = _form(job.delivery, response, mode, kind)
     if form.transmission == "reference":
-        return _referenced(form, process.output, f"{kind.path}/{job.key}", job.key, kind)
+        return _referenced(form, process.output, f"{RESULTS}/{job.key}", job.key, kind)
     return _valued(form, process.output, job.key, kind, request, context)
 
 
@@ -81,7 +81,7 @@ def _valued(
     """Return the result itself; in a document as a qualified value, as the standard has objects."""
     stored = context.store.verified(key, kind.name)
     if form.response == "raw":
-        return file_response(stored, request, {"Content-Location": f"{kind.path}/{key}"})
+        return file_response(stored, request, {"Content-Location": f"{RESULTS}/{key}"})
     opened = json.dumps({output: {"mediaType": kind.media_type, "value": None}}).removesuffix("null}}")
     return Response(opened.encode() + stored.path.read_bytes() + b"}}", media_type=JSON)
 

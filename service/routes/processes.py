@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Annotated, Any, cast
 
 import structlog
@@ -17,7 +18,15 @@ from service.routes.errors import documented
 from service.routes.jobs import status_info
 from service.schemas.execute import execute_model
 from service.schemas.model import BoundaryModel
-from service.schemas.ogc import Link, ProcessDescription, ProcessList, ProcessSummary, StatusInfo
+from service.schemas.ogc import (
+    AdditionalParameters,
+    Link,
+    Parameter,
+    ProcessDescription,
+    ProcessList,
+    ProcessSummary,
+    StatusInfo,
+)
 from service.schemas.result_kinds import RESULT_KINDS
 from service.store import now
 
@@ -136,6 +145,7 @@ def _summary(process: Process) -> dict[str, Any]:
         "version": process.version,
         "jobControlOptions": ["async-execute", "dismiss"],
         "outputTransmission": ["value", "reference"],
+        "additionalParameters": _card(process.action, process.inputs),
         "links": [
             Link(href=path, rel="self", title="Description"),
             Link(
@@ -147,12 +157,24 @@ def _summary(process: Process) -> dict[str, Any]:
     }
 
 
+@cache
+def _card(action: str, inputs: type[BoundaryModel]) -> AdditionalParameters:
+    """Return what a page needs to offer a study; nothing of what has no action."""
+    if not action:
+        return AdditionalParameters(parameters=[])
+    schemas = inputs.model_json_schema()["properties"]
+    fields = {name: schemas[name] for name, field in inputs.model_fields.items() if field.title}
+    subjects: list[Any] = [name for name in ("case", "scene") if name in schemas]
+    parts = {"action": [action], "subjects": subjects, "fields": [fields]}
+    return AdditionalParameters(parameters=[Parameter(name=name, value=parts[name]) for name in parts])
+
+
 def _description(process: Process) -> ProcessDescription:
     """Return a process description."""
     schema = process.inputs.model_json_schema()
     inputs = {
         name: {
-            "title": name,
+            "title": field.title or name,
             "description": field.description or name,
             "schema": {**schema["properties"][name], "$defs": schema.get("$defs", {})},
         }

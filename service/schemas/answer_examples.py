@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from service.schemas.request_examples import BODIES, CASE
-from service.schemas.result_kinds import RESULT_KINDS
+from service.schemas.result_kinds import RESULTS
 
 Json = dict[str, Any]
 
@@ -37,6 +37,7 @@ _SUMMARY: Json = {
     "jobControlOptions": ["async-execute", "dismiss"],
     "outputTransmission": ["value", "reference"],
     "links": [_LINK | {"href": "/v1/processes/analyze", "title": "Description"}],
+    "additionalParameters": {"title": "Card", "parameters": []},
 }
 _OUTPUT = {"type": "string", "contentEncoding": "binary", "contentMediaType": "application/x-netcdf"}
 _RESULT: Json = {"hash": HASH, "sha256": HASH[::-1], "size": 153_344}
@@ -110,14 +111,14 @@ ANSWERS: dict[str, Any] = {
     "/v1/jobs": {"jobs": [STATUS], "links": [_LINK]},
     "/v1/jobs/{job_id}": STATUS,
     "/v1/jobs/{job_id}/results": {
-        "database": {"href": f"/v1/databases/{HASH}", "type": "application/x-netcdf", "hash": HASH}
+        "database": {"href": f"{RESULTS}/{HASH}", "type": "application/x-netcdf", "hash": HASH}
     },
     "/v1/jobs/{job_id}/events": f'event: status\ndata: {{"jobID": "{JOB}", "status": "running"}}\n\n',
     "/v1/databases": {
         "databases": [
             {
                 "hash": HASH,
-                "href": f"/v1/databases/{HASH}",
+                "href": f"{RESULTS}/{HASH}",
                 "created": _INSTANT,
                 "size": 153_344,
                 "case": CASE,
@@ -150,8 +151,8 @@ ANSWERS: dict[str, Any] = {
     ],
     "/health": {"status": "ok"},
     "/ready": {"status": "ready", "computations": {"successful": 3}},
-    **{f"{kind.path}/{{key}}": _RESULT for kind in RESULT_KINDS.values()},
-    **{f"{kind.path}/{{key}}/figures": _REPORT for kind in RESULT_KINDS.values()},
+    f"{RESULTS}/{{key}}": _RESULT,
+    f"{RESULTS}/{{key}}/figures": _REPORT,
 }
 """Answers that succeeded, by path."""
 

@@ -76,12 +76,13 @@ def execute_model(
     output, media_type : str
         Name and type of its one output.
     """
+    title = process.title().replace("-", "")
     wanted: Any = (_wanted_output(media_type) | None, Field(None, description="The one output"))
-    outputs = create_model(f"{process.capitalize()}Outputs", __base__=BoundaryModel, **{output: wanted})
+    outputs = create_model(f"{title}Outputs", __base__=BoundaryModel, **{output: wanted})
     form = Field("raw", description="Results as they are, or as a JSON object by name")
     fields: dict[str, Any] = {
         "inputs": (inputs, Field(description="Inputs of the process")),
         "outputs": (outputs, Field(default_factory=outputs, description="Outputs wanted; default: all")),
         "response": (Literal["raw", "document"], form),
     }
-    return create_model(f"Execute{process.capitalize()}", __base__=ExecuteBody, **fields)
+    return create_model(f"Execute{title}", __base__=ExecuteBody, **fields)

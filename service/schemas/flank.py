@@ -2,39 +2,40 @@
 
 from __future__ import annotations
 
-from typing import Self
+from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
 from service.schemas.model import BoundaryModel, refuse
+from service.schemas.spelling import Spelling
 
 
 class FlankPoint(BoundaryModel):
     """One load and one alignment; what is left out is taken from the case."""
 
-    torque_n_m: float | None = Field(
+    torque_n_m: Annotated[float | None, Spelling("--torque")] = Field(
         default=None,
+        title="Torque on the pinion, N m",
         gt=0.0,
         le=1e9,
         description="Torque on the driving gear in N m; no load given: the case's highest",
         examples=[100.0],
     )
-    normal_force_n: float | None = Field(
-        default=None, gt=0.0, le=1e9, description="Normal tooth force in N, instead", examples=[2660.0]
+    normal_force_n: Annotated[float | None, Spelling("--force")] = Field(
+        default=None, gt=0.0, le=1e9, description="Normal tooth force in N, instead"
     )
     misalignment_um: float | None = Field(
         default=None,
+        title="Misalignment, µm",
         ge=-10_000.0,
         le=10_000.0,
         description="Misalignment in um; left out: the case's value nearest to 0",
-        examples=[30.0],
     )
     center_distance_change_mm: float | None = Field(
         default=None,
         ge=-10.0,
         le=10.0,
         description="Change of the center distance in mm; left out: the case's value nearest to 0",
-        examples=[0.0],
     )
 
     @model_validator(mode="after")

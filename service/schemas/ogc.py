@@ -41,6 +41,24 @@ class Conformance(BaseModel):
     conformsTo: list[str]  # noqa: N815 (name of the standard)
 
 
+class Parameter(BaseModel):
+    """A parameter of a process that the standard does not know."""
+
+    name: str
+    value: list[Any]
+
+
+class AdditionalParameters(BaseModel):
+    """What a page needs to offer a study; empty for other processes.
+
+    Its ``action`` (the words of a button), its ``subjects`` (names of the inputs that hold a case or a scene)
+    and its ``fields`` (schemas of those inputs that have a title, by name).
+    """
+
+    title: Literal["Card"] = "Card"
+    parameters: list[Parameter]
+
+
 class ProcessSummary(BaseModel):
     """What a process is."""
 
@@ -51,6 +69,7 @@ class ProcessSummary(BaseModel):
     jobControlOptions: list[str]  # noqa: N815
     outputTransmission: list[str]  # noqa: N815
     links: list[Link]
+    additionalParameters: AdditionalParameters  # noqa: N815
 
 
 class ProcessList(BaseModel):

@@ -7,10 +7,8 @@ from pydantic import Field, create_model
 from service.registry import Study
 from service.schemas.case import Case
 from service.schemas.case_or_scene import CaseOrScene
-from service.schemas.flank import FlankPoint
 from service.schemas.model import BoundaryModel
 from service.schemas.scene import SceneInput
-from service.schemas.sensitivity import DeviationsInput
 
 
 class AnalyzeInputs(BoundaryModel):
@@ -23,18 +21,6 @@ class SimulateInputs(BoundaryModel):
     """Inputs of the process simulate."""
 
     scene: SceneInput = Field(description="The scene, with cases written out or databases by hash")
-
-
-class FlankInputs(FlankPoint):
-    """Inputs of the process flank."""
-
-    case: Case = Field(description="The case, as in a case file")
-
-
-class SensitivityInputs(DeviationsInput):
-    """Inputs of the process sensitivity."""
-
-    case: Case = Field(description="The case, as in a case file; its highest load counts")
 
 
 class OfCase(BoundaryModel):
@@ -60,4 +46,4 @@ def study_inputs(study: Study) -> type[BoundaryModel]:
     """Return the model of the inputs of a study's process: what is studied, and what is varied."""
     bases = (study.inputs, _SUBJECTS[study.subject])
     text = f"Inputs of the process {study.name}."
-    return create_model(f"{study.name.capitalize()}Inputs", __base__=bases, __doc__=text)
+    return create_model(f"{study.name.title().replace('-', '')}Inputs", __base__=bases, __doc__=text)

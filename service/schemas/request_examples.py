@@ -55,12 +55,6 @@ def _example(study: Study) -> Json:
 
 INPUTS: dict[str, Json] = {
     "analyze": {"case": CASE},
-    "flank": {"case": CASE, "torque_n_m": 100.0},
-    "sensitivity": {
-        "case": CASE,
-        "misalignment_um": [0.0, 30.0],
-        "center_distance_change_percent": [0.0, 0.1],
-    },
     "simulate": {"scene": SCENE},
     **{name: _example(study) for name, study in STUDIES.items()},
 }

@@ -1,4 +1,4 @@
-"""Kinds of results: where the service answers for each, and what its files are."""
+"""Results of the service: where they are, and what the files of their kinds are."""
 
 from __future__ import annotations
 
@@ -9,6 +9,10 @@ from service.registry import JSON, NETCDF, STUDIES
 _SUFFIXES = {NETCDF: ".nc", JSON: ".json"}
 
 
+RESULTS = "/v1/results"
+"""Where results are on the service, before their hash."""
+
+
 @dataclass(frozen=True)
 class ResultKind:
     """One kind of results.
@@ -17,15 +21,15 @@ class ResultKind:
     ----------
     name : str
         In the store and in the results of a job.
-    path : str
-        Where they are on the service, before the hash.
     media_type : str
         Of their files.
+    collection : str
+        Under which version 0.1 had them, ``/v1/COLLECTION/HASH``, which redirects; empty: it had none.
     """
 
     name: str
-    path: str
     media_type: str = NETCDF
+    collection: str = ""
 
     @property
     def suffix(self) -> str:
@@ -36,11 +40,9 @@ class ResultKind:
 RESULT_KINDS: dict[str, ResultKind] = {
     kind.name: kind
     for kind in (
-        ResultKind("database", "/v1/databases"),
-        ResultKind("flanks", "/v1/flanks"),
-        ResultKind("run", "/v1/runs"),
-        ResultKind("sensitivity", "/v1/sensitivities"),
-        *(ResultKind(row.kind, f"/v1/{row.collection}", row.media_type) for row in STUDIES.values()),
+        ResultKind("database", collection="databases"),
+        ResultKind("run", collection="runs"),
+        *(ResultKind(row.kind, row.media_type, row.collection) for row in STUDIES.values()),
     )
 }
 

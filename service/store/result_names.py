@@ -10,7 +10,7 @@ from service.schemas.result_kinds import suffix_of
 
 _DIGEST_LENGTH = 16
 _NAME = re.compile(
-    r"(?P<kind>[a-z]+)/(?P<folder>[0-9a-f]{2})/(?P<key>(?P=folder)[0-9a-f]{62})"
+    r"(?P<kind>[a-z_]+)/(?P<folder>[0-9a-f]{2})/(?P<key>(?P=folder)[0-9a-f]{62})"
     rf"(?:\.(?P<digest>[0-9a-f]{{{_DIGEST_LENGTH}}}))?(?:\.[0-9a-f]{{8}})?\.[a-z]+"
 )
 

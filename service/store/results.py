@@ -160,8 +160,8 @@ class ResultStore:
         return line if line is not None and self.files.has(line.file) else None
 
     @retried
-    def _find(self, key: str, kind: str) -> IndexLine | None:
-        """Return the index's line."""
+    def _find(self, key: str, kind: str | None) -> IndexLine | None:
+        """Return the index's line of a key; its only one, if no kind is named."""
         with reading(self._engine) as connection:
             return _line(connection, key, kind)
 
@@ -176,8 +176,8 @@ class ResultStore:
             rows = connection.execute(ordered).all()
         return [(Mark(row.created, row.key), _read(row)) for row in rows]
 
-    def verified(self, key: str, kind: str) -> StoredResult:
-        """Return the result after comparing its bytes with its digest.
+    def verified(self, key: str, kind: str | None = None) -> StoredResult:
+        """Return the result of a kind, or of whichever it is, after comparing its bytes with its digest.
 
         Raises
         ------
@@ -197,15 +197,15 @@ class ResultStore:
             raise self._missing(key, kind) from None
         except WrongContent:
             self.set_aside(line)
-            text = f"The file of {kind} {key} was damaged and is set aside. Submit its case again."
+            text = f"The file of {line.kind} {key} was damaged and is set aside. Submit its case again."
             raise DamagedFile(text) from None
-        self.note_use(key, kind)
-        return StoredResult(key, kind, line.sha256, line.size, path)
+        self.note_use(key, line.kind)
+        return StoredResult(key, line.kind, line.sha256, line.size, path)
 
     @staticmethod
-    def _missing(key: str, kind: str) -> NotFound:
+    def _missing(key: str, kind: str | None) -> NotFound:
         """Return the error of a result that is not there."""
-        return NotFound(f"There is no {kind} {key!r}. Submit its case again to compute it.")
+        return NotFound(f"There is no {kind or 'result'} {key!r}. Submit its case again to compute it.")
 
     def note_use(self, key: str, kind: str) -> None:
         """Note that a result was requested; cheap, and written once an hour."""
@@ -255,11 +255,12 @@ def is_key(key: str) -> bool:
     return len(key) == hashlib.sha256().digest_size * 2 and set(key) <= set("0123456789abcdef")
 
 
-def _line(connection: Connection, key: str, kind: str) -> IndexLine | None:
+def _line(connection: Connection, key: str, kind: str | None) -> IndexLine | None:
     """Return one line of the index."""
-    row = connection.execute(
-        select(results).where(results.c.key == key, results.c.kind == kind)
-    ).one_or_none()
+    statement = select(results).where(results.c.key == key).order_by(results.c.kind)
+    if kind is not None:
+        statement = statement.where(results.c.kind == kind)
+    row = connection.execute(statement).first()
     return None if row is None else _read(row)
 
 

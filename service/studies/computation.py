@@ -60,14 +60,23 @@ class Computation:
         None: any.
     write : callable
         Result and path to the file; default: the figures as JSON.
+    narrowed : callable
+        ``narrowed(subject, inputs)``: what of the subject the inputs choose; it is checked, hashed and
+        computed. Default: all of it.
     check : callable
         ``check(subject, inputs)`` refuses what a schema accepts, and computes nothing; raises `BadInput`.
         Here and below a scene is a `SceneInput`.
     normalized : callable
         ``normalized(subject, inputs)``: the inputs of a job as JSON, alike for equal questions; may raise
         `BadInput`. Default: with all defaults.
+    warnings : callable
+        What is implausible about a result and its case; None where the case alone is assessed, by others.
+    joined : callable, optional
+        Results of several cases, by the names of their files, to one; for a verb that takes several.
     interruptible : bool
         Whether it ends with the best so far when `Means.cancel` says so.
+    resumed : bool
+        Whether tasks that were done are kept for an attempt after one that died.
     writers : mapping
         Further files of the verb, by their ending.
     failure : callable
@@ -79,9 +88,13 @@ class Computation:
     read: Callable[[Path], Result]
     marks: Mapping[str, str | None]
     write: Callable[[Result, Path], None] | None = None
-    check: Callable[[Any, Any], None] = lambda _subject, _inputs: None
+    narrowed: Callable[[Any, Any], Any] = lambda subject, _inputs: subject
+    check: Callable[[Any, Any], object] = lambda _subject, _inputs: None
     normalized: Callable[[Any, Any], Json] = lambda _subject, inputs: with_defaults(inputs)
+    warnings: Callable[[Result], list[Json] | None] = lambda _found: None
+    joined: Callable[[Mapping[str, Result]], Result] | None = None
     interruptible: bool = False
+    resumed: bool = False
     writers: Mapping[str, Callable[[Result, Path], object]] = field(default_factory=dict)
     failure: Callable[[Result], str] = lambda _found: ""
 

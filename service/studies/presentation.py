@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
+from fe_contact.ste import SteDatabase
 from service.report.figure import Figure, Table
 from service.report.page import Page, Section
 
@@ -22,11 +23,17 @@ class Presentation:
         The report.
     text : callable
         Tables and lines of the terminal.
+    series : callable, optional
+        The numbers of the plot, which are written as CSV.
+    beside : callable, optional
+        The report beside that of an STE database, called with both; default: the same.
     """
 
     figure: Callable[[Any], Figure]
     page: Callable[[Any], Page]
     text: Callable[[Any], Iterable[Table | str]]
+    series: Callable[[Any], Table] | None = None
+    beside: Callable[[Any, SteDatabase], Page] | None = None
 
 
 def dynamics_page(title: str, figures: tuple[Figure, ...]) -> Page:

@@ -75,7 +75,7 @@ def test_with_keys_a_known_version_is_confirmed_to_who_may_have_it(
     service: tuple[TestClient, dict[str, str]],
 ) -> None:
     client, bearer = service
-    path, accept = f"/v1/databases/{KEY}", {"Accept": NETCDF}
+    path, accept = f"/v1/results/{KEY}", {"Accept": NETCDF}
     first = client.get(path, headers=bearer | accept)
     known = accept | {"If-None-Match": first.headers["etag"]}
     again = client.get(path, headers=bearer | known)
@@ -106,7 +106,7 @@ def test_without_keys_results_are_kept_for_ever_and_refusals_never(tmp_path: Pat
     file.write_text("{}")
     app.state.context.store.put(KEY, "ablation", file)
     client = TestClient(app, raise_server_exceptions=False)
-    assert {"public", "immutable"} <= directives(client.get(f"/v1/ablations/{KEY}"))
-    assert "authorization" not in varies(client.get(f"/v1/ablations/{KEY}"))
-    for path in (f"/v1/ablations/{ABSENT}", "/v1/nowhere", "/v1/ablations/short"):
+    assert {"public", "immutable"} <= directives(client.get(f"/v1/results/{KEY}"))
+    assert "authorization" not in varies(client.get(f"/v1/results/{KEY}"))
+    for path in (f"/v1/results/{ABSENT}", "/v1/nowhere", "/v1/ablations/short"):
         assert directives(client.get(path)) == {"no-store"}

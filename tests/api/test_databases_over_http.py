@@ -9,11 +9,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fastapi import FastAPI
 from fastapi.testclient import TestClient
 from small_table import small_table
 
 from fe_contact.ste import SteDatabase
 from service.app import create_app
+from service.client import LineOfActionClient
+from service.problems import NotFound
+from service.schemas.result_kinds import RESULT_KINDS, ResultKind
 from service.settings import Settings
 
 KEY = hashlib.sha256(b"small table").hexdigest()
@@ -32,7 +36,7 @@ def client(tmp_path: Path) -> Iterator[TestClient]:
 
 
 def test_the_file_is_the_table_and_its_digest_is_told(client: TestClient, tmp_path: Path) -> None:
-    answer = client.get(f"/v1/databases/{KEY}", headers=NETCDF)
+    answer = client.get(f"/v1/results/{KEY}", headers=NETCDF)
     digest = base64.b64encode(hashlib.sha256(answer.content).digest()).decode()
     assert answer.headers["content-digest"] == f"sha-256=:{digest}:"
     file = tmp_path / "fetched.nc"
@@ -40,14 +44,38 @@ def test_the_file_is_the_table_and_its_digest_is_told(client: TestClient, tmp_pa
     assert SteDatabase.from_netcdf(file).identical(small_table())
 
 
+@pytest.mark.parametrize("kind", [kind for kind in RESULT_KINDS.values() if kind.collection])
+def test_former_paths_redirect_for_good(client: TestClient, tmp_path: Path, kind: ResultKind) -> None:
+    key = hashlib.sha256(kind.name.encode()).hexdigest()
+    (tmp_path / "file").write_text("{}")
+    assert isinstance(client.app, FastAPI)
+    client.app.state.context.store.put(key, kind.name, tmp_path / "file")
+    for further in ("", "/figures"):
+        answer = client.get(f"/v1/{kind.collection}/{key}{further}", follow_redirects=False)
+        assert (answer.status_code, answer.headers["location"]) == (308, f"/v1/results/{key}{further}")
+    assert client.get(f"/v1/{kind.collection}/{key}", headers=NETCDF).text == "{}"
+    assert client.get(f"/v1/{kind.collection}/{'0' * 64}").status_code == 404
+    assert client.get(f"/v1/{kind.collection}/nonsense").status_code == 422
+
+
+def test_the_kind_is_that_of_the_store(client: TestClient, tmp_path: Path) -> None:
+    assert client.get(f"/v1/results/{KEY}").headers["result-kind"] == "database"
+    wire = client._transport
+    local = LineOfActionClient("http://testserver", cache_dir=tmp_path / "cache", transport=wire)
+    with pytest.raises(NotFound, match="no run, but of the kind database"):
+        local.fetch_file(KEY, "run")
+    file, kind = local.fetch_result(KEY)
+    assert kind == "database" and SteDatabase.from_netcdf(file).identical(small_table())
+
+
 def test_metadata_is_the_default_and_in_boundary_units(client: TestClient) -> None:
-    answer = client.get(f"/v1/databases/{KEY}").json()
+    answer = client.get(f"/v1/results/{KEY}").json()
     table = small_table()
     assert answer["hash"] == KEY
     assert answer["torque_n_m"] == table.torque.tolist()
     assert answer["failed_points"] == 0
     assert (
-        client.get(f"/v1/databases/{KEY}", headers={"Accept": "text/html, application/x-netcdf"}).content[1:4]
+        client.get(f"/v1/results/{KEY}", headers={"Accept": "text/html, application/x-netcdf"}).content[1:4]
         == b"HDF"
     )
 
@@ -90,9 +118,9 @@ def test_a_damaged_table_is_refused_not_served(client: TestClient) -> None:
     store = client.app.state.context.store  # type: ignore[attr-defined]
     path = store.verified(KEY, "database").path
     path.write_bytes(path.read_bytes()[:-1] + b"?")
-    answer = client.get(f"/v1/databases/{KEY}", headers=NETCDF)
+    answer = client.get(f"/v1/results/{KEY}", headers=NETCDF)
     assert (answer.status_code, answer.json()["type"]) == (500, "urn:lineofaction:problem:damaged-file")
-    assert client.get(f"/v1/databases/{KEY}", headers=NETCDF).status_code == 404
+    assert client.get(f"/v1/results/{KEY}", headers=NETCDF).status_code == 404
 
 
 def test_effects_are_listed(client: TestClient) -> None:

@@ -95,9 +95,9 @@ def test_results_that_never_change_say_so_to_caches(client: TestClient) -> None:
     context = client.app.state.context  # type: ignore[attr-defined]
     context.store.put("1" * 64, "database", file)
     accept = {"Accept": "application/x-netcdf"}
-    answer = client.get(f"/v1/databases/{'1' * 64}", headers=accept)
+    answer = client.get(f"/v1/results/{'1' * 64}", headers=accept)
     assert answer.headers["cache-control"].endswith("immutable") and answer.headers["vary"] == "Accept"
     tag = answer.headers["etag"]
     for known, status in ((tag, 304), (f"W/{tag}", 304), (f'"a", {tag}', 304), ("*", 304), ('"a"', 200)):
-        again = client.get(f"/v1/databases/{'1' * 64}", headers=accept | {"If-None-Match": known})
+        again = client.get(f"/v1/results/{'1' * 64}", headers=accept | {"If-None-Match": known})
         assert again.status_code == status, known

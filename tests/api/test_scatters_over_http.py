@@ -58,7 +58,7 @@ def test_the_pairs_are_those_of_python(served: tuple[LineOfActionClient, TestCli
     again = client.submit("scatter", {"case": CASE, **SAMPLING, "distribution": "normal"})
     assert again.status == "successful"  # the same question with a default written out: stored already
     key = client.result(again.id).key
-    assert http.get(f"/v1/scatters/{key}").json() == told
+    assert http.get(f"/v1/results/{key}").json() == told
 
 
 def test_every_input_is_another_question() -> None:

@@ -79,7 +79,7 @@ def test_modes_are_those_of_python(
     for name in ("natural_frequency", "frequency", "critical_speed", "strain_energy"):
         np.testing.assert_array_equal(getattr(found, name), getattr(python, name))
     assert [state.progress for state in seen] == sorted(state.progress for state in seen)
-    answer = http.get(f"/v1/modes/{client.result(seen[-1].id).key}").json()
+    answer = http.get(f"/v1/results/{client.result(seen[-1].id).key}").json()
     assert {name: answer[name] for name in facts(found)} == facts(found)
 
 

@@ -17,7 +17,7 @@ from service.app import create_app
 from service.settings import Settings
 
 KEY = "5" * 64
-PATH = f"/v1/ablations/{KEY}"
+PATH = f"/v1/results/{KEY}"
 NGINX = shutil.which("nginx", path="/usr/sbin:/usr/bin:/usr/local/sbin:/usr/local/bin")
 _CONFIGURATION = """
 daemon off; master_process off; pid {place}/pid; error_log {place}/error.log;

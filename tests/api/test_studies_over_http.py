@@ -15,12 +15,18 @@ from study_service import empty_service
 
 from fe_contact import LoadDistribution
 from service.client import JobState, LineOfActionClient
-from service.convert.flanks import case_at, flank_json, flanks_of
-from service.convert.sensitivity_file import read_studies
-from service.jobs.catalogue import FLANK
+from service.convert.case import case_at
+from service.jobs.catalogue import default_registry
 from service.problems import BadInput
 from service.schemas import Case, validated
 from service.schemas.flank import FlankPoint
+from service.studies.computation import Means
+from service.studies.flank.run import flank_json, flanks_of
+from service.studies.root_stress import Inputs
+from service.studies.root_stress.run import root_stress_of
+from service.studies.sensitivity.stored import read_studies
+
+FLANK = default_registry()["flank"]
 
 GEAR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0, "thickness_allowance_um": 90.0}
 CASE: dict[str, Any] = {
@@ -55,7 +61,7 @@ def test_flank_results_are_those_of_python(served: tuple[LineOfActionClient, Tes
     assert found.metadata.content_hash == here.metadata.content_hash
     assert [state.progress for state in seen] == sorted(state.progress for state in seen)
     result = client.result(seen[-1].id)
-    facts = http.get(f"/v1/flanks/{result.key}").json()
+    facts = http.get(f"/v1/results/{result.key}").json()
     assert {name: facts[name] for name in flank_json(found)} == flank_json(found)
     assert facts["size"] == file.stat().st_size
 
@@ -88,9 +94,26 @@ def test_a_study_comes_with_all_its_curves(served: tuple[LineOfActionClient, Tes
         assert np.all(curves.misalignment.peak_to_peak > 1e-7)
     progress = [state.progress for state in seen]
     assert progress == sorted(progress) and progress[-1] == 100
-    (pair,) = http.get(f"/v1/sensitivities/{client.result(seen[-1].id).key}").json()["pairs"]
+    (pair,) = http.get(f"/v1/results/{client.result(seen[-1].id).key}").json()["pairs"]
     assert pair["curves"][1]["corner_contact"] is True
     assert pair["curves"][0]["misalignment"]["misalignment_um"] == pytest.approx([0.0, 20.0])
+
+
+def test_the_root_stress_is_that_of_python(served: tuple[LineOfActionClient, TestClient], data: Path) -> None:
+    client, http = served
+    found = client.root_stress(PLANE, torque_n_m=30.0)
+    point = FlankPoint(torque_n_m=30.0)
+    means = Means(data, lambda *_: None)
+    here = root_stress_of(case_at(validated(Case, PLANE), point), Inputs(), means)
+    costs = ("receipt", "warnings")
+    assert {k: v for k, v in found.items() if k not in costs} == {
+        k: v for k, v in here.items() if k not in costs
+    }
+    assert found["receipt"]["cpu_seconds"] > 0.0
+    (job,) = (j for j in http.get("/v1/jobs").json()["jobs"] if j["processID"] == "root-stress")
+    key = client.result(job["jobID"]).key
+    figures = http.get(f"/v1/results/{key}/figures").json()
+    assert [figure["key"] for s in figures["sections"] for figure in s["figures"]] == ["root_stress"]
 
 
 @pytest.mark.parametrize(
@@ -99,6 +122,7 @@ def test_a_study_comes_with_all_its_curves(served: tuple[LineOfActionClient, Tes
         ("flank", {"torque_n_m": 5.0, "normal_force_n": 5.0}, "normal_force_n"),
         ("flank", {"torque_n_m": -1.0}, "torque_n_m"),
         ("flank", {"torque": 5.0}, "torque"),
+        ("root-stress", {"torque_n_m": -1.0}, "torque_n_m"),
         ("flank", {"center_distance_change_mm": -1.0}, "errors.center_distance_change_mm"),
         ("sensitivity", {"misalignment_um": [30.0, 15.0]}, "misalignment_um"),
         ("sensitivity", {"misalignment_um": []}, "misalignment_um"),
@@ -121,8 +145,8 @@ def test_both_processes_are_described(served: tuple[LineOfActionClient, TestClie
     _, http = served
     listed = {process["id"] for process in http.get("/v1/processes").json()["processes"]}
     assert listed == {
-        "analyze", "flank", "sensitivity", "ablate", "frontier", "optimise", "scatter", "simulate", "modes",
-        "response", "steady",
+        "analyze", "flank", "sensitivity", "root-stress", "ablate", "frontier", "optimise", "scatter",
+        "simulate", "modes", "response", "steady",
     }  # fmt: skip
     inputs = http.get("/v1/processes/flank").json()["inputs"]
     assert set(inputs) == {

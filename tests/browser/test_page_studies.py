@@ -11,6 +11,8 @@ from page_visit import PATIENCE, Visit, found_inaccessible, shown, unfold
 from playwright.sync_api import Browser, Locator, Page, expect
 from running_service import until
 
+from service.registry import STUDIES as REGISTERED
+
 # title, button, what is typed or chosen by label, figures, whether the result is netCDF
 STUDIES = {
     "flank": ("Flank pressure", "Compute flank pressure", {}, ["contact_pattern"], True),
@@ -23,6 +25,7 @@ STUDIES = {
         "Sensitivity", "Study the sensitivity",
         {"Misalignments": "0, 20", "Changes of the center distance": "0, 0.5"}, ["sensitivity"], True,
     ),
+    "root-stress": ("Tooth-root stress", "Compute the root stress", {}, ["root_stress"], False),
     "optimise": (
         "Optimise the flanks", "Search better flanks",
         {"Most tip relief": "10", "Designs tried": "30"}, ["harris_map"], False,
@@ -106,6 +109,16 @@ def test_every_figure_and_every_result_is_saved(visit: Visit, name: str) -> None
         assert saved(visit.page, files.get_by_role("button", name="netCDF"))[1:4] == b"HDF"
     figures = json.loads(saved(visit.page, files.get_by_role("button", name="Figures as JSON")))
     assert [f["key"] for s in figures["sections"] for f in s["figures"]] == STUDIES[name][3]
+
+
+def test_every_study_of_a_case_has_a_card(visit: Visit) -> None:
+    cards = visit.page.locator("#study-list .study")
+    studies = [study for study in REGISTERED.values() if "case" in study.subject]
+    assert cards.locator("> h3").all_text_contents() == [study.title for study in studies]
+    assert cards.locator("> .row > button").all_text_contents() == [study.action for study in studies]
+    labels = card(visit.page, "Tooth-root stress").locator("> .row label").all_text_contents()
+    fields = REGISTERED["root-stress"].inputs.model_fields.values()
+    assert labels == [field.title for field in fields if field.title] != []
 
 
 def test_the_optimum_goes_into_the_case(visit: Visit) -> None:

@@ -100,7 +100,7 @@ def test_what_the_page_installs_is_enough_to_ask_a_service(tmp_path: Path) -> No
     assert {"gmsh", "numba", "skfem", "fastapi", "pydantic_settings"} <= set(hidden)
     cache, content = ResultCache(tmp_path / "tables"), tmp_path / "table.nc"
     small_table().to_netcdf(content)
-    with cache.incoming("database") as file:
+    with cache.incoming() as file:
         file.write(content.read_bytes())
         cache.keep("database", KEY, file, hashlib.sha256(content.read_bytes()).hexdigest())
     code = f"""

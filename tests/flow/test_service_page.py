@@ -51,7 +51,7 @@ def test_the_first_steps_work_with_curl(tmp_path: Path, address: str) -> None:
     submitted, results, asked = done.stdout.split("----\n")
     assert '"status":"successful"' in submitted and "event: status" in submitted
     table = SteDatabase.from_netcdf(tmp_path / "ste.nc")
-    assert json.loads(results)["database"]["href"] == f"/v1/databases/{table.metadata.content_hash}"
+    assert json.loads(results)["database"]["href"] == f"/v1/results/{table.metadata.content_hash}"
     force, curves = (json.loads(line) for line in asked.splitlines())
     expected = table.force_at([0.0, 0.25], [5e-6, 7.5e-6]).force.tolist()
     assert force["force_n"] == pytest.approx(expected, rel=1e-12, abs=0.0)

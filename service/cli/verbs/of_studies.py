@@ -11,7 +11,7 @@ import typer
 from typer.core import TyperGroup
 
 from service.cli.guard import computing
-from service.cli.verbs.options import AsJson, DaskScheduler, TableService, TaskWorkers
+from service.cli.verbs.options import AsCsv, AsJson, DaskScheduler, TableService, TaskWorkers
 from service.registry import STUDIES, Study
 from service.schemas.spelling import is_list, spelling_of
 
@@ -56,20 +56,24 @@ def _verb(study: Study) -> Callable[..., None]:
 def _parameters(study: Study) -> Iterator[Parameter]:
     """Yield argument and options of a verb."""
     text = f"{study.subject.capitalize()} file (TOML, or JSON of the same shape)."
-    argument = typer.Argument(help=text, metavar=study.subject.upper().replace(" ", "_"))
-    yield _parameter(study.argument, Annotated[Path, argument])
+    name = study.subject.upper().replace(" ", "_")
+    argument = typer.Argument(help=text, metavar=name)
+    yield _parameter(study.argument, Annotated[list[Path] if study.several else Path, argument])
     if study.from_file:
         yield _parameter("study", Annotated[Path, typer.Argument(help="File of what is varied and how.")])
     else:
         yield from (_option(name, field) for name, field in study.inputs.model_fields.items())
     place = "Folder, or a file" if study.folder else "File to write,"
-    target = typer.Option("-o", "--output", help=f"{place} ending in one of {', '.join(study.endings)}.")
+    names = ("-o", "--output", *study.aliases)
+    target = typer.Option(*names, help=f"{place} ending in one of {', '.join(study.endings)}.")
     yield _parameter("output", Annotated[Path | None, target], None)
     if study.shared:
         yield _parameter("workers", TaskWorkers, 1)
         yield _parameter("dask", DaskScheduler, None)
     if study.subject != "case":
         yield _parameter("service", TableService, None)
+    if ".csv" in study.endings:
+        yield _parameter("csv", AsCsv, False)
     yield _parameter("json", AsJson, False)
 
 

@@ -9,6 +9,7 @@ import typer
 DEFAULT_SERVICE = "http://127.0.0.1:8321"
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON on standard output and nothing else.")]
+AsCsv = Annotated[bool, typer.Option("--csv", help="Print CSV on standard output and nothing else.")]
 Service = Annotated[str, typer.Option("--service", envvar="LOA_SERVICE", help="Address of the service.")]
 TableService = Annotated[
     str | None,

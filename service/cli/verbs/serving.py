@@ -9,6 +9,7 @@ import typer
 
 from service.cli.guard import computing, guarded
 from service.cli.verbs.options import DEFAULT_SERVICE, AsJson, Service
+from service.registry import studies_of
 
 verbs = typer.Typer()
 
@@ -61,8 +62,8 @@ def submit(
     process: Annotated[
         str | None,
         typer.Option(
-            help="On a case analyze (default), flank, sensitivity or optimise; on a scene simulate "
-            "(default), modes, response or steady; on both ablate and frontier."
+            help=f"On a case analyze (default), {', '.join(studies_of('case'))}; on a scene simulate "
+            f"(default), {', '.join(studies_of('scene'))}; on both {', '.join(studies_of('case or scene'))}."
         ),
     ] = None,
     inputs: Annotated[

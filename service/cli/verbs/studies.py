@@ -1,4 +1,4 @@
-"""Verbs on what results are worth that are no rows of the registry: plans, sensitivity, hard scenes."""
+"""Verbs on what results are worth that are no rows of the registry: plans, hard scenes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from service.cli.guard import computing, guarded
-from service.cli.verbs.options import AsJson, DaskScheduler, TaskWorkers
+from service.cli.verbs.options import AsJson
 
 verbs = typer.Typer()
 
@@ -26,30 +26,6 @@ def plan(
     from service.cli.plan import run_plan  # noqa: PLC0415 (start-up time)
 
     run_plan(case, time_budget_s, as_json=json)
-
-
-@verbs.command(epilog="Example: loa sensitivity examples/sensitivity_wind_turbine.toml -o sensitivity")
-@computing
-def sensitivity(
-    cases: Annotated[list[Path], typer.Argument(help="Case files; each becomes a line in the picture.")],
-    output: Annotated[
-        Path,
-        typer.Option("-o", "--output", help="Folder, or a file ending in .png, .csv, .json, .nc, .html."),
-    ],
-    misalignment_um: Annotated[str, typer.Option(help="Misalignments in um.")] = "0,15,30,45,60",
-    center_distance_change_percent: Annotated[
-        str, typer.Option(help="Changes of the center distance in per cent.")
-    ] = "-0.2,-0.1,0,0.1,0.2",
-    workers: TaskWorkers = 1,
-    dask: DaskScheduler = None,
-    json: AsJson = False,
-) -> None:
-    """Vary misalignment and center distance of a case at its highest load: peak-to-peak STE."""
-    from service.cli.sensitivity import Varied, run_sensitivity  # noqa: PLC0415 (start-up time)
-    from service.convert.task_workers import ExecutorChoice  # noqa: PLC0415
-
-    varied = Varied(misalignment_um, center_distance_change_percent)
-    run_sensitivity(cases, output, varied, ExecutorChoice(workers, dask), as_json=json)
 
 
 @verbs.command(epilog="Example: loa hardcases --only table -o hardcases.html")

@@ -1,4 +1,4 @@
-"""Verbs on one gear pair: its table, curves, flanks, roots, and files for other programs."""
+"""Verbs on one gear pair: its table, curves, and files for other programs."""
 
 from __future__ import annotations
 
@@ -62,24 +62,6 @@ def ste(
     run_ste(database, request, as_csv=csv, as_json=json)
 
 
-@verbs.command(epilog="Example: loa flank examples/palermo_spur_20_20.toml --torque 100 -o flank.nc")
-@computing
-def flank(
-    case: Annotated[Path, typer.Argument(help="Case file.")],
-    output: Annotated[Path, typer.Option("-o", "--output", help="Flank results to write (netCDF).")],
-    torque: Torque = None,
-    force: Force = None,
-    misalignment_um: Misalignment = None,
-    center_distance_change_mm: CenterDistanceChange = None,
-    json: AsJson = False,
-) -> None:
-    """Compute pressure, line load and gap on the flanks at one load: contact pattern and K_Hbeta."""
-    from service.cli.flank import run_flank  # noqa: PLC0415 (start-up time)
-
-    point = load_point(torque, force, misalignment_um, center_distance_change_mm)
-    run_flank(case, output, point, as_json=json)
-
-
 @verbs.command(epilog="Example: loa export examples/palermo_spur_20_20.toml --torque 100 -o deformed")
 @computing
 def export(
@@ -126,26 +108,3 @@ def export(
         run_export_fmu(case, output, point, damping_n_s_per_m, backlash_um, as_json=json)
     else:
         run_export(case, output, point, at, beside, as_json=json)
-
-
-@verbs.command(
-    name="root-stress", epilog="Example: loa root-stress examples/palermo_spur_20_20.toml --torque 100"
-)
-@computing
-def root_stress(
-    case: Annotated[Path, typer.Argument(help="Case file.")],
-    torque: Torque = None,
-    force: Force = None,
-    misalignment_um: Misalignment = None,
-    center_distance_change_mm: CenterDistanceChange = None,
-    image: Annotated[
-        Path | None, typer.Option(help="PNG file to draw the passage of one tooth of each gear to.")
-    ] = None,
-    csv: Annotated[bool, typer.Option("--csv", help="Print the passage of one tooth as CSV.")] = False,
-    json: AsJson = False,
-) -> None:
-    """Compute the stress of the tooth roots at one load: peaks, where they are, and their history."""
-    from service.cli.root_stress import run_root_stress  # noqa: PLC0415 (start-up time)
-
-    point = load_point(torque, force, misalignment_um, center_distance_change_mm)
-    run_root_stress(case, point, image, as_csv=csv, as_json=json)

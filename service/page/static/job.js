@@ -29,7 +29,7 @@ export async function submitted(target, process, inputs) {
  * @param {HTMLElement} target where progress is shown
  * @param {string} id
  * @param {{expected?: number, signal: AbortSignal}} options seconds that the plan predicts; given up when the job is left
- * @returns {Promise<{href: string, type: string, hash: string}>} reference to the result
+ * @returns {Promise<{kind: string, href: string, type: string, hash: string}>} reference to the result
  */
 export async function followed(target, id, { expected, signal }) {
   const ended = await watched(target, id, expected, signal);
@@ -42,7 +42,8 @@ export async function followed(target, id, { expected, signal }) {
 /** Where a job's result is, whatever form it was submitted with. */
 export async function referenceOf(job) {
   const results = await patiently(() => get(`/v1/jobs/${job}/results?response=document&transmissionMode=reference`));
-  return Object.values(results)[0];
+  const [[kind, reference]] = Object.entries(results);
+  return { kind, ...reference };
 }
 
 /** Look at a job until it has ended or is left; while the service is away, wait for it. */

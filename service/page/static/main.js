@@ -16,10 +16,10 @@ import { clearNotice, sayUnknown } from "./notice.js";
 import { Results } from "./results.js";
 import { SceneEditor } from "./scene_editor.js";
 import { Slot } from "./slot.js";
-import { STUDIES, showResult, showStudies } from "./studies.js";
+import { showResult, showStudies, studiesOf } from "./studies.js";
 
 const STARTS = ["/v1/examples", "/v1/processes/analyze", "/v1/effects", "/v1/processes", "/v1/"];
-const PLACES = [...STUDIES.map(({ process }) => process), "analyze", "simulate", "modes", "scene", "job"];
+const PLACES = ["analyze", "simulate", "modes", "scene", "job"]; // beside the studies
 const OF_RESULT = { simulate: null, modes: null }; // jobs on a result, which go with it
 const RESTING = 150; // milliseconds between two writings of what is typed
 
@@ -29,13 +29,14 @@ class Page {
     const starts = await patiently(() => Promise.all(STARTS.map(get)));
     const [examples, analyze, effects, { processes }, landing] = starts;
     byId("version").textContent = landing.version;
-    this.address = new Address(PLACES, () => this.typed);
+    const studies = studiesOf(processes);
+    this.address = new Address([...PLACES, ...studies.map(({ process }) => process)], () => this.typed);
     this.caller = `page-${Math.random().toString(36).slice(2, 12)}`;
     this.design = new Design(analyze.inputs.case.schema, effects, examples, this);
     this.files = new CaseFiles(this.design);
     /** @type {Map<string, Slot>} */
     this.slots = new Map();
-    this.parts(new Set(processes.map(({ id }) => id)));
+    this.parts(studies);
     this.keepTyped();
     sectionLinks();
     addEventListener("popstate", () => {
@@ -47,12 +48,12 @@ class Page {
     document.documentElement.dataset.ready = "yes";
   }
 
-  /** @param {Set<string>} offered processes of the service */
-  parts(offered) {
+  /** @param {ReturnType<typeof studiesOf>} studies */
+  parts(studies) {
     const take = (flanks) => this.take(flanks);
     const slot = (name, parts, show) => this.slot(name, parts, show);
     const show = (this.show = (target, reference, signal) => showResult(target, reference, { take, signal }));
-    showStudies({ design: this.design, offered, slot, show });
+    showStudies(studies, { design: this.design, slot, show });
     const dynamics = new Dynamics({ slot, show });
     const scenes = new SceneEditor({ slot, show });
     const live = new Live(this, { take, inThreeDimensions: () => this.inThreeDimensions() });
@@ -135,7 +136,7 @@ class Page {
 
   /** An earlier job is shown: a table takes the page with its design, anything else stands below the list. */
   async showReopened(target, reference, signal) {
-    if (!reference.href.includes("/databases/")) return this.show(target, reference, signal);
+    if (reference.kind !== "database") return this.show(target, reference, signal);
     const names = { database: reference.hash, analyze: null, job: null, ...OF_RESULT };
     this.address.replace(names, { fields: undefined, ofResult: undefined });
     return this.render();

@@ -64,7 +64,7 @@ export class Results {
 
   /** @param {string} key @param {AbortSignal} signal */
   async read(key, signal) {
-    const href = `/v1/databases/${key}`;
+    const href = `/v1/results/${key}`;
     const facts = await patiently(() => get(href));
     if (signal.aborted) return;
     if (!this.design.stands) this.design.show(facts.case);

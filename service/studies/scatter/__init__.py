@@ -14,7 +14,12 @@ class Inputs(BoundaryModel):
     """Tolerances of both gears by their class, and the sample."""
 
     tolerance_class: Annotated[int, Spelling("--class")] = Field(
-        default=6, ge=1, le=11, description="Class of ISO 1328-1:2013, both gears", examples=[6]
+        default=6,
+        title="Class",
+        ge=1,
+        le=11,
+        description="Class of ISO 1328-1:2013, both gears",
+        examples=[6],
     )
     misalignment_um: float = Field(
         default=0.0, ge=0.0, le=1000.0, description="Tolerance of the misalignment, +- um", examples=[20.0]
@@ -24,5 +29,7 @@ class Inputs(BoundaryModel):
         description="Within the tolerances: normal, three standard deviations wide and cut there, or uniform",
         examples=["normal"],
     )
-    samples: int = Field(default=1000, ge=2, le=1_000_000, description="Pairs to draw", examples=[1000])
+    samples: int = Field(
+        default=1000, title="Pairs", ge=2, le=1_000_000, description="Pairs to draw", examples=[1000]
+    )
     seed: int = Field(default=0, ge=0, le=2**63 - 1, description="Equal seeds, equal results", examples=[0])

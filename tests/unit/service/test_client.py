@@ -205,9 +205,9 @@ def test_a_case_known_from_before_is_served_offline(tmp_path: Path) -> None:
         if not online[0]:
             raise httpx2.ConnectError("refused")
         if request.url.path.endswith("/results"):
-            reference = {"href": f"/v1/databases/{KEY}", "type": "", "hash": KEY}
+            reference = {"href": f"/v1/results/{KEY}", "type": "", "hash": KEY}
             return httpx2.Response(200, json={"database": reference})
-        if "databases" in request.url.path:
+        if "/v1/results/" in request.url.path:
             return httpx2.Response(200, content=content, headers=_digest(content))
         return httpx2.Response(201 if request.method == "POST" else 200, json=_status("successful"))
 

@@ -48,7 +48,7 @@ def state(status: str) -> httpx2.Response:
 
 def results() -> httpx2.Response:
     """Return where the result of the job is."""
-    reference = {"href": f"/v1/databases/{KEY}", "type": "", "hash": KEY}
+    reference = {"href": f"/v1/results/{KEY}", "type": "", "hash": KEY}
     return httpx2.Response(200, json={"database": reference})
 
 

@@ -19,7 +19,7 @@ from fe_contact.analysis import contact_lines, solved_operating_points
 from fe_contact.ste import SteDatabase
 from fe_contact.workers import RunCost, dask_cluster
 from service.jobs import cluster
-from service.jobs.catalogue import ANALYZE, SENSITIVITY, default_registry
+from service.jobs.catalogue import ANALYZE, default_registry
 from service.jobs.claims import Claim
 from service.jobs.order import WorkOrder
 from service.jobs.process import Process
@@ -88,7 +88,7 @@ class Recording:
     ("process", "further", "task"),
     [
         (ANALYZE, {}, "solve_block"),
-        (SENSITIVITY, DEVIATIONS, "solve_block"),
+        (default_registry()["sensitivity"], DEVIATIONS, "solve_block"),
         (default_registry()["optimise"], STUDY, "search_one"),
         (default_registry()["scatter"], {"samples": 30}, "ripple_of_samples"),
     ],

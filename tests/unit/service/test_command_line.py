@@ -160,7 +160,7 @@ def test_an_output_that_cannot_be_written_is_said_before_the_work(tmp_path: Path
     assert "output = " in result.stderr
 
 
-@pytest.mark.parametrize("verb", ["analyze", "flank", "simulate"])
+@pytest.mark.parametrize("verb", ["analyze", "simulate"])
 def test_an_output_whose_name_promises_a_picture_is_refused(tmp_path: Path, verb: str) -> None:
     given = ROOT / "examples" / ("palermo_scene.toml" if verb == "simulate" else "palermo_spur_20_20.toml")
     result = loa(verb, given, "-o", tmp_path / "x.png")

@@ -11,7 +11,7 @@ from typer.testing import CliRunner, Result
 from fe_contact import LoadDistribution
 from service.cli.commands import app
 from service.client import JobState, LineOfActionClient
-from service.convert.flanks import case_at
+from service.convert.case import case_at
 from service.schemas import Case, validated
 from service.schemas.flank import FlankPoint
 
@@ -89,7 +89,7 @@ def test_the_report_takes_its_own_load_and_both_ways_agree(small: Path, tmp_path
 def test_bad_points_are_one_line_before_the_work(
     small: Path, tmp_path: Path, arguments: list[str], said: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.cli.flank.flanks_of", None)  # were it called, exit code 5
+    monkeypatch.setattr("service.studies.flank.run.flanks_of", None)  # were it called, exit code 5
     result = loa("flank", small, "-o", tmp_path / "f.nc", *arguments)
     assert (result.exit_code, result.stdout) == (2, "")
     assert said in result.stderr

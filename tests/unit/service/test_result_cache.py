@@ -12,13 +12,13 @@ from service.client import Result, ResultCache
 from service.problems import BadInput
 
 KEY = "ab" * 32
-RESULT = Result(KEY, "database", f"/v1/databases/{KEY}")
+RESULT = Result(KEY, "database", f"/v1/results/{KEY}")
 ADDRESS = "http://127.0.0.1:8321"
 
 
 def keep(cache: ResultCache, content: bytes, key: str = KEY) -> Path:
     """Put a result into the cache as the client does."""
-    with cache.incoming("database") as file:
+    with cache.incoming() as file:
         file.write(content)
         return cache.keep("database", key, file, hashlib.sha256(content).hexdigest())
 
@@ -51,7 +51,7 @@ def test_what_is_not_kept_leaves_nothing(tmp_path: Path) -> None:
     cache = ResultCache(tmp_path)
 
     def breaks() -> None:
-        with cache.incoming("database") as file:
+        with cache.incoming() as file:
             file.write(b"half")
             raise RuntimeError("the line broke")
 

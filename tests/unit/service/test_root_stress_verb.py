@@ -11,11 +11,12 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from service.cli.commands import app
-from service.convert.flanks import case_at
-from service.convert.root_stress import root_stress_of
-from service.report.root_stress import root_stress_figure
+from service.convert.case import case_at
 from service.schemas import Case, read_model
-from service.schemas.flank import FlankPoint
+from service.studies.computation import Means
+from service.studies.root_stress import Inputs
+from service.studies.root_stress.page import root_stress_figure
+from service.studies.root_stress.run import root_stress_of
 
 CASE = """
 [pair]
@@ -73,9 +74,9 @@ def test_table_csv_json_and_picture_say_the_same(case: Path, tmp_path: Path) -> 
         0.5 * found["pinion"]["tension"]["stress_mpa"], rel=0.02
     )
     assert picture.read_bytes().startswith(b"\x89PNG")
-    figure = root_stress_figure(
-        root_stress_of(case_at(read_model(Case, case), FlankPoint()), tmp_path / "cache")
-    )
+    alone = case_at(read_model(Case, case), Inputs())
+    means = Means(tmp_path / "cache", lambda *_: None)
+    figure = root_stress_figure(root_stress_of(alone, Inputs(), means))
     for gear, panel in zip(("pinion", "wheel"), figure.content, strict=True):
         assert max(panel.lines[0].y) == pytest.approx(found[gear]["tension"]["stress_mpa"], rel=1e-9)
         assert min(panel.lines[2].y) == pytest.approx(found[gear]["compression"]["stress_mpa"], rel=1e-9)

@@ -18,16 +18,20 @@ from fe_contact.errors import DatabaseError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import TableAxes
 from service.cli.commands import app
-from service.convert.sensitivity import Deviations, PairStudy, studies_json, study_case
-from service.convert.sensitivity_file import read_studies, write_studies
 from service.problems import BadInput
 from service.report import write_report
 from service.report.figure import Panel
-from service.report.sensitivity import sensitivity_figure, sensitivity_table
 from service.schemas import Case, read_model
+from service.studies.computation import Means
+from service.studies.sensitivity import Inputs
+from service.studies.sensitivity.page import sensitivity_figure, sensitivity_table
+from service.studies.sensitivity.run import RUN, studies_json, study_case
+from service.studies.sensitivity.stored import PairStudy, read_studies, write_studies
 
 ROOT = Path(__file__).parents[3]
 EXAMPLES = sorted((ROOT / "examples").glob("sensitivity_*.toml"))
+WIDER = ("--center-distance-change-percent", "0,0.1")  # the teeth do not jam
+MEANS = Means(Path(), lambda *_: None)
 SMALL = """
 [pair]
 normal_module_mm = 4.0
@@ -72,6 +76,11 @@ def study(name: str = "pair a", factor: float = 1.0) -> PairStudy:
     )
 
 
+def computed(monkeypatch: pytest.MonkeyPatch, known: PairStudy) -> None:
+    """Let every study have a known result."""
+    monkeypatch.setattr("service.studies.sensitivity.run.RUN", replace(RUN, compute=lambda *_: (known,)))
+
+
 def test_a_study_in_a_folder(small: Path, tmp_path: Path) -> None:
     """Numbers, table and picture say the same; the highest load counts, the case's own errors do not."""
     result = loa(
@@ -81,7 +90,7 @@ def test_a_study_in_a_folder(small: Path, tmp_path: Path) -> None:
     assert (result.exit_code, result.stderr) == (0, "")
     answer = json.loads(result.stdout)
     written = [Path(file).name for file in answer.pop("written")]
-    assert written == [f"sensitivity.{ending}" for ending in ("png", "csv", "json", "nc", "html")]
+    assert written == [f"sensitivity.{ending}" for ending in ("nc", "json", "png", "html", "csv")]
     (stored,) = read_studies(tmp_path / "out" / "sensitivity.nc")
     assert studies_json([stored])["pairs"] == answer["pairs"]
     assert json.loads((tmp_path / "out" / "sensitivity.json").read_text()) == answer
@@ -104,11 +113,14 @@ def test_a_study_in_a_folder(small: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["--misalignment-um", "0,x"], "--misalignment-um = '0,x': must be increasing numbers"),
-        (["--misalignment-um", "0,nan"], "--misalignment-um = '0,nan'"),
-        (["--misalignment-um", "30,15"], "--misalignment-um = '30,15'"),
-        (["--misalignment-um", "0,20000"], "--misalignment-um = '0,20000'"),
-        (["--center-distance-change-percent", "0,11"], "--center-distance-change-percent = '0,11'"),
+        (
+            ["--misalignment-um", "0,x"],
+            "--misalignment-um = '0,x': must be FIRST:LAST:STEP, or increasing",
+        ),
+        (["--misalignment-um", "0,nan"], "misalignment_um[1] = nan"),
+        (["--misalignment-um", "30,15"], "misalignment_um = [30.0, 15.0]: must be strictly increasing"),
+        (["--misalignment-um", "0,20000"], "misalignment_um[1] = 20000"),
+        (["--center-distance-change-percent", "0,11"], "center_distance_change_percent[1] = 11"),
     ],
 )
 def test_bad_deviations_are_one_line(small: Path, tmp_path: Path, arguments: list[str], said: str) -> None:
@@ -131,7 +143,7 @@ def test_a_distance_at_which_the_teeth_jam_is_said_in_the_units_of_the_case(
 def test_an_output_that_cannot_be_written_is_said_before_the_work(
     small: Path, tmp_path: Path, output: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.cli.sensitivity.study_case", None)  # were it called, exit code 5
+    monkeypatch.setattr("service.studies.sensitivity.run.study_sensitivity", None)  # called: exit code 5
     result = loa(small, "-o", tmp_path / output)
     assert result.exit_code == 2
     assert "output = " in result.stderr
@@ -140,8 +152,8 @@ def test_an_output_that_cannot_be_written_is_said_before_the_work(
 def test_a_file_by_its_ending_is_the_only_one_written(
     small: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.cli.sensitivity.study_case", lambda *_: study())
-    result = loa(small, "-o", tmp_path / "x.csv")
+    computed(monkeypatch, study())
+    result = loa(small, "-o", tmp_path / "x.csv", *WIDER)
     assert result.exit_code == 0
     assert "written to" in result.stdout and "+150.0" in result.stdout
     assert sorted(file.name for file in tmp_path.iterdir() if file.is_file()) == ["small.toml", "x.csv"]
@@ -180,11 +192,23 @@ def test_the_table_has_every_point() -> None:
     assert len(rows) == 8
 
 
+def test_several_cases_are_one_study_under_the_names_of_their_files(
+    small: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    computed(monkeypatch, study())
+    other = tmp_path / "sensitivity_wide_face.toml"
+    other.write_text(SMALL)
+    result = loa(small, other, "-o", tmp_path / "x.nc", "--csv", *WIDER)
+    assert result.exit_code == 0
+    assert [pair.name for pair in read_studies(tmp_path / "x.nc")] == ["small", "wide face"]
+    assert {row[0] for row in csv.reader(result.stdout.splitlines()[1:])} == {"small", "wide face"}
+
+
 def test_the_picture_is_large_enough_to_read(
     tmp_path: Path, small: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.cli.sensitivity.study_case", lambda *_: study())
-    assert loa(small, "-o", tmp_path / "x.png").exit_code == 0
+    computed(monkeypatch, study())
+    assert loa(small, "-o", tmp_path / "x.png", *WIDER).exit_code == 0
     width, height = struct.unpack(">II", (tmp_path / "x.png").read_bytes()[16:24])
     assert width >= 1000 and height >= 1000
 
@@ -199,18 +223,19 @@ def test_the_examples_run_at_every_deviation(file: Path, monkeypatch: pytest.Mon
         studied.append(axes)
         return ()
 
-    monkeypatch.setattr("service.convert.sensitivity.study_sensitivity", study_nothing)
+    monkeypatch.setattr("service.studies.sensitivity.run.study_sensitivity", study_nothing)
     case = read_model(Case, file)
-    found = study_case("x", case, Deviations((0.0, 60.0), (-0.2, 0.0, 0.2)), None)
+    varied = Inputs(misalignment_um=(0.0, 60.0), center_distance_change_percent=(-0.2, 0.0, 0.2))
+    (found,) = study_case(case, varied, MEANS)
     assert found.normal_force in (6000.0, 13300.0)
     assert studied[0].center_distance_changes[0] == pytest.approx(-0.002 * found.center_distance)
 
 
 def test_the_highest_torque_is_the_load(small: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """20 teeth of module 4 mm: base radius 37.588 mm."""
-    monkeypatch.setattr("service.convert.sensitivity.study_sensitivity", lambda *_, **__: ())
+    monkeypatch.setattr("service.studies.sensitivity.run.study_sensitivity", lambda *_, **__: ())
     small.write_text(SMALL.replace("normal_force_n = [500, 1000]", "torque_n_m = [10, 100]"))
-    found = study_case("x", read_model(Case, small), Deviations((0.0,), (0.0,)), None)
+    (found,) = study_case(read_model(Case, small), Inputs(), MEANS)
     assert found.normal_force == pytest.approx(100.0 / 37.5877e-3, rel=1e-5)
 
 
@@ -256,7 +281,7 @@ def test_a_study_is_on_the_report_page(tmp_path: Path) -> None:
     page = write_report(tmp_path / "s.nc", tmp_path / "s.html")[0].read_text(encoding="utf-8")
     assert '<figure id="sensitivity">' in page
     assert "<h1>Sensitivity of gear pairs</h1>" in page
-    with pytest.raises(BadInput, match="the only sensitivity study"):
+    with pytest.raises(BadInput, match="the only sensitivity"):
         write_report([tmp_path / "s.nc", tmp_path / "s.nc"], tmp_path / "t.html")
 
 

@@ -12,6 +12,7 @@ from pydantic import BaseModel
 from service import problems
 from service.app import create_app
 from service.cli.commands import app as loa
+from service.registry import STUDIES
 from service.schemas import case, gear, scene, scene_bodies, scene_motion
 from service.settings import Settings, load_settings
 
@@ -44,14 +45,14 @@ def test_every_path_is_documented(tmp_path: Path) -> None:
     text = page("service.md").replace("{hash}", "{key}").replace("{id}", "{job_id}")
     paths = create_app(Settings(data_directory=tmp_path)).openapi()["paths"]
     for path in paths:
-        generic = re.sub(r"/processes/([a-z]+|\{process_id\})", "/processes/{job_id}", path)
+        generic = re.sub(r"/processes/([a-z-]+|\{process_id\})", "/processes/{job_id}", path)
         assert generic in text, path
 
 
 def test_every_verb_and_exit_code_is_documented() -> None:
     text = page("cli.md")
-    for command in loa.registered_commands:
-        name = command.name or command.callback.__name__  # type: ignore[union-attr]
+    verbs = [verb.name or verb.callback.__name__ for verb in loa.registered_commands]  # type: ignore[union-attr]
+    for name in (*verbs, *STUDIES):
         assert f"`loa {name}" in text
     for name, code in vars(problems).items():
         if name.startswith("EXIT_"):

@@ -37,7 +37,7 @@ def test_its_process_takes_what_is_studied_and_what_is_varied(study: Study) -> N
     process = default_registry()[study.name]
     subject = set(process.inputs.model_fields) - set(study.inputs.model_fields)
     assert subject == set(study.subject.split(" or "))
-    assert (process.kind, RESULT_KINDS[study.kind].path) == (study.kind, f"/v1/{study.collection}")
+    assert (process.kind, RESULT_KINDS[study.kind].media_type) == (study.kind, study.media_type)
     process.inputs.model_validate_json(json.dumps(INPUTS[study.name]))  # the example is accepted
 
 
@@ -50,7 +50,8 @@ def test_its_verb_has_an_option_for_everything_that_is_varied(study: Study) -> N
 
 @EVERY
 def test_the_client_has_a_method_that_says_what_it_takes(study: Study) -> None:
-    method = getattr(LineOfActionClient, study.name if study.media_type == JSON else f"{study.name}_file")
+    ending = "" if study.media_type == JSON else "_file"
+    method = getattr(LineOfActionClient, f"{study.package}{ending}")
     names = list(signature(method).parameters)
     expected = ["study", "progress"] if study.from_file else ["progress", "options"]
     assert names == ["self", study.argument, *expected]

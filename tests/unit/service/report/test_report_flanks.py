@@ -14,9 +14,9 @@ from service.report.contact_lines import contact_lines
 from service.report.contact_pattern import contact_pattern_figure
 from service.report.face_distribution import line_load_figure, load_centroid_figure
 from service.report.figure import HeatMap, Panel, Strokes
-from service.report.flank_part import flank_alarms, flank_headlines, flank_results_section, operating_point
 from service.report.image import png
 from service.report.interactive import plotly_figure
+from service.studies.flank.page import operating_point, page
 
 
 def panels(figure: object) -> tuple[Panel, ...]:
@@ -84,13 +84,13 @@ def test_the_load_over_the_face_and_its_factor(flanks: LoadDistribution) -> None
 
 
 def test_one_slice_has_a_curve_and_nothing_over_the_face(one_slice: LoadDistribution) -> None:
-    (section,) = flank_results_section(one_slice)
+    section = page(one_slice).sections[0]
     (figure,) = section.figures
     for panel in panels(figure):
         assert panel.shade is None
         assert np.nanmax(panel.lines[0].y) == pytest.approx(1e-6 * one_slice.pressure.max())
     assert "plane" in section.text
-    assert [headline.name for headline in flank_headlines(one_slice)] == ["largest flank pressure"]
+    assert [headline.name for headline in page(one_slice).headlines] == ["largest flank pressure"]
 
 
 @pytest.fixture
@@ -103,7 +103,7 @@ def one_slice(flanks: LoadDistribution) -> LoadDistribution:
 
 
 def test_every_figure_is_drawn_both_ways(flanks: LoadDistribution) -> None:
-    (section,) = flank_results_section(flanks)
+    section = page(flanks).sections[0]
     assert [f.key for f in section.figures] == [
         "contact_pattern",
         "contact_lines",
@@ -118,7 +118,7 @@ def test_every_figure_is_drawn_both_ways(flanks: LoadDistribution) -> None:
 def test_load_and_alignment_are_said(flanks: LoadDistribution) -> None:
     torque = flanks.scene.torque
     assert operating_point(flanks) == f"{torque:.2f} N m, misalignment 30.0 µm"
-    assert [h.value for h in flank_headlines(flanks)] == [
+    assert [h.value for h in page(flanks).headlines] == [
         f"{1e-6 * flanks.pressure.max():.1f} MPa",
         f"{flanks.mean_face_load_factor:.2f}",
     ]
@@ -127,14 +127,14 @@ def test_load_and_alignment_are_said(flanks: LoadDistribution) -> None:
 def test_another_pair_than_the_databases_is_said_loudly(
     flanks: LoadDistribution, database: SteDatabase, tmp_path: Path
 ) -> None:
-    assert len(flank_alarms(flanks, database)) == 1
+    assert len(page(flanks, database).alarms) == 1
     own = replace(flanks, scene=replace(flanks.scene, facts=database.facts))
-    assert flank_alarms(own, database) == flank_alarms(flanks, None) == ()
+    assert page(own, database).alarms == page(flanks).alarms == ()
     flanks.to_netcdf(tmp_path / "flanks.nc")
     database.to_netcdf(tmp_path / "ste.nc")
     both = [tmp_path / "ste.nc", tmp_path / "flanks.nc"]
-    page = write_report(both, tmp_path / "report.html")[0].read_text(encoding="utf-8")
-    assert "are of different gear pairs" in page
-    assert '<figure id="contact_pattern">' in page
+    html = write_report(both, tmp_path / "report.html")[0].read_text(encoding="utf-8")
+    assert "are of different gear pairs" in html
+    assert '<figure id="contact_pattern">' in html
     alone = write_report(both[1], tmp_path / "alone.html")[0].read_text(encoding="utf-8")
     assert "Gear pair 19/26" in alone

@@ -6,9 +6,11 @@ from collections.abc import Callable, Sequence
 from itertools import chain
 
 from fe_contact.analysis.sensitivity import RippleCurve, Sensitivity
-from service.convert.sensitivity import PairStudy
 from service.report import palette
 from service.report.figure import Axis, Dash, Figure, FloatArray, Line, Panel, Table, number
+from service.report.page import Page, Section
+from service.studies.presentation import Presentation
+from service.studies.sensitivity.stored import PairStudy
 
 _MISALIGNMENT = Axis("misalignment over the common face width, µm")
 _DISTANCE = Axis("change of the center distance, %")
@@ -103,3 +105,14 @@ def _words(studies: Sequence[PairStudy]) -> str:
             how = "with" if curves.corner_contact else "without"
             parts.append(f"{study.name} {how} corner contact {skew:+.0f} % and {distance:+.0f} %")
     return f"Largest change with misalignment and with center distance: {'; '.join(parts)}."
+
+
+def page(studies: Sequence[PairStudy]) -> Page:
+    """Return the page of studies."""
+    section = Section("Sensitivity", figures=(sensitivity_figure(studies),))
+    return Page("Sensitivity of gear pairs", "", (), (section,))
+
+
+PAGE = Presentation(
+    sensitivity_figure, page, lambda studies: (sensitivity_table(studies),), series=sensitivity_table
+)

@@ -1,17 +1,20 @@
-"""Tooth-root stress at the boundary: from a case of one load and one alignment to figures, and their JSON."""
+"""Tooth-root stress of a case of one load and one alignment: figures in the units of the boundary."""
 
 from __future__ import annotations
 
+import json
 import math
-from pathlib import Path
 from typing import Any
 
-from fe_contact.analysis import RootStress, RootStressHistory, root_stress
+from fe_contact.analysis import RootStressHistory, root_stress
 from fe_contact.analysis.root_stress_history import ROOTS, RootPeak
 from fe_contact.options import Run
-from model_studies import Progress, silent
-from service.convert.case import analysis_options, boundary_errors, gear_pair, operating_point
+from service.convert.case import analysis_options, boundary_errors, case_at, gear_pair, operating_point
+from service.convert.checks import check_case
+from service.convert.plausibility import phrased_for
 from service.schemas import Case
+from service.studies.computation import Computation, Means
+from service.studies.root_stress import Inputs
 from service.units import MM, UM
 
 Json = dict[str, Any]
@@ -19,8 +22,8 @@ GEARS = ("pinion", "wheel")
 MPA = 1e6
 
 
-def root_stress_of(case: Case, cache: Path | None, progress: Progress = silent) -> RootStress:
-    """Return the root stress of a case of one load and one alignment, over a mesh cycle.
+def root_stress_of(case: Case, _inputs: Inputs, means: Means) -> Json:
+    """Return the peaks over a mesh cycle, what one tooth of each gear meets, the receipt and the warnings.
 
     Raises
     ------
@@ -29,13 +32,9 @@ def root_stress_of(case: Case, cache: Path | None, progress: Progress = silent) 
     JobFailed
         No mesh, or positions without a solution.
     """
-    run = Run(cache=cache, progress=progress)
+    run = Run(cache=means.home / "compliance", progress=means.report)
     with boundary_errors():
-        return root_stress(gear_pair(case), operating_point(case), analysis_options(case), run)
-
-
-def root_stress_json(found: RootStress) -> Json:
-    """Return the peaks, what one tooth of each gear meets, and the receipt."""
+        found = root_stress(gear_pair(case), operating_point(case), analysis_options(case), run)
     return {
         "torque_n_m": found.torque,
         "normal_force_n": found.normal_force,
@@ -43,6 +42,7 @@ def root_stress_json(found: RootStress) -> Json:
         "center_distance_change_mm": found.center_distance_change / MM,
         **{gear: _gear_json(getattr(found, gear)) for gear in GEARS},
         "receipt": found.receipt,
+        "warnings": phrased_for(case, found.warnings),
     }
 
 
@@ -72,3 +72,15 @@ def _peak_json(peak: RootPeak) -> Json:
         "tangent_angle_deg": math.degrees(peak.tangent_angle),
         "face_position_mm": peak.face_position / MM,
     }
+
+
+RUN = Computation(
+    root_stress_of,
+    lambda found: found,
+    lambda file: json.loads(file.read_text(encoding="utf-8")),
+    marks=dict.fromkeys(("pinion", "wheel", "receipt")),
+    narrowed=case_at,
+    check=lambda case, _inputs: check_case(case),
+    normalized=lambda _case, _inputs: {},
+    warnings=lambda found: found["warnings"],
+)

@@ -1,48 +1,36 @@
-"""Flank results at the boundary: from a case and a point to what happens on the flanks, and its JSON."""
+"""Flank results of a case: from one load and one alignment to what happens on the flanks, and its JSON."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from fe_contact.analysis import LoadDistribution, flank_results
+from fe_contact.analysis.flank_file import FORMAT
 from fe_contact.options import Run
 from model_studies import Progress, silent
-from service.convert.case import analysis_options, boundary_errors, case_json, gear_pair, operating_point
-from service.schemas import Case, ErrorsInput, LoadInput
-from service.schemas.flank import FlankPoint
+from service.convert.case import (
+    analysis_options,
+    boundary_errors,
+    case_at,
+    case_json,
+    gear_pair,
+    operating_point,
+)
+from service.convert.checks import check_case
+from service.convert.plausibility import phrased_for
+from service.schemas import Case
+from service.studies.computation import Computation
 from service.units import MM, UM
 
 Json = dict[str, Any]
 
 
-def case_at(case: Case, point: FlankPoint) -> Case:
-    """Return the case with the one load and the one alignment of a point.
-
-    What the point leaves open is the case's highest load, and its deviations nearest to zero.
-    """
-    load, errors = case.load, case.errors
-    if point.torque_n_m is not None:
-        load = LoadInput(torque_n_m=(point.torque_n_m,))
-    elif point.normal_force_n is not None:
-        load = LoadInput(normal_force_n=(point.normal_force_n,))
-    elif load.torque_n_m is not None:
-        load = LoadInput(torque_n_m=load.torque_n_m[-1:])
-    elif load.normal_force_n is not None:
-        load = LoadInput(normal_force_n=load.normal_force_n[-1:])
-    skew, change = point.misalignment_um, point.center_distance_change_mm
-    here = ErrorsInput(
-        misalignment_um=(min(errors.misalignment_um, key=abs) if skew is None else skew,),
-        center_distance_change_mm=(
-            min(errors.center_distance_change_mm, key=abs) if change is None else change,
-        ),
-    )
-    accuracy = case.accuracy.model_copy(update={"positions": None})  # a cycle is always the same 64
-    return case.model_copy(update={"load": load, "errors": here, "accuracy": accuracy})
-
-
 def flanks_of(case: Case, cache: Path | None, progress: Progress = silent) -> LoadDistribution:
     """Return what happens on the flanks of a case of one load and one alignment, over a mesh cycle.
+
+    Its warnings are in the fields and units of the case.
 
     Raises
     ------
@@ -51,11 +39,13 @@ def flanks_of(case: Case, cache: Path | None, progress: Progress = silent) -> Lo
     JobFailed
         No mesh, or positions without a solution.
     """
+    run = Run(cache=cache, progress=progress)
     with boundary_errors():
-        run = Run(cache=cache, progress=progress)
-        return flank_results(
+        found = flank_results(
             gear_pair(case), operating_point(case), analysis_options(case), run, case=case_json(case)
         )
+    warnings = phrased_for(case, found.metadata.warnings)
+    return replace(found, metadata=replace(found.metadata, warnings=warnings))
 
 
 def flank_json(found: LoadDistribution) -> Json:
@@ -77,3 +67,16 @@ def flank_json(found: LoadDistribution) -> Json:
         "effect_ledger": found.metadata.effect_ledger,
         "receipt": found.metadata.receipt,
     }
+
+
+RUN = Computation(
+    lambda case, _inputs, means: flanks_of(case, means.home / "compliance", means.report),
+    flank_json,
+    LoadDistribution.from_netcdf,
+    marks={"format": FORMAT},
+    write=LoadDistribution.to_netcdf,
+    narrowed=case_at,
+    check=lambda case, _inputs: check_case(case, whole_table=False),
+    normalized=lambda _case, _inputs: {},
+    warnings=lambda found: found.metadata.warnings,
+)

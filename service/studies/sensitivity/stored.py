@@ -1,9 +1,10 @@
-"""Sensitivity studies as netCDF-4 files."""
+"""Sensitivity studies of pairs, and their netCDF-4 files."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,6 @@ import numpy as np
 from fe_contact.analysis.sensitivity import RippleCurve, Sensitivity
 from fe_contact.errors import DatabaseError
 from fe_contact.ste.netcdf_file import digest, read_variables, write_dataset
-from service.convert.sensitivity import PairStudy
 
 FORMAT = "lineofaction sensitivity study"
 SCHEMA_VERSION = 1
@@ -34,6 +34,25 @@ STORED: dict[str, tuple[tuple[str, ...], str, str]] = {
         )
     },
 }
+
+
+@dataclass(frozen=True)
+class PairStudy:
+    """The study of one pair.
+
+    Attributes
+    ----------
+    name : str
+    normal_force, center_distance : float
+        N; m.
+    curves : tuple of Sensitivity
+        Without and with corner contact.
+    """
+
+    name: str
+    normal_force: float
+    center_distance: float
+    curves: tuple[Sensitivity, ...]
 
 
 def write_studies(studies: Sequence[PairStudy], path: Path) -> None:

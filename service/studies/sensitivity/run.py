@@ -1,60 +1,31 @@
-"""Sensitivity studies at the boundary: from a case to curves, and their JSON."""
+"""Sensitivity of cases to misalignment and center distance: from cases to curves, and their JSON."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from pathlib import Path
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from fe_contact.analysis import check_request
 from fe_contact.analysis.sensitivity import RippleCurve, Sensitivity, study_sensitivity
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import Run, TableAxes
-from fe_contact.workers import InProcess, Workers
-from model_studies import Progress, silent
+from model_studies import Progress
 from service.convert.case import boundary_errors, gear_pair, study_options
 from service.schemas import Case
+from service.stages import TABLE_STAGES, overall
+from service.studies.computation import Computation, Means
+from service.studies.sensitivity import Inputs
+from service.studies.sensitivity.stored import FORMAT, PairStudy, read_studies, write_studies
 from service.units import MM, UM
 
 Json = dict[str, Any]
+Studies = tuple[PairStudy, ...]
+TABLES = 4
+"""Of a pair: over each deviation, without and with corner contact."""
 
 
-@dataclass(frozen=True)
-class Deviations:
-    """What is varied: misalignment in um, center distance in per cent of the nominal one."""
-
-    misalignment_um: tuple[float, ...]
-    center_distance_change_percent: tuple[float, ...]
-
-
-@dataclass(frozen=True)
-class PairStudy:
-    """The study of one pair.
-
-    Attributes
-    ----------
-    name : str
-    normal_force, center_distance : float
-        N; m.
-    curves : tuple of Sensitivity
-        Without and with corner contact.
-    """
-
-    name: str
-    normal_force: float
-    center_distance: float
-    curves: tuple[Sensitivity, ...]
-
-
-def study_case(
-    name: str,
-    case: Case,
-    deviations: Deviations,
-    cache: Path | None,
-    progress: Progress = silent,
-    workers: Workers = InProcess(),  # noqa: B008 (frozen)
-) -> PairStudy:
+def study_case(case: Case, inputs: Inputs, means: Means) -> Studies:
     """Study a case at its highest load; its own misalignments and center distances are left aside.
 
     Raises
@@ -65,13 +36,28 @@ def study_case(
         No mesh, or points without a solution.
     """
     pair = gear_pair(case)
+    run = Run(means.workers, means.home / "compliance", _table_by_table(means.report))
     with boundary_errors():
-        axes = _axes(case, pair, deviations)
-        curves = study_sensitivity(pair, axes, study_options(case), Run(workers, cache, progress))
-    return PairStudy(name, float(axes.load(pair)[0]), pair.center_distance, curves)
+        axes = _axes(case, pair, inputs)
+        curves = study_sensitivity(pair, axes, study_options(case), run)
+    name = f"{case.pair.pinion.teeth}/{case.pair.wheel.teeth}"
+    return (PairStudy(name, float(axes.load(pair)[0]), pair.center_distance, curves),)
 
 
-def check_study(case: Case, deviations: Deviations) -> None:
+def _table_by_table(report: Progress) -> Progress:
+    """Return what turns the progress of each table into that of the study."""
+    begun = -1
+
+    def part(stage: str, fraction: float) -> None:
+        nonlocal begun
+        begun += stage == TABLE_STAGES[0].name and fraction == 0.0
+        done = overall(TABLE_STAGES, stage, fraction) or 0.0
+        report("tables", (max(begun, 0) + done) / TABLES)
+
+    return part
+
+
+def check_study(case: Case, inputs: Inputs) -> None:
     """Refuse what a study cannot compute, without computing anything.
 
     Raises
@@ -79,14 +65,15 @@ def check_study(case: Case, deviations: Deviations) -> None:
     BadInput
         No such pair, or a deviation at which it cannot run.
     """
-    pair = gear_pair(case)
-    options = study_options(case)
+    pair, options = gear_pair(case), study_options(case)
+    model = "3d" if options.model == "auto" else options.model
     with boundary_errors():
-        check_request(
-            pair,
-            _axes(case, pair, deviations),
-            replace(options, model="3d" if options.model == "auto" else options.model),
-        )
+        check_request(pair, _axes(case, pair, inputs), replace(options, model=model))
+
+
+def joined(studies: Mapping[str, Studies]) -> Studies:
+    """Return the studies of several cases as one, under the names of their files."""
+    return tuple(replace(study, name=name) for name, found in studies.items() for study in found)
 
 
 def _highest_force(case: Case, pair: ParallelAxes) -> float:
@@ -95,12 +82,12 @@ def _highest_force(case: Case, pair: ParallelAxes) -> float:
     return float(pair.normal_force(torques[-1])) if torques else float((forces or ())[-1])
 
 
-def _axes(case: Case, pair: ParallelAxes, deviations: Deviations) -> TableAxes:
+def _axes(case: Case, pair: ParallelAxes, inputs: Inputs) -> TableAxes:
     """Return the highest load of the case and both axes."""
-    percent = deviations.center_distance_change_percent
+    percent = inputs.center_distance_change_percent
     return TableAxes(
         normal_forces=[_highest_force(case, pair)],
-        misalignments=[value * UM for value in deviations.misalignment_um],
+        misalignments=[value * UM for value in inputs.misalignment_um],
         center_distance_changes=[0.01 * value * pair.center_distance for value in percent],
     )
 
@@ -140,3 +127,15 @@ def _ripple_json(curve: RippleCurve) -> Json:
         "peak_to_peak_error_um": (curve.error / UM).tolist(),
         "change_percent": (100.0 * curve.relative_change).tolist(),
     }
+
+
+RUN = Computation(
+    study_case,
+    studies_json,
+    read_studies,
+    marks={"format": FORMAT},
+    write=write_studies,
+    check=check_study,
+    joined=joined,
+    resumed=True,
+)

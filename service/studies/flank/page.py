@@ -1,19 +1,32 @@
-"""What the page says of flank results: pressure over the flanks, contact lines, load over the face."""
+"""Flank results as people see them: pressure over the flanks, contact lines, load over the face."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from fe_contact.analysis import LoadDistribution
 from fe_contact.ste import SteDatabase
+from service.convert.effect_lines import assumption_lines
 from service.report.contact_lines import contact_lines
 from service.report.contact_pattern import contact_pattern_figure
 from service.report.face_distribution import line_load_figure, load_centroid_figure
 from service.report.facts import facts
 from service.report.figure import Figure, number
-from service.report.page import Headline, Section
+from service.report.page import Headline, Page, Section
+from service.report.pair import pair_lead, pair_title
 from service.report.static_part import case_tables, effects_section
+from service.studies.presentation import Presentation
+from service.units import UM
 
 
-def flank_headlines(found: LoadDistribution) -> tuple[Headline, ...]:
+def page(found: LoadDistribution, database: SteDatabase | None = None) -> Page:
+    """Return the page of flank results; beside their database, which has its own effects and case."""
+    pair = found.scene.facts
+    sections = (*_results(found), *_making(found, alone=database is None))
+    return Page(pair_title(pair), pair_lead(pair), _headlines(found), sections, _alarms(found, database))
+
+
+def _headlines(found: LoadDistribution) -> tuple[Headline, ...]:
     """Largest pressure and K_Hbeta."""
     at = operating_point(found)
     headlines = [Headline("largest flank pressure", f"{number(1e-6 * float(found.pressure.max()))} MPa", at)]
@@ -23,7 +36,7 @@ def flank_headlines(found: LoadDistribution) -> tuple[Headline, ...]:
     return tuple(headlines)
 
 
-def flank_results_section(found: LoadDistribution) -> tuple[Section, ...]:
+def _results(found: LoadDistribution) -> tuple[Section, ...]:
     """Show the flanks; one slice has nothing to show over the face."""
     figures: tuple[Figure, ...] = (contact_pattern_figure(found),)
     text = f"At {operating_point(found)}, {found.position.size} positions of the mesh cycle."
@@ -34,7 +47,7 @@ def flank_results_section(found: LoadDistribution) -> tuple[Section, ...]:
     return (Section("Flanks", text, figures=figures),)
 
 
-def flank_making(found: LoadDistribution, *, alone: bool) -> tuple[Section, ...]:
+def _making(found: LoadDistribution, *, alone: bool) -> tuple[Section, ...]:
     """Show what the flank results cost; `alone`, without their database, also effects and case."""
     metadata = found.metadata
     if not metadata.receipt:
@@ -50,7 +63,7 @@ def flank_making(found: LoadDistribution, *, alone: bool) -> tuple[Section, ...]
     return section, effects, Section("Case", tables=case_tables(metadata.case))
 
 
-def flank_alarms(found: LoadDistribution, database: SteDatabase | None) -> tuple[str, ...]:
+def _alarms(found: LoadDistribution, database: SteDatabase | None) -> tuple[str, ...]:
     """Say loudly if database and flank results are of different pairs."""
     if database is None:
         return ()
@@ -71,3 +84,28 @@ def operating_point(found: LoadDistribution) -> str:
     if scene.center_distance_change:
         parts.append(f"center distance {1e3 * scene.center_distance_change:+.3g} mm")
     return ", ".join(parts)
+
+
+def text(found: LoadDistribution) -> Iterator[str]:
+    """Yield the figures for people."""
+    scene, receipt = found.scene, found.metadata.receipt
+    yield (
+        f"torque {scene.torque:.6g} N m, normal force {scene.normal_force:.6g} N, "
+        f"misalignment {scene.misalignment / UM:.4g} um"
+    )
+    yield (
+        f"largest pressure {1e-6 * found.pressure.max():.4g} MPa, "
+        f"largest line load {1e-3 * found.line_load.max():.4g} N/mm"
+    )
+    if found.face_position.size > 1:
+        low, high = (1e3 * end for end in (found.load_centroid.min(), found.load_centroid.max()))
+        yield (
+            f"K_Hbeta {found.mean_face_load_factor:.3g} over the cycle, at most "
+            f"{found.face_load_factor.max():.3g} at one position; "
+            f"load centroid {low:.3g} to {high:.3g} mm from mid-face"
+        )
+    yield from assumption_lines(receipt)
+    yield f"cost {receipt['cpu_seconds']:.3g} CPU s"
+
+
+PAGE = Presentation(contact_pattern_figure, page, text, beside=page)

@@ -1,0 +1,97 @@
+# Written by scripts/client_studies.py from service.registry: do not edit.
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, Literal
+
+from service.client.jobs import JobClient
+from service.client.portable import CaseLike, SceneLike
+from service.client.status import Watch
+
+class Studies(JobClient):
+    def flank_file(
+        self,
+        case: CaseLike,
+        progress: Watch | None = None,
+        *,
+        torque_n_m: float | None = ...,
+        normal_force_n: float | None = ...,
+        misalignment_um: float | None = ...,
+        center_distance_change_mm: float | None = ...,
+    ) -> Path: ...
+    def ablate(
+        self,
+        given: CaseLike | SceneLike,
+        progress: Watch | None = None,
+        *,
+        only: Sequence[str] | None = ...,
+    ) -> dict[str, Any]: ...
+    def frontier(
+        self,
+        given: CaseLike | SceneLike,
+        progress: Watch | None = None,
+        *,
+        rungs: Sequence[str] | None = ...,
+        full_contact: int | None = ...,
+    ) -> dict[str, Any]: ...
+    def sensitivity_file(
+        self,
+        case: CaseLike,
+        progress: Watch | None = None,
+        *,
+        misalignment_um: Sequence[float] = ...,
+        center_distance_change_percent: Sequence[float] = ...,
+    ) -> Path: ...
+    def root_stress(
+        self,
+        case: CaseLike,
+        progress: Watch | None = None,
+        *,
+        torque_n_m: float | None = ...,
+        normal_force_n: float | None = ...,
+        misalignment_um: float | None = ...,
+        center_distance_change_mm: float | None = ...,
+    ) -> dict[str, Any]: ...
+    def optimise(
+        self,
+        case: CaseLike,
+        study: Mapping[str, Any],
+        progress: Watch | None = None,
+    ) -> dict[str, Any]: ...
+    def scatter(
+        self,
+        case: CaseLike,
+        progress: Watch | None = None,
+        *,
+        tolerance_class: int = ...,
+        misalignment_um: float = ...,
+        distribution: Literal["normal", "uniform"] = ...,
+        samples: int = ...,
+        seed: int = ...,
+    ) -> dict[str, Any]: ...
+    def modes_file(
+        self,
+        scene: SceneLike,
+        progress: Watch | None = None,
+        *,
+        speed_rpm: Sequence[float] = ...,
+        orders: int = ...,
+        highest_frequency_hz: float | None = ...,
+    ) -> Path: ...
+    def response_file(
+        self,
+        scene: SceneLike,
+        progress: Watch | None = None,
+        *,
+        speed_rpm: Sequence[float],
+        orders: int = ...,
+    ) -> Path: ...
+    def steady_file(
+        self,
+        scene: SceneLike,
+        progress: Watch | None = None,
+        *,
+        speed_rpm: Sequence[float],
+        branch: bool = ...,
+        repeat: int = ...,
+        settling_periods: int = ...,
+    ) -> Path: ...

@@ -1,0 +1,30 @@
+"""Results where version 0.1 had them, ``/v1/COLLECTION/HASH``: redirections, for one version."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter
+from starlette.responses import RedirectResponse
+
+from service.problems import NotFound
+from service.routes.context import Ctx
+from service.routes.results import Key
+from service.schemas.result_kinds import RESULT_KINDS, RESULTS, ResultKind
+
+router = APIRouter(include_in_schema=False)
+
+
+def _redirect(kind: ResultKind, further: str) -> None:
+    """Redirect from results of a kind, or their figures; a hash of another kind is not found."""
+
+    def result(key: Key, context: Ctx) -> RedirectResponse:
+        if context.store.find(key, kind.name) is None:
+            raise NotFound(f"There is no {kind.name} {key!r}. Submit its case again to compute it.")
+        return RedirectResponse(f"{RESULTS}/{key}{further}", status_code=308)
+
+    router.add_api_route(f"/{kind.collection}/{{key}}{further}", result)
+
+
+for _kind in RESULT_KINDS.values():
+    if _kind.collection:
+        _redirect(_kind, "")
+        _redirect(_kind, "/figures")

@@ -1,0 +1,120 @@
+"""Tooth-root stress as people see it: what the roots of one tooth of each gear meet in the mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from service.convert.effect_lines import assumption_lines
+from service.report import palette
+from service.report.facts import facts
+from service.report.figure import Axis, Figure, Line, Panel, Reference, Table, number
+from service.report.page import Headline, Page, Section
+from service.studies.presentation import Presentation
+from service.studies.root_stress.run import GEARS
+
+Json = dict[str, Any]
+_WAY = Axis("position of the tooth's own pair, base pitches (0 = pitch point)")
+_STRESS = Axis("root stress, MPa")
+_HEAD = ("gear", "root", "stress MPa", "position", "tangent deg", "face mm")
+_SERIES = ("tension_mpa", "compression_mpa", "at_tension_peak_mpa", "at_compression_peak_mpa")
+
+
+def root_stress_figure(found: Json) -> Figure:
+    """Draw the passages of both gears: extremes of both roots, and the stress where the peaks are."""
+    return Figure(
+        key="root_stress",
+        title="Tooth-root stress",
+        caption="Solid: the largest principal stress anywhere in the root beside the loaded flank, and the "
+        "smallest one in the other root. Dashed: the stress along the profile at the two places where the "
+        "peaks occur; its range is what fatigue counts. The vertical line is the tension peak.",
+        alternative=f"At {number(found['torque_n_m'], 4)} N m the largest stress is "
+        f"{_said(found['pinion']['tension'])} on the pinion and "
+        f"{_said(found['wheel']['tension'])} on the wheel.",
+        content=tuple(_passage(gear, found[gear]) for gear in GEARS),
+    )
+
+
+def _passage(gear: str, history: Json) -> Panel:
+    """Draw one gear."""
+    way = {name: np.array(values) for name, values in history["passage"].items()}
+    peak = history["tension"]
+    lines = (
+        Line("tension", way["position"], way["tension_mpa"], palette.VERMILLION),
+        Line("at its peak", way["position"], way["at_tension_peak_mpa"], palette.ORANGE, "dash"),
+        Line("compression", way["position"], way["compression_mpa"], palette.BLUE),
+        Line("at its peak", way["position"], way["at_compression_peak_mpa"], palette.SKY, "dash"),
+    )
+    return Panel(_WAY, _STRESS, lines, (Reference(_said(peak), peak["position"]),), title=gear)
+
+
+def _said(peak: Json) -> str:
+    """Return stress and place of a peak in words."""
+    return f"{number(peak['stress_mpa'])} MPa at the {number(peak['tangent_angle_deg'], 2)} degree tangent"
+
+
+def peak_table(found: Json) -> Table:
+    """Return the stress of every root with its error, and where it is."""
+    rows = tuple(
+        (
+            gear,
+            root,
+            f"{peak['stress_mpa']:.4g} ±{peak['error_mpa']:.1g}",
+            f"{peak['position']:.3f}",
+            f"{peak['tangent_angle_deg']:.1f}",
+            f"{peak['face_position_mm']:.2f}",
+        )
+        for gear in GEARS
+        for root in ("tension", "compression")
+        for peak in (found[gear][root],)
+    )
+    return Table("Tooth-root stress", _HEAD, rows)
+
+
+def passage_table(found: Json) -> Table:
+    """Return what one tooth of each gear meets."""
+    rows = []
+    for gear in GEARS:
+        passage = found[gear]["passage"]
+        columns = (passage[name] for name in _SERIES)
+        for place, *values in zip(passage["position"], *columns, strict=True):
+            rows.append((gear, repr(place), *(f"{value:.6g}" for value in values)))
+    return Table("Passage of one tooth", ("gear", "position", *_SERIES), tuple(rows))
+
+
+def page(found: Json) -> Page:
+    """Return the page of the root stress."""
+    heads = tuple(_headline(gear, found[gear]["tension"]) for gear in GEARS)
+    cost = {name: value for name, value in found["receipt"].items() if name != "plan"}
+    sections = (
+        Section("Tooth roots", "", (root_stress_figure(found),), (peak_table(found),)),
+        Section("Cost of the root stress", tables=(facts("Cost", cost),)),
+    )
+    return Page("Tooth-root stress", _point(found), heads, sections)
+
+
+def _headline(gear: str, peak: Json) -> Headline:
+    """Return the largest stress of a gear."""
+    value, error = f"{number(peak['stress_mpa'])} MPa", f"± {peak['error_mpa']:.1g} MPa"
+    return Headline(f"largest root stress, {gear}", value, error)
+
+
+def _point(found: Json) -> str:
+    """Say load and alignment."""
+    return (
+        f"torque {found['torque_n_m']:.6g} N m, normal force {found['normal_force_n']:.6g} N, "
+        f"misalignment {found['misalignment_um']:.4g} um"
+    )
+
+
+def text(found: Json) -> Iterator[Table | str]:
+    """Yield the peaks for people."""
+    yield peak_table(found)
+    yield f"\n{_point(found)}"
+    yield from assumption_lines(found["receipt"])
+    yield f"cost {found['receipt']['cpu_seconds']:.3g} CPU s"
+
+
+PAGE = Presentation(root_stress_figure, page, text, series=passage_table)
