@@ -1,4 +1,4 @@
-"""What all tests share: the recorder of measured figures that docs/validation.md is made from."""
+"""What all tests share: bodies condensed once, and the recorder of figures for docs/validation.md."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 from compiled_once import compile_once
+from condensed_once import condensed_bodies, condensed_once
 from hypothesis import settings
 
 TESTS = Path(__file__).parent
@@ -19,6 +20,8 @@ FIGURES = TESTS.parent / "out" / "validation"
 SERVICES = ("api", "browser", "flow")
 
 RecordFigure = Callable[..., None]
+
+__all__ = ["condensed_bodies", "condensed_once"]
 
 # The same examples on every machine with every change; random ones, and more of them, at night.
 settings.register_profile("suite", deadline=None, derandomize=True, max_examples=24)
