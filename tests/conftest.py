@@ -1,4 +1,4 @@
-"""What all tests share: the recorder of measured figures that docs/validation.md is made from."""
+"""What all tests share: bodies condensed once, and the recorder of figures for docs/validation.md."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ from pathlib import Path
 
 import pytest
 from compiled_once import compile_once
+from condensed_once import condensed_bodies, condensed_once
 from hypothesis import settings
+from quick_tests import is_quick
 
 TESTS = Path(__file__).parent
 FIGURES = TESTS.parent / "out" / "validation"
@@ -20,8 +22,10 @@ SERVICES = ("api", "browser", "flow")
 
 RecordFigure = Callable[..., None]
 
+__all__ = ["condensed_bodies", "condensed_once"]
+
 # The same examples on every machine with every change; random ones, and more of them, at night.
-settings.register_profile("suite", deadline=None, derandomize=True, max_examples=24)
+settings.register_profile("suite", deadline=None, derandomize=True, max_examples=12)
 settings.register_profile("nightly", deadline=None, max_examples=640)
 settings.load_profile("suite")
 
@@ -38,8 +42,17 @@ def pytest_configure() -> None:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Let `scripts/test --quick` choose."""
+    what = "tests whose file imports nothing that meshes, marches in time, draws or serves"
+    parser.addoption("--quick", action="store_true", help=what)
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Let whole services come last: what all their processes need is compiled by then, once."""
+    if config.getoption("quick"):
+        config.hook.pytest_deselected(items=[item for item in items if not is_quick(item)])
+        items[:] = filter(is_quick, items)
     items.sort(key=lambda item: item.path.relative_to(TESTS).parts[0] in SERVICES)
 
 

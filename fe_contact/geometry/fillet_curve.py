@@ -52,13 +52,19 @@ class FilletCurve(ABC):
 
     def angle_at_arc(self, start: float, arc: FloatArray) -> FloatArray:
         """Tool angles at which the arc length from `start` equals `arc` (Newton from a table)."""
-        if arc.size == 0:
-            return arc
-        angle = np.interp(arc, *_arc_table(self, start))
-        for _ in range(4):
-            slope = np.maximum(self.speed(angle), np.finfo(float).tiny)
-            angle = np.clip(angle - (self.arc_length(start, angle) - arc) / slope, start, 0.5 * np.pi)
-        return np.asarray(angle, dtype=float)
+        return _angles(self, start, arc.tobytes()).reshape(arc.shape)
+
+
+@lru_cache(maxsize=64)
+def _angles(curve: FilletCurve, start: float, arcs: bytes) -> FloatArray:
+    """Return the tool angles at arc lengths; every tooth of a mesh is sampled at the same ones."""
+    arc = np.frombuffer(arcs)
+    angle = np.interp(arc, *_arc_table(curve, start))
+    for _ in range(4 if arc.size else 0):
+        slope = np.maximum(curve.speed(angle), np.finfo(float).tiny)
+        angle = np.clip(angle - (curve.arc_length(start, angle) - arc) / slope, start, 0.5 * np.pi)
+    angle.flags.writeable = False
+    return np.asarray(angle, dtype=float)
 
 
 @lru_cache(maxsize=16)

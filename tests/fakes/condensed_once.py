@@ -1,8 +1,8 @@
 """Bodies are condensed once in a run of the tests: what their laws are about comes after them.
 
-Analyses that are given no cache condense both gears each time, which is most of what a small one costs. Files
-that name `condensed_once` in their conftest share the results, each still said to be computed. The laws of
-condensing itself are in tests/unit/fe_contact/compliance, which does not.
+Analyses that are given no cache condense both gears each time, which is most of what a small one costs. All
+tests share the results, each still said to be computed. The laws of condensing itself are in
+tests/unit/fe_contact/compliance, whose conftest has a `condensed_once` that shares nothing.
 """
 
 from __future__ import annotations

@@ -6,8 +6,12 @@ import pytest
 
 from service.hardcases import HARD_SCENES, HardScene
 
-LONG = ("ten_million_",)
-"""Scenes of the nightly run alone, by how their names begin."""
+LONG = ("ten_million_", "job_past_deadline", "job_out_of_memory", "worker_killed_at_every_attempt")
+"""How scenes begin that the nightly run has alone.
+
+tests/unit/service/test_job_scheduler.py shows on a fake process what ends those jobs and how it is told, the
+other scenes of jobs what one that ends badly leaves behind.
+"""
 SCENES = [
     pytest.param(scene, marks=[pytest.mark.nightly] * scene.name.startswith(LONG), id=scene.name)
     for scene in HARD_SCENES

@@ -1,13 +1,10 @@
 """Fake processes for the tests of the service, importable here and in the workers."""
 
-from condensed_once import condensed_bodies, condensed_once
 from postgres_server import database_url, postgres
 from s3_server import s3_objects, s3_url
 from service_surroundings import quiet_log, unhurried_readiness, workers_find_fakes
 
 __all__ = [
-    "condensed_bodies",
-    "condensed_once",
     "database_url",
     "postgres",
     "quiet_log",

@@ -37,7 +37,7 @@ def slice_pair(**modification: float) -> GearPair:
     return GearPair(gear, dataclasses.replace(gear, modification=FlankModification()), 80e-3)
 
 
-COUNT = 400
+COUNT = 200
 
 
 def uncoupled(pair: GearPair, *gaps: object) -> tuple[float, np.ndarray]:

@@ -14,6 +14,11 @@ from fe_contact.mesh import MeshRecipe
 MakeGear = Callable[..., Gear]
 
 
+@pytest.fixture(scope="module", autouse=True)
+def condensed_once() -> None:
+    """Condense each time: that is what these tests are about."""
+
+
 @pytest.fixture(scope="session")
 def make_gear() -> MakeGear:
     """Make a gear of module 4 mm whose tooth sectors reach down to the bore."""

@@ -106,7 +106,7 @@ def swept(profile: ToothProfile) -> FloatArray:
     """All places of the cutter's flank in the ring's tooth frame while both roll."""
     cutter, tool = profile.gear.cutter, cutter_flank(profile)
     places = []
-    for turn in np.linspace(-0.7, 0.7, 1401):
+    for turn in np.linspace(-0.7, 0.7, 701):
         placed = turned(tool, turn) + np.array([0.0, cutter.center_distance])
         places.append(turned(placed, math.pi / profile.gear.teeth - turn * cutter.ratio))
     return np.concatenate(places)

@@ -26,6 +26,11 @@ from fe_contact.planning.run_log import corrections, record
 LEVELS = ("draft", "standard", "fine")
 
 
+@pytest.fixture(scope="module", autouse=True)
+def condensed_once() -> None:
+    """Condense each time: what that costs is what is predicted and logged."""
+
+
 def pair(helix: float = 0.0, width: float = 8e-3, teeth: int = 20) -> GearPair:
     gear = Gear(
         teeth=teeth, normal_module=2e-3, face_width=width, bore_diameter=teeth * 1e-3, helix_angle=helix
