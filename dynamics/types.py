@@ -15,7 +15,7 @@ Json = dict[str, Any]
 
 
 class RunStatus(IntEnum):
-    """How a time integration ended, stored with its result."""
+    """The end of a time integration, stored with its result."""
 
     COMPLETED = 0
     STEP_FLOOR = 1  # the step control needs less than the smallest step allowed
@@ -31,7 +31,7 @@ class RunStatus(IntEnum):
 
 
 class StaticStatus(IntEnum):
-    """How the search for the static equilibrium ended."""
+    """The end of the search for the static equilibrium."""
 
     CONVERGED = 0
     ITERATION_LIMIT = 1  # Newton ran out of iterations

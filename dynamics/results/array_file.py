@@ -26,7 +26,7 @@ Result = TypeVar("Result")
 
 @dataclass(frozen=True)
 class Stored:
-    """How one array is stored: its dimensions, its SI unit, what it is."""
+    """The storage of one array: its dimensions, its SI unit, its description."""
 
     dimensions: tuple[str, ...]
     units: str
@@ -79,9 +79,9 @@ def read_fields(kind: type[Result], path: Path, schema: str, stored: Mapping[str
     # what HDF5 raises on damaged bytes is not one class
     except (OSError, ValueError, KeyError, RuntimeError, TypeError, AttributeError, IndexError) as error:
         raise ResultError(f"{path}: not a readable netCDF-4 file ({error})") from error
-    found = f"{attributes.get('schema')} {attributes.get('schema_version')}"
-    if found != f"{schema} {SCHEMA_VERSION}":
-        raise ResultError(f"{path}: schema is {found}, expected {schema} {SCHEMA_VERSION}")
+    stated = f"{attributes.get('schema')} {attributes.get('schema_version')}"
+    if stated != f"{schema} {SCHEMA_VERSION}":
+        raise ResultError(f"{path}: schema is {stated}, expected {schema} {SCHEMA_VERSION}")
     try:
         documents = str(attributes[DOCUMENTS])
         content = json.loads(documents)
@@ -135,11 +135,11 @@ def _plain(value: Any) -> Any:
 
 def _digest(documents: str, arrays: Mapping[str, Any]) -> str:
     """SHA-256 over the documents and all arrays in their order."""
-    found = hashlib.sha256(documents.encode())
+    hasher = hashlib.sha256(documents.encode())
     for name, values in arrays.items():
-        found.update(name.encode())
-        found.update(np.ascontiguousarray(values).tobytes())
-    return found.hexdigest()
+        hasher.update(name.encode())
+        hasher.update(np.ascontiguousarray(values).tobytes())
+    return hasher.hexdigest()
 
 
 def _publish(part: Path, path: Path) -> None:
