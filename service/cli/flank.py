@@ -24,10 +24,10 @@ def run_flank(file: Path, output: Path, point: dict[str, float | None], *, as_js
     check_netcdf_output(output)
     check_case(case, whole_table=False)
     with progress_bar() as report:
-        found = phrased_flanks(flanks_of(case, cache_home() / "compliance", report), case)
-    warn(found.metadata.warnings)
-    found.to_netcdf(output)
-    figures = {"file": str(output), **flank_json(found)}
+        flanks = phrased_flanks(flanks_of(case, cache_home() / "compliance", report), case)
+    warn(flanks.metadata.warnings)
+    flanks.to_netcdf(output)
+    figures = {"file": str(output), **flank_json(flanks)}
     if as_json:
         print_json(figures)
     else:

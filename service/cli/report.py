@@ -27,7 +27,7 @@ from service.schemas.flank import FlankPoint
 def run_report(
     files: Sequence[Path], output: Path, images: Path | None, *, flank: bool, as_json: bool
 ) -> None:
-    """Write the page, and the pictures if asked; compute the flank results if asked."""
+    """Write the page; draw the pictures and compute the flank results if requested."""
     for file in files:
         if not file.is_file():
             raise BadInput.of("file", str(file), "an STE database, flank results or a run", "Check the path.")

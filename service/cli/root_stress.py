@@ -38,29 +38,29 @@ def run_root_stress(
     if image is not None:
         image.write_bytes(png(root_stress_figure(stress)))
     warn(phrased(stress.warnings, case_field))
-    found = root_stress_json(stress)
+    facts = root_stress_json(stress)
     if as_json:
-        print_json(found)
+        print_json(facts)
     elif as_csv:
-        _write_csv(found)
+        _write_csv(facts)
     else:
-        _show(found)
+        _show(facts)
 
 
-def _show(found: dict[str, Any]) -> None:
+def _show(facts: dict[str, Any]) -> None:
     """Print the peaks for people."""
     out = console()
     heads = ["gear", "root", "stress MPa", "position", "tangent deg", "face mm"]
-    rows = [_row(gear, root, found[gear][root]) for gear in GEARS for root in ("tension", "compression")]
+    rows = [_row(gear, root, facts[gear][root]) for gear in GEARS for root in ("tension", "compression")]
     out.print(table(heads, rows, "Tooth-root stress"))
     out.print(
-        f"\ntorque {found['torque_n_m']:.6g} N m, normal force {found['normal_force_n']:.6g} N, "
-        f"misalignment {found['misalignment_um']:.4g} um",
+        f"\ntorque {facts['torque_n_m']:.6g} N m, normal force {facts['normal_force_n']:.6g} N, "
+        f"misalignment {facts['misalignment_um']:.4g} um",
         highlight=False,
     )
-    for line in assumption_lines(found["receipt"]):
+    for line in assumption_lines(facts["receipt"]):
         out.print(line, highlight=False)
-    out.print(f"cost {found['receipt']['cpu_seconds']:.3g} CPU s", highlight=False)
+    out.print(f"cost {facts['receipt']['cpu_seconds']:.3g} CPU s", highlight=False)
 
 
 def _row(gear: str, root: str, peak: dict[str, float]) -> list[str]:
@@ -75,11 +75,11 @@ def _row(gear: str, root: str, peak: dict[str, float]) -> list[str]:
     ]
 
 
-def _write_csv(found: dict[str, Any]) -> None:
+def _write_csv(facts: dict[str, Any]) -> None:
     """Print what one tooth of each gear meets, as CSV."""
     writer = csv.writer(sys.stdout, lineterminator="\n")
     writer.writerow(["gear", "position", *_SERIES])
     for gear in GEARS:
-        passage = found[gear]["passage"]
+        passage = facts[gear]["passage"]
         lines = zip(passage["position"], *(passage[name] for name in _SERIES), strict=True)
-        writer.writerows([gear, repr(place), *(f"{v:.6g}" for v in values)] for place, *values in lines)
+        writer.writerows([gear, repr(position), *(f"{v:.6g}" for v in values)] for position, *values in lines)

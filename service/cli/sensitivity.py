@@ -78,13 +78,13 @@ def _numbers(option: str, text: str, largest: float) -> tuple[float, ...]:
     """Values of an option, increasing."""
     bound = f"increasing numbers from {-largest:g} to {largest:g}, separated by commas"
     try:
-        found = tuple(float(part) for part in text.split(","))
+        numbers = tuple(float(part) for part in text.split(","))
     except ValueError:
         raise BadInput.of(option, text, bound, "For example 0,30,60.") from None
-    inside = all(abs(value) <= largest for value in found)  # nan is not
-    if not inside or any(b <= a for a, b in pairwise(found)):
+    inside = all(abs(value) <= largest for value in numbers)  # nan is not
+    if not inside or any(b <= a for a, b in pairwise(numbers)):
         raise BadInput.of(option, text, bound, "For example 0,30,60.")
-    return found
+    return numbers
 
 
 def _targets(output: Path) -> list[Path]:
@@ -121,9 +121,9 @@ def _csv(studies: Sequence[PairStudy], target: Path) -> None:
     """One line per pair, model and deviation."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    found = sensitivity_table(studies)
-    writer.writerow(found.head)
-    writer.writerows(found.rows)
+    content = sensitivity_table(studies)
+    writer.writerow(content.head)
+    writer.writerows(content.rows)
     target.write_text(text.getvalue(), encoding="utf-8")
 
 
@@ -145,7 +145,7 @@ _WRITERS: dict[str, Callable[[Sequence[PairStudy], Path], None]] = {
 def _show(studies: Sequence[PairStudy], targets: Sequence[Path]) -> None:
     """Print the table for people."""
     out = console()
-    found = sensitivity_table(studies)
-    out.print(table(found.head, found.rows, found.caption))
+    content = sensitivity_table(studies)
+    out.print(table(content.head, content.rows, content.caption))
     for target in targets:
         out.print(f"written to {target}", highlight=False)

@@ -30,46 +30,46 @@ Json = dict[str, Any]
 Writer = Callable[[Any, Path], object]
 
 
-def run_study(study: Study, given: Json) -> None:
-    """Run a study as its verb was called; `given` holds argument and options by their names."""
-    subject, folder = _read(study, given[study.argument])
-    inputs = _inputs(study, given)
-    targets = _targets(study, given["output"])
+def run_study(study: Study, options: Json) -> None:
+    """Run a study as its verb was called; `options` holds argument and options by their names."""
+    subject, folder = _read(study, options[study.argument])
+    inputs = _inputs(study, options)
+    targets = _targets(study, options["output"])
     study.run.check(subject, inputs)
-    executor = ExecutorChoice(given.get("workers", 1), given.get("dask"))
+    executor = ExecutorChoice(options.get("workers", 1), options.get("dask"))
     stopping = until_interrupted if study.run.interruptible else nullcontext
     with open_executor(executor) as workers, progress_bar() as report, stopping() as cancel:
         made: Any = subject
         if not isinstance(subject, Case):
-            made = scene_with_tables(subject, folder, given["service"], report)
-        found = study.run.compute(made, inputs, Means(cache_home(), report, workers, cancel))
+            made = scene_with_tables(subject, folder, options["service"], report)
+        result = study.run.compute(made, inputs, Means(cache_home(), report, workers, cancel))
         interrupted = cancel is not None and cancel()
     for target in targets:
         target.parent.mkdir(exist_ok=True)
-        _writers(study)[target.suffix](found, target)
+        _writers(study)[target.suffix](result, target)
         stamp(target, warnings_so_far())
-    if given["json"]:
-        print_json(_written(study, targets) | study.run.facts(found))
+    if options["json"]:
+        print_json(_written(study, targets) | study.run.facts(result))
     else:
-        _show(study, found, targets)
+        _show(study, result, targets)
     if interrupted:
         raise KeyboardInterrupt("interrupted. What is above is the best of what was computed so far.")
-    if failure := study.run.failure(found):
+    if failure := study.run.failure(result):
         raise JobFailed(failure)
 
 
-def _inputs(study: Study, given: Json) -> Any:
+def _inputs(study: Study, options: Json) -> Any:
     """Return the inputs, from their file or the options that were given."""
     if study.from_file:
-        return read_model(study.inputs, given["study"])
-    return validated(study.inputs, _fields(study, given))
+        return read_model(study.inputs, options["study"])
+    return validated(study.inputs, _fields(study, options))
 
 
-def _fields(study: Study, given: Json) -> Json:
+def _fields(study: Study, options: Json) -> Json:
     """Return the fields of the inputs, from the options that were given."""
     fields = {}
     for name, field in study.inputs.model_fields.items():
-        value, spelling = given[name], spelling_of(field)
+        value, spelling = options[name], spelling_of(field)
         if spelling and spelling.value is not None:
             value = spelling.value if value else field.default
         elif value is not None and (kind := item_type(field)):
@@ -106,8 +106,8 @@ def _writers(study: Study) -> dict[str, Writer]:
     return {
         ".nc": run.save,
         ".json": run.save_facts,
-        ".png": lambda found, file: file.write_bytes(png(page.figure(found))),
-        ".html": lambda found, file: write_whole(page.page(found), file, warnings=messages()),
+        ".png": lambda result, file: file.write_bytes(png(page.figure(result))),
+        ".html": lambda result, file: write_whole(page.page(result), file, warnings=messages()),
         **run.writers,
     }
 
@@ -120,10 +120,10 @@ def _written(study: Study, targets: list[Path]) -> Json:
     return {"written": names[0], "file": names[0]} if names else {}
 
 
-def _show(study: Study, found: Any, targets: list[Path]) -> None:
+def _show(study: Study, result: Any, targets: list[Path]) -> None:
     """Print tables and lines for people."""
     out = console()
-    for part in study.page.text(found):
+    for part in study.page.text(result):
         if isinstance(part, str):
             out.print(part, highlight=False)
         else:

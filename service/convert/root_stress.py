@@ -25,7 +25,7 @@ def root_stress_of(case: Case, cache: Path | None, progress: Progress = silent) 
     Raises
     ------
     BadInput
-        No such pair, or a wish that no plan can meet.
+        No such pair, or a request that no plan can meet.
     JobFailed
         No mesh, or positions without a solution.
     """
@@ -34,15 +34,15 @@ def root_stress_of(case: Case, cache: Path | None, progress: Progress = silent) 
         return root_stress(gear_pair(case), operating_point(case), analysis_options(case), run)
 
 
-def root_stress_json(found: RootStress) -> Json:
+def root_stress_json(stress: RootStress) -> Json:
     """Return the peaks, what one tooth of each gear meets, and the receipt."""
     return {
-        "torque_n_m": found.torque,
-        "normal_force_n": found.normal_force,
-        "misalignment_um": found.misalignment / UM,
-        "center_distance_change_mm": found.center_distance_change / MM,
-        **{gear: _gear_json(getattr(found, gear)) for gear in GEARS},
-        "receipt": found.receipt,
+        "torque_n_m": stress.torque,
+        "normal_force_n": stress.normal_force,
+        "misalignment_um": stress.misalignment / UM,
+        "center_distance_change_mm": stress.center_distance_change / MM,
+        **{gear: _gear_json(getattr(stress, gear)) for gear in GEARS},
+        "receipt": stress.receipt,
     }
 
 

@@ -22,7 +22,7 @@ Json = dict[str, Any]
 
 @dataclass(frozen=True)
 class Deviations:
-    """What is varied: misalignment in um, center distance in per cent of the nominal one."""
+    """The varied values: misalignment in um, center distance in per cent of the nominal one."""
 
     misalignment_um: tuple[float, ...]
     center_distance_change_percent: tuple[float, ...]

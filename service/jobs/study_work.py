@@ -31,8 +31,8 @@ def study_flanks(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
     """Compute the flank results of a case of one load and one alignment."""
     case = Case.model_validate_json(json.dumps(order.inputs["case"]))
     file = order.workspace / "flanks.nc"
-    found = flanks_of(case, order.data_directory / "compliance", progress)
-    phrased_flanks(found, case).to_netcdf(file)
+    flanks = flanks_of(case, order.data_directory / "compliance", progress)
+    phrased_flanks(flanks, case).to_netcdf(file)
     return (Product(order.key, "flanks", file),)
 
 
@@ -89,9 +89,9 @@ def _work(study: Study, order: WorkOrder, progress: Progress) -> tuple[Product, 
     varied = {name: value for name, value in order.inputs.items() if name not in ("case", "scene")}
     inputs = study.inputs.model_validate_json(json.dumps(varied))
     with cluster_of(order) as workers:
-        found = study.run.compute(subject, inputs, Means(order.data_directory, progress, workers))
+        result = study.run.compute(subject, inputs, Means(order.data_directory, progress, workers))
     file = order.workspace / f"{study.kind}{suffix_of(study.kind)}"
-    study.run.save(found, file)
+    study.run.save(result, file)
     return (*products, Product(order.key, study.kind, file, warnings))
 
 

@@ -1,4 +1,4 @@
-"""What the page holds, from whatever was read."""
+"""The content of the page, by what was read."""
 
 from __future__ import annotations
 
@@ -69,14 +69,14 @@ def _title(read: Inputs) -> str:
         if read.studies or read.pages:
             return "Studies of gear pairs" if read.pages else "Sensitivity of gear pairs"
         return "Dynamics of geared shafts"
-    one, other = facts.teeth
-    return f"Gear pair {one}/{other}, internal" if facts.internal else f"Gear pair {one}/{other}"
+    pinion, wheel = facts.teeth
+    return f"Gear pair {pinion}/{wheel}, internal" if facts.internal else f"Gear pair {pinion}/{wheel}"
 
 
 def pair_facts(read: Inputs) -> PairFacts | None:
     """Return the facts of the pair, if anything but a run was read."""
-    found = read.database or (read.flanks.scene if read.flanks is not None else None)
-    return None if found is None else found.facts
+    source = read.database or (read.flanks.scene if read.flanks is not None else None)
+    return None if source is None else source.facts
 
 
 def _lead(read: Inputs) -> str:

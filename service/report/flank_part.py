@@ -1,4 +1,4 @@
-"""What the page says of flank results: pressure over the flanks, contact lines, load over the face."""
+"""The flank results on the page: pressure over the flanks, contact lines, load over the face."""
 
 from __future__ import annotations
 
@@ -13,30 +13,30 @@ from service.report.page import Headline, Section
 from service.report.static_part import case_tables, effects_section
 
 
-def flank_headlines(found: LoadDistribution) -> tuple[Headline, ...]:
+def flank_headlines(flanks: LoadDistribution) -> tuple[Headline, ...]:
     """Largest pressure and K_Hbeta."""
-    at = operating_point(found)
-    headlines = [Headline("largest flank pressure", f"{number(1e-6 * float(found.pressure.max()))} MPa", at)]
-    if found.face_position.size > 1:
-        factor = found.mean_face_load_factor
+    at = operating_point(flanks)
+    headlines = [Headline("largest flank pressure", f"{number(1e-6 * float(flanks.pressure.max()))} MPa", at)]
+    if flanks.face_position.size > 1:
+        factor = flanks.mean_face_load_factor
         headlines.append(Headline("K_Hbeta over the cycle", number(factor, 3), at))
     return tuple(headlines)
 
 
-def flank_results_section(found: LoadDistribution) -> tuple[Section, ...]:
+def flank_results_section(flanks: LoadDistribution) -> tuple[Section, ...]:
     """Show the flanks; one slice has nothing to show over the face."""
-    figures: tuple[Figure, ...] = (contact_pattern_figure(found),)
-    text = f"At {operating_point(found)}, {found.position.size} positions of the mesh cycle."
-    if found.face_position.size > 1:
-        figures += (contact_lines(found), line_load_figure(found), load_centroid_figure(found))
+    figures: tuple[Figure, ...] = (contact_pattern_figure(flanks),)
+    text = f"At {operating_point(flanks)}, {flanks.position.size} positions of the mesh cycle."
+    if flanks.face_position.size > 1:
+        figures += (contact_lines(flanks), line_load_figure(flanks), load_centroid_figure(flanks))
     else:
         text += " The model is plane: what is shown is the same over the whole face."
     return (Section("Flanks", text, figures=figures),)
 
 
-def flank_making(found: LoadDistribution, *, alone: bool) -> tuple[Section, ...]:
+def flank_making(flanks: LoadDistribution, *, alone: bool) -> tuple[Section, ...]:
     """Show what the flank results cost; `alone`, without their database, also effects and case."""
-    metadata = found.metadata
+    metadata = flanks.metadata
     if not metadata.receipt:
         return ()
     cost = {name: value for name, value in metadata.receipt.items() if name != "plan"}
@@ -50,11 +50,11 @@ def flank_making(found: LoadDistribution, *, alone: bool) -> tuple[Section, ...]
     return section, effects, Section("Case", tables=case_tables(metadata.case))
 
 
-def flank_alarms(found: LoadDistribution, database: SteDatabase | None) -> tuple[str, ...]:
+def flank_alarms(flanks: LoadDistribution, database: SteDatabase | None) -> tuple[str, ...]:
     """Say loudly if database and flank results are of different pairs."""
     if database is None:
         return ()
-    mine, theirs = found.scene.facts, database.facts
+    mine, theirs = flanks.scene.facts, database.facts
     same = mine.teeth == theirs.teeth and all(
         abs(getattr(mine, name) - getattr(theirs, name)) <= 1e-9 * getattr(theirs, name)
         for name in ("base_pitch", "face_width")
@@ -62,9 +62,9 @@ def flank_alarms(found: LoadDistribution, database: SteDatabase | None) -> tuple
     return () if same else ("The flank results and the STE database are of different gear pairs.",)
 
 
-def operating_point(found: LoadDistribution) -> str:
+def operating_point(flanks: LoadDistribution) -> str:
     """Say load and alignment."""
-    scene = found.scene
+    scene = flanks.scene
     parts = [f"{number(scene.torque, 4)} N m"]
     if scene.misalignment:
         parts.append(f"misalignment {number(1e6 * scene.misalignment, 3)} µm")

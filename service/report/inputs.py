@@ -1,4 +1,4 @@
-"""What a report is made from: a database, flank results, studies, a run; the files say which they are."""
+"""The inputs of a report: a database, flank results, studies, a run; the files say which they are."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ _FIELDS = {
 
 @dataclass(frozen=True)
 class Inputs:
-    """What was read; at least one of them.
+    """The results that were read; at least one of them.
 
     `pages` are those of studies; `warnings` are those of all files, in words.
     """
@@ -63,7 +63,7 @@ class Inputs:
     def only_page(self) -> Page | None:
         """The page of a study, if nothing else was read."""
         others = (self.database, self.flanks, self.run)
-        alone = len(self.pages) == 1 and not self.studies and all(one is None for one in others)
+        alone = len(self.pages) == 1 and not self.studies and all(other is None for other in others)
         return self.pages[0] if alone else None
 
 
@@ -85,7 +85,7 @@ def read_inputs(files: Sequence[Path]) -> Inputs:
             advice = "One page shows one file of each kind."
             raise BadInput.of("file", str(file), f"the only {kind}", advice)
         (read if kind in _FIELDS else pages)[kind] = content
-    warnings = tuple(dict.fromkeys(one["message"] for file in files for one in stamped(file)))
+    warnings = tuple(dict.fromkeys(warning["message"] for file in files for warning in stamped(file)))
     fields = {_FIELDS[kind]: content for kind, content in read.items()}
     return Inputs(**fields, pages=tuple(pages.values()), warnings=warnings)
 

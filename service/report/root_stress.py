@@ -1,4 +1,4 @@
-"""What the roots of one tooth of each gear meet on its way through the mesh."""
+"""Stress in the roots of one tooth of each gear on its way through the mesh."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _WAY = Axis("position of the tooth's own pair, base pitches (0 = pitch point)")
 _STRESS = Axis("root stress, MPa")
 
 
-def root_stress_figure(found: RootStress) -> Figure:
+def root_stress_figure(stress: RootStress) -> Figure:
     """Draw the passages of both gears: extremes of both roots, and the stress where the peaks are."""
     return Figure(
         key="root_stress",
@@ -22,10 +22,10 @@ def root_stress_figure(found: RootStress) -> Figure:
         caption="Solid: the largest principal stress anywhere in the root beside the loaded flank, and the "
         "smallest one in the other root. Dashed: the stress along the profile at the two places where the "
         "peaks occur; its range is what fatigue counts. The vertical line is the tension peak.",
-        alternative=f"At {number(found.torque, 4)} N m the largest stress is "
-        f"{_said(found.pinion.peak('tension'))} on the pinion and "
-        f"{_said(found.wheel.peak('tension'))} on the wheel.",
-        content=(_passage("pinion", found.pinion), _passage("wheel", found.wheel)),
+        alternative=f"At {number(stress.torque, 4)} N m the largest stress is "
+        f"{_said(stress.pinion.peak('tension'))} on the pinion and "
+        f"{_said(stress.wheel.peak('tension'))} on the wheel.",
+        content=(_passage("pinion", stress.pinion), _passage("wheel", stress.wheel)),
     )
 
 
@@ -38,8 +38,8 @@ def _passage(name: str, history: RootStressHistory) -> Panel:
         Line("compression", way.position, _MPA * way.compression, palette.BLUE),
         Line("at its peak", way.position, _MPA * way.at_compression_peak, palette.SKY, "dash"),
     )
-    place = peak.position % 1.0 + peak.pair
-    return Panel(_WAY, _STRESS, lines, (Reference(_said(peak), place),), title=name)
+    position = peak.position % 1.0 + peak.pair
+    return Panel(_WAY, _STRESS, lines, (Reference(_said(peak), position),), title=name)
 
 
 def _said(peak: RootPeak) -> str:

@@ -29,11 +29,11 @@ def _answers(kind: ResultKind) -> dict[int | str, dict[str, Any]]:
     """Return the OpenAPI entries of a stored result."""
     file = {"schema": {"type": "string", "format": "binary"}}
     content = {JSON: {"schema": {"type": "object"}}} | ({} if kind.media_type == JSON else {NETCDF: file})
-    found: dict[int | str, dict[str, Any]] = {
+    answers: dict[int | str, dict[str, Any]] = {
         200: {"description": "The result", "content": content},
         304: {"description": "Not modified"},
     }
-    return found | documented(404, 422, 500)
+    return answers | documented(404, 422, 500)
 
 
 def _add_result(kind: ResultKind) -> None:
@@ -57,7 +57,7 @@ def _add_result(kind: ResultKind) -> None:
 
 
 def _figures(context: Context, stored: StoredResult) -> dict[str, Any]:
-    """Return what a stored file says; the libraries that read it are loaded when they are asked."""
+    """Return the figures of a stored file; the libraries that read it are loaded when they are needed."""
     if stored.kind == "database":
         with LOADING:
             from service.convert.answers import metadata_json  # noqa: PLC0415 (start-up time)

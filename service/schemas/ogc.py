@@ -42,7 +42,7 @@ class Conformance(BaseModel):
 
 
 class ProcessSummary(BaseModel):
-    """What a process is."""
+    """The description of a process."""
 
     id: str
     title: str
@@ -100,7 +100,7 @@ class JobList(BaseModel):
 
 
 class ResultReference(BaseModel):
-    """Where a result is."""
+    """The address of a result."""
 
     href: str
     type: str

@@ -38,13 +38,13 @@ class SensitivityInputs(DeviationsInput):
 
 
 class OfCase(BoundaryModel):
-    """What is studied: a case."""
+    """The subject of a study: a case."""
 
     case: Case = Field(description="The case, as in a case file")
 
 
 class OfScene(BoundaryModel):
-    """What is studied: a scene."""
+    """The subject of a study: a scene."""
 
     scene: SceneInput = Field(description="The scene, with cases written out or databases by hash")
 

@@ -43,10 +43,10 @@ def _command(study: Study) -> Any:
 def _verb(study: Study) -> Callable[..., None]:
     """Return the function of a verb, with the signature that it is called by."""
 
-    def verb(**given: Any) -> None:
+    def verb(**options: Any) -> None:
         from service.cli.study import run_study  # noqa: PLC0415 (start-up time)
 
-        run_study(study, given)
+        run_study(study, options)
 
     verb.__doc__ = study.description
     verb.__signature__ = Signature(list(_parameters(study)))  # type: ignore[attr-defined]
@@ -62,8 +62,8 @@ def _parameters(study: Study) -> Iterator[Parameter]:
         yield _parameter("study", Annotated[Path, typer.Argument(help="File of what is varied and how.")])
     else:
         yield from (_option(name, field) for name, field in study.inputs.model_fields.items())
-    place = "Folder, or a file" if study.folder else "File to write,"
-    target = typer.Option("-o", "--output", help=f"{place} ending in one of {', '.join(study.endings)}.")
+    form = "Folder, or a file" if study.folder else "File to write,"
+    target = typer.Option("-o", "--output", help=f"{form} ending in one of {', '.join(study.endings)}.")
     yield _parameter("output", Annotated[Path | None, target], None)
     if study.shared:
         yield _parameter("workers", TaskWorkers, 1)
