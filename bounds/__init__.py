@@ -1,4 +1,4 @@
-"""What a field accepts and what practice knows of it, as data: bounds, quantities, checks, findings.
+"""The declaration of fields as data: bounds, quantities, checks, findings.
 
 Both libraries raise their input errors through this package, which knows neither of them. It depends on numpy
 alone.

@@ -82,14 +82,14 @@ class Checks:
     def declared_fields(self, thing: Any) -> None:
         """Check the declared fields of a dataclass, whatever the others are; what is left out passes."""
         defaults = {entry.name: entry.default for entry in fields(thing)}
-        for field, what in declarations(type(thing)).items():
-            value, advice = getattr(thing, field), SiNote(f"In {what.unit}, for example {what.example}.")
+        for field, fact in declarations(type(thing)).items():
+            value, advice = getattr(thing, field), SiNote(f"In {fact.unit}, for example {fact.example}.")
             if value is None and defaults[field] is None:
                 continue
-            if isinstance(what.bound, Choice):
-                self.one_of(field, value, what.bound.names)
-            elif isinstance(what.bound, Bound):
-                self.in_bound(field, value, what.bound, advice if what.unit else "")
+            if isinstance(fact.bound, Choice):
+                self.one_of(field, value, fact.bound.names)
+            elif isinstance(fact.bound, Bound):
+                self.in_bound(field, value, fact.bound, advice if fact.unit else "")
 
     def increasing(
         self, field: str, values: Sequence[float] | FloatArray, suggestion: Words = ""

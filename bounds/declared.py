@@ -15,7 +15,7 @@ Thing = TypeVar("Thing")
 
 
 class Kind(StrEnum):
-    """What a field measures."""
+    """The kind of quantity of a field."""
 
     AMOUNT = auto()
     """A small depth without a sign."""
@@ -48,7 +48,7 @@ class Direction(Flag):
 
 @dataclass(frozen=True)
 class Declared:
-    """What a field of a dataclass is.
+    """The declaration of a field of a dataclass.
 
     Attributes
     ----------
@@ -73,26 +73,26 @@ class Declared:
     along: Direction = Direction.NONE
 
 
-def declared(default: Any, what: Declared) -> Any:
+def declared(default: Any, declaration: Declared) -> Any:
     """Return the field of a dataclass with its default and its declaration; left out where that is None."""
-    return field(default=default, metadata={Declared: what})
+    return field(default=default, metadata={Declared: declaration})
 
 
-def required(what: Declared) -> Any:
+def required(declaration: Declared) -> Any:
     """Return the field of a dataclass without a default, with its declaration."""
-    return declared(MISSING, what)
+    return declared(MISSING, declaration)
 
 
 def described(kind: type[Thing]) -> type[Thing]:
     """Append to the docstring of a dataclass what its declared fields are; a decorator."""
-    entries = (f"{name} : {_unit(what)}\n    {what.description}" for name, what in declarations(kind).items())
+    entries = (f"{name} : {_unit(fact)}\n    {fact.description}" for name, fact in declarations(kind).items())
     kind.__doc__ = "\n".join((f"{kind.__doc__}\n", "Attributes", "----------", *entries, ""))
     return kind
 
 
-def _unit(what: Declared) -> str:
+def _unit(declaration: Declared) -> str:
     """Write the unit of a field, or what it is in place of one."""
-    return what.unit or ("name" if isinstance(what.bound, Choice) else "1")
+    return declaration.unit or ("name" if isinstance(declaration.bound, Choice) else "1")
 
 
 def declarations(kind: type[Any]) -> Mapping[str, Declared]:
@@ -103,5 +103,5 @@ def declarations(kind: type[Any]) -> Mapping[str, Declared]:
 @cache
 def _declarations(kind: Any) -> Mapping[str, Declared]:
     """Look through a dataclass once."""
-    found = {entry.name: entry.metadata[Declared] for entry in fields(kind) if Declared in entry.metadata}
-    return MappingProxyType(found)
+    entries = {entry.name: entry.metadata[Declared] for entry in fields(kind) if Declared in entry.metadata}
+    return MappingProxyType(entries)

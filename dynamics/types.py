@@ -10,7 +10,7 @@ __all__ = ["BoolArray", "FloatArray", "IntArray", "Json", "RunStatus", "StaticSt
 
 
 class RunStatus(IntEnum):
-    """How a time integration ended, stored with its result."""
+    """The end of a time integration, stored with its result."""
 
     COMPLETED = 0
     STEP_FLOOR = 1  # the step control needs less than the smallest step allowed
@@ -26,7 +26,7 @@ class RunStatus(IntEnum):
 
 
 class StaticStatus(IntEnum):
-    """How the search for the static equilibrium ended."""
+    """The end of the search for the static equilibrium."""
 
     CONVERGED = 0
     ITERATION_LIMIT = 1  # Newton ran out of iterations

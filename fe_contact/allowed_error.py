@@ -1,4 +1,4 @@
-"""What error a caller allows: a part of the quantity or, where that is less, an absolute one."""
+"""The error a caller allows: a part of the quantity or, where that is less, an absolute one."""
 
 from __future__ import annotations
 

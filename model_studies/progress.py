@@ -1,4 +1,4 @@
-"""How far a computation is: what callers are told, and nobody."""
+"""Progress of a computation, reported to a caller or to nobody."""
 
 from __future__ import annotations
 

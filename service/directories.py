@@ -1,4 +1,4 @@
-"""Where things are kept on a machine (XDG base directory specification)."""
+"""The directories of a machine (XDG base directory specification)."""
 
 from __future__ import annotations
 
@@ -37,5 +37,5 @@ def keep_private() -> None:
 
 def _base(variable: str, default: str) -> Path:
     """Return a base directory; the specification has relative ones ignored."""
-    given = Path(os.environ.get(variable, ""))
-    return given if given.is_absolute() else Path.home() / default
+    path = Path(os.environ.get(variable, ""))
+    return path if path.is_absolute() else Path.home() / default

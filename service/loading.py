@@ -9,4 +9,4 @@ from __future__ import annotations
 import threading
 
 LOADING = threading.RLock()
-"""Held while modules are loaded that handlers import when they are asked."""
+"""Held while modules are loaded that handlers import when they are called."""

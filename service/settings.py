@@ -20,7 +20,7 @@ _SCHEDULER = re.compile(r"(?:tcp|tls|ws|wss|ucx)://[^\s/]+:[0-9]{1,5}")
 
 
 class Settings(BaseSettings):
-    """What the service is started with.
+    """The settings of the service.
 
     Attributes
     ----------
@@ -80,15 +80,15 @@ class Settings(BaseSettings):
 
     @field_validator("dask_scheduler")
     @classmethod
-    def _reachable_scheduler(cls, given: str | None) -> str | None:
+    def _reachable_scheduler(cls, address: str | None) -> str | None:
         """Refuse what cannot be an address; an empty variable is none."""
-        if not given:
+        if not address:
             return None
-        if not _SCHEDULER.fullmatch(given):
+        if not _SCHEDULER.fullmatch(address):
             raise ValueError("protocol, host and port of a Dask scheduler, such as tcp://host:8786")
         if find_spec("distributed") is None:
             raise ValueError("left out without the extra dask: pip install 'lineofaction[dask]'")
-        return given
+        return address
 
     @property
     def database_address(self) -> str | None:
@@ -105,19 +105,19 @@ class Settings(BaseSettings):
 
     @property
     def key_file(self) -> Path:
-        """Where the access keys are."""
+        """File of the access keys."""
         return self.keys_file or self.data_directory / "keys.json"
 
 
-def load_settings(**given: object) -> Settings:
-    """Return the settings: `given` values that are not None, then the environment, then defaults.
+def load_settings(**options: object) -> Settings:
+    """Return the settings: `options` values that are not None, then the environment, then defaults.
 
     Raises
     ------
     BadInput
         A value is out of bounds.
     """
-    chosen = {name: value for name, value in given.items() if value is not None}
+    chosen = {name: value for name, value in options.items() if value is not None}
     try:
         return Settings(**chosen)  # type: ignore[arg-type]
     except ValidationError as error:

@@ -36,9 +36,9 @@ _OF_SI = {"m": "_mm", "rad": "_deg", "Pa": "_gpa", "N/m": "_n_per_um", "N/m^3": 
 _IN_WORDS = ("_n_per_mm3", "_gpa", "_deg", "_rpm")
 
 
-def suffix_of(what: Declared) -> str:
+def suffix_of(declaration: Declared) -> str:
     """Return how the boundary's name of a declared field ends."""
-    return "_um" if what.kind in DEPTHS else _OF_SI.get(what.unit, "")
+    return "_um" if declaration.kind in DEPTHS else _OF_SI.get(declaration.unit, "")
 
 
 def unit_of(name: str) -> Unit | None:

@@ -93,15 +93,15 @@ def fine_beam(
     stations = [*(disc.position for disc in discs), *(point.position for point in points)]
     length, parts = sum(section.length for section in sections), FIRST_PARTS
     beam = timoshenko_beam(sections, stations, length / parts)
-    found = _frequencies(beam, discs, held)
+    coarse = _frequencies(beam, discs, held)
     while True:
         finer = timoshenko_beam(sections, stations, 0.5 * float(np.max(np.diff(beam.position))))
         exact = _frequencies(finer, discs, held)
-        error = 4.0 / 3.0 * max(worst_error(a, b, highest) for a, b in zip(found, exact, strict=True))
+        error = 4.0 / 3.0 * max(worst_error(a, b, highest) for a, b in zip(coarse, exact, strict=True))
         parts *= 2
         if error <= MESH_ERROR or parts > LAST_PARTS:
             return beam, error
-        beam, found = finer, exact
+        beam, coarse = finer, exact
 
 
 def _frequencies(beam: TimoshenkoBeam, discs: Sequence[Disc], held: float | None) -> list[FloatArray]:

@@ -108,16 +108,16 @@ def free_frequencies(mass: FloatArray, stiffness: FloatArray, rigid: int, held: 
     return _hertz(square if held >= 0 else square[rigid:])
 
 
-def worst_error(found: FloatArray, exact: FloatArray, highest: float) -> float:
-    """Return the largest relative error of the rising frequencies `found` up to `highest`.
+def worst_error(coarse: FloatArray, exact: FloatArray, highest: float) -> float:
+    """Return the largest relative error of the rising frequencies `coarse` up to `highest`.
 
     The next one counts too, by the square of how far it is above: errors rise at least so with frequency,
     and on its bearings a shaft has other frequencies than free.
     """
-    count = min(int(np.searchsorted(exact, highest, side="right")) + 1, found.size)
+    count = min(int(np.searchsorted(exact, highest, side="right")) + 1, coarse.size)
     if count == 0:
         return 0.0
-    error = np.abs(found[:count] / exact[:count] - 1.0)
+    error = np.abs(coarse[:count] / exact[:count] - 1.0)
     return float(np.max(error * np.minimum(highest / exact[:count], 1.0) ** 2))
 
 

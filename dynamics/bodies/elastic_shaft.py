@@ -1,4 +1,4 @@
-"""How a shaft with gears on it bends, twists and stretches: elastic coordinates beside its rigid motion."""
+"""Elastic coordinates of a shaft with gears on it, beside its rigid motion: bending, torsion, stretching."""
 
 from __future__ import annotations
 
@@ -76,9 +76,9 @@ class ElasticShaft:
     @property
     def turned(self) -> FloatArray:
         """Coupling of each coordinate in the mass matrix with the rotation of the shaft, kg m^2."""
-        found = np.zeros(self.mass.size)
-        found[self.twists] = self.torsion.inertial[:, 0]
-        return found
+        coupling = np.zeros(self.mass.size)
+        coupling[self.twists] = self.torsion.inertial[:, 0]
+        return coupling
 
     @property
     def bends(self) -> bool:

@@ -13,7 +13,7 @@ class OnShaft(Protocol):
 
     @property
     def name(self) -> str:
-        """What it is called."""
+        """Its name."""
         ...
 
     @property

@@ -119,7 +119,7 @@ def user_functions(mesh: PlanarMesh, drive: Drive | None = None) -> tuple[Force,
     """
     law, gradient = mesh.laws(), mesh.gradient if drive is None else np.delete(mesh.gradient, 2)
     facts = np.array([mesh.element.position_offset, mesh.turn, mesh.gradient[2]])
-    imposed, found, hint = np.zeros(2), np.zeros(3), np.zeros(1, dtype=np.int64)
+    imposed, values, hint = np.zeros(2), np.zeros(3), np.zeros(1, dtype=np.int64)
     outer = np.outer(gradient, gradient)
 
     def evaluate(t: float, q: Any, v: Any) -> None:
@@ -127,15 +127,15 @@ def user_functions(mesh: PlanarMesh, drive: Drive | None = None) -> tuple[Force,
         if drive is not None:
             imposed[0], imposed[1] = drive(t)
         angle = coordinate[2] if drive is None else imposed[0]
-        _evaluate(law, facts, gradient, angle, imposed, coordinate, rate, hint, found)
+        _evaluate(law, facts, gradient, angle, imposed, coordinate, rate, hint, values)
 
     def force(_mbs: Any, t: float, _item: int, q: Any, v: Any) -> FloatArray:
         evaluate(t, q, v)
-        return np.asarray(-found[0] * gradient)
+        return np.asarray(-values[0] * gradient)
 
     def jacobian(_mbs: Any, t: float, _item: int, q: Any, v: Any, stiff: float, viscous: float) -> FloatArray:
         evaluate(t, q, v)
-        return np.asarray((stiff * found[1] + viscous * found[2]) * outer)
+        return np.asarray((stiff * values[1] + viscous * values[2]) * outer)
 
     return force, jacobian
 
@@ -168,13 +168,13 @@ def _evaluate(
     coordinate: FloatArray,
     rate: FloatArray,
     hint: IntArray,
-    found: FloatArray,
+    values: FloatArray,
 ) -> None:
-    """Write force, stiffness and viscosity into `found`; `imposed` is what the coordinates do not hold."""
+    """Write force, stiffness and viscosity into `values`; `imposed` is what the coordinates do not hold."""
     deflection, speed = facts[2] * imposed[0], facts[2] * imposed[1]
     for k in range(gradient.size):
         deflection += gradient[k] * coordinate[k]
         speed += gradient[k] * rate[k]
     x = facts[0] + facts[1] * angle
     force, _, tangent, viscous, interval = flank_force(law, 0, x, deflection, speed, hint[0])
-    found[0], found[1], found[2], hint[0] = force, tangent, viscous, interval
+    values[0], values[1], values[2], hint[0] = force, tangent, viscous, interval

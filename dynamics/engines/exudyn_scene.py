@@ -29,7 +29,7 @@ SOLVERS = ("GeneralizedAlpha", "TrapezoidalIndex2", "RK44", "DOPRI5")
 
 @dataclass(frozen=True)
 class PlanarRun:
-    """What a run in Exudyn gave.
+    """The result of a run in Exudyn.
 
     Attributes
     ----------
@@ -219,5 +219,5 @@ def _observed(mesh: PlanarMesh, speed: float, stored: list[FloatArray], seconds:
     driver, driven = (np.asarray(rows) for rows in stored)
     gradient, time = mesh.gradient, driver[:, 0]
     angle = gradient[2] * speed * time
-    found = driver[:, 1:3] @ gradient[:2] + angle + driven[:, 1:4] @ gradient[3:]
-    return PlanarRun(time, found, seconds)
+    error = driver[:, 1:3] @ gradient[:2] + angle + driven[:, 1:4] @ gradient[3:]
+    return PlanarRun(time, error, seconds)

@@ -61,8 +61,8 @@ class MeshElement:
             positive(f"base_radius[{index}]", self.base_radius[index])
         driven = self.base_radius[1] / self.teeth[1]
         if abs(driven * self.teeth[0] / self.base_radius[0] - 1.0) > EQUAL:
-            wanted = self.base_radius[0] * self.teeth[1] / self.teeth[0]
-            bound = exactly(wanted, ", of the driver's base pitch")
+            expected = self.base_radius[0] * self.teeth[1] / self.teeth[0]
+            bound = exactly(expected, ", of the driver's base pitch")
             raise InputError("base_radius[1]", self.base_radius[1], bound, "Base pitches must agree to 1e-9.")
         within("base_helix_angle", self.base_helix_angle, -1.2, 1.2, SiNote("Angles are in radians."))
         not_negative("damping", self.damping)

@@ -156,16 +156,16 @@ class _Fields(AttributeTemplate):
 
     def generic_resolve(self, kind: AddressType, name: str) -> Any:
         """Return the type of the field `name`."""
-        found = kind.find(name)
-        return None if found is None else found[0]
+        entry = kind.find(name)
+        return None if entry is None else entry[0]
 
 
 @lower_getattr_generic(AddressType)
 def _read_field(context: Any, builder: Any, kind: AddressType, address: Any, name: str) -> Any:
     """Return a tuple inside as the address of its own words, arrays and numbers as they are."""
-    found = kind.find(name)
-    assert found is not None  # typing has found it
-    field, first = found
+    entry = kind.find(name)
+    assert entry is not None  # typing has found it
+    field, first = entry
     location = builder.gep(address, [WORD(first)])
     if isinstance(field, AddressType):
         return location

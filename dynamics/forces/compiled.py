@@ -1,4 +1,4 @@
-"""How the inner loops are compiled: to machine code, cached on disk, without the interpreter's lock."""
+"""Compilation of the inner loops to machine code, cached on disk, without the interpreter's lock."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ DEFLECTION, STIFFNESS = 0, 1  # channels
 
 
 class Cell(NamedTuple):
-    """Where a query lies: offsets of the cell's sides in the numbers, and Hermite weights.
+    """The cell of a query: offsets of its sides in the numbers, and Hermite weights.
 
     Weights are those of value and slope at the left, then at the right side (`d...`: differentiated). An axis
     of one knot has one side.

@@ -1,4 +1,4 @@
-"""What force laws read and write at one instant."""
+"""The state that force laws read and write at one instant."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dynamics.types import FloatArray, IntArray
 
 
 class LocalState(NamedTuple):
-    """What laws read and write at one instant; P = the largest p.
+    """The state that laws read and write at one instant; P = the largest p.
 
     Attributes
     ----------

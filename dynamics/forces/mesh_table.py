@@ -95,11 +95,11 @@ def check_table(field: str, table: MeshTable) -> None:
 
 def _check_optional(field: str, table: MeshTable, shape: tuple[int, ...]) -> None:
     """Raise `InputError` if an array that a table may have is there with another shape."""
-    for names, wanted in ((DERIVATIVES, (2, 2, 2, *shape)), (LEVERS, shape)):
+    for names, expected in ((DERIVATIVES, (2, 2, 2, *shape)), (LEVERS, shape)):
         for name in names:
             field_values = getattr(table, name, None)
             if field_values is None:
                 continue
             values = np.asarray(field_values)
-            if values.shape != wanted or not np.all(np.isfinite(values)):
-                raise InputError(f"{field}.{name}", f"shape {values.shape}", f"finite, of shape {wanted}")
+            if values.shape != expected or not np.all(np.isfinite(values)):
+                raise InputError(f"{field}.{name}", f"shape {values.shape}", f"finite, of shape {expected}")

@@ -23,8 +23,8 @@ def table_at_operating_point(
         derivative = getattr(table, f"{name}_derivative", None)
         if derivative is None:
             return np.asarray(getattr(table, name if order == 0 else f"{name}_slope"), dtype=float)
-        found = np.einsum("um,vd,uvmdpl->pl", m, a, np.asarray(derivative, dtype=float)[:, :, order])
-        return np.asarray(found[None, None])
+        values = np.einsum("um,vd,uvmdpl->pl", m, a, np.asarray(derivative, dtype=float)[:, :, order])
+        return np.asarray(values[None, None])
 
     return PlainTable(
         np.asarray(table.position, dtype=float),

@@ -80,7 +80,7 @@ def _closed(table: MeshTable) -> FloatArray:
 
 
 def _starts(parts: Sequence[FloatArray] | Sequence[IntArray]) -> list[int]:
-    """Where each part begins when they are joined."""
+    """Return the begin of each part when they are joined."""
     return [0, *np.cumsum([len(part) for part in parts]).tolist()]
 
 

@@ -51,8 +51,8 @@ class Routine:
         hints = self._arguments
         kinds = tuple(SCALARS.get(hint) or by_address(next(values))._numba_type_ for hint in hints)
         self._dispatcher.compile(kinds)
-        found = self._dispatcher.overloads[kinds]
-        self._slot[0] = found.library.get_pointer_to_function(found.fndesc.llvm_func_name)
+        overload = self._dispatcher.overloads[kinds]
+        self._slot[0] = overload.library.get_pointer_to_function(overload.fndesc.llvm_func_name)
 
     def __call__(self, *arguments: Any) -> Any:
         """Call it from Python."""

@@ -106,9 +106,9 @@ def _centroid(laws: SpatialFlankLaws, entry: int, cell: Cell, force: GridForce) 
     """Return lambda, the face centroid over the face width from the middle of the common face."""
     if laws.per_face[entry] == 0.0:
         return Lever(0.0, 0.0, 0.0, 0.0)
-    found, per_face = _lever(laws, entry, cell, force, CENTROID), laws.per_face[entry]
-    moved = found.value - laws.mid_face[entry]
-    return Lever(moved * per_face, found.d * per_face, found.m * per_face, found.a * per_face)
+    lever, per_face = _lever(laws, entry, cell, force, CENTROID), laws.per_face[entry]
+    moved = lever.value - laws.mid_face[entry]
+    return Lever(moved * per_face, lever.d * per_face, lever.m * per_face, lever.a * per_face)
 
 
 @inner
@@ -131,9 +131,9 @@ def spatial_flank(laws: SpatialFlankLaws, entry: int, local: LocalState, row: in
     m = _along_axis(laws, entry, 0, coordinate, row)
     a = _along_axis(laws, entry, 1, coordinate, row)
     cell = find_cell(laws.grid, entry, local.position[mesh], m, a)
-    found = grid_force(laws.grid, entry, cell, coordinate[row], local.hint[e])
-    local.hint[e] = found.interval
-    arm = _centroid(laws, entry, cell, found)
+    contact = grid_force(laws.grid, entry, cell, coordinate[row], local.hint[e])
+    local.hint[e] = contact.interval
+    arm = _centroid(laws, entry, cell, contact)
     to_m, to_a, to_s = laws.row[entry, 0], laws.row[entry, 1], laws.row[entry, 2]
     rows = 1 + (to_m > 0) + (to_a > 0) + 2 * (to_s > 0)
     for r in range(row, row + rows):
@@ -142,24 +142,24 @@ def spatial_flank(laws: SpatialFlankLaws, entry: int, local: LocalState, row: in
             tangent[r, k], viscous[r, k] = 0.0, 0.0
     m_rate = rate[row + to_m] if to_m > 0 else 0.0
     approach = rate[row] - arm.value * m_rate
-    ratio = min(found.value / laws.reach[entry], 1.0)
+    ratio = min(contact.value / laws.reach[entry], 1.0)
     damping = laws.damping[entry] * ratio * ratio * (3.0 - 2.0 * ratio)
     damping_slope = laws.damping[entry] * 6.0 * ratio * (1.0 - ratio) / laws.reach[entry]
-    elastic[row] = found.value
+    elastic[row] = contact.value
     if to_m > 0:
-        elastic[row + to_m] = -arm.value * found.value
-    total = found.value + damping * approach
+        elastic[row + to_m] = -arm.value * contact.value
+    total = contact.value + damping * approach
     if total < 0.0:
         return
     gain, tilting = 1.0 + damping_slope * approach, damping * m_rate
     read_m = to_m if laws.follows[entry, 0] == 1 else -1
-    force[row], tangent[row, 0], viscous[row, 0] = total, found.d * gain - tilting * arm.d, damping
+    force[row], tangent[row, 0], viscous[row, 0] = total, contact.d * gain - tilting * arm.d, damping
     if to_m > 0:
         viscous[row, to_m] = -damping * arm.value
     if read_m > 0:
-        tangent[row, read_m] = found.m * gain - tilting * arm.m
+        tangent[row, read_m] = contact.m * gain - tilting * arm.m
     if to_a > 0:
-        tangent[row, to_a] = found.a * gain - tilting * arm.a
+        tangent[row, to_a] = contact.a * gain - tilting * arm.a
     if to_m > 0:
         back = Lever(-arm.value, -arm.d, -arm.m, -arm.a)
         _in_proportion(force, tangent, viscous, row, row + to_m, rows, back, read_m, to_a)
@@ -168,7 +168,7 @@ def spatial_flank(laws: SpatialFlankLaws, entry: int, local: LocalState, row: in
             rate[row + to_s] + local.drift[row + to_s],
             rate[row + to_s + 1] + local.drift[row + to_s + 1],
         )
-        slid = _sliding(laws, entry, cell, found, slip, spin)
+        slid = _sliding(laws, entry, cell, contact, slip, spin)
         _in_proportion(force, tangent, viscous, row, row + to_s, rows, slid.along, read_m, to_a)
         _in_proportion(force, tangent, viscous, row, row + to_s + 1, rows, slid.about, read_m, to_a)
         viscous[row + to_s, to_s] += force[row] * slid.along_rate
@@ -185,13 +185,13 @@ def _sliding(
     share = _lever(laws, entry, cell, force, SLIDING_SHARE)
     lever = _lever(laws, entry, cell, force, SLIDING_LEVER)
     mu, per_radius = laws.friction[entry], 1.0 / laws.radius[entry]
-    found = sliding(share, lever, slip, roll * per_radius, laws.running[entry])
+    slid = sliding(share, lever, slip, roll * per_radius, laws.running[entry])
     return Sliding(
-        scaled(found.along, mu),
-        scaled(found.about, mu * per_radius),
-        mu * found.along_rate,
-        mu * per_radius * found.mixed_rate,
-        mu * per_radius * per_radius * found.about_rate,
+        scaled(slid.along, mu),
+        scaled(slid.about, mu * per_radius),
+        mu * slid.along_rate,
+        mu * per_radius * slid.mixed_rate,
+        mu * per_radius * per_radius * slid.about_rate,
     )
 
 
@@ -228,10 +228,10 @@ def spatial_energy(
     m = _along_axis(laws, entry, 0, coordinate, row)
     a = _along_axis(laws, entry, 1, coordinate, row)
     cell = find_cell(laws.grid, entry, local.position[mesh], m, a)
-    found = grid_energy(laws.grid, entry, cell, coordinate[row])
+    energy = grid_energy(laws.grid, entry, cell, coordinate[row])
     return (
-        found.value,
-        found.x,
-        found.m * laws.follows[entry, 0],
-        found.a * laws.follows[entry, 1],
+        energy.value,
+        energy.x,
+        energy.m * laws.follows[entry, 0],
+        energy.a * laws.follows[entry, 1],
     )

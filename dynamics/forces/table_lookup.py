@@ -104,12 +104,12 @@ def table_deflection(table: PackedTables, flank: int, position: float, force: fl
     # Newton, kept inside the bracket: the cubic is monotone on its interval, so bisection can always step in.
     deflection = 0.5 * (low + high)
     for _ in range(100):
-        found, stiffness, _ = table_force(table, flank, position, deflection, k)
-        if found < force:
+        trial, stiffness, _ = table_force(table, flank, position, deflection, k)
+        if trial < force:
             low = deflection
         else:
             high = deflection
-        step = (force - found) / stiffness
+        step = (force - trial) / stiffness
         if not low <= deflection + step <= high:
             step = 0.5 * (low + high) - deflection
         deflection += step

@@ -1,4 +1,4 @@
-"""What a mesh's technique makes of its table: the table itself, or the secant stiffness at one force."""
+"""The table by a mesh's technique: the table itself, or the secant stiffness at one force."""
 
 from __future__ import annotations
 

@@ -52,10 +52,10 @@ def restore(state: Any, arrays: Arrays, path: Path) -> None:
         If one is missing or of another shape or type: the file is of another version of the program.
     """
     for name, target in leaves(state):
-        found = arrays.get(name)
-        if found is None or found.shape != target.shape or found.dtype != target.dtype:
+        stored = arrays.get(name)
+        if stored is None or stored.shape != target.shape or stored.dtype != target.dtype:
             raise ResultError(f"{path}: {name} is not that of this version. Start the run anew.")
-        target[...] = found
+        target[...] = stored
 
 
 def write_checkpoint(path: Path, state: Any, **facts: Any) -> None:

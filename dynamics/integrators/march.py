@@ -42,7 +42,7 @@ NEWTON_SHARE = 0.01
 
 @dataclass(frozen=True)
 class March:
-    """What a run needs to go on from where it is.
+    """The state from which a run continues.
 
     Attributes
     ----------
@@ -82,7 +82,7 @@ class March:
 
 @dataclass(frozen=True)
 class Ending:
-    """How a run ended, and what it took.
+    """The end of a run, and its steps.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a run carries to sample its steps: the points that the anti-alias filter sees, and running figures."""
+"""The state that samples the steps of a run: points seen by the anti-alias filter, and running figures."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from dynamics.types import FloatArray, IntArray
 
 
 class Sampler(NamedTuple):
-    """What to take from the steps.
+    """The filter and the series that sample the steps.
 
     Attributes
     ----------

@@ -98,7 +98,7 @@ class Trail:
 
     def before(self, time: float) -> SavedState | None:
         """Return the last saved state before `time` (s), if there is one."""
-        return next((one for one in reversed(self._saved) if one.time < time), None)
+        return next((state for state in reversed(self._saved) if state.time < time), None)
 
 
 @dataclass(frozen=True)
@@ -162,11 +162,11 @@ def added_rows(before: System, after: System) -> IntArray | None:
     rows_of, start = [], 0
     there = _rows(after)
     for row in _rows(before):
-        found = next((k for k in range(start, len(there)) if there[k] == row), None)
-        if found is None:
+        index = next((k for k in range(start, len(there)) if there[k] == row), None)
+        if index is None:
             return None
-        rows_of.append(found)
-        start = found + 1
+        rows_of.append(index)
+        start = index + 1
     return np.array(rows_of, dtype=np.int64)
 
 

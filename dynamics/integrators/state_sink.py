@@ -1,4 +1,4 @@
-"""Where the sampled states of a run go: one protocol, in memory or (`StateSpool`) on disk."""
+"""The sink of the sampled states of a run: one protocol, in memory or (`StateSpool`) on disk."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ LOST_CONTACT = 1e-6  # of the largest force: below it a search without end has r
 
 @dataclass(frozen=True)
 class StaticSolution:
-    """Where the bodies rest.
+    """The rest position of the bodies.
 
     Attributes
     ----------
@@ -67,21 +67,21 @@ def _newton(
 ) -> StaticSolution:
     """Search from `q`, with meshes that may part on the way or not."""
     arrays = system.arrays
-    found = _balance(arrays, time, q, external)
+    balance = _balance(arrays, time, q, external)
     scale = max(
         float(np.max(np.abs(external / arrays.scale), initial=0.0)),
-        float(np.max(np.abs(found.local.force), initial=0.0)),
+        float(np.max(np.abs(balance.local.force), initial=0.0)),
     )
     for iteration in range(ITERATION_LIMIT + 1):
-        size = _size(arrays, found)
+        size = _size(arrays, balance)
         if size <= RESIDUAL_LIMIT * scale:
-            force = found.local.force[system.driving_rows]
+            force = balance.local.force[system.driving_rows]
             return StaticSolution(StaticStatus.CONVERGED, q, force, size, iteration)
-        update = _solve(arrays, found.stiffness, found.force, q)
-        q, found = _line_search(arrays, time, q, update, external, size, parting)
-    lost = bool(np.any(_per_mesh(arrays, found.local.force) <= LOST_CONTACT * scale))
+        update = _solve(arrays, balance.stiffness, balance.force, q)
+        q, balance = _line_search(arrays, time, q, update, external, size, parting)
+    lost = bool(np.any(_per_mesh(arrays, balance.local.force) <= LOST_CONTACT * scale))
     status = StaticStatus.UNBALANCED if lost else StaticStatus.ITERATION_LIMIT
-    return StaticSolution(status, q, found.local.force[system.driving_rows], size, ITERATION_LIMIT)
+    return StaticSolution(status, q, balance.local.force[system.driving_rows], size, ITERATION_LIMIT)
 
 
 def _external(system: System, time: float) -> FloatArray:
@@ -108,9 +108,9 @@ def _accelerating(arrays: SystemArrays, values: FloatArray) -> FloatArray:
 
 def _balance(arrays: SystemArrays, time: float, q: FloatArray, external: FloatArray) -> ForceBalance:
     """Return the balance at rest in `q`, with free trains accelerating."""
-    found = force_balance(arrays, time, q, np.zeros(q.size), external)
-    force, stiffness = (_accelerating(arrays, values) for values in (found.force, found.stiffness))
-    return replace(found, force=force, stiffness=stiffness)
+    balance = force_balance(arrays, time, q, np.zeros(q.size), external)
+    force, stiffness = (_accelerating(arrays, values) for values in (balance.force, balance.stiffness))
+    return replace(balance, force=force, stiffness=stiffness)
 
 
 def _by_speed(arrays: SystemArrays, time: float) -> FloatArray:
@@ -200,9 +200,9 @@ def _line_search(
     """Halve the update until it lowers the residual (or is tiny), all meshes in contact unless parting."""
     for halving in range(30):
         trial = q + update * 0.5**halving
-        found = _balance(arrays, time, trial, external)
+        balance = _balance(arrays, time, trial, external)
         # beyond lift-off there is no stiffness to come back by, however small the residual is there
-        touching = parting or np.all(_per_mesh(arrays, found.local.tangent[:, 0]) > 0.0)
-        if _size(arrays, found) < size and (touching or np.max(np.abs(found.force)) == 0.0):
+        touching = parting or np.all(_per_mesh(arrays, balance.local.tangent[:, 0]) > 0.0)
+        if _size(arrays, balance) < size and (touching or np.max(np.abs(balance.force)) == 0.0):
             break
-    return trial, found
+    return trial, balance

@@ -1,4 +1,4 @@
-"""What holds bodies: bushings to the ground, pins in a carrier; and what makes them turn."""
+"""Joints of the bodies, bushings to the ground and pins in a carrier, and their drives."""
 
 from dynamics.joints.bearing_stiffness import BearingStiffness
 from dynamics.joints.bushing import Bushing

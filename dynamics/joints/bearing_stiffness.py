@@ -1,4 +1,4 @@
-"""What a bearing that is the same in all directions across its axis resists."""
+"""Stiffness of a bearing that is the same in all directions across its axis."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class BearingStiffness:
 
     @property
     def matrix(self) -> Matrix | None:
-        """What is beyond radial and axial springs, in x, y, z, tilt_x, tilt_y; None: nothing."""
+        """The part beyond radial and axial springs, in x, y, z, tilt_x, tilt_y; None: nothing."""
         if self.tilt == 0.0:
             return None
         return tuple(tuple(self.tilt if i == j >= 3 else 0.0 for j in range(5)) for i in range(5))

@@ -101,15 +101,15 @@ def read_housing_matrices(path: str | Path) -> tuple[FloatArray, FloatArray | No
         raise InputError(field, str(path), "a file that exists")
     try:
         if file.suffix.lower() == ".csv":
-            found = {"stiffness": np.loadtxt(file, delimiter=",", comments="#", ndmin=2)}
+            arrays = {"stiffness": np.loadtxt(file, delimiter=",", comments="#", ndmin=2)}
         else:
             with np.load(file, allow_pickle=False) as archive:
-                found = {key: np.asarray(archive[key], dtype=float) for key in archive.files}
+                arrays = {key: np.asarray(archive[key], dtype=float) for key in archive.files}
     except (ValueError, OSError, TypeError, AttributeError, zipfile.BadZipFile) as error:
         raise InputError(field, str(path), f"a readable matrix ({error})") from error
-    if "stiffness" not in found:
-        raise InputError(field, str(path), 'an archive with the array "stiffness"', f"It has {list(found)}.")
-    return found["stiffness"], found.get("damping")
+    if "stiffness" not in arrays:
+        raise InputError(field, str(path), 'an archive with the array "stiffness"', f"It has {list(arrays)}.")
+    return arrays["stiffness"], arrays.get("damping")
 
 
 def _rows(matrix: FloatArray) -> Matrix:

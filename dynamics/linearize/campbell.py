@@ -64,17 +64,17 @@ def whirl_branches(
     A mode continues in the one whose shape is most like it (modal assurance criterion weighted with the
     mass), all assigned together; equal likeness is decided by the nearness of the frequencies.
     """
-    found: list[WhirlModes] = []
+    swept: list[WhirlModes] = []
     branches: list[list[int]] = []
     for index, value in enumerate(speed):
         modes = modes_at(system, linear, float(value))
-        found.append(modes)
+        swept.append(modes)
         fresh = list(range(modes.frequency.size))
-        branches.append(_continued(linear, found[-2], branches[-1], modes) if index else fresh)
+        branches.append(_continued(linear, swept[-2], branches[-1], modes) if index else fresh)
         if progress is not None:
             progress((index + 1) / speed.size)
     count = 1 + max((int(np.max(branch, initial=-1)) for branch in branches), default=-1)
-    return _gathered(system, linear, speed, found, branches, count)
+    return _gathered(system, linear, speed, swept, branches, count)
 
 
 def likeness(linear: LinearSystem, first: ComplexArray, second: ComplexArray) -> FloatArray:
@@ -91,19 +91,19 @@ def _continued(linear: LinearSystem, before: WhirlModes, branch: list[int], mode
     rows, columns = linear_sum_assignment(TIE * apart - likeness(linear, before.shape, modes.shape))
     known = dict(zip(columns.tolist(), (branch[row] for row in rows), strict=True))
     fresh = max(branch, default=-1)
-    found = []
+    numbers = []
     for index in range(modes.frequency.size):
         if index not in known:
             fresh += 1
-        found.append(known.get(index, fresh))
-    return found
+        numbers.append(known.get(index, fresh))
+    return numbers
 
 
 def _gathered(
     system: System,
     linear: LinearSystem,
     speed: FloatArray,
-    found: list[WhirlModes],
+    swept: list[WhirlModes],
     branches: list[list[int]],
     count: int,
 ) -> WhirlBranches:
@@ -112,7 +112,7 @@ def _gathered(
     frequency, ratio, whirl = (np.full((speed.size, count), np.nan) for _ in range(3))
     shape = np.full((speed.size, count, n), np.nan + 0j)
     strain, kinetic = np.full((speed.size, count, p), np.nan), np.full((speed.size, count, n), np.nan)
-    for row, (modes, branch) in enumerate(zip(found, branches, strict=True)):
+    for row, (modes, branch) in enumerate(zip(swept, branches, strict=True)):
         frequency[row, branch], ratio[row, branch] = modes.frequency, modes.damping_ratio
         shape[row, branch] = modes.shape
         strain[row, branch] = strain_shares(linear, modes.shape)
@@ -160,7 +160,7 @@ def _senses(
         for rotor in range(len(system.rotors))
         for kinds in ((0, 1), (3, 4))
     ]
-    pairs = np.array([found for found in candidates if min(found[1:]) >= 0], dtype=np.int64).reshape(-1, 3)
+    pairs = np.array([each for each in candidates if min(each[1:]) >= 0], dtype=np.int64).reshape(-1, 3)
     if pairs.size == 0 or not clusters:
         return np.zeros(len(clusters))
     (rotor, i, j), first = pairs.T, [cluster[0] for cluster in clusters]

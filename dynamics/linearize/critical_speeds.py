@@ -68,8 +68,8 @@ def critical_speeds(
             for row, mode in zip(*np.nonzero(crossed), strict=True):
                 assert matrices is not None  # between two speeds one is not 0
                 between = _between(branches, int(row), int(mode), order * rate)
-                found = _refined(system, linear, matrices, between)
-                rows.append((*found, float(mode), float(mesh), float(order)))
+                crossing = _refined(system, linear, matrices, between)
+                rows.append((*crossing, float(mode), float(mesh), float(order)))
     table = np.array(sorted(rows)).reshape(-1, 7)
     counts = table[:, 4:].astype(np.int64)
     return CriticalSpeeds(
@@ -99,7 +99,7 @@ class _Between:
 
     @property
     def weight(self) -> float:
-        """Where the gap closes if it is straight, from 0 to 1."""
+        """Part of the interval, 0 to 1, at which the gap closes if it is straight."""
         return float(self.gap[0] / (self.gap[0] - self.gap[1]))
 
 
@@ -120,9 +120,9 @@ def _refined(
     the middle is that most like the ends.
     """
     for _ in range(HALVINGS):
-        found = _newton(linear, matrices, between)
-        if found is not None:
-            return found
+        crossing = _newton(linear, matrices, between)
+        if crossing is not None:
+            return crossing
         between = _halved(system, linear, between)
     end = int(np.argmin(np.abs(between.gap)))
     values = (between.speed, between.frequency, between.damping_ratio, between.gap)

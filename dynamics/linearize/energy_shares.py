@@ -1,4 +1,4 @@
-"""Where the energy of a mode is: strain energy by spring, kinetic energy by freedom."""
+"""Distribution of the energy of a mode: strain energy by spring, kinetic energy by freedom."""
 
 from __future__ import annotations
 
@@ -56,16 +56,16 @@ def spring_parts(system: System, spring: Sequence[str]) -> tuple[tuple[str, str]
     kinds |= {part.name: "coupling" for part in scene.couplings}
     kinds |= {part.name: "drive" for part in scene.drives}
     meshes = {mesh.name for mesh in scene.meshes}
-    found = []
+    parts = []
     for index, name in enumerate(spring):
         part = name
         if index < len(scene.meshes) and name in meshes:
-            found.append((name, "mesh"))
+            parts.append((name, "mesh"))
             continue
         if name not in kinds:
             part = name.rpartition(".")[0]
-        found.append((part or name, kinds.get(part, "shaft")))
-    return tuple(found)
+        parts.append((part or name, kinds.get(part, "shaft")))
+    return tuple(parts)
 
 
 def freedom_parts(freedom: Sequence[str]) -> tuple[tuple[str, str], ...]:

@@ -124,11 +124,11 @@ def _cycle(
     guess = np.empty_like(position)
     static_deflections(system.flanks.law.table, index, position, force, guess)
     watch = Watch(probe)
-    found = [
+    samples = [
         _held(watch, rows, time, *_states(probe, at_rest.coordinate, x - origin[index]), force, d)
         for x, d in zip(position, guess, strict=True)
     ]
-    coordinate, force_here, tangents = (np.array(part) for part in zip(*found, strict=True))
+    coordinate, force_here, tangents = (np.array(part) for part in zip(*samples, strict=True))
     tangent = np.mean(tangents, axis=0)
     held = np.tile(_states(probe, at_rest.coordinate, 0.0)[0], (position.size, 1))
     held[:, first] = np.mean(coordinate[:, 0])
@@ -154,10 +154,10 @@ def _held(
     q[row] = guess
     step = abs(guess)
     for _ in range(ITERATIONS):
-        found = watch.look(time, q, v)
-        left = force - found.force[row]
+        seen = watch.look(time, q, v)
+        left = force - seen.force[row]
         if abs(left) <= HELD * force:
             break
-        stiffness = found.tangent[row, 0]
+        stiffness = seen.tangent[row, 0]
         q[row] += left / stiffness if stiffness > 0.0 else step
-    return found.coordinate[rows].copy(), found.force[rows].copy(), found.tangent[rows, :size].copy()
+    return seen.coordinate[rows].copy(), seen.force[rows].copy(), seen.tangent[rows, :size].copy()

@@ -103,7 +103,7 @@ def forced_response(
     frequency = natural_modes(averaged(system, linear, flank_cycles(system, linear, time), time)).frequency
     seconds = {"equilibrium_and_modes": clock.process_time() - began}
     began = clock.process_time()
-    found = harmonic_response(system, speeds, orders, time, progress=share(0.0))
+    response = harmonic_response(system, speeds, orders, time, progress=share(0.0))
     other = harmonic_response(system, speeds, orders, time, "blocked_force", share(0.5))
     seconds["response"] = clock.process_time() - began
     start = linear.equilibrium
@@ -115,9 +115,9 @@ def forced_response(
         "effect_ledger": ledger,
         **system.corrections,
     }
-    plain = {f.name: getattr(found, f.name) for f in fields(found)}
+    plain = {f.name: getattr(response, f.name) for f in fields(response)}
     return ForcedResponse(
-        **plain, excitation_difference=_difference(found, other), natural_frequency=frequency, facts=facts
+        **plain, excitation_difference=_difference(response, other), natural_frequency=frequency, facts=facts
     )
 
 
@@ -130,13 +130,13 @@ def _halves(progress: Callable[[float], None] | None) -> Callable[[float], Calla
     return share
 
 
-def _difference(found: HarmonicResponse, other: HarmonicResponse) -> FloatArray:
+def _difference(response: HarmonicResponse, other: HarmonicResponse) -> FloatArray:
     """Return how unlike the largest transmission errors are, (m, H); harmonics that one lacks count whole."""
-    first = np.max(np.abs(found.dynamic_transmission_error), axis=1)
+    first = np.max(np.abs(response.dynamic_transmission_error), axis=1)
     second = np.zeros_like(first)
     index_of = {order: index for index, order in enumerate(other.order.tolist())}
     amplitude = np.max(np.abs(other.dynamic_transmission_error), axis=1)
-    for index, order in enumerate(found.order.tolist()):
+    for index, order in enumerate(response.order.tolist()):
         if order in index_of:
             second[:, index] = amplitude[:, index_of[order]]
     return np.asarray(np.abs(second - first) / np.max(first, initial=1e-300))
@@ -172,23 +172,23 @@ class Peak:
     natural_frequency: float
 
 
-def peaks(found: ForcedResponse) -> tuple[Peak, ...]:
+def peaks(response: ForcedResponse) -> tuple[Peak, ...]:
     """Return the peaks of all mesh and bearing forces by order, those of meshes first, the largest first.
 
     A peak is a speed of the study at which an amplitude is above those at both neighbors.
     """
-    gain = np.abs(found.dynamic_transmission_error)
-    size = np.abs(found.static_transmission_error)[:, None]
+    gain = np.abs(response.dynamic_transmission_error)
+    size = np.abs(response.static_transmission_error)[:, None]
     gain = gain / np.where(size > 0.0, size, np.inf)
-    force = np.sqrt(np.sum(np.abs(found.bearing_force[:, :3]) ** 2, axis=1))
+    force = np.sqrt(np.sum(np.abs(response.bearing_force[:, :3]) ** 2, axis=1))
     rows = []
     for quantity, names, amplitude in (
-        ("mesh_force", found.mesh, np.abs(found.mesh_force)),
-        ("bearing_force", found.bearing, force),
+        ("mesh_force", response.mesh, np.abs(response.mesh_force)),
+        ("bearing_force", response.bearing, force),
     ):
         gains = gain if quantity == "mesh_force" else [np.max(gain, axis=0)] * len(names)
         own = [
-            _peak(found, quantity, name, (s, h), float(amplitude[k, s, h]), gains[k])
+            _peak(response, quantity, name, (s, h), float(amplitude[k, s, h]), gains[k])
             for k, name in enumerate(names)
             for s, h in zip(*_maxima(amplitude[k]), strict=True)
         ]
@@ -204,16 +204,16 @@ def _maxima(values: FloatArray) -> tuple[list[int], list[int]]:
 
 
 def _peak(
-    found: ForcedResponse, quantity: str, name: str, at: tuple[int, int], amplitude: float, gain: FloatArray
+    sweep: ForcedResponse, quantity: str, name: str, at: tuple[int, int], amplitude: float, gain: FloatArray
 ) -> Peak:
     """Describe one peak."""
-    frequency = float(found.frequency[at])
-    near = found.natural_frequency[np.argmin(np.abs(found.natural_frequency - frequency))]
+    frequency = float(sweep.frequency[at])
+    near = sweep.natural_frequency[np.argmin(np.abs(sweep.natural_frequency - frequency))]
     return Peak(
         quantity,
         name,
-        float(found.order[at[1]]),
-        float(found.speed[at[0]]),
+        float(sweep.order[at[1]]),
+        float(sweep.speed[at[0]]),
         frequency,
         amplitude,
         float(gain[at]),

@@ -158,12 +158,12 @@ def _mesh_force(at: Excited, steady: Steady) -> ComplexArray:
     system, u, omega = at.system, steady.displacement, steady.omega
     rest = np.zeros(u.shape[2])
     viscous = local_state(system.arrays, at.time, at.linear.equilibrium.displacement, rest).viscous
-    found = np.empty((len(at.cycles), *omega.shape), dtype=complex)
+    force = np.empty((len(at.cycles), *omega.shape), dtype=complex)
     for f, cycle in enumerate(at.cycles):
         first, p = cycle.rows.start, cycle.tangent.shape[0]
         local = u @ system.arrays.direction[cycle.rows].T
-        found[f] = local @ cycle.tangent[0] + 1j * omega * (local @ viscous[first, :p]) - steady.force[first]
-    return found
+        force[f] = local @ cycle.tangent[0] + 1j * omega * (local @ viscous[first, :p]) - steady.force[first]
+    return force
 
 
 def _bearing_force(at: Excited, omega: FloatArray, u: ComplexArray) -> ComplexArray:
@@ -181,8 +181,8 @@ def _bearing_force(at: Excited, omega: FloatArray, u: ComplexArray) -> ComplexAr
         system.bearing_force(np.ascontiguousarray(part(local.T)), part(q), part(rate)) - none
         for part in (np.real, np.imag)
     )
-    found = real + 1j * imaginary
-    return np.asarray(found.reshape(*found.shape[:2], *u.shape[:2]))
+    force = real + 1j * imaginary
+    return np.asarray(force.reshape(*force.shape[:2], *u.shape[:2]))
 
 
 def extremes(amplitude: ComplexArray, order: FloatArray) -> tuple[FloatArray, FloatArray]:

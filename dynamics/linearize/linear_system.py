@@ -104,24 +104,24 @@ def _matrices(system: System, time: float) -> list[tuple[str, FloatArray, FloatA
     seats, couplings, keep = system.seats, system.couplings, system.freedoms.keep
     bearings = [(name, keep(seats.motion[at]), seats.stiffness[at, at]) for name, at in seats.group]
     joints = zip(couplings.name, couplings.motion, couplings.stiffness, strict=True)
-    found = [*bearings, *((name, keep(motion), matrix) for name, motion, matrix in joints)]
+    springs = [*bearings, *((name, keep(motion), matrix) for name, motion, matrix in joints)]
     n = system.arrays.mass.shape[0]
     turned = local_state(system.arrays, time, np.zeros(n), np.zeros(n)).position[len(system.scene.meshes) :]
     for part, turn in zip(frame_couplings(system.scene), turned, strict=True):
         motion, matrix = frame_joint(system.scene, system.rotors, part, 2.0 * np.pi * float(turn))
-        found.append((system.couplings.name[part.coupling], keep(motion), matrix))
-    return found
+        springs.append((system.couplings.name[part.coupling], keep(motion), matrix))
+    return springs
 
 
 def _tangents(system: System, tangent: FloatArray) -> list[tuple[str, FloatArray, FloatArray]]:
     """Return the same of bearings that are not linear, by their `tangent` (R, P) at the equilibrium."""
     first = system.arrays.elements.first[len(system.elements) - len(system.bearings) :]
-    found = []
+    springs = []
     for start, at in zip(first, system.bearings, strict=False):
         rows, size = slice(start, start + at.way.shape[0]), at.way.shape[0]
         matrix = 0.5 * (tangent[rows, :size] + tangent[rows, :size].T)
-        found.append((system.supports.name[at.support], system.arrays.direction[rows], matrix))
-    return found
+        springs.append((system.supports.name[at.support], system.arrays.direction[rows], matrix))
+    return springs
 
 
 def _springs(

@@ -84,20 +84,20 @@ def parametric_response(
             u[s, family.harmonic] -= 2.0 * np.einsum("hnf,hf->hn", moved[1:], push[1:])
             extra[family.meshes[:, None], s, family.harmonic] += 2.0 * push[1:].T
             shift[:, s] -= row @ np.real(moved[0] @ push[0])
-    found = response_of(at, speed, replace(steady, displacement=u))
-    force = found.mesh_force + extra
-    least = found.mean_force[:, None] + extremes(force, found.order)[0]
-    return ParametricResponse(replace(found, mesh_force=force, least_mesh_force=least), shift)
+    response = response_of(at, speed, replace(steady, displacement=u))
+    force = response.mesh_force + extra
+    least = response.mean_force[:, None] + extremes(force, response.order)[0]
+    return ParametricResponse(replace(response, mesh_force=force, least_mesh_force=least), shift)
 
 
 def _all_harmonics(at: Excited, orders: int) -> IntArray:
     """Return the multiples of the common period's frequency at which any mesh excites, up to `orders`."""
-    found: set[int] = set()
+    multiples: set[int] = set()
     for pitches, mesh in zip(at.period.pitches, at.system.scene.meshes, strict=True):
         period = mesh.table.period
         step = abs(pitches) // period
-        found |= {step * k for k in range(1, orders * period + 1)} if step else set()
-    return np.array(sorted(found), dtype=np.int64)
+        multiples |= {step * k for k in range(1, orders * period + 1)} if step else set()
+    return np.array(sorted(multiples), dtype=np.int64)
 
 
 def _families(at: Excited, harmonics: IntArray, orders: int) -> list[Family]:
@@ -106,13 +106,13 @@ def _families(at: Excited, harmonics: IntArray, orders: int) -> list[Family]:
     for index, (pitches, mesh) in enumerate(zip(at.period.pitches, at.system.scene.meshes, strict=True)):
         if pitches and mesh.table.period == 1:
             by_pitches.setdefault(abs(pitches), []).append(index)
-    found = []
+    families = []
     for pitches, meshes in by_pitches.items():
         count = min(orders, max(LEAST_ORDERS, MOST_UNKNOWNS // (2 * len(meshes))))
         harmonic = np.searchsorted(harmonics, pitches * np.arange(1, count + 1))
         stiffness = np.array([_coefficients(at, mesh, 2 * count) for mesh in meshes])
-        found.append(Family(np.array(meshes), harmonic, stiffness))
-    return found
+        families.append(Family(np.array(meshes), harmonic, stiffness))
+    return families
 
 
 def _coefficients(at: Excited, mesh: int, highest: int) -> ComplexArray:
@@ -120,12 +120,12 @@ def _coefficients(at: Excited, mesh: int, highest: int) -> ComplexArray:
     values = at.cycles[mesh].stiffness
     lines = np.fft.rfft(values) / values.size
     count = min(highest, lines.size - 2)
-    found = np.zeros(2 * highest + 1, dtype=complex)
+    coefficients = np.zeros(2 * highest + 1, dtype=complex)
     order = np.arange(1, count + 1)
     turned = lines[order] * np.exp(2j * np.pi * order * at.system.scene.meshes[mesh].position_offset)
     turned = turned if at.period.pitches[mesh] > 0 else turned.conj()
-    found[highest + order], found[highest - order] = turned, turned.conj()
-    return found
+    coefficients[highest + order], coefficients[highest - order] = turned, turned.conj()
+    return coefficients
 
 
 def _made(family: Family, row: FloatArray, steady: Steady, s: int) -> ComplexArray:

@@ -24,10 +24,10 @@ def leading_law(system: System) -> int:
         If all are at rest.
     """
     extreme = [part.speed.extreme for part in system.scene.references]
-    found = next((index for index, speed in enumerate(extreme) if speed != 0.0), None)
-    if found is None:
+    leading = next((index for index, speed in enumerate(extreme) if speed != 0.0), None)
+    if leading is None:
         raise InputError("drives", 0.0, "rotating, at least one of them", "Give one a speed other than 0.")
-    return found
+    return leading
 
 
 def law_speeds(system: System, speed: float) -> FloatArray:
@@ -54,18 +54,18 @@ def checked_speeds(speed: FloatArray | list[float] | tuple[float, ...], *, above
     InputError
         If one is not finite, below 0 (or 0), not above the one before, or there are too many.
     """
-    found = np.atleast_1d(np.asarray(speed, dtype=float))
-    if found.size > MOST_SPEEDS:
+    speeds = np.atleast_1d(np.asarray(speed, dtype=float))
+    if speeds.size > MOST_SPEEDS:
         raise InputError(
-            "speed", f"{found.size} values", f"at most {MOST_SPEEDS} values", "Take wider steps."
+            "speed", f"{speeds.size} values", f"at most {MOST_SPEEDS} values", "Take wider steps."
         )
-    for index, value in enumerate(found):
+    for index, value in enumerate(speeds):
         finite(f"speed[{index}]", float(value))
         if value < 0.0 or (above_zero and value == 0.0):
             advice = "The scene says in which sense it turns."
             bound = above(0.0) if above_zero else at_least(0.0)
             raise InputError(f"speed[{index}]", float(value), bound, advice)
-        if index and value <= found[index - 1]:
-            bound = above(float(found[index - 1]), name="the one before it,")
+        if index and value <= speeds[index - 1]:
+            bound = above(float(speeds[index - 1]), name="the one before it,")
             raise InputError(f"speed[{index}]", float(value), bound, "Sort the list and drop repeats.")
-    return found
+    return speeds

@@ -171,15 +171,15 @@ def harmonics_of(
 ) -> ComplexArray:
     """Amplitudes (H,) in multiples of the common period of a function of position, known over its table."""
     lines = 2.0 * np.fft.rfft(values) / values.size
-    found = np.zeros(harmonics.size, dtype=complex)
+    amplitudes = np.zeros(harmonics.size, dtype=complex)
     cycles = abs(pitches) // period
     if cycles == 0:
-        return found
+        return amplitudes
     which, rest = np.divmod(harmonics, cycles)
     there = (rest == 0) & (which < lines.size - 1)
     turned = lines[which[there]] * np.exp(2j * math.pi * which[there] * offset / period)
-    found[there] = turned if pitches > 0 else turned.conj()
-    return found
+    amplitudes[there] = turned if pitches > 0 else turned.conj()
+    return amplitudes
 
 
 def _solve(
@@ -204,7 +204,7 @@ def _solve(
     if rows is not None:
         each = np.broadcast_to((rows * per_meter).T, (*pushed.shape[:3], rows.shape[0]))
         pushed = np.concatenate([pushed, each], axis=-1)
-    found = np.empty((*omega.shape, *pushed.shape[2:]), dtype=complex)
+    displacement = np.empty((*omega.shape, *pushed.shape[2:]), dtype=complex)
     block = max(BLOCK // max(omega.shape[1] * g.shape[1] ** 2, 1), 1)
     left = 0.0
     for start in range(0, omega.shape[0], block):
@@ -220,7 +220,7 @@ def _solve(
         solved = np.linalg.solve(matrix, right)
         miss = np.abs(matrix @ solved - right)[..., 0]
         left = max(left, float(np.max(miss, initial=0.0)))
-        found[part] = solved * per_meter[:, None]
+        displacement[part] = solved * per_meter[:, None]
         if progress is not None:
             progress(min(start + block, omega.shape[0]) / omega.shape[0])
-    return found, left / max(float(np.max(np.abs(pushed[..., 0]), initial=0.0)), 1e-300)
+    return displacement, left / max(float(np.max(np.abs(pushed[..., 0]), initial=0.0)), 1e-300)

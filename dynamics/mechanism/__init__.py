@@ -1,4 +1,4 @@
-"""What a scene's parts are to one another: kinematics, rotors, lines of action, seats, freedoms."""
+"""Relations of a scene's parts: kinematics, rotors, lines of action, seats, freedoms."""
 
 from dynamics.mechanism.planet_copies import with_planets
 

@@ -22,7 +22,7 @@ from dynamics.types import FloatArray
 
 @dataclass(frozen=True)
 class BearingElement:
-    """Where the forces of an element act.
+    """The bearing and the directions in which the forces of an element act.
 
     Attributes
     ----------
@@ -67,18 +67,18 @@ def bearing_loads(scene: Scene, rotors: Sequence[Rotor], forces: FloatArray) -> 
 def nonlinear_influences(scene: Scene, loads: dict[str, float]) -> tuple[tuple[str, float], ...]:
     """Return for each law its shaft and what its tangent misses of the displacement under the load, m."""
     shaft = {part.name: part.shaft for part in (*scene.bushings, *scene.planet_bearings)}
-    found = []
+    influences = []
     for part in scene.rolling_contacts:
         load = part.typical_load(loads[part.bushing])
-        found.append((shaft[part.bushing], part.displacement(load) - load / part.tangent(load)))
+        influences.append((shaft[part.bushing], part.displacement(load) - load / part.tangent(load)))
     for curve in scene.spring_curves:
         reach = max(abs(curve.displacement[0]), abs(curve.displacement[-1]))
         straight = np.interp(0.0, curve.displacement, curve.force) + curve.slope * np.array(
             curve.displacement
         )
         off = float(np.max(np.abs(np.array(curve.force) - straight))) / curve.slope
-        found.append((shaft[curve.bushing], min(off, reach) if curve.direction[0] != "t" else 0.0))
-    return tuple(found)
+        influences.append((shaft[curve.bushing], min(off, reach) if curve.direction[0] != "t" else 0.0))
+    return tuple(influences)
 
 
 def bearing_locations(
@@ -110,11 +110,11 @@ def bearing_elements(
     scene: Scene, rotors: Sequence[Rotor], bearings: Sequence[BearingElement], loads: dict[str, float]
 ) -> tuple[tuple[Element, ...], RollingContactLaws, SpringCurveLaws]:
     """Return the elements at `bearings`, and their laws."""
-    found = supports_by_name(rotors)
+    supports = supports_by_name(rotors)
     parts: list[RollingContact | SpringCurve] = [*scene.rolling_contacts, *scene.spring_curves]
     first_curve, elements = len(scene.rolling_contacts), []
     for index, (part, at) in enumerate(zip(parts, bearings, strict=True)):
-        rotor, support = found[part.bushing]
+        rotor, support = supports[part.bushing]
         rolling = index < first_curve
         law = Law.ROLLING_CONTACT if rolling else Law.SPRING_CURVE
         gradient = at.way @ seat_motion(rotors, rotor, support)
@@ -123,7 +123,7 @@ def bearing_elements(
         number = index if rolling else index - first_curve
         elements.append(Element(law, number, -1, gradient, offset, stiffness=typical))
     contacts = scene.rolling_contacts
-    share = [_share(rotors[found[part.bushing][0]]) for part in contacts]
+    share = [_share(rotors[supports[part.bushing][0]]) for part in contacts]
     return (
         tuple(elements),
         pack_rolling_contacts(contacts, [loads[part.bushing] for part in contacts], share),

@@ -106,9 +106,9 @@ def mass_terms(rotors: Sequence[Rotor]) -> tuple[FloatArray, FloatArray]:
 def times_mass(rotors: Sequence[Rotor], rows: FloatArray) -> FloatArray:
     """Return `rows` (k, N) times the mass matrix."""
     diagonal, turned = mass_terms(rotors)
-    found = rows * diagonal
+    product = rows * diagonal
     if np.any(turned):
         rotations = 6 * np.arange(len(rotors)) + 5
-        found = found + rows[:, rotations] @ turned.T
-        found[:, rotations] += rows @ turned
-    return np.asarray(found)
+        product = product + rows[:, rotations] @ turned.T
+        product[:, rotations] += rows @ turned
+    return np.asarray(product)

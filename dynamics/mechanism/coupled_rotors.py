@@ -24,18 +24,18 @@ def with_couplings(scene: Scene, rotors: Sequence[Rotor]) -> tuple[Rotor, ...]:
     """
     stiff = [coupling for coupling in scene.couplings if coupling.stiffness is not None]
     sides = [(c, a, b) for c in stiff for a, b in ((c.first, c.second), (c.second, c.first))]
-    found = list(rotors)
+    supported = list(rotors)
     while True:
         for side in sides:
             coupling, floating, behind = side
-            index, held = scene.shaft_index(floating), found[scene.shaft_index(behind)]
-            kinds = _lent(found[index], held, coupling)
+            index, held = scene.shaft_index(floating), supported[scene.shaft_index(behind)]
+            kinds = _lent(supported[index], held, coupling)
             if kinds:
-                found[index] = _holding(scene, found[index], coupling, kinds)
+                supported[index] = _holding(scene, supported[index], coupling, kinds)
                 sides.remove(side)
                 break
         else:
-            return tuple(found)
+            return tuple(supported)
 
 
 def _lent(rotor: Rotor, behind: Rotor, coupling: Coupling) -> tuple[int, ...]:

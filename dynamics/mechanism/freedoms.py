@@ -47,15 +47,15 @@ class Freedoms:
 
     def find(self, rotor: int, kind: int) -> int:
         """Return the index of one of a rotor's six freedoms among the free ones, or -1."""
-        found = np.flatnonzero(self.column == 6 * rotor + kind)
-        return int(found[0]) if found.size else -1
+        index = np.flatnonzero(self.column == 6 * rotor + kind)
+        return int(index[0]) if index.size else -1
 
 
 def find_freedoms(
     rotors: Sequence[Rotor], kinematics: Kinematics, added: Sequence[Collection[str]]
 ) -> Freedoms:
     """Gather the freedoms `added` to each rotor, and the rotation of every shaft without a rigid drive."""
-    found: list[tuple[str, int, bool]] = []
+    freedoms: list[tuple[str, int, bool]] = []
     for index, rotor in enumerate(rotors):
         free = {*added[index], *rotor.rigid_kinds}
         if index not in kinematics.imposed:
@@ -65,14 +65,14 @@ def find_freedoms(
             first, twists = elastic_columns(rotors, index).start, rotor.elastic.twists
             own += [(kind, first + k, bool(twists[k])) for k, kind in enumerate(rotor.elastic.kinds)]
             own.sort(key=lambda part: COUPLED.index(part[0].rstrip("_0123456789")))
-        found += [(f"{rotor.shaft.name}.{kind}", column, turns) for kind, column, turns in own]
-    column = np.array([part[1] for part in found], dtype=np.int64)
+        freedoms += [(f"{rotor.shaft.name}.{kind}", column, turns) for kind, column, turns in own]
+    column = np.array([part[1] for part in freedoms], dtype=np.int64)
     motion = carried_motion(rotors, column)[:, column]
     return Freedoms(
-        tuple(part[0] for part in found),
+        tuple(part[0] for part in freedoms),
         column,
         np.ascontiguousarray(motion),
-        np.array([part[2] for part in found], dtype=np.bool_),
+        np.array([part[2] for part in freedoms], dtype=np.bool_),
     )
 
 

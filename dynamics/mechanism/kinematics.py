@@ -72,9 +72,9 @@ def solve_kinematics(scene: Scene) -> Kinematics:
         _add_mesh(scene, speeds, index)
     for index, coupling in enumerate(scene.couplings):
         ends = scene.shaft_index(coupling.first), scene.shaft_index(coupling.second)
-        found = speeds.ratio(*ends, None)
-        if found is not None and found != 1:
-            bound = f"a shaft of the same speed, not of {found} times it"
+        known = speeds.ratio(*ends, None)
+        if known is not None and known != 1:
+            bound = f"a shaft of the same speed, not of {known} times it"
             raise InputError(f"couplings[{index}].second", coupling.second, bound)
         speeds.join(*ends, None, Fraction(1))
     for number, part in enumerate(scene.references):
@@ -115,9 +115,9 @@ def _add_mesh(scene: Scene, speeds: TrainSpeeds, index: int) -> None:
         )
         raise InputError(field, mesh.driven, "on a shaft in the same frame as the driver's", suggestion)
     ratio = Fraction(driver.teeth, driven.teeth) * (1 if driver.internal or driven.internal else -1)
-    found = speeds.ratio(a, b, carrier)
-    if found is not None and found != ratio:
-        raise InputError(f"meshes[{index}]", str(ratio), f"of ratio {found}, as other meshes require")
+    known = speeds.ratio(a, b, carrier)
+    if known is not None and known != ratio:
+        raise InputError(f"meshes[{index}]", str(ratio), f"of ratio {known}, as other meshes require")
     speeds.join(a, b, carrier, ratio)
     for other in range(index + 1):
         first, _, frame = mesh_shafts(scene, other)

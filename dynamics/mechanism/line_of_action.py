@@ -1,4 +1,4 @@
-"""Where and in which direction the force of a mesh acts."""
+"""The line of action of a mesh: point and direction of its force."""
 
 from __future__ import annotations
 
@@ -64,8 +64,8 @@ def line_of_action(scene: Scene, index: int, sense: int) -> LineOfAction:
     distance = float(np.hypot(apart[0], apart[1]))
     bases = _acting_base_radii(driver, driven)
     if distance <= bases:
-        what = "difference" if driver.internal or driven.internal else "sum"
-        bound = Text.of("at a center distance ", above(bases, "m", f"the base radii's {what},"))
+        combined = "difference" if driver.internal or driven.internal else "sum"
+        bound = Text.of("at a center distance ", above(bases, "m", f"the base radii's {combined},"))
         raise InputError(field, Quantity(distance, "m"), bound)
     angle = math.acos(bases / distance)
     e = (
@@ -106,8 +106,8 @@ def _check_fit(field: str, driver: GearBody, driven: GearBody) -> None:
         raise InputError(field, driven.teeth, f"such that the ring gear has more teeth than {pinion.teeth}")
     hand, name = (1.0, "the same hand") if ring.internal else (-1.0, "the other hand")
     if abs(driver.base_helix_angle - hand * driven.base_helix_angle) > 1e-9:
-        wanted = Quantity(hand * driver.base_helix_angle, "rad")
-        bound = Text.of("of base helix angle ", wanted, f", {name}")
+        expected = Quantity(hand * driver.base_helix_angle, "rad")
+        bound = Text.of("of base helix angle ", expected, f", {name}")
         raise InputError(field, Quantity(driven.base_helix_angle, "rad"), bound)
 
 

@@ -32,7 +32,7 @@ GIVE_INERTIA = "Give the shaft or its gears mass and inertia (see hollow_cylinde
 
 @dataclass(frozen=True)
 class Mechanism:
-    """What a scene consists of before any effect is decided.
+    """The parts of a scene before any effect is decided.
 
     Attributes
     ----------
@@ -114,12 +114,12 @@ def _with_bearings(
     """Return where laws of bearings act, and the rotors with their typical stiffness."""
     names = gather_supports(rotors, frozenset()).name
     bearings = bearing_locations(scene, rotors, names, loads)
-    known, found = supports_by_name(rotors), list(rotors)
+    known, stiffened = supports_by_name(rotors), list(rotors)
     for at in bearings:
         index, support = known[names[at.support]]
-        rotor = found[index]
-        found[index] = replace(rotor, curved=(*rotor.curved, (at.seat, rotor.lever(support))))
-    return bearings, tuple(found)
+        rotor = stiffened[index]
+        stiffened[index] = replace(rotor, curved=(*rotor.curved, (at.seat, rotor.lever(support))))
+    return bearings, tuple(stiffened)
 
 
 def _check_rotation(rotors: Sequence[Rotor], kinematics: Kinematics) -> None:

@@ -1,4 +1,4 @@
-"""What can be said of a scene without its tables: that it moves, its teeth fit and loads press its flanks."""
+"""Checks of a scene without its tables: it moves, its teeth fit and loads press its flanks."""
 
 from __future__ import annotations
 

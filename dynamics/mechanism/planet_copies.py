@@ -114,10 +114,10 @@ def _on_pins(
 
 def _on_copies(laws: Sequence[BearingLaw], copied: Mapping[str, Sequence[str]]) -> tuple[BearingLaw, ...]:
     """Return `laws` and those that the copies of their bearings have."""
-    found = list(laws)
+    extended = list(laws)
     for law in laws:
-        found += [replace(law, bushing=name) for name in copied.get(law.bushing, ())]
-    return tuple(found)
+        extended += [replace(law, bushing=name) for name in copied.get(law.bushing, ())]
+    return tuple(extended)
 
 
 def _turns(number: int, angles: Sequence[float] | None) -> list[Turn]:
@@ -132,12 +132,12 @@ def _turns(number: int, angles: Sequence[float] | None) -> list[Turn]:
 def _offsets(
     scene: Scene, kinematics: Kinematics, shaft: str, turns: Sequence[Turn]
 ) -> dict[str, list[Turn]]:
-    """How far the meshes of each planet are ahead of the first one's, base pitches, by name of the mesh.
+    """Lead of the meshes of each planet over the first one's, base pitches, by name of the mesh.
 
     The teeth of a central gear that turns against the carrier in the sense s come to a planet at the angle
     psi s z psi / (2 pi) pitches later. All central gears of a planet gear must require the same tooth.
     """
-    found: dict[str, list[Turn]] = {}
+    offsets: dict[str, list[Turn]] = {}
     first: dict[str, list[Turn]] = {}
     for index, mesh in enumerate(scene.meshes):
         gears = scene.gear(mesh.driver), scene.gear(mesh.driven)
@@ -147,9 +147,9 @@ def _offsets(
         sense = kinematics.mesh_sense[index]
         if central is gears[1] and not central.internal:
             sense = -sense
-        found[mesh.name] = [-sense * central.teeth * turn for turn in turns]
-        _check_fit(found[mesh.name], first.setdefault(planet.name, found[mesh.name]))
-    return found
+        offsets[mesh.name] = [-sense * central.teeth * turn for turn in turns]
+        _check_fit(offsets[mesh.name], first.setdefault(planet.name, offsets[mesh.name]))
+    return offsets
 
 
 def _check_fit(mine: Sequence[Turn], other: Sequence[Turn]) -> None:

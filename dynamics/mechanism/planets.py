@@ -1,4 +1,4 @@
-"""How planets go with their carrier: rigidly, in the kinematic motion and where nothing lets them move."""
+"""Planets on their carrier: rigid in the kinematic motion and where nothing lets them move."""
 
 from __future__ import annotations
 

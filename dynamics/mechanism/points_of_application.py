@@ -1,4 +1,4 @@
-"""Where forces act on the shafts of a scene, and which shafts can bend and twist."""
+"""Points of application on the shafts of a scene, and the shafts that can bend and twist."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def _points_of_application(
     """Return where gears, bearings, couplings and torques act."""
     name = rotor.shaft.name
     tilting = {*seated(scene), *(c.bushing for c in scene.spring_curves if c.direction.startswith("tilt"))}
-    found = [
+    points = [
         PointOfApplication(rotor.on_shaft(gear.position), bends, bends, stretches, True)
         for gear in scene.gears
         if gear.shaft == name
@@ -90,15 +90,15 @@ def _points_of_application(
     for bushing in rotor.bushings:
         along = stretches and (bushing.axial_stiffness > 0.0 or bushing.full)
         tilts = bends and bushing.name in tilting
-        found.append(PointOfApplication(rotor.on_shaft(bushing.position), bends, tilts, along))
+        points.append(PointOfApplication(rotor.on_shaft(bushing.position), bends, tilts, along))
     for position, full in _couplings(scene, rotor):
         whole = bends and full
-        found.append(PointOfApplication(rotor.on_shaft(position), whole, whole, stretches and full, True))
+        points.append(PointOfApplication(rotor.on_shaft(position), whole, whole, stretches and full, True))
     torques: list[OnShaft] = [*scene.drives, *scene.loads, *scene.speed_torques]
-    found += [
+    points += [
         PointOfApplication(rotor.on_shaft(part.position), turn=True) for part in torques if part.shaft == name
     ]
-    return tuple(found)
+    return tuple(points)
 
 
 def _couplings(scene: Scene, rotor: Rotor) -> list[tuple[float, bool]]:
@@ -121,5 +121,5 @@ def _positions(scene: Scene, rotor: Rotor) -> list[tuple[str, float]]:
 
 def _shafts(scene: Scene, mesh: str) -> Sequence[str]:
     """Return the shafts of a mesh's gears."""
-    found = next(part for part in scene.meshes if part.name == mesh)
-    return [scene.gear(name).shaft for name in (found.driver, found.driven)]
+    meshing = next(part for part in scene.meshes if part.name == mesh)
+    return [scene.gear(name).shaft for name in (meshing.driver, meshing.driven)]

@@ -42,7 +42,7 @@ class _Matrices(Protocol):
 
 @dataclass(frozen=True)
 class Sampling:
-    """How a run is sampled.
+    """The sampling of a run.
 
     Attributes
     ----------
@@ -111,8 +111,8 @@ def kaiser_shape(stop_band: float) -> float:
 
 def order_rate(scene: Scene, kinematics: Kinematics) -> float:
     """Return the rate, Hz, that passes the wanted mesh orders at the highest speed."""
-    wanted = PER_BAND * scene.outputs.mesh_orders * top_mesh_frequency(scene, kinematics)
-    return max(wanted, LEAST_RATE)
+    rate = PER_BAND * scene.outputs.mesh_orders * top_mesh_frequency(scene, kinematics)
+    return max(rate, LEAST_RATE)
 
 
 def top_mesh_frequency(scene: Scene, kinematics: Kinematics) -> float:

@@ -1,4 +1,4 @@
-"""How a bearing's five strains follow from the bodies: of the shaft against the ground, or against a pin."""
+"""A bearing's five strains by the bodies: of the shaft against the ground, or against a pin."""
 
 from __future__ import annotations
 

@@ -70,12 +70,12 @@ def gather_seats(scene: Scene, rotors: Sequence[Rotor], names: Sequence[str]) ->
     chosen = seated(scene)
     housed = [name for housing in scene.housings for name in housing.bushings]
     order = [*housed, *(name for name in names if name in chosen and name not in housed)]
-    found = {part.name: (i, part) for i, rotor in enumerate(rotors) for part in rotor.supports}
+    supports = {part.name: (i, part) for i, rotor in enumerate(rotors) for part in rotor.supports}
     size = SEAT * len(order)
     motion, preload = np.zeros((size, column_count(rotors))), np.zeros(size)
     stiffness, damping = np.zeros((size, size)), np.zeros((size, size))
     for seat, name in enumerate(order):
-        index, part = found[name]
+        index, part = supports[name]
         rows = slice(SEAT * seat, SEAT * seat + SEAT)
         motion[rows], turn = seat_motion(rotors, index, part), seat_axes(rotors, index, part)
         stiffness[rows, rows] = turn.T @ part.seat_stiffness @ turn
@@ -93,7 +93,7 @@ def gather_seats(scene: Scene, rotors: Sequence[Rotor], names: Sequence[str]) ->
     return Seats(
         tuple(order),
         np.array([list(names).index(name) for name in order], dtype=np.int64),
-        tuple(_frame(rotors, *found[name]) for name in order),
+        tuple(_frame(rotors, *supports[name]) for name in order),
         tuple(groups),
         motion,
         stiffness,

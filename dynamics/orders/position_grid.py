@@ -50,11 +50,11 @@ def _cubic(values: FloatArray, index: IntArray, part: FloatArray) -> FloatArray:
         return np.asarray(values[..., index] + part * (values[..., index + 1] - values[..., index]))
     first = np.clip(index - 1, 0, most)
     u = index + part - first  # 0..3
-    found = values[..., first] * (-(u - 1.0) * (u - 2.0) * (u - 3.0) / 6.0)
-    found += values[..., first + 1] * (u * (u - 2.0) * (u - 3.0) / 2.0)
-    found += values[..., first + 2] * (-u * (u - 1.0) * (u - 3.0) / 2.0)
-    found += values[..., first + 3] * (u * (u - 1.0) * (u - 2.0) / 6.0)
-    return np.asarray(found)
+    interpolated = values[..., first] * (-(u - 1.0) * (u - 2.0) * (u - 3.0) / 6.0)
+    interpolated += values[..., first + 1] * (u * (u - 2.0) * (u - 3.0) / 2.0)
+    interpolated += values[..., first + 2] * (-u * (u - 1.0) * (u - 3.0) / 2.0)
+    interpolated += values[..., first + 3] * (u * (u - 1.0) * (u - 2.0) / 6.0)
+    return np.asarray(interpolated)
 
 
 def check_series(result: RunResult, series: str) -> str:

@@ -71,7 +71,7 @@ def sidebands(
         raise InputError("values", np.shape(values), "one signal, (T,)", "Pick one bearing and direction.")
     per_pitch = max(64, 8 * (orders + 1))
     grid, _, signal = resample_to_position(result, values, per_pitch, mesh)
-    found: list[Sideband] = []
+    bands: list[Sideband] = []
     for source, period in (periods or gear_periods(result, mesh)).items():
         turns = grid.size // (period * per_pitch)
         if turns < REVOLUTIONS:
@@ -83,8 +83,8 @@ def sidebands(
                 line = (order * period + number) * turns
                 at = order + number / period
                 if line > 0:
-                    found.append(Sideband(source, order, number, at, float(lines[line])))
-    return tuple(found)
+                    bands.append(Sideband(source, order, number, at, float(lines[line])))
+    return tuple(bands)
 
 
 def gear_periods(result: RunResult, mesh: int = 0) -> dict[str, int]:

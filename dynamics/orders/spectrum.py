@@ -42,7 +42,7 @@ class Spectrum:
 
 @dataclass(frozen=True)
 class MeshOrder:
-    """Where a harmonic of the mesh frequency lies in a window of a run-up.
+    """The band of a harmonic of the mesh frequency in a window of a run-up.
 
     Attributes
     ----------

@@ -102,8 +102,8 @@ def order_waterfall(
     lines = spectrum(cut, float(per_pitch), unit)
     middle = time[: blocks * length].reshape(blocks, length).mean(axis=1)
     frequency = np.interp(middle, result.time, result.mesh_frequency[mesh])
-    wanted = slice(0, highest * pitches + 1)
-    return Waterfall(lines.frequency[wanted], middle, frequency, lines.amplitude[..., wanted], unit)
+    kept = slice(0, highest * pitches + 1)
+    return Waterfall(lines.frequency[kept], middle, frequency, lines.amplitude[..., kept], unit)
 
 
 def order_track(
@@ -147,5 +147,5 @@ def frequency_waterfall(
         np.array([over[at : at + length].mean() for at in first])
         for over in (result.time, result.mesh_frequency[mesh])
     )
-    amplitude = np.stack([found.amplitude for found in lines], axis=-2)
+    amplitude = np.stack([line.amplitude for line in lines], axis=-2)
     return Waterfall(lines[0].frequency, time, mesh_frequency, amplitude, unit)

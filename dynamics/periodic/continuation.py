@@ -24,7 +24,7 @@ FOLD_SHARE = 0.3  # of a bracket that each iteration takes off at least
 
 
 class BranchStatus(IntEnum):
-    """Why a branch ended."""
+    """The reason why a branch ended."""
 
     COMPLETED = 0  # it left the range of speeds
     STEP_FLOOR = 1  # Newton failed with the smallest step along the branch
@@ -39,7 +39,7 @@ class BranchStatus(IntEnum):
 
 @dataclass(frozen=True)
 class Bifurcation:
-    """Where a branch turns back in speed, or gains or loses stability.
+    """A point where a branch turns back in speed, or gains or loses stability.
 
     Attributes
     ----------
@@ -226,16 +226,16 @@ def _passed(
     problem: PeriodicProblem, scale: float, before: _Point, behind: _Point, step: float, index: int
 ) -> list[Bifurcation]:
     """Return what lies between two neighboring points."""
-    found = []
+    bifurcations = []
     if before.tangent[-1] * behind.tangent[-1] < 0.0:
-        found.append(Bifurcation(Instability.FOLD, _fold(problem, scale, before, behind, step), index))
+        bifurcations.append(Bifurcation(Instability.FOLD, _fold(problem, scale, before, behind, step), index))
     elif before.orbit.stable is not behind.orbit.stable:
         unstable = behind.orbit if before.orbit.stable else before.orbit
         excess = [abs(p.orbit.multipliers[0]) - 1.0 - ON_THE_CIRCLE for p in (before, behind)]
         weight = excess[0] / (excess[0] - excess[1])
         speed = before.orbit.speed + weight * (behind.orbit.speed - before.orbit.speed)
-        found.append(Bifurcation(unstable.instability, float(speed), index))
-    return found
+        bifurcations.append(Bifurcation(unstable.instability, float(speed), index))
+    return bifurcations
 
 
 def _fold(problem: PeriodicProblem, scale: float, before: _Point, behind: _Point, step: float) -> float:

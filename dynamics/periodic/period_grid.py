@@ -73,7 +73,7 @@ def _knots(system: System, period: CommonPeriod) -> FloatArray:
     """Phases at which any flank passes a knot of its table, with 0 and 1."""
     elements, reference = system.arrays.elements, system.arrays.reference
     table = elements.laws.flank.table
-    found = [np.array([0.0, 1.0])]
+    phases = [np.array([0.0, 1.0])]
     for law, entry, mesh in zip(elements.law, elements.entry, elements.mesh, strict=True):
         pitches = period.pitches[mesh] if law == Law.FLANK else 0
         if pitches == 0:
@@ -83,8 +83,8 @@ def _knots(system: System, period: CommonPeriod) -> FloatArray:
         knot = table.knot[first : first + last] + table.shift[entry] - reference.offset[mesh]
         cycles = abs(pitches) // round(span)
         passed = (knot[:, None] + span * np.arange(cycles)) / pitches
-        found.append(np.ravel(passed) % 1.0)
-    phase = np.sort(np.concatenate(found))
+        phases.append(np.ravel(passed) % 1.0)
+    phase = np.sort(np.concatenate(phases))
     kept = np.diff(phase, prepend=-1.0) > SAME
     phase = phase[kept]
     phase[-1] = 1.0

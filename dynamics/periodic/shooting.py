@@ -17,7 +17,7 @@ RESIDUAL_LIMIT = 1e-9  # of the size of a state
 
 
 class OrbitStatus(IntEnum):
-    """How the search for a periodic motion ended."""
+    """The end of the search for a periodic motion."""
 
     CONVERGED = 0
     ITERATION_LIMIT = 1  # Newton ran out of iterations
@@ -67,7 +67,7 @@ class Orbit:
 
     @property
     def instability(self) -> Instability:
-        """How the motion is unstable, if it is."""
+        """The kind of instability, if the motion is unstable."""
         return instability(self.multipliers)
 
     @property

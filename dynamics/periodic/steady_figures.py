@@ -70,19 +70,19 @@ def figures_of(problem: PeriodicProblem, orbits: Sequence[Orbit]) -> MotionFigur
 
 def _figures(problem: PeriodicProblem, orbit: Orbit) -> tuple[FloatArray, FloatArray]:
     """Return the seven figures of every mesh (7, m), and the alternating force on every bearing (b,)."""
-    found = motion(problem, orbit, FINE)
-    error, force = found.dynamic_transmission_error, found.mesh_force
+    series = motion(problem, orbit, FINE)
+    error, force = series.dynamic_transmission_error, series.mesh_force
     coasting = np.zeros(force.shape[0])
     for row, mesh in enumerate(problem.system.flanks.coast):
-        coasting[mesh] = np.mean(found.coast_force[row] > 0.0)
+        coasting[mesh] = np.mean(series.coast_force[row] > 0.0)
     figures = (
         np.mean(error, axis=1),
         np.std(error, axis=1),
         np.ptp(error, axis=1),
         np.min(force, axis=1),
         np.max(force, axis=1),
-        found.parted,
+        series.parted,
         coasting,
     )
-    bearing = np.sqrt(np.sum(np.var(found.bearing_force[:, :3], axis=-1), axis=1))
+    bearing = np.sqrt(np.sum(np.var(series.bearing_force[:, :3], axis=-1), axis=1))
     return np.array(figures), np.asarray(bearing)

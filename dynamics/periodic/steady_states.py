@@ -167,7 +167,7 @@ def _study(
     seconds: Json,
 ) -> SteadyStates:
     """Put the study together."""
-    found = branch.bifurcations if branch is not None else ()
+    bifurcations = branch.bifurcations if branch is not None else ()
     jumps = _jumps(figures, len(curves[UP])) if curves[DOWN] else []
     scene = problem.system.scene
     facts: Json = {
@@ -189,8 +189,8 @@ def _study(
         mesh=tuple(mesh.name for mesh in scene.meshes),
         bearing=problem.system.supports.name,
         curve=np.repeat(np.arange(len(curves)), [len(orbits) for orbits in curves]),
-        bifurcation_speed=np.array([abs(b.speed) for b in found]),
-        bifurcation_kind=np.array([KINDS.index(b.kind) for b in found], dtype=np.int64),
+        bifurcation_speed=np.array([abs(b.speed) for b in bifurcations]),
+        bifurcation_kind=np.array([KINDS.index(b.kind) for b in bifurcations], dtype=np.int64),
         jump_curve=np.array([curve for curve, _ in jumps], dtype=np.int64),
         jump_speed=np.array([ends for _, ends in jumps], dtype=float).reshape(-1, 2),
         facts=facts,
@@ -207,14 +207,14 @@ def _jumps(figures: MotionFigures, speeds: int) -> list[tuple[int, tuple[float, 
 
     The first `speeds` figures are of rising speeds, as many after them of falling ones.
     """
-    one, other = figures.rms_error[:speeds], figures.rms_error[speeds : 2 * speeds][::-1]
-    apart = np.abs(one - other) > SAME * np.maximum(one, other)  # False where one was not found
+    rising, falling = figures.rms_error[:speeds], figures.rms_error[speeds : 2 * speeds][::-1]
+    apart = np.abs(rising - falling) > SAME * np.maximum(rising, falling)  # False where one was not found
     two = np.any(apart, axis=1)
-    found = []
+    jumps = []
     for index in range(len(two) - 1):
         low, high = (float(value) for value in figures.speed[index : index + 2])
         if two[index] and not two[index + 1]:
-            found.append((UP, (low, high)))
+            jumps.append((UP, (low, high)))
         if two[index + 1] and not two[index]:
-            found.append((DOWN, (high, low)))
-    return found
+            jumps.append((DOWN, (high, low)))
+    return jumps

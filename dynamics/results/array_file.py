@@ -24,7 +24,7 @@ DOCUMENTS = "documents"
 
 @dataclass(frozen=True)
 class Stored:
-    """How one array is stored: its dimensions, its SI unit, what it is."""
+    """The storage of one array: its dimensions, its SI unit, its description."""
 
     dimensions: tuple[str, ...]
     units: str
@@ -105,9 +105,9 @@ def _read(path: Path, schema: str, stored: Mapping[str, Stored]) -> tuple[Json, 
     # what HDF5 raises on damaged bytes is not one class
     except (OSError, ValueError, KeyError, RuntimeError, TypeError, AttributeError, IndexError) as error:
         raise ResultError(f"{path}: not a readable netCDF-4 file ({error})") from error
-    found = f"{attributes.get('schema')} {attributes.get('schema_version')}"
-    if found != f"{schema} {SCHEMA_VERSION}":
-        raise ResultError(f"{path}: schema is {found}, expected {schema} {SCHEMA_VERSION}")
+    stated = f"{attributes.get('schema')} {attributes.get('schema_version')}"
+    if stated != f"{schema} {SCHEMA_VERSION}":
+        raise ResultError(f"{path}: schema is {stated}, expected {schema} {SCHEMA_VERSION}")
     try:
         documents = str(attributes[DOCUMENTS])
         content = json.loads(documents)
@@ -161,11 +161,11 @@ def _plain(value: Any) -> Any:
 
 def _digest(documents: str, arrays: Mapping[str, Any]) -> str:
     """SHA-256 over the documents and all arrays in their order."""
-    found = hashlib.sha256(documents.encode())
+    hasher = hashlib.sha256(documents.encode())
     for name, values in arrays.items():
-        found.update(name.encode())
-        found.update(np.ascontiguousarray(values).tobytes())
-    return found.hexdigest()
+        hasher.update(name.encode())
+        hasher.update(np.ascontiguousarray(values).tobytes())
+    return hasher.hexdigest()
 
 
 def _publish(part: Path, path: Path) -> None:

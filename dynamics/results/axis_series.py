@@ -39,14 +39,14 @@ def axis_series(system: System, coordinate: FloatArray, force: FloatArray) -> di
 def axis_rows(system: System, axis: int, *, follows: bool) -> dict[int, int]:
     """Return the row of an axis of each driving flank that has one; if `follows`, of those that read it."""
     elements, laws = system.arrays.elements, system.arrays.elements.laws.spatial_flank
-    found = {}
+    rows = {}
     for mesh in range(len(system.scene.meshes)):
         if elements.law[mesh] != SPATIAL_FLANK:
             continue
         row = laws.row[elements.entry[mesh], axis]
         if row > 0 and (laws.follows[elements.entry[mesh], axis] == 1 or not follows):
-            found[mesh] = int(elements.first[mesh] + row)
-    return found
+            rows[mesh] = int(elements.first[mesh] + row)
+    return rows
 
 
 def _anywhere(system: System, effect: str) -> bool:

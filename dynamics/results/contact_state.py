@@ -11,7 +11,7 @@ from dynamics.results.run_result import RunResult
 
 
 class ContactState(IntEnum):
-    """Which flanks of a mesh carry."""
+    """The flanks of a mesh that carry."""
 
     OFF = 0
     DRIVING = 1
@@ -26,5 +26,5 @@ def contact_state(result: RunResult) -> NDArray[np.int8]:
 
 def contact_shares(result: RunResult) -> list[dict[str, float]]:
     """Return per mesh the share of the samples in each state, by its name in lower case."""
-    found = contact_state(result)
-    return [{state.name.lower(): float(np.mean(row == state)) for state in ContactState} for row in found]
+    states = contact_state(result)
+    return [{state.name.lower(): float(np.mean(row == state)) for state in ContactState} for row in states]

@@ -43,11 +43,11 @@ def mean_deflection(system: System) -> float:
     """Return the largest of the meshes' mean static transmission errors under the nominal force, m."""
     table = system.arrays.elements.laws.flank.table
     position, touched = np.arange(POSITIONS) / POSITIONS, np.empty(POSITIONS)
-    found = [0.0]
+    deflections = [0.0]
     for index, force in enumerate(system.flanks.nominal_force):
         static_deflections(table, index, position, float(force), touched)
-        found.append(float(np.mean(np.abs(touched))))
-    return max(found)
+        deflections.append(float(np.mean(np.abs(touched))))
+    return max(deflections)
 
 
 def _entry(
@@ -59,14 +59,14 @@ def _entry(
 ) -> Json:
     """One effect of one part."""
     name = entry["effect"]
-    own = [one for one in checks if (one["effect"], one["part"]) == (entry["effect"], entry["part"])]
-    found = {
+    own = [check for check in checks if (check["effect"], check["part"]) == (entry["effect"], entry["part"])]
+    assessed = {
         "worth_relative": entry["worth"] / deflection if deflection > 0.0 else None,
-        "checked": "; ".join(one["reason"] for one in own) or NOT_CHECKED,
-        "holds": all(one["holds"] for one in own) if own else None,
+        "checked": "; ".join(check["reason"] for check in own) or NOT_CHECKED,
+        "holds": all(check["holds"] for check in own) if own else None,
     }
     if entry["price"] and not entry["on"] and name in influences:
-        found["price"] = f"left out: {influences[name]['words']}"
+        assessed["price"] = f"left out: {influences[name]['words']}"
     if name in automatic and entry["possible"]:
-        found |= {"choice": "auto", "reason": automatic[name], "price": ""}
-    return {**entry, **found}
+        assessed |= {"choice": "auto", "reason": automatic[name], "price": ""}
+    return {**entry, **assessed}

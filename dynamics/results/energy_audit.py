@@ -51,14 +51,14 @@ class EnergyAudit:
 
     @property
     def residual(self) -> float:
-        """What does not balance, J; 0 for an exact integration."""
+        """The residual of the balance, J; 0 for an exact integration."""
         gained = self.kinetic + self.stored_bushings + self.stored_meshes
         lost = self.bushings + self.meshes + self.friction
         return self.drive + self.load + self.position + self.axes - lost - gained
 
     @property
     def turnover(self) -> float:
-        """What vibration turned over, J: all that was lost, supplied by the tables or gained in springs.
+        """The energy turned over by vibration, J: lost, supplied by the tables or gained in springs.
 
         And what springs hold from the start: a run that loses next to nothing is assessed by that. The power
         that drive and load exchange is thousands of times more, and would hide any error.

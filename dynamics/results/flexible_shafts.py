@@ -1,4 +1,4 @@
-"""What flexible shafts were modeled with: elements, modes, errors, in plain JSON."""
+"""The model of flexible shafts: elements, modes, errors, in plain JSON."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ class HeldOperatingPointChecks:
 
     def __init__(self, system: System) -> None:
         self._system = system
-        able = {(one.effect, one.part) for one in system.ledger.entries if one.possible and not one.on}
+        able = {(row.effect, row.part) for row in system.ledger.entries if row.possible and not row.on}
         self._watched = [
             _Watched(axis, index, _gradient(system, axis, index))
             for axis, effect in enumerate(EFFECTS)
@@ -59,13 +59,13 @@ class HeldOperatingPointChecks:
 
     def _entry(self, watched: _Watched, farthest: float) -> Json:
         """One mesh and axis."""
-        system, what = self._system, WHAT[watched.axis]
+        system, quantity = self._system, WHAT[watched.axis]
         mesh, force = system.scene.meshes[watched.mesh], float(system.flanks.nominal_force[watched.mesh])
         change = _change(mesh, force, watched.axis, farthest)
         reported = f"bodies moved by up to {farthest:.3g} m, which changes the mean by {100.0 * change:.2g} %"
         return {
             "effect": EFFECTS[watched.axis],
-            "assumption": f"{what} stays where the table is read",
+            "assumption": f"{quantity} stays where the table is read",
             "part": mesh.name,
             "holds": abs(change) <= (system.scene.tolerance or USUAL_TOLERANCE),
             "farthest": farthest,

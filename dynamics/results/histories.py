@@ -18,7 +18,7 @@ from dynamics.types import FloatArray, IntArray
 
 
 class Signals(NamedTuple):
-    """What series are made of at T times: n freedoms, R local coordinates, m meshes.
+    """The signals that series are made of at T times: n freedoms, R local coordinates, m meshes.
 
     Attributes
     ----------
@@ -61,15 +61,15 @@ def histories(
     arrays, scene = system.arrays, system.scene
     laws = observe_laws(arrays, time)
     q, v, moved = signals.q, signals.v, states.moved
-    wanted = scene.outputs
+    outputs = scene.outputs
     force, moment = _on_the_ground(system, laws, signals.force, q, v, moved)
     driving = system.driving_rows
     return {
         "time": time,
         "mesh": tuple(mesh.name for mesh in scene.meshes),
         "shaft": tuple(shaft.name for shaft in scene.shafts),
-        "bearing": system.supports.name if wanted.bearing_forces else (),
-        "freedom": system.freedoms.name if wanted.displacements else (),
+        "bearing": system.supports.name if outputs.bearing_forces else (),
+        "freedom": system.freedoms.name if outputs.displacements else (),
         "drive": tuple(drive.name for drive in scene.drives),
         "coupling": system.couplings.name,
         "position": seen.position[: len(scene.meshes)],
@@ -87,8 +87,8 @@ def histories(
         "coupling_torque": _coupling_torque(system, q, v),
         "bearing_force": force,
         "bearing_moment": moment,
-        "displacement": np.ascontiguousarray(q.T) if wanted.displacements else np.empty((0, time.size)),
-        "velocity": np.ascontiguousarray(v.T) if wanted.displacements else np.empty((0, time.size)),
+        "displacement": np.ascontiguousarray(q.T) if outputs.displacements else np.empty((0, time.size)),
+        "velocity": np.ascontiguousarray(v.T) if outputs.displacements else np.empty((0, time.size)),
         "nominal_force": system.flanks.nominal_force,
         **_accelerations(system, laws, time, signals, moved),
     }
@@ -97,8 +97,8 @@ def histories(
 def _contact(system: System, force: FloatArray) -> FloatArray:
     """Return which flanks of each mesh carry, (m, T): 1 the driving, 2 the coast flank, 3 both, 0 none."""
     coast = _coast_force(system, force)
-    found = (force[system.driving_rows] > 0.0).astype(float)
-    return found + 2.0 * (coast > 0.0) if coast.size else found
+    carrying = (force[system.driving_rows] > 0.0).astype(float)
+    return carrying + 2.0 * (coast > 0.0) if coast.size else carrying
 
 
 def _accelerations(
@@ -108,15 +108,15 @@ def _accelerations(
     none = {"acceleration": np.empty((0, len(moved))), "bearing_acceleration": np.empty((0, 3, len(moved)))}
     if not system.scene.outputs.accelerations:
         return none
-    acceleration, found = _acceleration(system, laws[ACCELERATION], time, signals), dict(none)
+    acceleration, series = _acceleration(system, laws[ACCELERATION], time, signals), dict(none)
     if system.scene.outputs.displacements:
-        found["acceleration"] = acceleration
+        series["acceleration"] = acceleration
     if system.scene.outputs.bearing_forces:
         moves = system.freedoms.keep(system.supports.motion)
         bearings, _, freedoms = moves.shape
         seats = (moves.reshape(3 * bearings, freedoms) @ acceleration).reshape(bearings, 3, len(moved))
-        found["bearing_acceleration"] = _seen_from_the_ground(system, seats, laws, moved)
-    return found
+        series["bearing_acceleration"] = _seen_from_the_ground(system, seats, laws, moved)
+    return series
 
 
 def _acceleration(system: System, laws: FloatArray, time: FloatArray, signals: Signals) -> FloatArray:
@@ -142,8 +142,8 @@ def _on_the_ground(
     none = np.empty((0, 3, q.shape[0]))
     if not system.scene.outputs.bearing_forces:
         return none, none
-    found = system.bearing_force(local, q, v)
-    force, moment = found[:, :3], found[:, 3:]
+    reaction = system.bearing_force(local, q, v)
+    force, moment = reaction[:, :3], reaction[:, 3:]
     turned = _seen_from_the_ground(system, np.ascontiguousarray(force), laws, moved)
     if not _holds_tilt(system):
         return turned, none
@@ -195,10 +195,10 @@ def _mesh_frequency(system: System, speed: FloatArray, v: FloatArray) -> FloatAr
 def _coast_force(system: System, force: FloatArray) -> FloatArray:
     """Force of the coast flanks, (m, T); (0, T) where no mesh has one."""
     meshes, coast = len(system.scene.meshes), system.flanks.coast
-    found = np.zeros((meshes if coast else 0, force.shape[1]))
+    coasting = np.zeros((meshes if coast else 0, force.shape[1]))
     for element, mesh in enumerate(coast, start=meshes):
-        found[mesh] = force[system.arrays.elements.first[element]]
-    return found
+        coasting[mesh] = force[system.arrays.elements.first[element]]
+    return coasting
 
 
 def _static(system: System, position: FloatArray) -> FloatArray:

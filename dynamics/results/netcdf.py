@@ -72,8 +72,8 @@ def read_netcdf(path: Path) -> RunResult:
     except (OSError, ValueError, KeyError, RuntimeError, TypeError, AttributeError, IndexError) as error:
         raise ResultError(f"{path}: not a readable netCDF-4 file ({error})") from error
     if dataset.attrs.get("schema") != SCHEMA or dataset.attrs.get("schema_version") != SCHEMA_VERSION:
-        found = f"{dataset.attrs.get('schema')} {dataset.attrs.get('schema_version')}"
-        raise ResultError(f"{path}: schema is {found}, expected {SCHEMA} {SCHEMA_VERSION}")
+        stated = f"{dataset.attrs.get('schema')} {dataset.attrs.get('schema_version')}"
+        raise ResultError(f"{path}: schema is {stated}, expected {SCHEMA} {SCHEMA_VERSION}")
     try:
         return _from_dataset(dataset)
     except (KeyError, ValueError, TypeError) as error:

@@ -29,8 +29,8 @@ def order_amplitudes(position: FloatArray, values: FloatArray, orders: int) -> F
     drift = np.linspace(-1.0, 1.0, position.size)
     columns = np.column_stack([np.ones(position.size), drift, np.cos(angle), np.sin(angle)])
     flat = values.reshape(-1, position.size)
-    found = np.linalg.lstsq(columns, flat.T, rcond=None)[0][2:].T
-    size = np.hypot(found[:, :orders], found[:, orders:])
+    coefficients = np.linalg.lstsq(columns, flat.T, rcond=None)[0][2:].T
+    size = np.hypot(coefficients[:, :orders], coefficients[:, orders:])
     return np.asarray(size.reshape(*values.shape[:-1], orders))
 
 

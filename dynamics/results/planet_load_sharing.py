@@ -65,9 +65,9 @@ def _sharing(result: RunResult, central: str, rows: list[int]) -> PlanetLoadShar
 def _planet_shafts(result: RunResult) -> set[str]:
     """Names of the shafts that lie off the axis of the carrier they turn with."""
     shafts = {shaft["name"]: shaft for shaft in result.case["shafts"]}
-    found = set()
+    names = set()
     for name, shaft in shafts.items():
         frame = shaft.get("frame")
         if frame is not None and math.dist(shaft["origin"][:2], shafts[frame]["origin"][:2]) > AXIS_AGREEMENT:
-            found.add(name)
-    return found
+            names.add(name)
+    return names

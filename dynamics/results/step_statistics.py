@@ -1,4 +1,4 @@
-"""What the integrator had to do."""
+"""The work of the integrator."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What checks of a result say, and which of them end a run or a study.
+"""The verdict of the checks of a result, and those that end a run or a study.
 
 A check is an entry with `effect`, `assumption`, `part`, `holds` and `reason`. Where it does not hold, the
 result is to be taken with its reason in mind, and an automatic effect may mend it. Where it also has `valid`
@@ -14,11 +14,11 @@ from dynamics.types import Json
 
 def ending(checks: Sequence[Json], on_violation: str) -> str:
     """Say which `checks` end a run or a study by the scene's `on_violation`; empty where none does."""
-    wrong = [one for one in checks if one["holds"] is False]
+    wrong = [check for check in checks if check["holds"] is False]
     if on_violation == "report":
         return ""
     if on_violation == "repeat":
-        wrong = [one for one in wrong if one.get("valid") is False]
+        wrong = [check for check in wrong if check.get("valid") is False]
     return "; ".join(
-        f"{one['assumption']} ({one['part'] or one['effect']}): {one['reason']}" for one in wrong
+        f"{check['assumption']} ({check['part'] or check['effect']}): {check['reason']}" for check in wrong
     )

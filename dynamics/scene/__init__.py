@@ -1,4 +1,4 @@
-"""What is simulated, as data: shafts, gears, bearings, meshes, drives, loads, outputs."""
+"""The scene of a simulation as data: shafts, gears, bearings, meshes, drives, loads, outputs."""
 
 from dynamics.scene.pair_scene import pair_scene
 from dynamics.scene.planetary_set import PlanetaryParts, PlanetarySet, ring_phase

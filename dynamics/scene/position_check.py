@@ -1,4 +1,4 @@
-"""Where gears and bearings sit: on their shafts."""
+"""Check of the positions of gears and bearings on their shafts."""
 
 from __future__ import annotations
 

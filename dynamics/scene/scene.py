@@ -29,7 +29,7 @@ LEAST_RATE = 1000.0  # Hz, of an output whose rate is chosen
 
 @dataclass(frozen=True)
 class Outputs:
-    """What to store.
+    """The outputs that a run stores.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class Outputs:
 
 @dataclass(frozen=True)
 class Integration:
-    """How to integrate in time.
+    """Method and tolerances of the time integration.
 
     Attributes
     ----------
@@ -117,7 +117,7 @@ class _Named(Protocol):
 
 
 class Reference(Protocol):
-    """What sets the speed of one shaft in the kinematic motion."""
+    """The law that sets the speed of one shaft in the kinematic motion."""
 
     @property
     def shaft(self) -> str: ...  # noqa: D102
@@ -224,7 +224,7 @@ class Scene:
 
     @property
     def references(self) -> tuple[Reference, ...]:
-        """What sets the kinematic motion: the drives, then the free rotations."""
+        """The laws of the kinematic motion: the drives, then the free rotations."""
         return (*self.drives, *self.free_rotations)
 
     def gear(self, name: str) -> GearBody:

@@ -1,4 +1,4 @@
-"""What a result says beside its series, from the system and how its run ended."""
+"""The documents of a result beside its series, from the system and the end of its run."""
 
 from __future__ import annotations
 
@@ -58,12 +58,12 @@ def documents(
     audit = None
     if system.scene.outputs.energy_audit:
         audit = EnergyAudit.from_arrays(end.work, end.stored, end.fallen)
-    found = [*checks.found(), *([] if audit is None else [energy_check(audit)])]
+    entries = [*checks.found(), *([] if audit is None else [energy_check(audit)])]
     return {
         "status": end.status,
         "statistics": _statistics(system, end),
         "energy": audit,
-        "effect_ledger": effect_ledger(system, found, automatic, influences),
+        "effect_ledger": effect_ledger(system, entries, automatic, influences),
         "receipt": {
             "seconds": seconds,
             "error": {**error, "sampling": end.figures.error(system)},
@@ -102,15 +102,15 @@ def _modes(system: System) -> Json:
         linear = linearize(system)
     except SolveError:
         return {}
-    found = natural_modes(linear)
-    most = np.argmax(found.kinetic_energy, axis=1) if found.frequency.size else []
+    modes = natural_modes(linear)
+    most = np.argmax(modes.kinetic_energy, axis=1) if modes.frequency.size else []
     rotating = any(part.speed.extreme != 0.0 for part in system.scene.references) and any(
         entry.effect == Gyroscopic.name and entry.on for entry in system.ledger.entries
     )
     return {
-        "frequency": [float(value) for value in found.frequency],
-        "damping_ratio": [float(value) for value in found.damping_ratio],
-        "freedom": [found.freedom[index] for index in most],
+        "frequency": [float(value) for value in modes.frequency],
+        "damping_ratio": [float(value) for value in modes.damping_ratio],
+        "freedom": [modes.freedom[index] for index in most],
         **({"over_speed": _over_speed(system, linear)} if rotating else {}),
     }
 
@@ -120,16 +120,16 @@ def _over_speed(system: System, linear: LinearSystem) -> Json:
     law = leading_law(system)
     extreme = system.scene.references[law].speed.extreme
     speed = np.linspace(0.0, abs(extreme), WHIRL_SPEEDS)
-    found = whirl_branches(system, linear, speed)
-    whole = np.all(np.isfinite(found.frequency), axis=0)
-    most = np.argmax(found.kinetic_energy[-1], axis=1)
+    branches = whirl_branches(system, linear, speed)
+    whole = np.all(np.isfinite(branches.frequency), axis=0)
+    most = np.argmax(branches.kinetic_energy[-1], axis=1)
     return {
         "shaft": system.scene.references[law].shaft,
         "speed": speed.tolist(),
         "mesh_frequency": mesh_frequencies(system, speed).tolist(),
-        "frequency": found.frequency[:, whole].T.tolist(),
-        "damping_ratio": found.damping_ratio[:, whole].T.tolist(),
-        "whirl": found.whirl[:, whole].T.tolist(),
+        "frequency": branches.frequency[:, whole].T.tolist(),
+        "damping_ratio": branches.damping_ratio[:, whole].T.tolist(),
+        "whirl": branches.whirl[:, whole].T.tolist(),
         "freedom": [linear.freedom[index] for index in most[whole]],
     }
 

@@ -62,10 +62,10 @@ def left_out_effects(system: System) -> Json:
     }
 
 
-def _estimate(found: Sequence[Difference | None], rest: float, source: str) -> Json:
+def _estimate(differences: Sequence[Difference | None], rest: float, source: str) -> Json:
     """Put the windows together: rms over all, the worst amplitudes; empty if one of them failed."""
-    known = [difference for difference in found if difference is not None]
-    if len(known) < len(found):
+    known = [difference for difference in differences if difference is not None]
+    if len(known) < len(differences):
         return {}
     orders = min(difference.error_orders.size for difference in known)
     return {

@@ -59,7 +59,7 @@ class Window:
 
 @dataclass(frozen=True)
 class Difference:
-    """What another run of a window differs by.
+    """The difference of another run of a window.
 
     Attributes
     ----------
@@ -109,10 +109,10 @@ def run_again(window: Window, system: System, integration: Integration) -> Diffe
     """Integrate `window` again as `system`, from the run's state at its start; None if it ends early."""
     first = window.states.rows(0, 1)
     start = StaticSolution(StaticStatus.CONVERGED, first.q[0], np.empty(0), 0.0, 0)
-    found = integrate(system, start, integration, velocity=first.v[0])
-    if not found.status.usable or found.samples != window.time.size:
+    repeated = integrate(system, start, integration, velocity=first.v[0])
+    if not repeated.status.usable or repeated.samples != window.time.size:
         return None
-    _, error, force = _seen(window.system, window.time, found.states)
+    _, error, force = _seen(window.system, window.time, repeated.states)
     apart, pushed = error - window.error, force - window.force
     orders = min((orders_seen(position, ORDERS) for position in window.position), default=0)
     if np.ptp(window.position[0]) < 1.0:

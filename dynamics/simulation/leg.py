@@ -55,10 +55,10 @@ class Leg:
         self._seconds = 0.0
         self._status: RunStatus | None = None
         self.since = 0.0
-        found = self.spool.checkpoint() if resume else None
+        checkpoint = self.spool.checkpoint() if resume else None
         taken = earlier and taken_over(earlier.ledger, earlier.trail, self.spool.states, system)
-        if found is not None:
-            self._resume(path, *found)
+        if checkpoint is not None:
+            self._resume(path, *checkpoint)
         elif earlier and taken:
             self._go_on_for(earlier.widths, taken)
         else:

@@ -130,7 +130,7 @@ def _needed(scene: Scene, path: Path, run: MadeRun) -> dict[str, str]:
 
 @dataclass(frozen=True)
 class _How:
-    """What the caller wants of a run to a file; parameters of `simulate_to_file`."""
+    """Options of a run to a file; parameters of `simulate_to_file`."""
 
     resume: bool
     progress: Progress | None
@@ -171,8 +171,8 @@ def _run_to_file(
 def _read_earlier(folder: Path) -> EarlierRun:
     """Return the run that an interrupted one repeats; the first run if it repeats none."""
     try:
-        found = json.loads((folder / REPEATED).read_text(encoding="utf-8"))["repeated"]
-        return EarlierRun({str(k): str(v) for k, v in found["turned_on"].items()}, float(found["seconds"]))
+        run = json.loads((folder / REPEATED).read_text(encoding="utf-8"))["repeated"]
+        return EarlierRun({str(k): str(v) for k, v in run["turned_on"].items()}, float(run["seconds"]))
     except FileNotFoundError:
         return FIRST
     except (OSError, ValueError, KeyError, AttributeError) as error:

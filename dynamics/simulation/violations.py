@@ -1,4 +1,4 @@
-"""What to do where a run shows that something it took for granted is wrong."""
+"""The reaction to a run that violates its assumptions."""
 
 from __future__ import annotations
 
@@ -35,15 +35,14 @@ class EarlierRun:
 
     @property
     def reasons(self) -> dict[str, str]:
-        """Why the effects are on, for the ledger."""
+        """Reasons why the effects are on, for the ledger."""
         return {name: f"on after a run without it: {reason}" for name, reason in self.turned_on.items()}
 
     def to_json(self) -> Json:
         """Return what the receipt of the repetition says; nothing for a first run."""
         if not self.turned_on:
             return {}
-        found = {"turned_on": dict(self.turned_on), "seconds": self.seconds, "since": self.since}
-        return {"repeated": found}
+        return {"repeated": {"turned_on": dict(self.turned_on), "seconds": self.seconds, "since": self.since}}
 
     def then(self, needed: Mapping[str, str], seconds: float) -> EarlierRun:
         """Return what a further repetition repeats."""
@@ -63,7 +62,7 @@ def needed_effects(ledger: Json) -> dict[str, str]:
 
     What was switched off by name stays off, and what the scene has no data for cannot be switched on.
     """
-    return {one["effect"]: f"{one['part']}: {one['reason']}".removeprefix(": ") for one in _wrong(ledger)}
+    return {row["effect"]: f"{row['part']}: {row['reason']}".removeprefix(": ") for row in _wrong(ledger)}
 
 
 def taken_over(ledger: Json, trail: Trail, states: StatesOf, system: System) -> StartValue | None:
@@ -73,7 +72,7 @@ def taken_over(ledger: Json, trail: Trail, states: StatesOf, system: System) -> 
     until driving flanks part. Every other one acts from the start on.
     """
     wrong = _wrong(ledger)
-    since = [float(one["since"]) for one in wrong if one.get("since") is not None]
+    since = [float(row["since"]) for row in wrong if row.get("since") is not None]
     if not since or len(since) < len(wrong):
         return None
     at, rows = trail.before(min(since)), added_rows(trail.system, system)
@@ -88,4 +87,4 @@ def _wrong(ledger: Json) -> list[Json]:
         if entry["choice"] == "auto" and not entry["on"] and entry["possible"]
         for part in (entry["part"], ANY_PART)
     }
-    return [one for one in ledger["checks"] if one["holds"] is False and (one["effect"], one["part"]) in able]
+    return [row for row in ledger["checks"] if row["holds"] is False and (row["effect"], row["part"]) in able]

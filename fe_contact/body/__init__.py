@@ -1,1 +1,1 @@
-"""What carries the teeth of a gear, and what holds it: blank, seat of the bore, shaft; light."""
+"""The body of a gear and its supports: blank, seat of the bore, shaft; light."""

@@ -1,4 +1,4 @@
-"""How the bore of a gear sits on its shaft."""
+"""The seat of a gear's bore on its shaft."""
 
 from __future__ import annotations
 

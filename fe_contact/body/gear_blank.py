@@ -19,7 +19,7 @@ _OFFSET = "Middle of the web towards +z from mid-face; the web stays within the 
 
 @dataclass(frozen=True)
 class Web:
-    """Where the body is narrower than the face.
+    """A body that is narrower than the face.
 
     Attributes
     ----------

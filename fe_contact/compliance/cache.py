@@ -34,9 +34,9 @@ def default_cache_directory() -> Path | None:
 
     ``$LINEOFACTION_CACHE`` if set ("off": nowhere, None), else the platform's cache directory.
     """
-    given = os.environ.get(ENVIRONMENT)
-    if given is not None:
-        return None if given.strip().lower() in OFF else Path(given)
+    setting = os.environ.get(ENVIRONMENT)
+    if setting is not None:
+        return None if setting.strip().lower() in OFF else Path(setting)
     if sys.platform == "win32":
         root = Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
     elif sys.platform == "darwin":

@@ -1,4 +1,4 @@
-"""What a three-dimensional flank compliance will cost, known before it is computed.
+"""Prediction of the cost of a three-dimensional flank compliance.
 
 Operations and numbers held follow exactly from the elimination tree, which needs no mesh; the speed of dense
 algebra is measured on the spot, so that the prediction moves with the machine.

@@ -87,14 +87,14 @@ def flank_compliances_3d(
     Parameters are those of `flank_compliance_3d`, with one recipe per gear.
     """
     recipes = recipes or [SectorRecipe.standard(gear) for gear in gears]
-    found: dict[str, FlankCompliance3D] = {}
+    compliances: dict[str, FlankCompliance3D] = {}
     results = []
     for gear, recipe in zip(gears, recipes, strict=True):
         key = compliance_key_3d(gear, recipe, usual_reach(gear), support or bore_support(gear.right_handed()))
-        if key not in found:
-            found[key] = flank_compliance_3d(gear, recipe, support=support, cache=cache)
-        alike = found[key].base_helix_angle * gear.helix_angle >= 0.0
-        results.append(found[key] if alike else found[key].mirrored())
+        if key not in compliances:
+            compliances[key] = flank_compliance_3d(gear, recipe, support=support, cache=cache)
+        alike = compliances[key].base_helix_angle * gear.helix_angle >= 0.0
+        results.append(compliances[key] if alike else compliances[key].mirrored())
     return tuple(results)
 
 

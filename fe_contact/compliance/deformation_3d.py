@@ -74,12 +74,12 @@ def deformed_solids(
     columns = np.stack([_mirrored_back(loads[case][tooth], mirror) for case, tooth in sources], axis=1)
     solved, _ = condensed_gear(right, section, recipe, 0, support, StageClock(), columns)
     elements = sector_elements(right, section, solved.sector)
-    found = []
+    deformed = []
     for case in range(len(loads)):
         own = [i for i, (number, _) in enumerate(sources) if number == case]
         loaded = _Loaded(np.array([sources[i][1] for i in own]), np.array(own), columns[:, own])
-        found.append(_deformed(gear.teeth, solved, elements, loaded, beside, mirror, left))
-    return tuple(found)
+        deformed.append(_deformed(gear.teeth, solved, elements, loaded, beside, mirror, left))
+    return tuple(deformed)
 
 
 @dataclass(frozen=True)

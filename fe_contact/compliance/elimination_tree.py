@@ -94,7 +94,7 @@ def _working(front: Front) -> int:
 
 
 def elimination_tree(
-    nodes: IntArray, freedoms: IntArray, place: FloatArray, kept: IntArray, leaf: int = LEAF
+    nodes: IntArray, freedoms: IntArray, position: FloatArray, kept: IntArray, leaf: int = LEAF
 ) -> EliminationTree:
     """Bisect the elements along grid lines and eliminate every freedom as soon as it is complete.
 
@@ -104,14 +104,14 @@ def elimination_tree(
         Nodes of the elements, -1 where nothing is free.
     freedoms : (e, q) int array
         Freedoms of the elements, 0 .. n - 1, -1 where held.
-    place : (e, d) array
+    position : (e, d) array
         Position of each element on the logical grid.
     kept : int array
         Freedoms not to be eliminated.
     leaf : int
         Most elements gathered in one front.
     """
-    builder = _Builder(nodes, freedoms, place, kept, leaf)
+    builder = _Builder(nodes, freedoms, position, kept, leaf)
     draft = builder.build(np.arange(len(nodes)))
     builder.order[kept] = builder.done + np.arange(len(kept))
     return EliminationTree(_sorted(draft, builder.order), builder.order)
@@ -138,9 +138,9 @@ class _Builder:
     """Counts occurrences of freedoms while the tree grows."""
 
     def __init__(
-        self, nodes: IntArray, freedoms: IntArray, place: FloatArray, kept: IntArray, leaf: int
+        self, nodes: IntArray, freedoms: IntArray, position: FloatArray, kept: IntArray, leaf: int
     ) -> None:
-        self.nodes, self.freedoms, self.place, self.leaf = nodes, freedoms, place, leaf
+        self.nodes, self.freedoms, self.position, self.leaf = nodes, freedoms, position, leaf
         self.occurrences = np.bincount(freedoms[freedoms >= 0])
         self.occurrences[kept] += 1  # never complete
         self.order = np.full(len(self.occurrences), -1)
@@ -168,7 +168,7 @@ class _Builder:
     def _halves(self, group: IntArray) -> tuple[IntArray, IntArray]:
         """Cut a group along the grid line that leaves the fewest shared nodes and fair halves."""
         cuts: list[tuple[float, int, BoolArray]] = []
-        for line in self.place[group].T:
+        for line in self.position[group].T:
             values, count = np.unique(line, return_counts=True)
             if len(values) < 2:
                 continue

@@ -1,4 +1,4 @@
-r"""What a spur gear of finite width gives way more than its transverse section in plane strain.
+r"""Compliance of a spur gear of finite width beyond that of its section in plane strain.
 
 The ends of the face are free: there the gear bulges along its axis, and S > S_strain. The load of a spur pair
 is even across the face, so what counts is the mean displacement of a flank under an even load,
@@ -93,15 +93,15 @@ def finite_width_compliances(
     MeshError, SolveError
         No acceptable mesh, a singular stiffness or a broken law.
     """
-    found: dict[str, FiniteWidthCompliance] = {}
+    compliances: dict[str, FiniteWidthCompliance] = {}
     keys = []
     for gear, recipe in zip(gears, recipes, strict=True):
         if gear.helix_angle != 0.0:
             raise InputError("gear.helix_angle", gear.helix_angle, "0", "Use the 3-D model for it.")
         keys.append(compliance_key_3d(gear, recipe, 0, ClampedBore()))
-        if keys[-1] not in found:
-            found[keys[-1]] = _beyond_plane_strain(gear, recipe, min(teeth - 1, gear.teeth // 2), cache)
-    return tuple(found[key] for key in keys)
+        if keys[-1] not in compliances:
+            compliances[keys[-1]] = _beyond_plane_strain(gear, recipe, min(teeth - 1, gear.teeth // 2), cache)
+    return tuple(compliances[key] for key in keys)
 
 
 def _beyond_plane_strain(

@@ -12,7 +12,7 @@ from fe_contact.types import FloatArray, IntArray
 
 @dataclass(frozen=True)
 class ComplianceChecks:
-    """How well one finite-element compliance keeps the laws it must keep. All are relative except the last.
+    """Breaches of the laws of a finite-element compliance. All are relative except the last.
 
     Attributes
     ----------

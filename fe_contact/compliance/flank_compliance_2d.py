@@ -96,16 +96,16 @@ def flank_compliances(
     """
     recipes = recipes or [MeshRecipe.standard(gear) for gear in gears]
     solver = solver or SuperLuMetis()
-    found: dict[str, FlankCompliance] = {}
+    compliances: dict[str, FlankCompliance] = {}
     keys = []
     for gear, recipe in zip(gears, recipes, strict=True):
         count = condensed_teeth(gear, recipe, teeth)
         keys.append(compliance_key(gear, recipe, hypothesis, count, solver))
-        if keys[-1] not in found:
-            found[keys[-1]] = flank_compliance(
+        if keys[-1] not in compliances:
+            compliances[keys[-1]] = flank_compliance(
                 gear, recipe, hypothesis, teeth=count, solver=solver, cache=cache
             )
-    return tuple(found[key] for key in keys)
+    return tuple(compliances[key] for key in keys)
 
 
 def condensed_teeth(gear: Toothing, recipe: MeshRecipe, teeth: int | None) -> int:

@@ -1,4 +1,4 @@
-"""How much of a compliance is in the cache: it need not be computed, and takes as much memory."""
+"""Size of the part of a compliance that is cached: it is not computed, and takes as much memory."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ KEPT = 1e-10  # least over largest singular value of what is kept of Z
 
 
 class KeyUpdate(NamedTuple):
-    """What the key adds to the compliance of the ring.
+    """The contribution of the key to the compliance of the ring.
 
     Attributes
     ----------
@@ -109,7 +109,7 @@ def key_points(gear: Toothing, sector: SweptSector, twist: float) -> KeyPoints:
     z = _node_positions(sector)
     low, high = gear.seat.ends(gear.face_width)
     step = 2.0 * math.pi / gear.teeth / sector.grid.columns
-    found: list[tuple[IntArray, IntArray, FloatArray]] = []
+    points: list[tuple[IntArray, IntArray, FloatArray]] = []
     for face in faces:
         nodes = sector.elements[face, LOWER_FACE]
         bottom, top = z[nodes[0]], z[nodes[2]]
@@ -119,8 +119,8 @@ def key_points(gear: Toothing, sector: SweptSector, twist: float) -> KeyPoints:
         for s, x, y, weight in _covered(gear, key, first, step, (bottom, top), twist):
             shares = face_functions(np.array([x]), np.array([y]))[0]
             scale = math.sqrt(modulus * weight)
-            found.append(((number[nodes, 0] + s) % gear.teeth, number[nodes, 1], scale * shares))
-    return KeyPoints(*(np.array(part) for part in zip(*found, strict=True)))
+            points.append(((number[nodes, 0] + s) % gear.teeth, number[nodes, 1], scale * shares))
+    return KeyPoints(*(np.array(part) for part in zip(*points, strict=True)))
 
 
 def _covered(
@@ -173,9 +173,9 @@ def _node_positions(sector: SweptSector) -> FloatArray:
 
 def _modes(points: KeyPoints, count: int) -> tuple[IntArray, IntArray, FloatArray]:
     """Return sector and number of the freedoms under the key (n,), and U (n, r)."""
-    used, place = np.unique(points.sector * count + points.number, return_inverse=True)
+    used, column = np.unique(points.sector * count + points.number, return_inverse=True)
     shares = np.zeros((len(points.shares), len(used)))
-    np.add.at(shares, (np.arange(len(shares))[:, None], place.reshape(points.shares.shape)), points.shares)
+    np.add.at(shares, (np.arange(len(shares))[:, None], column.reshape(points.shares.shape)), points.shares)
     values, vectors = np.linalg.eigh(shares.T @ shares)
     kept = values > 1e-13 * values[-1]
     return used // count, used % count, vectors[:, kept] * np.sqrt(values[kept])

@@ -33,7 +33,7 @@ class Solid:
 
     @classmethod
     def of(cls, gear: Toothing, recipe: SectorRecipe) -> Solid:
-        """As `flank_compliances_3d` condenses it."""
+        """Return the solid that `flank_compliances_3d` condenses."""
         right = gear.right_handed()
         return cls(right, recipe, usual_reach(gear), bore_support(right))
 
@@ -61,8 +61,8 @@ def condense_remotely(
     missing = {key: solid for key, solid in solids.items() if not kept_size(cache, key)}
     if len(missing) < FEWEST:
         return
-    found = workers.run(condense, None, list(missing.values()))
-    for key, compliance in zip(missing, found, strict=True):
+    compliances = workers.run(condense, None, list(missing.values()))
+    for key, compliance in zip(missing, compliances, strict=True):
         write_compliance(cache, key, compliance)
 
 

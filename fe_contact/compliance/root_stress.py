@@ -97,7 +97,7 @@ class UnitRootStress:
         return replace(self, stress=stress, z=z, station_z=stations)
 
 
-def refuse_broken_stress(found: UnitRootStress) -> UnitRootStress:
+def refuse_broken_stress(stress: UnitRootStress) -> UnitRootStress:
     """Return a root stress whose checks keep their limits.
 
     Raises
@@ -107,12 +107,12 @@ def refuse_broken_stress(found: UnitRootStress) -> UnitRootStress:
     """
     limits = {"residual": RESIDUAL_LIMIT, "recovery": RECOVERY_LIMIT}
     for name, limit in limits.items():
-        value = getattr(found.checks, name)
+        value = getattr(stress.checks, name)
         if not value <= limit:
-            raise SolveError(f"root stress: {name} {value:.3g} exceeds {limit:.3g}", found)
-    return found
+            raise SolveError(f"root stress: {name} {value:.3g} exceeds {limit:.3g}", stress)
+    return stress
 
 
-def relative_difference(found: FloatArray, expected: FloatArray) -> float:
+def relative_difference(values: FloatArray, expected: FloatArray) -> float:
     """Return the largest difference over the largest value."""
-    return float(np.abs(found - expected).max() / np.abs(expected).max())
+    return float(np.abs(values - expected).max() / np.abs(expected).max())

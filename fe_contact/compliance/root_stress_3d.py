@@ -112,14 +112,14 @@ def root_functionals(
     """
     axes = np.tile(np.eye(3), (section.grid.nodes, 1, 1))
     axes[section.grid.flank] = flank_frames(section, twist(gear))
-    found = []
+    functionals = []
     for chain in root.nodes:
         elements = _surface_elements(section, sector, chain, axes, twist(gear))
         rows = face_stress(elements, gear.material, sector.size)
         layers, edges = len(sector.layers.kind), len(chain) // 2
         number = np.arange(rows.shape[0]).reshape(COMPONENTS, layers, edges, 2, 2)
-        found.append(rows[number.transpose(0, 1, 3, 2, 4).ravel()])
-    return sp.csr_array(sp.vstack(found))
+        functionals.append(rows[number.transpose(0, 1, 3, 2, 4).ravel()])
+    return sp.csr_array(sp.vstack(functionals))
 
 
 def _surface_elements(
@@ -128,14 +128,14 @@ def _surface_elements(
     """Return the surface elements above a chain of section nodes, layer by layer."""
     first = 2 * np.arange(len(chain) // 2)
     on_section = chain[first[:, None] + (1 + ALONG).astype(int)]  # (e, 8)
-    places, frames, freedoms = [], [], []
+    positions, frames, freedoms = [], [], []
     for layer, kind in enumerate(sector.layers.kind):
         thickness = float(sector.layers.thickness[kind])
         nodes = above(section.points[on_section], 0.5 * ACROSS, thickness, thickness * turn_per_length)
-        places.append(nodes)
+        positions.append(nodes)
         frames.append(cylindrical_frames(nodes) @ axes[on_section])
         freedoms.append(sector.freedoms[sector.nodes[2 * layer + (1 + ACROSS).astype(int), on_section]])
-    return SurfaceElements(np.concatenate(places), np.concatenate(frames), np.concatenate(freedoms))
+    return SurfaceElements(np.concatenate(positions), np.concatenate(frames), np.concatenate(freedoms))
 
 
 def _unit_load_stress(
@@ -158,7 +158,7 @@ def kept_functionals(condensation: Condensation, rows: sp.csr_array) -> FloatArr
 
     The transpose of `Condensation.expand`: what a front eliminates it hands to its border.
     """
-    found = np.empty((rows.shape[0], len(condensation.kept)))
+    functionals = np.empty((rows.shape[0], len(condensation.kept)))
     for start in range(0, rows.shape[0], ROWS_AT_ONCE):
         part = np.asfortranarray(rows[start : start + ROWS_AT_ONCE].T.toarray())
         for front in reversed(condensation.factors):
@@ -167,8 +167,8 @@ def kept_functionals(condensation: Condensation, rows: sp.csr_array) -> FloatArr
             if used.size:
                 solved = blas.dtrsm(1.0, front.factor, np.asfortranarray(inner[:, used]), lower=1)
                 part[np.ix_(front.front.border, used)] -= front.coupling @ solved
-        found[start : start + ROWS_AT_ONCE] = part[condensation.kept].T
-    return found
+        functionals[start : start + ROWS_AT_ONCE] = part[condensation.kept].T
+    return functionals
 
 
 def _checks(

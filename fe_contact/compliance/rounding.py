@@ -1,4 +1,4 @@
-"""How far rounding may change a compliance: its share in residual and energy, and how thin a disc may be.
+"""Limits of rounding in a compliance: its share in residual and energy, and the thinnest disc.
 
 Rounding changes an entry of K by eps times its size. Where the body moves far more than it is strained, the
 terms K_ii u_i^2 of the strain energy u' K u all but cancel, and what they leave is changed by

@@ -16,7 +16,7 @@ from fe_contact.types import FloatArray, IntArray
 
 @dataclass(frozen=True)
 class FrontFactor:
-    """What recovers the freedoms a front eliminated: u_inner = -L^-T coupling' u_border."""
+    """The factors that recover the freedoms a front eliminated: u_inner = -L^-T coupling' u_border."""
 
     front: Front
     factor: FloatArray
@@ -93,13 +93,13 @@ def _gathered(
 
     Both are numbered as they are eliminated, so lower triangles stay lower on the way up.
     """
-    place = np.concatenate([order[front.inner], order[front.border]])
-    matrix = np.zeros((len(place), len(place)), order="F")
+    numbers = np.concatenate([order[front.inner], order[front.border]])
+    matrix = np.zeros((len(numbers), len(numbers)), order="F")
     for child in front.children:
-        _add_part(matrix, parts.pop(0), np.searchsorted(place, order[child.border]))
+        _add_part(matrix, parts.pop(0), np.searchsorted(numbers, order[child.border]))
     if len(front.elements):
         own = freedoms[front.elements]
-        positions = np.where(own >= 0, np.searchsorted(place, order[own]), -1)
+        positions = np.where(own >= 0, np.searchsorted(numbers, order[own]), -1)
         _add_elements(matrix, stiffness.matrices, stiffness.of_element[front.elements], positions)
     return matrix
 
@@ -117,19 +117,19 @@ def _eliminated(matrix: FloatArray, count: int) -> tuple[FloatArray, FloatArray,
 
 
 @njit(cache=True)
-def _add_part(matrix: FloatArray, part: FloatArray, place: IntArray) -> None:
-    """Add the lower triangle of `part` at increasing rows `place`."""
-    for j in range(len(place)):
-        for i in range(j, len(place)):
-            matrix[place[i], place[j]] += part[i, j]
+def _add_part(matrix: FloatArray, part: FloatArray, rows: IntArray) -> None:
+    """Add the lower triangle of `part` at increasing rows `rows`."""
+    for j in range(len(rows)):
+        for i in range(j, len(rows)):
+            matrix[rows[i], rows[j]] += part[i, j]
 
 
 @njit(cache=True)
-def _add_elements(matrix: FloatArray, pool: FloatArray, of_element: IntArray, place: IntArray) -> None:
-    """Add element matrices at rows `place` (e, 60), lower triangle only; -1 is held."""
+def _add_elements(matrix: FloatArray, pool: FloatArray, of_element: IntArray, rows: IntArray) -> None:
+    """Add element matrices at rows `rows` (e, 60), lower triangle only; -1 is held."""
     for e in range(len(of_element)):
         local = pool[of_element[e]]
-        for i in range(place.shape[1]):
-            for j in range(place.shape[1]):
-                if place[e, j] >= 0 and place[e, i] >= place[e, j]:
-                    matrix[place[e, i], place[e, j]] += local[i, j]
+        for i in range(rows.shape[1]):
+            for j in range(rows.shape[1]):
+                if rows[e, j] >= 0 and rows[e, i] >= rows[e, j]:
+                    matrix[rows[e, i], rows[e, j]] += local[i, j]

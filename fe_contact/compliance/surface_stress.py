@@ -20,7 +20,7 @@ from fe_contact.material import Material
 from fe_contact.types import FloatArray, IntArray
 
 STATIONS = np.array([-1.0, 1.0]) / np.sqrt(3.0)
-"""Where an edge is asked for its strain, in its coordinate from -1 to 1."""
+"""Stations of an edge at which its strain is evaluated, in its coordinate from -1 to 1."""
 COMPONENTS = 3
 """Along the profile, across it, and the shear between them."""
 # Nodes of a surface element over profile (-1 .. 1) and layer (-1 .. 1): corners, then middles.
@@ -50,9 +50,9 @@ def between_nodes(values: FloatArray) -> FloatArray:
     """Return values (..., 2e + 1) at the nodes of quadratic edges at their stations, (..., 2e)."""
     low, middle, high = values[..., :-2:2], values[..., 1::2], values[..., 2::2]
     x = STATIONS[:, None]
-    found = 0.5 * x * (x - 1.0) * low[..., None, :] + (1.0 - x * x) * middle[..., None, :]
-    found = found + 0.5 * x * (x + 1.0) * high[..., None, :]
-    return np.asarray(np.swapaxes(found, -1, -2).reshape(*values.shape[:-1], -1))
+    at_stations = 0.5 * x * (x - 1.0) * low[..., None, :] + (1.0 - x * x) * middle[..., None, :]
+    at_stations = at_stations + 0.5 * x * (x + 1.0) * high[..., None, :]
+    return np.asarray(np.swapaxes(at_stations, -1, -2).reshape(*values.shape[:-1], -1))
 
 
 def edge_stress(

@@ -84,8 +84,8 @@ def unit_root_stress_3d(
         right_hand = gear.right_handed()
         return compute_root_stress_3d(right_hand, recipe, distance, support, SOLVER)
 
-    found = _kept(compliance_key_3d(gear, recipe, distance, support), compute, cache)
-    return found.mirrored() if gear.helix_angle < 0.0 else found
+    stress = _kept(compliance_key_3d(gear, recipe, distance, support), compute, cache)
+    return stress.mirrored() if gear.helix_angle < 0.0 else stress
 
 
 def unit_root_stresses(
@@ -97,37 +97,37 @@ def unit_root_stresses(
     cache: Path | None = None,
 ) -> tuple[UnitRootStress, ...]:
     """Return the root stress of each gear; gears of one section, material and recipe are computed once."""
-    found: dict[str, UnitRootStress] = {}
+    stresses: dict[str, UnitRootStress] = {}
     keys = []
     for gear, recipe in zip(gears, recipes, strict=True):
         count = condensed_teeth(gear, recipe, teeth)
         keys.append(compliance_key(gear, recipe, hypothesis, count, SuperLuMetis()))
-        if keys[-1] not in found:
-            found[keys[-1]] = unit_root_stress(gear, recipe, hypothesis, teeth=count, cache=cache)
-    return tuple(found[key] for key in keys)
+        if keys[-1] not in stresses:
+            stresses[keys[-1]] = unit_root_stress(gear, recipe, hypothesis, teeth=count, cache=cache)
+    return tuple(stresses[key] for key in keys)
 
 
 def unit_root_stresses_3d(
     gears: Sequence[Toothing], recipes: Sequence[SectorRecipe], *, cache: Path | None = None
 ) -> tuple[UnitRootStress, ...]:
     """Return the root stress of each gear; gears alike, or alike but for the hand, are computed once."""
-    found: dict[str, UnitRootStress] = {}
+    stresses: dict[str, UnitRootStress] = {}
     results = []
     for gear, recipe in zip(gears, recipes, strict=True):
         key = compliance_key_3d(gear, recipe, usual_reach(gear), bore_support(gear.right_handed()))
-        if key not in found:
+        if key not in stresses:
             right_hand = gear.right_handed()
-            found[key] = unit_root_stress_3d(right_hand, recipe, cache=cache)
-        results.append(found[key].mirrored() if gear.helix_angle < 0.0 else found[key])
+            stresses[key] = unit_root_stress_3d(right_hand, recipe, cache=cache)
+        results.append(stresses[key].mirrored() if gear.helix_angle < 0.0 else stresses[key])
     return tuple(results)
 
 
 def _kept(compliance: str, compute: Callable[[], UnitRootStress], cache: Path | None) -> UnitRootStress:
     """Return the kept result that belongs to the `compliance` of a key, or compute and keep it."""
     key = content_hash({"root stress": MODEL_VERSION, "compliance": compliance})
-    found = read_compliance(cache, key, UnitRootStress) if cache is not None else None
-    if found is None:
-        found = compute()
+    stress = read_compliance(cache, key, UnitRootStress) if cache is not None else None
+    if stress is None:
+        stress = compute()
         if cache is not None:
-            write_compliance(cache, key, found)
-    return found
+            write_compliance(cache, key, stress)
+    return stress

@@ -41,7 +41,7 @@ from fe_contact.types import FloatArray, Status
 
 @dataclass(frozen=True)
 class Adjoint:
-    """What moves the transmission error of P positions at L loads, and over which strips; m candidates.
+    """Influences on the transmission error of P positions at L loads, and their strips; m candidates.
 
     Attributes
     ----------
@@ -73,11 +73,11 @@ def _weigh(
     for p in range(force.shape[0]):
         problem, here = problem_at(every, p)
         for k in range(force.shape[1]):
-            found = _weights(problem, force[p, k][here])
+            weights = _weights(problem, force[p, k][here])
             for q in range(here.size):
                 if force[p, k, here[q]] > 0.0:
                     at = here[q]
-                    weight[p, k, at] = found[q]
+                    weight[p, k, at] = weights[q]
                     middle[p, k, at], half[p, k, at] = carrying_strip(
                         problem.law, problem.place[q], force[p, k, at]
                     )
@@ -108,12 +108,12 @@ def _weights(problem: PointProblem, force: FloatArray) -> FloatArray:
     for r in range(size):
         answer[system.member[r]] = system.right[0, r]
     move(problem, answer, motion)
-    found, stiff = np.zeros(force.size), 0.0
+    weights, stiff = np.zeros(force.size), 0.0
     for q in range(force.size):
         if state.slope[q] > 0.0:
-            found[q] = state.slope[q] * (problem.torque_arm[q] - motion_at(problem, q, motion))
-            stiff += found[q] * problem.motion_arm[q]
-    return found / stiff
+            weights[q] = state.slope[q] * (problem.torque_arm[q] - motion_at(problem, q, motion))
+            stiff += weights[q] * problem.motion_arm[q]
+    return weights / stiff
 
 
 def force_changes(problem: ContactProblem, solution: ContactSolution, opened: FloatArray) -> FloatArray:
@@ -142,10 +142,10 @@ def _respond(every: PointProblems, force: FloatArray, opened: FloatArray, change
         problem, here = problem_at(every, p)
         for k in range(force.shape[1]):
             apart = np.ascontiguousarray(opened[:, p, k][:, here])
-            found = _answers(problem, force[p, k][here], apart)
-            for a in range(found.shape[0]):
+            answers = _answers(problem, force[p, k][here], apart)
+            for a in range(answers.shape[0]):
                 for q in range(here.size):
-                    changes[a, p, k, here[q]] = found[a, q]
+                    changes[a, p, k, here[q]] = answers[a, q]
 
 
 @njit(cache=True, error_model="numpy")
@@ -161,7 +161,7 @@ def _answers(problem: PointProblem, force: FloatArray, opened: FloatArray) -> Fl
             right[a + 1, r] = rows[a + 1, system.member[r]]
     if not eliminate(system.matrix, right, size):
         return np.full((count, m), np.nan)
-    followed, motion, found = np.zeros((count + 1, m)), np.zeros(state.held.size), np.zeros((count, m))
+    followed, motion, answers = np.zeros((count + 1, m)), np.zeros(state.held.size), np.zeros((count, m))
     for a in range(count + 1):
         rows[a, :] = 0.0
         for r in range(size):
@@ -173,5 +173,5 @@ def _answers(problem: PointProblem, force: FloatArray, opened: FloatArray) -> Fl
     stiff = dot(problem.torque_arm, followed[0], m)
     for a in range(count):
         lag = dot(problem.torque_arm, followed[a + 1], m) / stiff
-        found[a] = lag * followed[0] - followed[a + 1]
-    return found
+        answers[a] = lag * followed[0] - followed[a + 1]
+    return answers

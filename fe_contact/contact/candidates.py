@@ -28,7 +28,7 @@ LONGEST_LAW = 0.5
 
 @dataclass(frozen=True)
 class PatchRule:
-    """How wide the load patches are.
+    """The widths of the load patches.
 
     Attributes
     ----------
@@ -199,7 +199,7 @@ def _loaded_slices(
 
 
 def _shift(s: FloatArray, offset: FloatArray, tip: float, radius: FloatArray, rule: PatchRule) -> FloatArray:
-    """How far the partner's edge moves the load's centroid to its root, m: both forces must be in line."""
+    """Shift of the load's centroid to its root by the partner's edge, m: both forces must be in line."""
     patches = tip_patches(s, offset, tip, rule.half_width, rule.lengths(offset, radius))
     return np.maximum(s - patches.centroid, 0.0)
 

@@ -62,8 +62,8 @@ class CarryingStrips:
     def of(cls, pair: ParallelAxes, candidates: Candidates, adjoint: Adjoint) -> CarryingStrips:
         """Gather them from a solution of these candidates."""
         at = np.nonzero(adjoint.weight)
-        found = adjoint.middle[at], adjoint.half[at], adjoint.weight[at]
-        return cls.at(pair, candidates, adjoint.weight.shape[1], at, *found)
+        strips = adjoint.middle[at], adjoint.half[at], adjoint.weight[at]
+        return cls.at(pair, candidates, adjoint.weight.shape[1], at, *strips)
 
     @classmethod
     def at(
@@ -157,7 +157,7 @@ class CarryingStrips:
         angle = np.pi * ((np.arange(_POINTS) + 0.5) / _POINTS - 0.5)
         x = self.middle + self.half * np.sin(angle)[:, None]
         value = np.broadcast_to(self.weight * self.arm / _POINTS, x.shape)
-        found = np.zeros((len(rows), roll_length.size, face_position.size))
+        by_node = np.zeros((len(rows), roll_length.size, face_position.size))
         roll = rolls_at(self.pair, self.s_1 + x, self.s_2 - x)[gear]
         along = np.broadcast_to(self.face - gear * self.pair.axial_offset, x.shape)
         (i, part), (j, other) = _between(roll_length, roll), _between(face_position, along)
@@ -167,20 +167,20 @@ class CarryingStrips:
                 node = (i + a) * face_position.size + j + b
                 part_of_node = value * in_roll * in_face
                 for k, each in enumerate(weight):
-                    spread = np.bincount(node.ravel(), (each * part_of_node).ravel(), found[k].size)
-                    found[k] += spread.reshape(found[k].shape)
-        return found
+                    spread = np.bincount(node.ravel(), (each * part_of_node).ravel(), by_node[k].size)
+                    by_node[k] += spread.reshape(by_node[k].shape)
+        return by_node
 
 
 @njit(cache=True, error_model="numpy")
 def _mean_past_break(beyond: FloatArray, half: FloatArray, jump: float, bend: float) -> FloatArray:
     """Return the means over strips (k,) of jump d + bend d^2/2 past a break, m."""
-    found = np.zeros(beyond.size)
+    means = np.zeros(beyond.size)
     for i in range(beyond.size):
         if beyond[i] < half[i]:
             _, _, ramp, _, square = past_break(beyond[i], half[i])
-            found[i] = (jump * ramp + 0.5 * bend * square) / math.pi
-    return found
+            means[i] = (jump * ramp + 0.5 * bend * square) / math.pi
+    return means
 
 
 def _between(nodes: FloatArray, at: FloatArray) -> tuple[IntArray, FloatArray]:

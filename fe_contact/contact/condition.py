@@ -1,4 +1,4 @@
-"""How well the compliance between the candidates is conditioned."""
+"""Condition of the compliance between the candidates."""
 
 from __future__ import annotations
 

@@ -55,7 +55,7 @@ def face_contact_problem(
 
 
 class KeyedFlanks(NamedTuple):
-    """What a keyed bore adds between the flanks: rows (2 s + 1, q, f) by tooth from -s to s, core (q, q)."""
+    """Contribution of a keyed bore: rows (2 s + 1, q, f) by tooth from -s to s, core (q, q)."""
 
     rows: FloatArray
     core: FloatArray

@@ -75,7 +75,7 @@ def face_loads(
     nodes = np.full((n, width), -1, dtype=np.int64)
     forces = np.zeros((n, width))
     used = np.zeros(n, dtype=np.int64)
-    place = np.full(grid.freedom.max() + 1, -1, dtype=np.int64)
+    slot = np.full(grid.freedom.max() + 1, -1, dtype=np.int64)
     along_moments, across_moments = np.zeros(3), np.zeros(3)
     for p in range(n):
         for q in range(count):
@@ -99,11 +99,11 @@ def face_loads(
                             across_moments,
                             nodes[p],
                             forces[p],
-                            place,
+                            slot,
                             used[p],
                         )
         for i in range(used[p]):
-            place[nodes[p, i]] = -1
+            slot[nodes[p, i]] = -1
     return FaceLoads(nodes, forces, used)
 
 
@@ -167,10 +167,10 @@ def _add_face(
     y: FloatArray,
     nodes: IntArray,
     forces: FloatArray,
-    place: IntArray,
+    slot: IntArray,
     count: int,
 ) -> int:
-    """Add the eight nodal forces of one face; `place` knows the nodes already there, return how many are."""
+    """Add the eight nodal forces of one face; `slot` knows the nodes already there, return how many are."""
     for i in range(3):
         for j in range(3):
             if i == 1 and j == 1:
@@ -190,11 +190,11 @@ def _add_face(
             else:  # (1 + a x)(1 - y^2)/2
                 force = 0.5 * (x[0] + a * x[1]) * (y[0] - y[2])
             node = index[2 * k + j, 2 * e + i]
-            if place[node] < 0:
-                place[node] = count
+            if slot[node] < 0:
+                slot[node] = count
                 nodes[count] = node
                 count += 1
-            forces[place[node]] += force
+            forces[slot[node]] += force
     return count
 
 

@@ -16,7 +16,7 @@ Side: TypeAlias = tuple[Patches, FloatArray, int]
 
 
 class ProfileNodes(Protocol):
-    """Whatever knows the nodes of a flank in the plane: a compliance, a unit-load stress."""
+    """The nodes of a flank in the plane, as a compliance or a unit-load stress has them."""
 
     @property
     def s(self) -> FloatArray:
@@ -24,7 +24,7 @@ class ProfileNodes(Protocol):
 
 
 class FaceNodes(ProfileNodes, Protocol):
-    """Whatever knows the nodes of a flank over the face width."""
+    """The nodes of a flank over the face width."""
 
     @property
     def z(self) -> FloatArray:
@@ -59,7 +59,7 @@ def plane_flank_forces(
         Tooth number to inward nodal forces (k,) per unit face width, N/m. A force at a tip edge acts along
         the mating flank's normal, so it counts by its lever (see `contact_problem`).
     """
-    found: list[ByTooth] = []
+    forces: list[ByTooth] = []
     slices, pressed, row = _pressed(candidates, force, position)
     for flank, (patches, lever, direction) in zip(flanks, _sides(slices), strict=True):
         by_tooth: ByTooth = {}
@@ -69,8 +69,8 @@ def plane_flank_forces(
             load_vector(flank.s, *at, patches.edge_share[row, i], unit)
             share = pressed[i] * lever[row, i] / slices.width
             _add(by_tooth, int(direction * slices.pair[i]), share * unit)
-        found.append(by_tooth)
-    return found[0], found[1]
+        forces.append(by_tooth)
+    return forces[0], forces[1]
 
 
 def face_flank_forces(
@@ -90,7 +90,7 @@ def face_flank_forces(
     dict, dict
         Tooth number to nodal forces (nf,) against the outward normal, in the freedoms of the compliance, N.
     """
-    found: list[ByTooth] = []
+    forces: list[ByTooth] = []
     slices, pressed, row = _pressed(candidates, force, position)
     carrying = np.flatnonzero(pressed)
     sides = zip(flanks, _sides(slices), (0.0, axial_offset), strict=True)
@@ -109,8 +109,8 @@ def face_flank_forces(
             nodal[loads.nodes[k, :used]] = loads.forces[k, :used]
             share = pressed[i] * lever[row, i]
             _add(by_tooth, int(direction * slices.pair[i]), -share * nodal)
-        found.append(by_tooth)
-    return found[0], found[1]
+        forces.append(by_tooth)
+    return forces[0], forces[1]
 
 
 def _pressed(

@@ -72,8 +72,8 @@ def pieces(about: GapAbout, center: Array, half: Array) -> tuple[Array, Array, A
     extra = (1,) * (center.ndim - 1)
     angle = [np.full(center.shape, -0.5 * np.pi), np.full(center.shape, 0.5 * np.pi)]
     for k in range(about.place.shape[1]):
-        place = about.place[:, k].reshape(-1, *extra)
-        angle.append(np.arcsin(np.clip((place - center) / half, -1.0, 1.0)))
+        position = about.place[:, k].reshape(-1, *extra)
+        angle.append(np.arcsin(np.clip((position - center) / half, -1.0, 1.0)))
     bounds = np.sort(np.stack(angle), axis=0)
     slope, first, mean = np.zeros((3, *center.shape))
     for left, right in pairwise(bounds):
@@ -82,14 +82,14 @@ def pieces(about: GapAbout, center: Array, half: Array) -> tuple[Array, Array, A
         width = np.where(sine[2] > sine[0], sine[2] - sine[0], 1.0)
         bend = 2.0 * (g[2] - 2.0 * g[1] + g[0]) / width**2  # g = bend/1 (u - u1)^2 + tilt (u - u1) + g1
         tilt = (g[2] - g[0]) / width
-        one, two = right - left, np.cos(left) - np.cos(right)
-        three = 0.5 * (one - 0.5 * (np.sin(2.0 * right) - np.sin(2.0 * left)))
+        moment_0, moment_1 = right - left, np.cos(left) - np.cos(right)
+        moment_2 = 0.5 * (moment_0 - 0.5 * (np.sin(2.0 * right) - np.sin(2.0 * left)))
         there = sine[2] > sine[0]
         a, b = tilt - 2.0 * bend * sine[1], 2.0 * bend  # dg/du = a + b u
-        slope += np.where(there, a * one + b * two, 0.0)
-        first += np.where(there, a * two + b * three, 0.0)
+        slope += np.where(there, a * moment_0 + b * moment_1, 0.0)
+        first += np.where(there, a * moment_1 + b * moment_2, 0.0)
         constant = g[1] - tilt * sine[1] + bend * sine[1] ** 2
-        mean += np.where(there, constant * one + a * two + bend * three, 0.0)
+        mean += np.where(there, constant * moment_0 + a * moment_1 + bend * moment_2, 0.0)
     return slope / np.pi / half, first / np.pi / half, mean / np.pi
 
 
@@ -98,8 +98,8 @@ def gap_at(about: GapAbout, x: Array) -> Array:
     lift = (1, -1) + (1,) * (x.ndim - 2)
     value = about.slope.reshape(lift) * x + 0.5 * about.curvature.reshape(lift) * x**2
     for k in range(about.place.shape[1]):
-        place = about.place[:, k].reshape(lift)
-        depth = np.maximum(np.where(place >= 0.0, x - place, place - x), 0.0)
+        position = about.place[:, k].reshape(lift)
+        depth = np.maximum(np.where(position >= 0.0, x - position, position - x), 0.0)
         value += about.jump[:, k].reshape(lift) * depth + 0.5 * about.bend[:, k].reshape(lift) * depth**2
     return value
 
@@ -188,12 +188,12 @@ class GuardedLaw:
 
     def _exact(self, p: Array) -> tuple[Array, Array]:
         """Find the strips between two entries of the table."""
-        wanted, rows = np.log(p), np.arange(p.size)
+        target, rows = np.log(p), np.arange(p.size)
         above = np.array([np.searchsorted(load, at) for at, load in zip(p, self.load, strict=True)])
         above = np.clip(above, 1, self.half.shape[1] - 1)
         low, high = np.log(self.half[rows, above - 1]), np.log(self.half[rows, above])
         x = root(
-            lambda at: np.log(strips(self.problem, np.exp(at))[0]) - wanted, low, high, np.full(p.size, 1e-7)
+            lambda at: np.log(strips(self.problem, np.exp(at))[0]) - target, low, high, np.full(p.size, 1e-7)
         )
         _, mean = strips(self.problem, np.exp(x))
         value = mean + self.k * p * (np.log(self.problem.length / np.exp(x)) - 0.25)

@@ -1,4 +1,4 @@
-"""Where gaps made of parabolas are least, and the gaps about there."""
+"""Positions where gaps made of parabolas are least, and the gaps about them."""
 
 from __future__ import annotations
 
@@ -33,29 +33,29 @@ def rounded(gap: Gap, least: FloatArray) -> Gap:
 @njit(cache=True, error_model="numpy")
 def touching_places(gap: Gap, low: FloatArray, high: FloatArray) -> FloatArray:
     """Return where gaps that grow to both sides are least between `low` and `high` (n,), m."""
-    found = np.empty(gap.slope.size)
-    for i in range(found.size):
-        place = 0.0
-        rising = _slope(gap, i, place)
+    touching = np.empty(gap.slope.size)
+    for i in range(touching.size):
+        position = 0.0
+        rising = _slope(gap, i, position)
         end = low[i] if rising > 0.0 else high[i]
         # the slope is made of straight pieces: from break to break until it changes its sign
-        while rising != 0.0 and place != end:
+        while rising != 0.0 and position != end:
             stop = end
             for k in range(gap.place.shape[1]):
                 at = gap.place[i, k]
-                if (place - at) * rising > 0.0 and (at - stop) * rising > 0.0:
+                if (position - at) * rising > 0.0 and (at - stop) * rising > 0.0:
                     stop = at
-            curvature = _curvature(gap, i, 0.5 * (place + stop))
-            here = _slope_beside(gap, i, place, -rising)
+            curvature = _curvature(gap, i, 0.5 * (position + stop))
+            here = _slope_beside(gap, i, position, -rising)
             step = -here / curvature if curvature > 0.0 else -rising * math.inf
             if here * rising <= 0.0:
                 break
-            if (place + step - stop) * rising >= 0.0:
-                place += step
+            if (position + step - stop) * rising >= 0.0:
+                position += step
                 break
-            place = stop
-        found[i] = place
-    return found
+            position = stop
+        touching[i] = position
+    return touching
 
 
 @njit(cache=True, error_model="numpy")
@@ -97,7 +97,7 @@ def moved_gap(gap: Gap, shift: FloatArray) -> tuple[FloatArray, Gap]:
     """Return the gap (n,) in m at `shift` (n,) in m, and that about there."""
     n, breaks = gap.place.shape
     least, slope, curvature = np.empty(n), np.empty(n), np.empty(n)
-    place, bend = gap.place.copy(), gap.bend.copy()
+    position, bend = gap.place.copy(), gap.bend.copy()
     for i in range(n):
         x = shift[i]
         least[i] = gap.slope[i] * x + 0.5 * gap.curvature[i] * x * x
@@ -109,9 +109,9 @@ def moved_gap(gap: Gap, shift: FloatArray) -> tuple[FloatArray, Gap]:
             beyond = max((x - at) if right else (at - x), 0.0)
             least[i] += beyond * (gap.jump[i, k] + 0.5 * gap.bend[i, k] * beyond)
             held = held or x == at
-            place[i, k] = at - x
-            if (place[i, k] >= 0.0) != right:
+            position[i, k] = at - x
+            if (position[i, k] >= 0.0) != right:
                 curvature[i] += gap.bend[i, k]
                 bend[i, k] = -gap.bend[i, k]
         slope[i] = _slope_beside(gap, i, x, -1.0) if held else 0.0
-    return least, Gap(slope, curvature, gap.low - shift, gap.high - shift, place, gap.jump, bend)
+    return least, Gap(slope, curvature, gap.low - shift, gap.high - shift, position, gap.jump, bend)

@@ -1,4 +1,4 @@
-"""What the contact analysis includes: effects contribute to this, the candidates are built from it."""
+"""The model of the contact analysis: effects contribute to it, the candidates are built from it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from fe_contact.types import FloatArray, IntArray
 
 @dataclass(frozen=True)
 class Break:
-    """Where a modification of one gear begins along its profile, to a depth of jump d + bend d^2/2.
+    """Begin of a modification of one gear along its profile, to a depth of jump d + bend d^2/2.
 
     Attributes
     ----------

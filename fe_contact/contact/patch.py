@@ -62,7 +62,7 @@ class Patches:
 
     @property
     def at_edge(self) -> FloatArray:
-        """How far the strip hangs on the edge: 0 before it reaches it, 1 where rigid flanks touch there."""
+        """Share of the strip on the edge: 0 before it reaches it, 1 where rigid flanks touch there."""
         return np.minimum(1.5 * self.edge_share, 1.0)
 
     @property

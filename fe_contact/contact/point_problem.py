@@ -104,13 +104,13 @@ def problem_at(every: PointProblems, p: int) -> tuple[PointProblem, IntArray]:
     inner = np.ascontiguousarray(every.bodies[row][slices][:, slices])
     gaps = gap_at(gap_at(every.about, p), at)
     law = LocalLaw(every.width[p][at], gaps, free_strips(gaps), every.length, every.modulus[row][at])
-    place = pairs[here // points] * points + here % points
+    slot = pairs[here // points] * points + here % points
     arms = every.motion_arm[p][here], every.torque_arm[p][here]
-    return PointProblem(inner, every.blend, place, every.gap[p][here], *arms, law), here
+    return PointProblem(inner, every.blend, slot, every.gap[p][here], *arms, law), here
 
 
 class State(NamedTuple):
-    """Where an iteration is.
+    """The state of an iteration.
 
     Attributes
     ----------
@@ -135,13 +135,13 @@ class State(NamedTuple):
 def evaluate(problem: PointProblem, gap: FloatArray, elastic: float, state: State) -> None:
     """Fill in forces and slopes of the contacts, and the forces on the slices, under the motions."""
     points, count = problem.blend.shape
-    place, blend, moved, arm = problem.place, problem.blend, state.moved, problem.motion_arm
+    slot, blend, moved, arm = problem.place, problem.blend, state.moved, problem.motion_arm
     width, curvature, free = problem.law.width, problem.law.gap.curvature, problem.law.free
     length, modulus = problem.law.length, problem.law.modulus
     for q in range(gap.size):
         closer = arm[q] * elastic - gap[q]
         state.force[q], state.slope[q] = 0.0, 0.0
-        i = place[q]
+        i = slot[q]
         first, row = i // points * count, i % points
         for a in range(count):
             closer -= blend[row, a] * moved[first + a]
@@ -160,11 +160,11 @@ def evaluate(problem: PointProblem, gap: FloatArray, elastic: float, state: Stat
 def press(problem: PointProblem, force: FloatArray, out: FloatArray) -> None:
     """Fill in the forces of the contacts on the slices."""
     points, count = problem.blend.shape
-    place, blend = problem.place, problem.blend
+    slot, blend = problem.place, problem.blend
     out[:] = 0.0
     for q in range(force.size):
         if force[q] != 0.0:
-            first, row = place[q] // points * count, place[q] % points
+            first, row = slot[q] // points * count, slot[q] % points
             for a in range(count):
                 out[first + a] += blend[row, a] * force[q]
 

@@ -223,9 +223,9 @@ class ContactProblem:
         near = k_1 * np.log(slices.law_length / slices.patch_1.law_width)
         near = near + k_2 * np.log(slices.law_length / slices.patch_2.law_width)
         near = slices.mean(near) / slices.width
-        found, diagonal = self.compliance.copy(), np.arange(slices.pair.size)
-        found[:, diagonal, diagonal] -= np.where(slices.present, near, 0.0)
-        return found
+        compliance, diagonal = self.compliance.copy(), np.arange(slices.pair.size)
+        compliance[:, diagonal, diagonal] -= np.where(slices.present, near, 0.0)
+        return compliance
 
     def moved(self, force: FloatArray) -> FloatArray:
         """Return how far forces (P, L, m) in N move the flanks apart at every candidate (P, L, m), m.

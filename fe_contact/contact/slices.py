@@ -58,7 +58,7 @@ class Slices:
 
     @property
     def blend(self) -> FloatArray:
-        """What the mean motions of the slices add at each point, (K Q, K).
+        """Contribution of the mean motions of the slices at each point, (K Q, K).
 
         The derivative of the cubic spline through the sums of the slices before each: smooth over the face,
         with the means of the slices as they are.

@@ -1,4 +1,4 @@
-"""Where a contact solution starts: at the forces of another one that is near it."""
+"""The start of a contact solution: the forces of another one that is near it."""
 
 from __future__ import annotations
 

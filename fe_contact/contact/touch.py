@@ -1,4 +1,4 @@
-"""Where the rigid flanks of each pair come closest, and how far apart they are there."""
+"""Touching points of the rigid flanks of each pair, and the gaps there."""
 
 from __future__ import annotations
 
@@ -111,11 +111,11 @@ def conjugate_touch(pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, 
     for side, overshoot, touched, opening in sides if corners else ():
         at = np.nonzero(overshoot > 0.0)
         corner = corner_contact(pair, side, overshoot[at])
-        found = tuple(index[corner.valid] for index in at)
-        gap[found], touched[found] = corner.gap[corner.valid], corner.flank_roll_length[corner.valid]
-        opening[found] = corner.slope_angle[corner.valid]
-        lever_1[found] = corner.lever_arm_ratio_pinion[corner.valid]
-        lever_2[found] = corner.lever_arm_ratio_wheel[corner.valid]
+        valid = tuple(index[corner.valid] for index in at)
+        gap[valid], touched[valid] = corner.gap[corner.valid], corner.flank_roll_length[corner.valid]
+        opening[valid] = corner.slope_angle[corner.valid]
+        lever_1[valid] = corner.lever_arm_ratio_pinion[corner.valid]
+        lever_2[valid] = corner.lever_arm_ratio_wheel[corner.valid]
     radius = _relative_radius(pair, touched_1, touched_2)
     s_1, s_2 = flank_coordinate(pair.pinion, touched_1), flank_coordinate(pair.wheel, touched_2)
     high = flank_coordinate(pair.pinion, tip_1) - s_1
@@ -164,9 +164,9 @@ def modified_touch(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tup
     """
     moving = tuple(term for term in gaps if term.along_profile)
     steady = tuple(term for term in gaps if not term.along_profile)
-    found = _moved(pair, touch, face, moving) if moving else touch
-    roll_1, roll_2 = rolls_at(pair, found.s_1, found.s_2)
-    return replace(found, gap=found.gap + sum(term(pair, roll_1, roll_2, face) for term in steady))
+    moved = _moved(pair, touch, face, moving) if moving else touch
+    roll_1, roll_2 = rolls_at(pair, moved.s_1, moved.s_2)
+    return replace(moved, gap=moved.gap + sum(term(pair, roll_1, roll_2, face) for term in steady))
 
 
 def _moved(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...]) -> Touch:
@@ -231,26 +231,26 @@ class _Flanks:
         breaks = [(each, each.distance(touch.s_1, touch.s_2) - x) for each in self._breaks]
         middle = np.clip(x, self.first + step, self.last - step)
         at = []
-        for place in (middle - step, middle, middle + step):
-            beyond = sum(each.height(place - x - distance) for each, distance in breaks)
-            at.append(self._removed(place) - beyond)
+        for position in (middle - step, middle, middle + step):
+            beyond = sum(each.height(position - x - distance) for each, distance in breaks)
+            at.append(self._removed(position) - beyond)
         bend = (at[2] - 2.0 * at[1] + at[0]) / step**2
         slope = touch.slope + touch.curvature * x + (at[2] - at[0]) / (2.0 * step) + bend * (x - middle)
         near = _NEAR * step
         for side in self.cut_tips:
             slope = slope + (self._excess(side, x + near) - self._excess(side, x - near)) / (2.0 * near)
         curvature = touch.curvature + bend
-        place, jump, bends = np.zeros((3, x.size, len(breaks)))
+        position, jump, bends = np.zeros((3, x.size, len(breaks)))
         for k, (each, distance) in enumerate(breaks):
             inside = distance < 0.0 if each.side > 0 else distance >= 0.0
             depth = np.where(inside, np.abs(distance), 0.0)
             slope = slope + np.where(inside, each.side * (each.jump + each.bend * depth), 0.0)
             curvature = curvature + np.where(inside, each.bend, 0.0)
-            place[:, k], jump[:, k] = distance, each.jump
+            position[:, k], jump[:, k] = distance, each.jump
             bends[:, k] = np.where(inside, -each.bend, each.bend)
         ends = touch.low - x, touch.high - x
         # flanks hollowed out more than they are round would touch at several places
-        return rounded(Gap(slope, curvature, *ends, place, jump, bends), _ROUNDEST * touch.curvature)
+        return rounded(Gap(slope, curvature, *ends, position, jump, bends), _ROUNDEST * touch.curvature)
 
     def _removed(self, x: FloatArray) -> FloatArray:
         """Return what is removed at x, m."""
@@ -281,9 +281,9 @@ class _Flanks:
         else:
             exact = edge_gap(pair, side, rolls[1], pair.mating_roll_length(nominal))
         parabola = touch.gap + x * (touch.slope + 0.5 * touch.curvature * x)
-        found = np.zeros(x.shape)
-        found[behind] = np.nan_to_num(exact - parabola[behind])
-        return found
+        excess = np.zeros(x.shape)
+        excess[behind] = np.nan_to_num(exact - parabola[behind])
+        return excess
 
     def _behind(self, side: Side, x: FloatArray) -> BoolArray:
         """Return where x is to the root of the gear whose tip leaves on that side, on round flanks."""

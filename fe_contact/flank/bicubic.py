@@ -27,17 +27,17 @@ def bicubic(
     roll_axis: FloatArray, face_axis: FloatArray, nodes: FloatArray, roll: FloatArray, face: FloatArray
 ) -> FloatArray:
     """Bicubic Hermite interpolation at points (k,)."""
-    found = np.zeros(roll.size)
+    values = np.zeros(roll.size)
     across, along = np.zeros(4), np.zeros(4)
     for k in range(roll.size):
         i = _hermite(roll_axis, roll[k], across)
         j = _hermite(face_axis, face[k], along)
         for a in range(2):
             for b in range(2):
-                found[k] += (
+                values[k] += (
                     across[a] * along[b] * nodes[0, i + a, j + b]
                     + across[2 + a] * along[b] * nodes[1, i + a, j + b]
                     + across[a] * along[2 + b] * nodes[2, i + a, j + b]
                     + across[2 + a] * along[2 + b] * nodes[3, i + a, j + b]
                 )
-    return found
+    return values

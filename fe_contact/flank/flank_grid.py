@@ -73,7 +73,7 @@ class FlankGrid:
         import host.analysis  # noqa: F401, PLC0415 (says what to install)
         from fe_contact.flank.bicubic import bicubic  # noqa: PLC0415 (loads the compiler)
 
-        flat = (np.ascontiguousarray(place, dtype=float).ravel() for place in (roll_length, face_position))
+        flat = (np.ascontiguousarray(axis, dtype=float).ravel() for axis in (roll_length, face_position))
         removed = bicubic(np.array(self.roll_length), np.array(self.face_position), self._nodes, *flat)
         return np.asarray(removed.reshape(roll_length.shape))
 

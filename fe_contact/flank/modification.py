@@ -144,7 +144,7 @@ FLANK_FIELDS = declarations(FlankModification)
 
 def fields_of(*kinds: Kind) -> tuple[str, ...]:
     """Return the fields of a modification that are of one of these kinds."""
-    return tuple(name for name, what in FLANK_FIELDS.items() if what.kind in kinds)
+    return tuple(name for name, fact in FLANK_FIELDS.items() if fact.kind in kinds)
 
 
 def _own_fields(modification: FlankPart, kind: type[Any]) -> dict[str, Any]:

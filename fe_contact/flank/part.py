@@ -17,7 +17,7 @@ _ACTING = (Kind.AMOUNT, Kind.SLOPE, Kind.EDGE)
 
 @dataclass(frozen=True)
 class ReliefStart:
-    """Where a relief or the tip's edge begins along the profile; a distance d inside to jump d + bend d^2/2.
+    """Begin of a relief or of the tip's edge along the profile; a distance d inside to jump d + bend d^2/2.
 
     Attributes
     ----------
@@ -53,22 +53,22 @@ class FlankPart:
 
     def __post_init__(self) -> None:
         declared_fields(self)
-        for field, what in declarations(type(self)).items():
+        for field, fact in declarations(type(self)).items():
             amount = field.removesuffix("_length")
-            if what.kind is Kind.LENGTH and getattr(self, amount) and not getattr(self, field):
+            if fact.kind is Kind.LENGTH and getattr(self, amount) and not getattr(self, field):
                 bound = above(0.0, note=f" where {amount.replace('_', ' ')} acts over it")
                 raise InputError(field, getattr(self, field), bound, SiNote("In m: 1.5 mm is 0.0015."))
 
     @cached_property
     def along(self) -> Direction:
         """Directions along which it can act."""
-        return reduce(or_, (what.along for what in declarations(type(self)).values()), Direction.NONE)
+        return reduce(or_, (fact.along for fact in declarations(type(self)).values()), Direction.NONE)
 
     @cached_property
     def varies(self) -> Direction:
         """Directions along which it does act; none if nothing is removed anywhere."""
         facts = declarations(type(self)).items()
-        acting = (what.along for field, what in facts if what.kind in _ACTING and getattr(self, field))
+        acting = (fact.along for field, fact in facts if fact.kind in _ACTING and getattr(self, field))
         return reduce(or_, acting, Direction.NONE)
 
     def check_fits(self, gear: Tooth) -> None:

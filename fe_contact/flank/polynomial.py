@@ -1,4 +1,4 @@
-"""Crowning, slope (ISO 1328-1) and twist: powers of the place on profile and face, zero in the middle."""
+"""Crowning, slope (ISO 1328-1) and twist: powers of the position on profile and face, zero in the middle."""
 
 from __future__ import annotations
 

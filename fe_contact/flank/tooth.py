@@ -1,4 +1,4 @@
-"""What a modification asks of the gear whose flanks it changes."""
+"""The properties that a modification reads of the gear whose flanks it changes."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ _LIMITED = 'ulimit -S -t "$1"; exec "$2" -i job'  # the limit ends it even where
 
 @dataclass(frozen=True)
 class Run:
-    """How CalculiX ended.
+    """The end of a CalculiX run.
 
     Attributes
     ----------
@@ -47,8 +47,8 @@ def find_calculix() -> str | None:
 
 def version_of(program: str) -> str:
     """Return the name and version that the program states."""
-    found = subprocess.run([program, "-v"], capture_output=True, text=True, timeout=60.0, check=False)
-    stated = re.search(r"Version\s+(\S+)", found.stdout)
+    process = subprocess.run([program, "-v"], capture_output=True, text=True, timeout=60.0, check=False)
+    stated = re.search(r"Version\s+(\S+)", process.stdout)
     return f"CalculiX {stated.group(1)}" if stated else "CalculiX"
 
 
@@ -98,6 +98,6 @@ def _ended(child: subprocess.CompletedProcess[str], folder: Path, cpu_limit: flo
 
 def _complaint(child: subprocess.CompletedProcess[str]) -> str:
     """Return the first error it printed, on one line."""
-    found = re.search(r"\*ERROR(.*?)(?:\n\s*\n|\Z)", child.stdout, re.DOTALL)
-    said = " ".join(found.group(1).split()).removeprefix(":").strip() if found else "no error printed"
-    return f"exit code {child.returncode}: {said}"
+    error = re.search(r"\*ERROR(.*?)(?:\n\s*\n|\Z)", child.stdout, re.DOTALL)
+    message = " ".join(error.group(1).split()).removeprefix(":").strip() if error else "no error printed"
+    return f"exit code {child.returncode}: {message}"

@@ -23,7 +23,7 @@ TURNING, HELD = "TURNING", "HELD"
 
 @dataclass(frozen=True)
 class Loading:
-    """How a placed pair is loaded.
+    """The load of a placed pair.
 
     Attributes
     ----------

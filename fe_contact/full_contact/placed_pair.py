@@ -67,8 +67,8 @@ def flank_sides(body: PlacedBody, ahead: int) -> IntArray:
     """Return the elements along a flank, and the number of their side that lies on it, (e, 2)."""
     triangles = body.triangles
     on_line = np.isin(triangles, body.strips[ahead].nodes)
-    found = []
+    sides = []
     for number, (a, b) in enumerate(SIDES):
         elements = np.flatnonzero(on_line[:, a] & on_line[:, b] & on_line[:, 3 + number])
-        found.append(np.column_stack([elements, np.full(len(elements), number)]))
-    return np.concatenate(found)
+        sides.append(np.column_stack([elements, np.full(len(elements), number)]))
+    return np.concatenate(sides)

@@ -1,4 +1,4 @@
-"""What CalculiX prints into its .dat file: the turning of gear 1 and the reactions of gear 2's bore."""
+"""The .dat file of CalculiX: the rotation of gear 1 and the reactions of gear 2's bore."""
 
 from __future__ import annotations
 

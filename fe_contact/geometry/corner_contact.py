@@ -102,15 +102,15 @@ def corner_contact(pair: ParallelAxes, side: Side, overshoot: ArrayLike) -> Corn
     beyond = np.asarray(overshoot, dtype=float)
     if not np.all(beyond >= 0.0):
         raise InputError("overshoot", overshoot, at_least(0.0), "Inside the path of contact there is no gap.")
-    one = np.ones_like(beyond)
+    unity = np.ones_like(beyond)
     if side == "exit":
         edge = pair.pinion.tip_roll_length
         touch = _touch(pair, pair.pinion, pair.wheel, edge, edge + beyond)
-        return _masked(touch, pair.wheel, touch.lever_arm_ratio, one)
+        return _masked(touch, pair.wheel, touch.lever_arm_ratio, unity)
     if side == "approach":
         edge = pair.wheel.tip_roll_length
         touch = _touch_by_tip_gear(pair, pair.wheel, pair.pinion, edge, edge + pair.wheel.sign * beyond)
-        return _masked(touch, pair.pinion, one, touch.lever_arm_ratio)
+        return _masked(touch, pair.pinion, unity, touch.lever_arm_ratio)
     raise InputError("side", side, 'one of "approach" and "exit"')
 
 
@@ -170,7 +170,7 @@ def _touch_by_tip_gear(
 
     A lag e brings the tip gear to roll_length + e (a ring gear to roll_length - e), and it touches if the
     flank gear, turned instead, would need just that: e = gap(roll_length + e). The gap is convex, so Newton's
-    iteration from e = 0 ascends to the root. What has reached it stays, whatever else is asked beside it.
+    iteration from e = 0 ascends to the root. What has reached it stays, whatever is solved beside it.
     """
     lag = np.zeros_like(roll_length)
     for _ in range(_ITERATIONS):

@@ -69,6 +69,6 @@ def _angles(curve: FilletCurve, start: float, arcs: bytes) -> FloatArray:
 
 @lru_cache(maxsize=16)
 def _arc_table(curve: FilletCurve, start: float) -> tuple[FloatArray, FloatArray]:
-    """Return arc lengths from `start` and their tool angles: flanks are asked for again and again."""
+    """Return arc lengths from `start` and their tool angles: flanks are evaluated again and again."""
     angle = np.linspace(start, 0.5 * np.pi, 257)
     return curve.arc_length(start, angle), angle

@@ -1,4 +1,4 @@
-"""How much a gear of finite width deflects beside its transverse section in plane strain and plane stress."""
+"""Deflection of a gear of finite width relative to its section in plane strain and plane stress."""
 
 from __future__ import annotations
 

@@ -41,10 +41,10 @@ def refuse_strangers(pinion: Toothing, wheel: Toothing) -> None:
         ),
         ("helix angle", "helix_angle", wheel.helix_angle, -wheel.sign * pinion.helix_angle),
     )
-    for name, field, value, wanted in compared:
-        if not math.isclose(value, wanted, rel_tol=1e-9, abs_tol=1e-12):
+    for name, field, value, expected in compared:
+        if not math.isclose(value, expected, rel_tol=1e-9, abs_tol=1e-12):
             advice = _EXTERNAL if wheel.sign > 0 else _INTERNAL
-            bound = exactly(wanted, ", to fit the pinion")
+            bound = exactly(expected, ", to fit the pinion")
             raise InfeasibleGeometry(name, f"wheel.{field}", value, bound, advice)
 
 

@@ -1,4 +1,4 @@
-"""What external and internal pairs share: kinematics, path of contact, backlash, forces (ISO 21771-1).
+"""Laws of external and internal pairs: kinematics, path of contact, backlash, forces (ISO 21771-1).
 
 One set of formulas serves both kinds: the wheel's `sign`, which is the sign of its tooth number in the
 standard, multiplies its base radius.
@@ -50,7 +50,7 @@ class ParallelAxes:
 
         @property
         def shafts(self) -> Shafts:
-            """What carries pinion and wheel."""
+            """The bodies of pinion and wheel."""
 
     def at_center_distance(self, center_distance: float) -> Self:
         """Return the same gears at another distance in m.

@@ -18,7 +18,7 @@ LARGEST = 1e-3
 
 @dataclass(frozen=True)
 class PitchDeviation:
-    """How far the loaded flank of every tooth lies from its place.
+    """Deviation of the loaded flank of every tooth from its position.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class PitchDeviation:
 
     @property
     def neutral(self) -> bool:
-        """Whether every tooth is in its place."""
+        """Whether every tooth is in its position."""
         return not any(self.cumulative)
 
     @property

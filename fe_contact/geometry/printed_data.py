@@ -21,7 +21,7 @@ from fe_contact.geometry.toothing import Toothing
 
 @dataclass(frozen=True)
 class PrintedDigits:
-    """How a quantity is printed.
+    """The printed form of a quantity.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""How the surface of a tooth root leans: the tangents that ISO 6336-3 measures the root by."""
+"""Inclination of the surface of a tooth root: the tangents of ISO 6336-3."""
 
 from __future__ import annotations
 

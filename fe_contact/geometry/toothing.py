@@ -1,4 +1,4 @@
-"""What external and internal involute toothings share (ISO 21771-1): one signed set of closed forms.
+"""One signed set of closed forms for external and internal involute toothings (ISO 21771-1).
 
 The standard counts the teeth of an internal gear negative, so that one formula serves both kinds. Here all
 numbers and radii are positive and `sign` carries the standard's sign.
@@ -157,7 +157,7 @@ class Toothing:
 
     @property
     def seat(self) -> BoreSeat:
-        """How the gear is held at `held_radius`."""
+        """The seat of the gear at `held_radius`."""
         return CLAMPED
 
     @property

@@ -1,4 +1,4 @@
-"""How far a plain annular disc gives way between a held inner and a rigid outer edge, in closed form.
+"""Compliance of a plain annular disc between a held inner and a rigid outer edge, in closed form.
 
 Thin discs are in plane stress. Timoshenko and Goodier, Theory of Elasticity, art. 37 (torsion of a ring) and
 Muskhelishvili's complex potentials of a force at the hole of an annulus, both edges rigid.
@@ -33,7 +33,7 @@ def shift_compliance(inner: float, outer: float, material: Material) -> float:
 
 
 def web_compliance(gear: Toothing) -> float:
-    """How much more than a solid body the web of a gear gives way along the line of action, m/N.
+    """Compliance of the web of a gear beyond that of a solid body, along the line of action, m/N.
 
     A lower bound of what the blank adds: rim and hub are rigid here, and the force enters the web evenly.
     """

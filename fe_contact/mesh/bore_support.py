@@ -1,4 +1,4 @@
-"""How the bore of a gear is held: choices as objects."""
+"""Supports of the bore of a gear."""
 
 from __future__ import annotations
 

@@ -77,9 +77,9 @@ class GearMesh:
     hub: Hub | None
 
 
-def real_teeth(teeth: int, wanted: int | None) -> IntArray:
-    """Return the numbers of the real teeth: `wanted` of them centered on 0, or all."""
-    count = teeth if wanted is None else min(wanted, teeth)
+def real_teeth(teeth: int, modeled: int | None) -> IntArray:
+    """Return the numbers of the real teeth: `modeled` of them centered on 0, or all."""
+    count = teeth if modeled is None else min(modeled, teeth)
     return np.arange(count) - (count - 1) // 2
 
 

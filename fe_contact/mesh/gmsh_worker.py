@@ -99,10 +99,10 @@ def triangulate(
     added = [add_loop(gmsh, loop) for loop in loops]
     surface = gmsh.model.geo.addPlaneSurface([loop for _, loop in added])
     gmsh.model.geo.synchronize()
-    given = [point for points, _ in added for point in points]
-    grow_from(gmsh, loops, given, growth)
+    boundary = [point for points, _ in added for point in points]
+    grow_from(gmsh, loops, boundary, growth)
     gmsh.model.mesh.generate(2)
-    number = {int(gmsh.model.mesh.getNodes(0, tag)[0][0]): i for i, tag in enumerate(given)}
+    number = {int(gmsh.model.mesh.getNodes(0, tag)[0][0]): i for i, tag in enumerate(boundary)}
     points: list[list[float]] = [xy for loop in loops for xy in loop]
     tags, flat, _ = gmsh.model.mesh.getNodes(2, surface)
     for i, tag in enumerate(tags):

@@ -21,7 +21,7 @@ def divide(start: float, end: float, size: SizeFunction, samples: int = 2001) ->
     size : callable
         Wanted length of a part at the coordinates given, > 0, in the unit of the coordinate.
     samples : int
-        Points at which `size` is asked.
+        Points at which `size` is evaluated.
 
     Returns
     -------

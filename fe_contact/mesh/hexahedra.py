@@ -66,7 +66,7 @@ def stacked(
     """
     alike = np.column_stack([level, node_level[grid.quads[:, 0]] > level, extent])
     elements: list[IntArray] = []
-    place: list[FloatArray] = []
+    position: list[FloatArray] = []
     batches: list[Batch] = []
     count = 0
     for lv, hangs, first_layer, last_layer in np.unique(alike, axis=0):
@@ -75,20 +75,20 @@ def stacked(
         for first in range(first_layer, last_layer, 1 << lv):
             half = (-1, 1)[(first >> lv) % 2] if hangs else 0
             elements.append(_layer(nodes, grid.quads[quads], 2 * first, 2 << lv, half))
-            place.append(np.column_stack([grid.cells[quads], np.full(len(quads), first + 0.5 * 2**lv)]))
+            position.append(np.column_stack([grid.cells[quads], np.full(len(quads), first + 0.5 * 2**lv)]))
             numbers = count + np.arange(len(quads))
             sharing.setdefault((int(layers.kind[first]), half), []).append(numbers)
             count += len(quads)
         for (kind, half), rows in sharing.items():
             batches.append(Batch(quads, 2.0**lv * layers.thickness[kind], half, np.array(rows)))
-    return tuple(batches), np.concatenate(elements), np.concatenate(place)
+    return tuple(batches), np.concatenate(elements), np.concatenate(position)
 
 
 def with_seat(
     grid: SectorGrid, layers: Layers, bodies: Stack, ends: tuple[float, float], elastic: bool
 ) -> Stack:
     """Add the elements of a seat between axial positions `ends` in m: the nodes of the bodies above them."""
-    batches, elements, place = bodies
+    batches, elements, position = bodies
     if not elastic:
         return bodies
     low, high = (np.abs(layers.ends - z).argmin() for z in ends)
@@ -97,7 +97,7 @@ def with_seat(
     count, more = len(elements), []
     for batch in batches:
         columns = on_bore[batch.quads]
-        lines = (place[batch.elements[:, 0], 2] > low) & (place[batch.elements[:, 0], 2] < high)
+        lines = (position[batch.elements[:, 0], 2] > low) & (position[batch.elements[:, 0], 2] < high)
         chosen = batch.elements[lines][:, columns]
         if chosen.size:
             numbers = count + np.arange(chosen.size).reshape(chosen.shape)
@@ -108,7 +108,7 @@ def with_seat(
     return (
         (*batches, *more),
         np.concatenate([elements, elements[rows]]),
-        np.concatenate([place, place[rows]]),
+        np.concatenate([position, position[rows]]),
     )
 
 

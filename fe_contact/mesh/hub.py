@@ -52,7 +52,7 @@ class Hub:
 
 @dataclass(frozen=True)
 class InnerRing:
-    """What lies between a boundary and the next circle, and its thickness over the face width."""
+    """A region between a boundary and the next circle, and its thickness over the face width."""
 
     circle: Outline
     thickness: float
@@ -79,8 +79,8 @@ def plain_rim(side: Piece, missing: int, pitch: float, inside: float, recipe: Me
 
     def size(turned: FloatArray) -> FloatArray:
         distance = np.minimum(turned, length - turned)
-        wanted: FloatArray = side.edge_lengths[-1] / radius + recipe.growth * distance
-        return np.minimum(wanted, largest)
+        target: FloatArray = side.edge_lengths[-1] / radius + recipe.growth * distance
+        return np.minimum(target, largest)
 
     circle = arc(radius)
     return piece("plain rim", lambda turned: circle(angle - turned), divide(0.0, length, size))
@@ -149,10 +149,10 @@ def hub(
         mesh = _joined(mesh, ring)
         parts.append(np.full(len(ring.triangles), thick))
     around, held = mesh.boundary[::sign]
-    found = {p.name for p in toothed.pieces}
+    names = {p.name for p in toothed.pieces}
 
     def nodes(name: str) -> IntArray:
-        return around[toothed.positions(name)] if name in found else np.empty(0, dtype=np.int64)
+        return around[toothed.positions(name)] if name in names else np.empty(0, dtype=np.int64)
 
     return Hub(
         points=mesh.points,

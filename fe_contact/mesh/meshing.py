@@ -68,7 +68,7 @@ def sector_bottom(gear: Toothing, profile: ToothProfile, all_real: bool) -> floa
 
 @dataclass(frozen=True)
 class Filling:
-    """How outlines are filled with elements: quality limits and time limit in s."""
+    """Limits on filling outlines with elements: quality, and time in s."""
 
     limits: QualityLimits
     seconds: float

@@ -69,12 +69,12 @@ def _numbered(outline: Outline, start: int, count: int, keys: IntArray) -> IntAr
     n = len(outline.corners)
     corners = start + np.arange(n)
     following = start + (np.arange(n) + 1) % n
-    wanted = np.minimum(corners, following) * count + np.maximum(corners, following)
-    found = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
-    if not np.array_equal(keys[found], wanted):
+    edges = np.minimum(corners, following) * count + np.maximum(corners, following)
+    index = np.minimum(np.searchsorted(keys, edges), len(keys) - 1)
+    if not np.array_equal(keys[index], edges):
         raise MeshError("gmsh worker: an edge of the outline was divided")
     nodes = np.empty(2 * n, dtype=np.int64)
-    nodes[::2], nodes[1::2] = corners, count + found
+    nodes[::2], nodes[1::2] = corners, count + index
     return nodes
 
 

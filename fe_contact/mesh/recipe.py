@@ -1,4 +1,4 @@
-"""What a gear's mesh shall look like: element sizes, real teeth, limits."""
+"""The recipe of a gear's mesh: element sizes, real teeth, limits."""
 
 from __future__ import annotations
 

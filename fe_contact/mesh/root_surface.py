@@ -1,4 +1,4 @@
-"""Where the surface of the tooth root is in a mesh: from the middle of the tooth space to the form point."""
+"""The surface of the tooth root in a mesh, from the middle of the tooth space to the form point."""
 
 from __future__ import annotations
 

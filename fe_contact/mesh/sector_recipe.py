@@ -1,4 +1,4 @@
-"""What the three-dimensional mesh of one tooth sector shall look like."""
+"""The recipe of the three-dimensional mesh of one tooth sector."""
 
 from __future__ import annotations
 
@@ -201,5 +201,5 @@ class SectorRecipe:
 
 def _layers(gear: HasFace, least: int, thickest: float, most: int) -> int:
     """Return an even number of layers no thicker than `thickest` modules, within its bounds."""
-    wanted = gear.face_width / (thickest * gear.normal_module)
-    return 2 * math.ceil(min(max(least, wanted), most) / 2)
+    needed = gear.face_width / (thickest * gear.normal_module)
+    return 2 * math.ceil(min(max(least, needed), most) / 2)

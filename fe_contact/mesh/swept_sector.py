@@ -98,7 +98,7 @@ class SweptSector:
 
     @cached_property
     def key_cut(self) -> IntArray:
-        """Where on a cut its tangential freedoms on the bore are if the seat has a key, else none."""
+        """Positions on a cut of its tangential freedoms on the bore if the seat has a key, else none."""
         return np.flatnonzero(np.isin(self.left, self._tangential(self.grid.left[:1])))
 
     def _tangential(self, column: IntArray) -> IntArray:
@@ -155,15 +155,15 @@ def swept_sector(
     extent = _extents(grid, layers, web)
     exists = _existing(grid, node_level, extent, planes)
     nodes = np.where(exists, np.cumsum(exists).reshape(exists.shape) - 1, -1)
-    batches, elements, place = stacked(grid, layers, nodes, level, node_level, extent)
-    batches, elements, place = with_seat(
-        grid, layers, (batches, elements, place), support.seat.ends(face_width), support.seat.elastic
+    batches, elements, position = stacked(grid, layers, nodes, level, node_level, extent)
+    batches, elements, position = with_seat(
+        grid, layers, (batches, elements, position), support.seat.ends(face_width), support.seat.elastic
     )
     held = support.held(grid, between_ends(layers.ends))
     held[0, :, 2] |= recipe.half_face
     free = ~held[exists]
     freedoms = np.where(free, np.cumsum(free).reshape(free.shape) - 1, -1)
-    return SweptSector(grid, layers, nodes, elements, place, batches, freedoms, support.seat)
+    return SweptSector(grid, layers, nodes, elements, position, batches, freedoms, support.seat)
 
 
 def between_ends(ends: FloatArray) -> FloatArray:

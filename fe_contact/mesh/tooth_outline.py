@@ -66,8 +66,8 @@ def tooth_outline(profile: ToothProfile, bottom_radius: float, recipe: MeshRecip
 
 def lowest_flank_node(profile: ToothProfile, recipe: MeshRecipe) -> float:
     """Return where the fine division ends: the margin below the form point, or the end of the fillet."""
-    wanted = profile.s_form - recipe.flank_margin
-    return wanted if wanted > profile.s_root + SNAP * recipe.fillet_size else profile.s_root
+    end = profile.s_form - recipe.flank_margin
+    return end if end > profile.s_root + SNAP * recipe.fillet_size else profile.s_root
 
 
 def rim_limit(profile: ToothProfile, recipe: MeshRecipe, s: FloatArray) -> FloatArray:
@@ -84,8 +84,8 @@ def flank_divisions(profile: ToothProfile, s_low: float, recipe: MeshRecipe) -> 
     """
 
     def size(s: FloatArray) -> FloatArray:
-        wanted = np.minimum(recipe.flank_size, recipe.tip_size + recipe.growth * (profile.s_tip - s))
-        return np.minimum(wanted, rim_limit(profile, recipe, s))
+        target = np.minimum(recipe.flank_size, recipe.tip_size + recipe.growth * (profile.s_tip - s))
+        return np.minimum(target, rim_limit(profile, recipe, s))
 
     if profile.s_form - s_low < SNAP * recipe.flank_size:
         return divide(s_low, profile.s_tip, size)
@@ -97,8 +97,8 @@ def root_pieces(profile: ToothProfile, s_low: float, recipe: MeshRecipe) -> list
     """Return the surface from the middle of the tooth space up to `s_low`: root land and fillet."""
 
     def size(s: FloatArray) -> FloatArray:
-        wanted = np.minimum(recipe.fillet_size, recipe.flank_size + recipe.growth * (s_low - s))
-        return np.minimum(wanted, rim_limit(profile, recipe, s))
+        target = np.minimum(recipe.fillet_size, recipe.flank_size + recipe.growth * (s_low - s))
+        return np.minimum(target, rim_limit(profile, recipe, s))
 
     land = profile.s_root - profile.s_space
     if s_low <= profile.s_root:
@@ -115,8 +115,8 @@ def land_piece(profile: ToothProfile, s_low: float, recipe: MeshRecipe) -> Piece
     largest = min(recipe.body_size, LARGEST_ARC * profile.gear.root_radius)
 
     def size(s: FloatArray) -> FloatArray:
-        wanted = np.minimum(recipe.flank_size + recipe.growth * (s_low - s), largest)
-        return np.minimum(wanted, rim_limit(profile, recipe, s))
+        target = np.minimum(recipe.flank_size + recipe.growth * (s_low - s), largest)
+        return np.minimum(target, rim_limit(profile, recipe, s))
 
     return piece("land", profile.flank, divide(profile.s_root, profile.s_space, size)[::-1])
 

@@ -59,8 +59,8 @@ def fill_blocks(
     """
     answer = ask_gmsh({"blocks": [block.loop(scale) for block in blocks]}, seconds, command)
     try:
-        found = [np.array(rows, dtype=float) * scale for rows in answer["blocks"]]
-        return [_received(block, points) for block, points in zip(blocks, found, strict=True)]
+        grids = [np.array(rows, dtype=float) * scale for rows in answer["blocks"]]
+        return [_received(block, points) for block, points in zip(blocks, grids, strict=True)]
     except (KeyError, ValueError, TypeError) as error:
         raise MeshError(f"gmsh worker: unusable answer ({error})") from error
 

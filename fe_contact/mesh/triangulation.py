@@ -68,17 +68,17 @@ def triangulate(
     loops = [[(loop / scale).tolist() for loop in r.loops] for r in regions]
     answer = ask_gmsh({"regions": loops, "growth": growth}, seconds, command)
     try:
-        return [_received(r, found, scale) for r, found in zip(regions, answer["regions"], strict=True)]
+        return [_received(r, mesh, scale) for r, mesh in zip(regions, answer["regions"], strict=True)]
     except (KeyError, ValueError, TypeError) as error:
         raise MeshError(f"gmsh worker: unusable answer ({error})") from error
 
 
-def _received(region: Region, found: dict[str, Any], scale: float) -> Triangulation:
+def _received(region: Region, mesh: dict[str, Any], scale: float) -> Triangulation:
     """Convert one answer, with the boundary points as they were given and triangles counter-clockwise."""
-    points = np.array(found["points"], dtype=float).reshape(-1, 2) * scale
-    given = np.concatenate(region.loops)
-    points[: len(given)] = given
-    triangles = np.array(found["triangles"], dtype=np.int64).reshape(-1, 3)
+    points = np.array(mesh["points"], dtype=float).reshape(-1, 2) * scale
+    boundary = np.concatenate(region.loops)
+    points[: len(boundary)] = boundary
+    triangles = np.array(mesh["triangles"], dtype=np.int64).reshape(-1, 3)
     if len(triangles) == 0:
         raise ValueError("no triangles")
     a, b, c = (points[triangles[:, i]] for i in range(3))

@@ -56,7 +56,7 @@ class Choice:
         return self.runs[self.best]
 
 
-def posed(study: DesignStudy, asked: OptimizationRequest, memory: Path | None) -> DesignProblem:
+def posed(study: DesignStudy, request: OptimizationRequest, memory: Path | None) -> DesignProblem:
     """Return the problem of the search, its scale the start inside the bounds.
 
     `memory` is a directory of designs that were assessed before.
@@ -66,10 +66,10 @@ def posed(study: DesignStudy, asked: OptimizationRequest, memory: Path | None) -
     SolveError
         Its contact cannot be solved.
     """
-    problem = DesignProblem(study.evaluator, asked.variables, asked.objective, asked.limits, 1.0)
+    problem = DesignProblem(study.evaluator, request.variables, request.objective, request.limits, 1.0)
     if memory is not None:
-        problem = replace(problem, memory=DesignMemory.of(memory, asked, study.evaluator))
-    assessed = problem.assess(problem.place(asked.own))
+        problem = replace(problem, memory=DesignMemory.of(memory, request, study.evaluator))
+    assessed = problem.assess(problem.place(request.own))
     if not np.isfinite(assessed.objective) or assessed.objective <= 0.0:
         raise SolveError(
             "the contact of the design to begin with cannot be solved at every position and load"
@@ -80,7 +80,7 @@ def posed(study: DesignStudy, asked: OptimizationRequest, memory: Path | None) -
 def choose(
     problem: DesignProblem,
     runs: tuple[SearchRun, ...],
-    asked: OptimizationRequest,
+    request: OptimizationRequest,
     study: DesignStudy,
     clock: StageClock,
     cache: Path | None,
@@ -92,7 +92,7 @@ def choose(
     ----------
     problem : DesignProblem
     runs : tuple of SearchRun
-    asked : OptimizationRequest
+    request : OptimizationRequest
     study : DesignStudy
     clock : StageClock
     cache : Path, optional
@@ -100,18 +100,18 @@ def choose(
     """
     best = min(range(len(runs)), key=lambda i: runs[i].assessed.order)
     with clock.stage("confirmation"):
-        start = confirm(problem, dict(zip(problem.names, asked.own, strict=True)), study, cache)
+        start = confirm(problem, dict(zip(problem.names, request.own, strict=True)), study, cache)
         optimum = confirm(problem, problem.values(runs[best].place), study, cache)
-    found = Choice(problem, start, optimum, runs, best)
+    choice = Choice(problem, start, optimum, runs, best)
     for _ in range(ROUNDS):
-        if found.optimum.violation <= SLACK or found.run.assessed.violation > SLACK or cancel():
+        if choice.optimum.violation <= SLACK or choice.run.assessed.violation > SLACK or cancel():
             break
-        found = _refined(found, asked.search, study, clock, cache, cancel)
-    return found
+        choice = _refined(choice, request.search, study, clock, cache, cancel)
+    return choice
 
 
 def _refined(
-    found: Choice, search: Search, study: DesignStudy, clock: StageClock, cache: Path | None, cancel: Cancel
+    choice: Choice, search: Search, study: DesignStudy, clock: StageClock, cache: Path | None, cancel: Cancel
 ) -> Choice:
     """Search on from a design that exceeds the limits between the positions of the search."""
     shorter = replace(
@@ -119,25 +119,25 @@ def _refined(
         method=SequentialLinearProgramming(sample=0),
         evaluations=max(1, search.evaluations // REFINED),
     )
-    seen = found.problem.evaluator.position, found.optimum.harris_map.position
-    evaluator = found.problem.evaluator.at(np.union1d(*seen))
-    problem = replace(found.problem, evaluator=evaluator)
+    seen = choice.problem.evaluator.position, choice.optimum.harris_map.position
+    evaluator = choice.problem.evaluator.at(np.union1d(*seen))
+    problem = replace(choice.problem, evaluator=evaluator)
     with clock.stage("search"):
-        run = search_from(problem, shorter, found.run.place, search.starts, cancel=cancel)
+        run = search_from(problem, shorter, choice.run.place, search.starts, cancel=cancel)
     with clock.stage("confirmation"):
         optimum = confirm(problem, problem.values(run.place), study, cache)
-    return Choice(problem, found.start, optimum, (*found.runs, run), len(found.runs))
+    return Choice(problem, choice.start, optimum, (*choice.runs, run), len(choice.runs))
 
 
 def perturbation(
-    problem: DesignProblem, run: SearchRun, scatter: Scatter, one: DesignVariable
+    problem: DesignProblem, run: SearchRun, scatter: Scatter, variable: DesignVariable
 ) -> Perturbation:
     """Take a step of one variable from the best design of a run to both sides."""
     values = problem.values(run.place)
-    step = scatter.modification.get(one.name, STEP * (one.high - one.low))
-    ends = max(one.low, values[one.name] - step), min(one.high, values[one.name] + step)
-    found = []
+    step = scatter.modification.get(variable.name, STEP * (variable.high - variable.low))
+    ends = max(variable.low, values[variable.name] - step), min(variable.high, values[variable.name] + step)
+    changes = []
     for end in ends:
-        evaluation = problem.evaluator.evaluate(values | {one.name: end})
-        found.append(problem.objective.of(problem.evaluator.expected(evaluation)) - run.assessed.objective)
-    return Perturbation(one.name, *ends, *found)
+        evaluation = problem.evaluator.evaluate(values | {variable.name: end})
+        changes.append(problem.objective.of(problem.evaluator.expected(evaluation)) - run.assessed.objective)
+    return Perturbation(variable.name, *ends, *changes)

@@ -84,9 +84,9 @@ def confirm(
     search, nodes, counted = problem.evaluator, problem.evaluator.nodes, study.counted
     table = full_table(search, values, study.decided, cache)
     fine = replace(search.at(table.position), load=table.force)
-    found = fine.evaluate(values)
+    figures = fine.evaluate(values)
     error = _errors(table, search.misalignment + nodes.misalignment)
-    ripple = found.peak_to_peak
+    ripple = figures.peak_to_peak
     nominal = replace(fine, nodes=ONE_NODE).evaluate(values)
     harris = HarrisMap(
         torque=study.all_torques,
@@ -99,8 +99,8 @@ def confirm(
         weight=nodes.weight,
     )
     counted_figures = Evaluation(
-        found.ste[:, :, counted],
-        *(each[:, counted] for each in (found.pressure, found.face_load_factor, found.edge_load_share)),
+        figures.ste[:, :, counted],
+        *(each[:, counted] for each in (figures.pressure, figures.face_load_factor, figures.edge_load_share)),
     )
     rule = _scatter_error(problem, values)
     own = problem.objective.of(harris.expected_error[counted])
@@ -115,14 +115,14 @@ def full_table(
     """Compute the table of a design over torques and the misalignments of all nodes and of none."""
     request = decided.checked.request
     skews = np.unique([search.misalignment, *(search.misalignment + search.nodes.misalignment)])
-    asked = replace(
+    full = replace(
         request,
         pair=modified(request.pair, values),
         misalignment=skews,
         options=replace(request.options.at_level(decided.mesh.level), effects=dict(search.choices)),
     )
-    checked = check_asked(asked, spare=False)
-    table = compute_database(checked, asked.to_json(), Run(cache=cache), replace(decided, checked=checked))
+    checked = check_asked(full, spare=False)
+    table = compute_database(checked, full.to_json(), Run(cache=cache), replace(decided, checked=checked))
     table.require_complete()
     return table
 
@@ -145,5 +145,5 @@ def _scatter_error(problem: DesignProblem, values: Mapping[str, float]) -> float
     if finer is None:
         return 0.0
     other = replace(search, nodes=finer)
-    one, two = (problem.objective.of(each.expected(each.evaluate(values))) for each in (search, other))
-    return abs(two - one)
+    value, refined = (problem.objective.of(each.expected(each.evaluate(values))) for each in (search, other))
+    return abs(refined - value)

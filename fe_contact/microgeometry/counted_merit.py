@@ -54,7 +54,7 @@ class Budget:
 
 
 class CountedMerit:
-    """Merit of a place (d,) in the unit cube.
+    """Merit of a point (d,) in the unit cube.
 
     Parameters
     ----------
@@ -78,22 +78,22 @@ class CountedMerit:
         self.count, self.least, self.largest = 0, np.inf, -np.inf
         self._problem, self._budget, self._most = problem, budget, most
 
-    def __call__(self, place: FloatArray) -> float:
+    def __call__(self, point: FloatArray) -> float:
         """Assess a design."""
         self._budget.take(self._most)
-        return self._counted(self._problem.assess(place), place)
+        return self._counted(self._problem.assess(point), point)
 
-    def linearize(self, place: FloatArray) -> tuple[float, LinearMerit]:
+    def linearize(self, point: FloatArray) -> tuple[float, LinearMerit]:
         """Assess a design, and return its merit with what is known about it to first order."""
         self._budget.take(self._most)
-        assessed, merit = self._problem.linearize(place)
-        return self._counted(assessed, place), merit
+        assessed, merit = self._problem.linearize(point)
+        return self._counted(assessed, point), merit
 
-    def _counted(self, assessed: Assessed, place: FloatArray) -> float:
+    def _counted(self, assessed: Assessed, point: FloatArray) -> float:
         """Count and remember a design; return its merit."""
         self.count += 1
         if self.best is None or assessed.order < self.best[0].order:
-            self.best = assessed, np.clip(place, 0.0, 1.0)
+            self.best = assessed, np.clip(point, 0.0, 1.0)
         if np.isfinite(assessed.objective):
             self.least, self.largest = (
                 min(self.least, assessed.objective),

@@ -108,9 +108,9 @@ class CurveDerivatives:
         across = 0.5 * toothing.face_width * np.linspace(-1.0, 1.0, face)
         levels = np.eye(self.torque.size)
         rows = np.einsum("qpf,fg->qgpf", self._quantities, levels).reshape(-1, *self.ste.shape)
-        found = self._strips.on_flank(GEARS.index(gear), roll, across, rows)
-        found = found.reshape(-1, self.torque.size, profile, face)
-        return FlankDerivatives(roll, across, found[MEAN], found[PEAK_TO_PEAK], found[FIRST_HARMONIC:])
+        slopes = self._strips.on_flank(GEARS.index(gear), roll, across, rows)
+        slopes = slopes.reshape(-1, self.torque.size, profile, face)
+        return FlankDerivatives(roll, across, slopes[MEAN], slopes[PEAK_TO_PEAK], slopes[FIRST_HARMONIC:])
 
 
 def curve_derivatives(
@@ -169,16 +169,16 @@ def curve_derivatives(
             return (further.deflection - solution.deflection) / DISTANCE_STEP
         return strips.change(opened_by(strips, pair, name))
 
-    found = np.stack([derivative(name) for name in names])
+    derivatives = np.stack([derivative(name) for name in names])
     curves, period = solution.deflection.T, checked.model.period
     weights = np.stack([quantity_derivatives(curve, period) for curve in curves], axis=-1)
-    changes = np.einsum("qpf,apf->aqf", weights, found)
+    changes = np.einsum("qpf,apf->aqf", weights, derivatives)
     return CurveDerivatives(
         names,
         loads,
         problem.candidates.position,
         solution.deflection,
-        found,
+        derivatives,
         changes[:, MEAN],
         changes[:, PEAK_TO_PEAK],
         changes[:, FIRST_HARMONIC:],
@@ -232,8 +232,8 @@ def opened_by(strips: CarryingStrips, pair: ParallelAxes, name: str) -> FloatArr
     value = figure(pair, name)
     step = LENGTH_STEP * value if quantity in LENGTHS else AMOUNT_STEP
     low = value - step if quantity in SLOPES else max(value - step, 0.0)
-    one, other = (strips.opened(_gap(pair, gear, {quantity: end})) for end in (value + step, low))
-    return (one - other) / (value + step - low)
+    above, below = (strips.opened(_gap(pair, gear, {quantity: end})) for end in (value + step, low))
+    return (above - below) / (value + step - low)
 
 
 def _gap(pair: ParallelAxes, gear: str, figures: Mapping[str, Any]) -> ModificationGap:

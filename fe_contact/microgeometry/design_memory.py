@@ -1,4 +1,4 @@
-"""Assessed designs on disk: a search that was killed, or is asked for more, goes on where it was.
+"""Assessed designs on disk: a search that was killed, or may use more evaluations, continues.
 
 A search is repeatable, so it asks for the same designs again; those that are known cost nothing. What a file
 holds depends on all that decides how a design is assessed, down to the bits of the compliance, and on nothing
@@ -47,36 +47,36 @@ class DesignMemory:
     known: dict[bytes, Figures] = field(default_factory=dict, repr=False)
 
     @classmethod
-    def of(cls, directory: Path, asked: OptimizationRequest, evaluator: Evaluator) -> DesignMemory:
+    def of(cls, directory: Path, request: OptimizationRequest, evaluator: Evaluator) -> DesignMemory:
         """Open the file of a problem; one that is damaged counts up to the damage."""
         content = {
-            "pair": asdict(asked.pair),
-            "variables": [one.name for one in asked.variables],
+            "pair": asdict(request.pair),
+            "variables": [variable.name for variable in request.variables],
             "bodies": _digest_of_bodies(evaluator),
             "effects": dict(evaluator.choices),
             "load": evaluator.load.tolist(),
             "misalignment": evaluator.misalignment,
-            "scatter": asked.scatter.to_json(),
-            "objective": asked.objective.to_json(),
-            "limits": asked.limits.to_json(),
+            "scatter": request.scatter.to_json(),
+            "objective": request.objective.to_json(),
+            "limits": request.limits.to_json(),
         }
         key = content_hash(content, SOLVER_VERSION, SCHEMA_VERSION)
         memory = cls(directory / f"designs-{key}.bin")
         with contextlib.suppress(OSError):
             directory.mkdir(parents=True, exist_ok=True)
             _prune(directory)
-            memory._read(_POSITIONS + 8 * len(asked.variables))
+            memory._read(_POSITIONS + 8 * len(request.variables))
         return memory
 
     def find(self, values: FloatArray, position: FloatArray) -> Figures | None:
         """Return what is known of a design (d,) in m at some positions."""
         return self.known.get(_name(values, position))
 
-    def add(self, values: FloatArray, position: FloatArray, found: Figures) -> None:
+    def add(self, values: FloatArray, position: FloatArray, figures: Figures) -> None:
         """Keep a design; where the file cannot be written it is kept in this process."""
         name = _name(values, position)
-        self.known[name] = found
-        text = name + struct.pack("<dd", *found)
+        self.known[name] = figures
+        text = name + struct.pack("<dd", *figures)
         record = text + struct.pack("<Q", zlib.crc32(text))
         with contextlib.suppress(OSError), self.file.open("ab", buffering=0) as stream:
             stream.write(record)  # one write: whole, or the last of the file
@@ -97,7 +97,7 @@ class DesignMemory:
 
 
 def _name(values: FloatArray, position: FloatArray) -> bytes:
-    """Return what a record is found by."""
+    """Return the key of a record."""
     return hashlib.sha256(position.tobytes()).digest()[:_POSITIONS] + np.asarray(values, "<f8").tobytes()
 
 

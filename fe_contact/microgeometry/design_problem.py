@@ -1,4 +1,4 @@
-"""The problem a search solves: places in the unit cube to one number."""
+"""The problem a search solves: points of the unit cube to one number."""
 
 from __future__ import annotations
 
@@ -40,14 +40,14 @@ class Memory(Protocol):
         """Return what is known."""
         ...
 
-    def add(self, values: FloatArray, position: FloatArray, found: tuple[float, float]) -> None:
-        """Keep what was found."""
+    def add(self, values: FloatArray, position: FloatArray, figures: tuple[float, float]) -> None:
+        """Keep the figures of a design."""
         ...
 
 
 @dataclass(frozen=True)
 class DesignProblem:
-    """What is varied, how it is assessed, and the scale of the merit.
+    """The variables, their assessment, and the scale of the merit.
 
     Attributes
     ----------
@@ -71,18 +71,18 @@ class DesignProblem:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the variables."""
-        return tuple(one.name for one in self.variables)
+        return tuple(variable.name for variable in self.variables)
 
-    def values(self, place: FloatArray) -> dict[str, float]:
-        """Return the design at a place (d,) of the unit cube, ``gear.quantity`` to m."""
-        inside = np.clip(place, 0.0, 1.0).tolist()
+    def values(self, point: FloatArray) -> dict[str, float]:
+        """Return the design at a point (d,) of the unit cube, ``gear.quantity`` to m."""
+        inside = np.clip(point, 0.0, 1.0).tolist()
         return {v.name: v.low + x * (v.high - v.low) for v, x in zip(self.variables, inside, strict=True)}
 
     def place(self, values: tuple[float, ...]) -> FloatArray:
-        """Return the nearest place of the unit cube to a design."""
+        """Return the nearest point of the unit cube to a design."""
         ends = [(v.low, v.high) for v in self.variables]
-        found = [(x - low) / (high - low) for x, (low, high) in zip(values, ends, strict=True)]
-        return np.asarray(np.clip(np.array(found), 0.0, 1.0))
+        fractions = [(x - low) / (high - low) for x, (low, high) in zip(values, ends, strict=True)]
+        return np.asarray(np.clip(np.array(fractions), 0.0, 1.0))
 
     def rough(self, positions: int) -> DesignProblem:
         """Return the problem at fewer positions, equally spaced in a base pitch; itself if they are not."""
@@ -90,25 +90,25 @@ class DesignProblem:
             return self
         return replace(self, evaluator=self.evaluator.at(np.arange(positions) / positions))
 
-    def assess(self, place: FloatArray) -> Assessed:
-        """Evaluate the design at a place; one whose contact cannot be solved has an infinite merit."""
-        return self._with_merit(*self._figures(self.values(place)))
+    def assess(self, point: FloatArray) -> Assessed:
+        """Evaluate the design at a point; one whose contact cannot be solved has an infinite merit."""
+        return self._with_merit(*self._figures(self.values(point)))
 
-    def linearize(self, place: FloatArray) -> tuple[Assessed, LinearMerit]:
-        """Evaluate the design at a place (d,) with its derivatives; the memory learns of it.
+    def linearize(self, point: FloatArray) -> tuple[Assessed, LinearMerit]:
+        """Evaluate the design at a point (d,) with its derivatives; the memory learns of it.
 
         Its merit to first order has NaN where the contact cannot be solved.
         """
-        values = self.values(place)
-        found = linearized(self.evaluator, values, self.names, self.limits)
-        objective, violation = self._assessed(found.evaluation, values)
-        ranges = np.array([one.high - one.low for one in self.variables])
+        values = self.values(point)
+        design = linearized(self.evaluator, values, self.names, self.limits)
+        objective, violation = self._assessed(design.evaluation, values)
+        ranges = np.array([variable.high - variable.low for variable in self.variables])
         merit = LinearMerit(
-            found.evaluation.ste / self.scale,
-            found.curves * (ranges / self.scale),
+            design.evaluation.ste / self.scale,
+            design.curves * (ranges / self.scale),
             self.evaluator.nodes.weight,
             self.objective.rows(self.evaluator.load.size),
-            tuple((value, by * ranges) for value, by in found.limits),
+            tuple((value, by * ranges) for value, by in design.limits),
             PENALTY,
         )
         return self._with_merit(objective, violation), merit

@@ -1,4 +1,4 @@
-"""What every study of a pair's micro-geometry begins with: one model, one compliance, one evaluator."""
+"""The start of every study of a pair's micro-geometry: one model, one compliance, one evaluator."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class DesignStudy:
 
 @dataclass(frozen=True)
 class DesignSpace:
-    """Which designs of a pair are assessed, and how.
+    """The designs of a pair and their assessment.
 
     Attributes
     ----------
@@ -140,7 +140,7 @@ def design_study(
 
 
 def _on_one_mesh(checked: Checked, cache: Path | None) -> Decided:
-    """Return model and mesh by the asked accuracy, every effect decided for good."""
+    """Return model and mesh by the requested accuracy, every effect decided for good."""
     decided = decide(checked, cache)
     request = decided.checked.request
     options = replace(request.options, effects=decided.checked.decided)

@@ -53,16 +53,16 @@ class Evaluation:
         return np.asarray(np.ptp(self.ste, axis=1))
 
     def violation(self, limits: Limits) -> float:
-        """How far the limits are exceeded, in parts of them (of the load for the edges); 0: they are kept."""
-        found = 0.0
+        """Excess over the limits, in parts of them (of the load for the edges); 0: they are kept."""
+        excess = 0.0
         for value, limit in (
             (self.pressure, limits.max_pressure),
             (self.face_load_factor, limits.face_load_factor),
         ):
-            found += 0.0 if limit is None else max(0.0, float(value.max()) / limit - 1.0)
+            excess += 0.0 if limit is None else max(0.0, float(value.max()) / limit - 1.0)
         if limits.edge_load_share is not None:
-            found += max(0.0, float(self.edge_load_share.max()) - limits.edge_load_share)
-        return found
+            excess += max(0.0, float(self.edge_load_share.max()) - limits.edge_load_share)
+        return excess
 
 
 @dataclass(frozen=True)
@@ -107,9 +107,9 @@ class Evaluator:
         """Return the same at other positions (P,), of which those in the first base pitch count."""
         return replace(self, position=position[position < 1.0])
 
-    def expected(self, found: Evaluation) -> FloatArray:
+    def expected(self, evaluation: Evaluation) -> FloatArray:
         """Return the expected peak-to-peak (L,), m."""
-        return np.asarray(self.nodes.weight @ found.peak_to_peak)
+        return np.asarray(self.nodes.weight @ evaluation.peak_to_peak)
 
     def scattered(self, values: Mapping[str, float], node: int) -> ParallelAxes:
         """Return the pair with a design as it comes out at a node."""
@@ -165,7 +165,7 @@ def _in_all_pitches(problem: ContactProblem, model: ContactModel) -> ContactProb
 
 @dataclass(frozen=True)
 class NodeFigures:
-    """What one node of the scatter is assessed by.
+    """The figures of one node of the scatter.
 
     Attributes
     ----------
@@ -196,11 +196,11 @@ def figures(problem: ContactProblem, solution: ContactSolution) -> NodeFigures:
 
 def evaluation(nodes: Iterable[NodeFigures]) -> Evaluation:
     """Put the figures of all nodes together."""
-    found = [
-        (one.ste, one.pressure.max(axis=(0, 2)), one.face_load.max(axis=1), one.edge_load_share.max(axis=0))
-        for one in nodes
+    figures = [
+        (f.ste, f.pressure.max(axis=(0, 2)), f.face_load.max(axis=1), f.edge_load_share.max(axis=0))
+        for f in nodes
     ]
-    return Evaluation(*(np.stack(each) for each in zip(*found, strict=True)))
+    return Evaluation(*(np.stack(each) for each in zip(*figures, strict=True)))
 
 
 def over_face(problem: ContactProblem, force: FloatArray) -> FloatArray:

@@ -116,10 +116,10 @@ class _Program:
         least, most = np.array(self._least), np.full(cost.size, np.inf)
         least[: low.size], most[: high.size] = low, high
         rows = LinearConstraint(matrix, ub=np.concatenate(self._right))
-        found = milp(cost, constraints=rows, bounds=Bounds(least, most))  # no column is an integer
-        if found.x is None:
+        solution = milp(cost, constraints=rows, bounds=Bounds(least, most))  # no column is an integer
+        if solution.x is None:
             return np.zeros(low.size), np.inf
-        return np.asarray(found.x[: low.size]), float(found.fun)
+        return np.asarray(solution.x[: low.size]), float(solution.fun)
 
     def _add(self, row: IntArray, column: IntArray, value: FloatArray) -> None:
         """Add entries."""

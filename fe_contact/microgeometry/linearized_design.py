@@ -93,7 +93,7 @@ def linearized(
     nodes = [_node(*solved, tuple(names)) for solved in evaluator.solved(values)]
     rows = [_limit_rows(node, limits) for node in nodes]
     joined = tuple(
-        (np.concatenate([one[0] for one in each]), np.concatenate([one[1] for one in each]))
+        (np.concatenate([part[0] for part in each]), np.concatenate([part[1] for part in each]))
         for each in zip(*rows, strict=True)
     )
     curves = np.stack([np.moveaxis(node.ste, 0, -1) for node in nodes])
@@ -123,9 +123,9 @@ def _limit_rows(node: _Node, limits: Limits) -> list[Rows]:
 
 def _pressure(node: _Node, limit: float) -> Rows:
     """Return how far pressures exceed their limit; they grow as the root of the load."""
-    found = node.figures.pressure
-    near = found >= NEAR * found.max()
-    part = found[near] / limit
+    pressure = node.figures.pressure
+    near = pressure >= NEAR * pressure.max()
+    part = pressure[near] / limit
     by = [0.5 * part * each[near] / node.solution.force[near] for each in node.force]
     return part - 1.0, np.stack(by, axis=-1)
 

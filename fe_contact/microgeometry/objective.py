@@ -1,4 +1,4 @@
-"""What a design is assessed by: expected peak-to-peak over the loads, and limits it has to keep."""
+"""The objective of a design: expected peak-to-peak over the loads, and limits it has to keep."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ class Worst:
 
 @dataclass(frozen=True)
 class Limits:
-    """What a design must keep at every load and every node of the scatter; None: no limit.
+    """Limits of a design at every load and every node of the scatter; None: no limit.
 
     Attributes
     ----------

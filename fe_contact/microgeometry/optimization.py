@@ -1,4 +1,4 @@
-"""What an optimization found: both designs, the gain, and how it was come by."""
+"""The result of an optimization: both designs, the gain, and the search."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from fe_contact.types import Estimate, FloatArray, Json
 
 
 class Outcome(StrEnum):
-    """What an optimization came to."""
+    """The outcome of an optimization."""
 
     IMPROVED = "improved"  # by more than the errors of both designs
     WITHIN_ERROR = "within_error"  # lower, but no more than the errors
@@ -24,7 +24,7 @@ class Outcome(StrEnum):
 
 @dataclass(frozen=True)
 class Perturbation:
-    """What a small step of one variable from the optimum changes.
+    """The change by a small step of one variable from the optimum.
 
     Attributes
     ----------
@@ -99,9 +99,9 @@ class Optimization:
 
     @property
     def gain(self) -> Estimate:
-        """By how much the objective fell, m; both errors count in full, though one mesh serves both."""
-        one, two = self.start.objective, self.optimum.objective
-        return Estimate(one.value - two.value, one.error + two.error, "m")
+        """Fall of the objective, m; both errors count in full, though one mesh serves both."""
+        start, optimum = self.start.objective, self.optimum.objective
+        return Estimate(start.value - optimum.value, start.error + optimum.error, "m")
 
     @property
     def evaluations(self) -> int:
@@ -113,7 +113,7 @@ class Optimization:
         return {
             "outcome": self.outcome.value,
             "reason": self.reason,
-            "variables": [one.to_json() for one in self.variables],
+            "variables": [each.to_json() for each in self.variables],
             "torque_n_m": self.torque.tolist(),
             "misalignment_m": self.misalignment,
             "nodes": self.nodes.to_json(),
@@ -124,7 +124,7 @@ class Optimization:
             "evaluations": self.evaluations,
             "runs": [run.to_json() for run in self.runs],
             "best_run": self.best_run,
-            "sensitivity": [one.to_json() for one in self.sensitivity],
+            "sensitivity": [each.to_json() for each in self.sensitivity],
             "not_tried": list(self.not_tried),
             "cost": self.cost,
             "asked": self.asked,

@@ -56,34 +56,32 @@ def optimize(
     choice = choose(problem, runs, request, study, clock, run.cache, cancel)
     run.progress("confirmation", 1.0)
     with clock.stage("sensitivity"):
-        aside = tuple(
-            perturbation(choice.problem, choice.run, request.scatter, one) for one in request.variables
-        )
+        aside = tuple(perturbation(choice.problem, choice.run, request.scatter, v) for v in request.variables)
     return _result(request, study, choice, aside, clock)
 
 
 def _result(
-    asked: OptimizationRequest,
+    request: OptimizationRequest,
     study: DesignStudy,
     choice: Choice,
     aside: tuple[Perturbation, ...],
     clock: StageClock,
 ) -> Optimization:
-    """Put together what was found."""
-    outcome, reason = conclusion(choice, asked)
+    """Put the result together."""
+    outcome, reason = conclusion(choice, request)
     return Optimization(
         outcome=outcome,
         reason=reason,
-        variables=asked.variables,
+        variables=request.variables,
         torque=study.torque,
-        misalignment=asked.misalignment,
+        misalignment=request.misalignment,
         nodes=study.evaluator.nodes,
         start=choice.start,
         optimum=choice.optimum,
         runs=choice.runs,
         best_run=choice.best,
         sensitivity=aside,
-        not_tried=not_tried(choice, asked, study),
+        not_tried=not_tried(choice, request, study),
         cost=clock.to_json() | {"evaluations": sum(run.evaluations for run in choice.runs)},
-        asked=asked.to_json(study),
+        asked=request.to_json(study),
     )

@@ -1,4 +1,4 @@
-"""What an optimization is asked for."""
+"""The request of an optimization."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class OptimizationRequest:
     @property
     def space(self) -> DesignSpace:
         """The designs, by one in which every variable acts."""
-        acting = {one.name: one.acting for one in self.variables}
+        acting = {variable.name: variable.acting for variable in self.variables}
         scattered = self.scatter, self.misalignment
         return DesignSpace(self.pair, acting, *scattered, self.search.positions, self.options)
 
@@ -79,9 +79,9 @@ class OptimizationRequest:
         """Variables that begin beyond their bounds; a length without a relief does not count."""
         begun = zip(self.variables, self.own, strict=True)
         return tuple(
-            one.name
-            for one, value in begun
-            if not one.low <= value <= one.high and not (one.quantity in LENGTHS and value == 0.0)
+            v.name
+            for v, value in begun
+            if not v.low <= value <= v.high and not (v.quantity in LENGTHS and value == 0.0)
         )
 
     @property

@@ -1,4 +1,4 @@
-"""How many pairs a tolerance Monte Carlo draws, and what it estimates of them."""
+"""Sampling of a tolerance Monte Carlo: the pairs it draws and the quantities it estimates."""
 
 from __future__ import annotations
 

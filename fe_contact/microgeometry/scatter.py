@@ -28,7 +28,7 @@ class ScatterRule(Protocol):
         ...
 
     def finer(self, dimensions: int) -> ScatterRule:
-        """Return a rule by which the error of this one can be told."""
+        """Return a rule by which the error of this one is estimated."""
         ...
 
     def to_json(self) -> Json:
@@ -56,8 +56,8 @@ class GaussHermite:
         if self.points**dimensions > MOST_NODES:
             advice = "Take fewer points, or a SobolSample."
             raise InputError("scatter.rule.points", self.points, f"at most {MOST_NODES} nodes in all", advice)
-        place, weight = roots_hermitenorm(self.points)
-        grid = np.meshgrid(*[place] * dimensions, indexing="ij")
+        point, weight = roots_hermitenorm(self.points)
+        grid = np.meshgrid(*[point] * dimensions, indexing="ij")
         weights = np.meshgrid(*[weight / weight.sum()] * dimensions, indexing="ij")
         return np.stack([axis.ravel() for axis in grid], axis=1), np.prod(weights, axis=0).ravel()
 
@@ -154,8 +154,8 @@ class Scatter:
         spread: Mapping[str, float], rule: ScatterRule, finer: ScatterNodes | None = None
     ) -> ScatterNodes:
         """Return the nodes of a rule."""
-        place, weight = rule.nodes(len(spread))
-        return ScatterNodes(tuple(spread), place * np.array(list(spread.values())), weight, finer)
+        point, weight = rule.nodes(len(spread))
+        return ScatterNodes(tuple(spread), point * np.array(list(spread.values())), weight, finer)
 
 
 NO_SCATTER = Scatter()
@@ -174,7 +174,7 @@ class ScatterNodes:
     weight : ndarray, shape (S,)
         Of the expectation, sum 1.
     finer : ScatterNodes or None
-        By which the error of the expectation can be told; None where nothing scatters.
+        By which the error of the expectation is estimated; None where nothing scatters.
     """
 
     names: tuple[str, ...]
@@ -191,8 +191,8 @@ class ScatterNodes:
 
     def modification(self, node: int) -> dict[str, float]:
         """Deviation of every scattered figure of the modifications at a node, m."""
-        found = zip(self.names, self.deviation[node], strict=True)
-        return {name: float(value) for name, value in found if name != MISALIGNMENT}
+        deviations = zip(self.names, self.deviation[node], strict=True)
+        return {name: float(value) for name, value in deviations if name != MISALIGNMENT}
 
     def to_json(self) -> Json:
         """Return plain JSON."""

@@ -1,4 +1,4 @@
-"""One search of the best design: repeatable from a seed; it ends converged, used up, or when asked to."""
+"""One search of the best design: repeatable from a seed; it ends converged, used up, or cancelled."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Cancel = Callable[[], bool]
 
 
 class Ended(StrEnum):
-    """Why a search ended."""
+    """The reason why a search ended."""
 
     CONVERGED = "converged"
     SPENT = "designs used"
@@ -31,7 +31,7 @@ class Ended(StrEnum):
 
 @dataclass(frozen=True)
 class Search:
-    """How designs are searched.
+    """The method and the size of a search.
 
     Attributes
     ----------
@@ -74,7 +74,7 @@ class Search:
 
 @dataclass(frozen=True)
 class SearchRun:
-    """What one start of a search found.
+    """The result of one start of a search.
 
     Attributes
     ----------
@@ -154,10 +154,10 @@ def search_from(
         ended = Ended.SPENT
     except ending:
         ended = Ended.CANCELLED
-    assessed, place = _best(problem, merit, rough, start)
+    assessed, point = _best(problem, merit, rough, start)
     seconds = time.process_time() - begun
     spread = max(0.0, merit.largest - merit.least)
-    return SearchRun(place, assessed, budget.used, ended, seconds, rough.count, spread)
+    return SearchRun(point, assessed, budget.used, ended, seconds, rough.count, spread)
 
 
 def _best(
@@ -167,7 +167,7 @@ def _best(
     known = [] if merit.best is None else [merit.best]
     if merit.count <= 1 and rough.best is not None:
         known.append((problem.assess(rough.best[1]), rough.best[1]))
-    return min(known, key=lambda one: one[0].order) if known else (problem.assess(start), start)
+    return min(known, key=lambda design: design[0].order) if known else (problem.assess(start), start)
 
 
 def never() -> bool:

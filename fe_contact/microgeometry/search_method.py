@@ -119,10 +119,10 @@ class SequentialLinearProgramming:
     def minimize(
         self, merit: CountedMerit, rough: CountedMerit, start: FloatArray, seed: np.random.SeedSequence
     ) -> None:
-        """Search; the sequence and the places beside an end are random."""
+        """Search; the sequence and the points beside an end are random."""
         walks = [_Walk(merit, start)]
-        for place in self._best(rough, start.size, seed):
-            walks.append(_Walk(merit, place))
+        for point in self._best(rough, start.size, seed):
+            walks.append(_Walk(merit, point))
         for walk in walks if len(walks) > 1 else ():
             walk.follow(TRIED)
         best = min(walks, key=lambda walk: walk.value)
@@ -137,13 +137,13 @@ class SequentialLinearProgramming:
 
     def _best(self, rough: CountedMerit, dimensions: int, seed: np.random.SeedSequence) -> list[FloatArray]:
         """Return the best points of the sequence, as far as the designs reach."""
-        found: list[tuple[float, FloatArray]] = []
+        explored: list[tuple[float, FloatArray]] = []
         with suppress(BudgetUsed):
             sequence = qmc.Sobol(dimensions, rng=np.random.default_rng(seed))
-            for place in sequence.random_base2((self.sample - 1).bit_length())[: self.sample]:
-                found.append((rough(place), place))
-        found.sort(key=lambda one: one[0])
-        return [place for value, place in found[: self.trials] if np.isfinite(value)]
+            for point in sequence.random_base2((self.sample - 1).bit_length())[: self.sample]:
+                explored.append((rough(point), point))
+        explored.sort(key=lambda trial: trial[0])
+        return [point for value, point in explored[: self.trials] if np.isfinite(value)]
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -177,15 +177,15 @@ class _Walk:
         step, promised = self._linear.least(*ends)
         if self.value - promised <= SIMPLEX_MERIT * self.value:
             return False
-        place = np.clip(self.place + step, 0.0, 1.0)
-        value, linear = self._merit.linearize(place)
+        point = np.clip(self.place + step, 0.0, 1.0)
+        value, linear = self._merit.linearize(point)
         kept = (self.value - value) / (self.value - promised)
         if kept < POOR:
             self._region = POORER * float(np.abs(step).max())
         elif kept > GOOD:
             self._region = min(2.0 * self._region, 1.0)
         if value < self.value:
-            self.place, self.value, self._linear = place, value, linear
+            self.place, self.value, self._linear = point, value, linear
         return True
 
 

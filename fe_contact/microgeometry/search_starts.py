@@ -48,10 +48,10 @@ def _here(
         if cancel():
             break
 
-        def told(part: float, index: int = index) -> None:
+        def report(part: float, index: int = index) -> None:
             run.progress("search", (index + part) / search.starts)
 
-        runs.append(search_from(problem, search, start, index, told, cancel))
+        runs.append(search_from(problem, search, start, index, report, cancel))
     return runs
 
 
@@ -66,8 +66,8 @@ def _remotely(
     runs: list[SearchRun] = []
     try:
         bare = replace(problem, memory=None)  # a file of this machine, for one writer
-        for one in run.workers.run(search_one, (bare, search), begins):
-            runs.append(one)
+        for result in run.workers.run(search_one, (bare, search), begins):
+            runs.append(result)
             run.progress("search", len(runs) / search.starts)
             if cancel():
                 break

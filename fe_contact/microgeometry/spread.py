@@ -1,4 +1,4 @@
-"""What a sample says about a distribution: quantiles with confidence bounds that assume no shape."""
+"""Quantiles of a sample with confidence bounds that assume no shape of the distribution."""
 
 from __future__ import annotations
 

@@ -90,7 +90,7 @@ class ToleranceStudy:
             "mean_m": self.mean.tolist(),
             "mean_standard_error_m": self.mean_error.tolist(),
             "confidence": self.confidence,
-            "quantiles": [one.to_json() for one in self.quantiles],
+            "quantiles": [each.to_json() for each in self.quantiles],
             "names": list(self.names),
             "influence": self.influence.tolist(),
             "deviation_m": self.deviation.tolist(),
@@ -151,7 +151,7 @@ def _sampled(
     with clock.stage("first order"):
         at_once = first_order(nominal, names, deviation)
     with clock.stage("samples"):
-        found = _evaluated(study.evaluator, names, deviation, run)
+        ripple = _evaluated(study.evaluator, names, deviation, run)
     with clock.stage("confirmation"):
         table = full_table(nominal, {}, study.decided, run.cache)
         error = [table.peak_to_peak(force=float(f), misalignment=misalignment).error for f in table.force]
@@ -160,10 +160,10 @@ def _sampled(
         study.torque,
         names,
         deviation,
-        found,
+        ripple,
         nominal.evaluate({}).peak_to_peak[0],
         np.array(error),
-        tuple(quantile(found, fraction, sampling.confidence) for fraction in sampling.fractions),
+        tuple(quantile(ripple, fraction, sampling.confidence) for fraction in sampling.fractions),
         at_once,
         sampling.confidence,
         clock.to_json(),
@@ -195,11 +195,11 @@ def _evaluated(evaluator: Evaluator, names: tuple[str, ...], deviation: FloatArr
     for count, part in enumerate(run.workers.run(ripple_of_samples, (evaluator, names), tasks)):
         parts.append(part)
         run.progress("samples", (count + 1) / len(tasks))
-    found: FloatArray = np.concatenate(parts)
-    if not np.isfinite(found).all():
-        bad = int((~np.isfinite(found)).any(axis=1).sum())
-        raise SolveError(f"the contact of {bad} of {found.shape[0]} pairs cannot be solved", found)
-    return found
+    ripple: FloatArray = np.concatenate(parts)
+    if not np.isfinite(ripple).all():
+        bad = int((~np.isfinite(ripple)).any(axis=1).sum())
+        raise SolveError(f"the contact of {bad} of {ripple.shape[0]} pairs cannot be solved", ripple)
+    return ripple
 
 
 def first_order(nominal: Evaluator, names: tuple[str, ...], deviation: FloatArray) -> FloatArray:
@@ -207,11 +207,11 @@ def first_order(nominal: Evaluator, names: tuple[str, ...], deviation: FloatArra
 
     Nothing is removed below zero by a deviation.
     """
-    found = linearized(nominal, {}, names, NO_LIMITS)
+    design = linearized(nominal, {}, names, NO_LIMITS)
     least = np.array([least_deviation(nominal.contact.pair, name) for name in names])
     held = np.maximum(deviation, least)
     curves = (
-        found.evaluation.ste[0, :, k] + held @ found.curves[0, :, k].T for k in range(nominal.load.size)
+        design.evaluation.ste[0, :, k] + held @ design.curves[0, :, k].T for k in range(nominal.load.size)
     )
     return np.stack([np.ptp(each, axis=1) for each in curves], axis=1)
 

@@ -42,13 +42,13 @@ class DesignVariable:
 
     def __post_init__(self) -> None:
         gear_and_quantity(f"variables.{self.name}", self.name)
-        where, what = f"variables.{self.name}", self.quantity
+        where, quantity = f"variables.{self.name}", self.quantity
         finite(f"{where}.low", self.low)
         finite(f"{where}.high", self.high)
-        if what in LENGTHS and self.low <= 0.0:
+        if quantity in LENGTHS and self.low <= 0.0:
             bound = above(0.0, note=", as it is a length")
             raise InputError(f"{where}.low", self.low, bound, SiNote("0.0005 is 0.5 mm."))
-        if what not in SLOPES and self.low < 0.0:
+        if quantity not in SLOPES and self.low < 0.0:
             raise InputError(f"{where}.low", self.low, at_least(0.0, note=", as it is material removed"))
         if self.high <= self.low:
             raise InputError(f"{where}.high", self.high, above(self.low, name="the lower bound"))
@@ -101,19 +101,19 @@ def check_variables(pair: ParallelAxes, variables: Sequence[DesignVariable]) -> 
     ------
     InputError
     """
-    names = [one.name for one in variables]
+    names = [variable.name for variable in variables]
     if not names:
         raise InputError("variables", names, "at least one", 'For example "pinion.tip_relief".')
     for name in names:
         if names.count(name) > 1:
             raise InputError("variables", name, "given once")
-    for one in variables:
-        length = f"{one.quantity}_length"
-        if lacks_length(pair, one.name) and f"{one.gear}.{length}" not in names:
-            advice = f"Give {one.gear}.{length} a value in the case, or make it a variable."
-            raise InputError(f"variables.{one.name}", "free", "beside the length of that relief", advice)
+    for variable in variables:
+        length = f"{variable.quantity}_length"
+        if lacks_length(pair, variable.name) and f"{variable.gear}.{length}" not in names:
+            advice = f"Give {variable.gear}.{length} a value in the case, or make it a variable."
+            raise InputError(f"variables.{variable.name}", "free", "beside the length of that relief", advice)
     for end in ("low", "high"):
-        at_end = {one.name: float(getattr(one, end)) for one in variables}
+        at_end = {variable.name: float(getattr(variable, end)) for variable in variables}
         try:
             modified(pair, at_end)
         except InputError as error:
@@ -128,7 +128,7 @@ def lacks_length(pair: ParallelAxes, relief: str) -> bool:
 
 def start_of(pair: ParallelAxes, variables: Sequence[DesignVariable]) -> tuple[float, ...]:
     """Return the values of the variables in the pair as it is, m; they may lie outside their bounds."""
-    return tuple(figure(pair, one.name) for one in variables)
+    return tuple(figure(pair, variable.name) for variable in variables)
 
 
 def figure(pair: ParallelAxes, name: str) -> float:
@@ -151,7 +151,7 @@ def modified(pair: ParallelAxes, values: Mapping[str, float]) -> ParallelAxes:
     InputError
         No such modification fits the gear.
     """
-    return reduce(lambda one, gear: _with_gear(one, gear, values), GEARS, pair)
+    return reduce(lambda changed, gear: _with_gear(changed, gear, values), GEARS, pair)
 
 
 def _with_gear(pair: ParallelAxes, name: str, values: Mapping[str, float]) -> ParallelAxes:

@@ -1,4 +1,4 @@
-"""What a computation is requested, and how it is carried out; light: neither mesher nor finite elements."""
+"""Options of a computation and of its run; light: neither mesher nor finite elements."""
 
 from fe_contact.options.analysis_options import LEVELS, AnalysisOptions
 from fe_contact.options.operating_point import OperatingPoint

@@ -1,4 +1,4 @@
-"""What is asked of an analysis, whatever it computes: accuracy, model, effects, receipt."""
+"""Options of every analysis: accuracy, model, effects, receipt."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ class AnalysisOptions:
 
     @property
     def allowed(self) -> AllowedError:
-        """What a run takes as small: the tolerance, without one a part of each quantity."""
+        """Error that counts as small: the tolerance, without one a part of each quantity."""
         return self.tolerance or RELATIVE
 
     @property

@@ -1,4 +1,4 @@
-"""How a computation is carried out: who works, what is kept, who is told."""
+"""The resources of a run: workers, cache, progress."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from model_studies import Progress, silent
 
 @dataclass(frozen=True)
 class Run:
-    """How a computation is carried out. Results are the same to the last bit whatever it says.
+    """Workers, cache and progress of a run. They change no bit of its results.
 
     Attributes
     ----------

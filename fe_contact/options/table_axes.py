@@ -19,7 +19,7 @@ Levels = Sequence[float] | FloatArray
 
 @dataclass(frozen=True)
 class TableAxes:
-    """What a table of transmission error is computed over.
+    """The axes of a table of transmission error.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class TableAxes:
 
     @property
     def loads_as(self) -> str:
-        """How the load is given: "torques" or "normal_forces"."""
+        """Kind of the load: "torques" or "normal_forces"."""
         return "normal_forces" if self.torques is None else "torques"
 
     @property

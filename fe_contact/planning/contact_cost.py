@@ -1,4 +1,4 @@
-"""What the contact of a table and the estimate of its errors cost: positions to assemble, points to solve.
+"""Cost of the contact of a table and of its error estimate: positions to assemble, points to solve.
 
 Constants fitted to tables of 3 to 70 candidates in the plane and over the face, met within 0.6 to 1.5 where
 the search ends with the positions expected; a level without a floor may ask for twice as many.
@@ -63,8 +63,8 @@ def contact_seconds(
 ) -> tuple[float, float]:
     """CPU seconds of the contact, and of what is solved once more for the error estimate."""
     kept, loads = expected_positions(plan), plan.load.size
-    places, distances = alignments[0] * alignments[1], alignments[1]
-    assessed, rows = min(places, _JUDGED), model.period * places
+    points, distances = alignments[0] * alignments[1], alignments[1]
+    assessed, rows = min(points, _JUDGED), model.period * points
     tried = 0
     if plan.positions is None:
         begun = plan.nodes.start
@@ -79,12 +79,12 @@ def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, 
     """CPU seconds of rougher solutions of some of the table, middles, and held-out points of its axes."""
     made, kept, loads = plan.discretization, expected_positions(plan), plan.load.size
     work = unit_work(pair, plan, made.slices)
-    again = [work, *([work] if made.corrected else [])]
+    rougher = [work, *([work] if made.corrected else [])]
     if made.slices > 1:
-        again.append(unit_work(pair, plan, made.coarse_slices))
+        rougher.append(unit_work(pair, plan, made.coarse_slices))
     some, rows = min(loads, LOADS), some_positions(kept).size
     skews, distances = (min(count, ALIGNMENTS) for count in alignments)
-    seconds = sum(w.of(rows * distances, rows * period * skews * distances * some) for w in again)
+    seconds = sum(w.of(rows * distances, rows * period * skews * distances * some) for w in rougher)
     if plan.positions is not None:
         middles, assessed = _SOLVED_MIDDLES * kept, min(alignments[0] * alignments[1], _JUDGED)
         seconds += work.of(middles * alignments[1], middles * period * assessed * some)

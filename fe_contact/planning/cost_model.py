@@ -1,4 +1,4 @@
-"""What a run will cost, stage by stage, before anything is computed.
+"""Prediction of the cost of a run, stage by stage.
 
 Three dimensions: operations and numbers held follow from the elimination tree
 (`fe_contact.compliance.cost_3d`). The plane: a fit of non-negative terms to 40 measured compliances, gears
@@ -57,9 +57,9 @@ class Cost(NamedTuple):
     @classmethod
     def of(cls, each: Iterable[Cost]) -> Cost:
         """One after the other."""
-        found = list(each)
-        working = max((cost.working for cost in found), default=0.0)
-        return cls(sum(cost.seconds for cost in found), working, sum(cost.held for cost in found))
+        costs = list(each)
+        working = max((cost.working for cost in costs), default=0.0)
+        return cls(sum(cost.seconds for cost in costs), working, sum(cost.held for cost in costs))
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What a table over several base pitches costs, told before anything is solved."""
+"""Prediction of the cost of a table over several base pitches."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What error a run will state of a model, a mesh and slices, said before anything is computed.
+"""Prediction of the error that a run will state of a model, a mesh and slices.
 
 What a mesh or slices change is a part of the transmission error that the load adds, also where it is
 peak-to-peak that they change: the smaller the ripple, the larger its relative error. Constants are medians of
@@ -71,12 +71,12 @@ class ExpectedError:
 
     @property
     def discretization(self) -> float:
-        """What finer meshes, more slices and positions mend."""
+        """The part that finer meshes, more slices and positions reduce."""
         return float(np.sqrt(self.mesh**2 + self.slices**2 + self.positions**2))
 
     @property
     def lasting(self) -> float:
-        """What none of them mends."""
+        """The part that none of them reduces."""
         return float(np.hypot(self.model, self.method))
 
     @property

@@ -1,4 +1,4 @@
-"""How large mean and peak-to-peak transmission error are expected to be, before anything is computed."""
+"""Mean and peak-to-peak transmission error as expected before anything is computed."""
 
 from __future__ import annotations
 
@@ -49,8 +49,8 @@ class ExpectedCurves:
 
 def usual_curves(pair: ParallelAxes, plan: Plan) -> ExpectedCurves:
     """Return those of usual pairs, whose mean is 1."""
-    one = np.ones(plan.load.size)
+    unity = np.ones(plan.load.size)
     across_face = isinstance(plan.discretization, FaceDiscretization)
     spur = _SPUR_RIPPLE if across_face else _PLANE_RIPPLE
     ripple = _HELICAL_RIPPLE if pair.base_helix_angle else spur
-    return ExpectedCurves(plan.load, one, one, ripple * one, RELATIVE, absolute=False)
+    return ExpectedCurves(plan.load, unity, unity, ripple * unity, RELATIVE, absolute=False)

@@ -1,4 +1,4 @@
-"""What contacts in the places of rigid flanks leave out: flanks tilt as teeth bend, and contacts move."""
+"""The error of contacts in the positions of rigid flanks: flanks tilt as teeth bend, and contacts move."""
 
 from __future__ import annotations
 

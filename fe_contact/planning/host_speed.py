@@ -1,4 +1,4 @@
-"""How fast this host is beside the one the cost model's constants were measured on; measured once and kept.
+"""Speed of this host relative to the one that set the cost model's constants; measured once and cached.
 
 A short factorisation of a sparse matrix stands for the work in the plane and of the contact; dense algebra,
 which decides three dimensions, has its own measurement (`fe_contact.compliance.cost_3d.dense_rate`).
@@ -49,8 +49,8 @@ def host_slowness(cache: Path | None) -> float:
 @lru_cache(maxsize=1)
 def measured_slowness() -> float:
     """Run the benchmark; the quickest of several runs counts."""
-    one = sparse.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(_SIDE, _SIDE))
-    matrix = sparse.csc_array(sparse.kronsum(one, one))
+    laplacian = sparse.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(_SIDE, _SIDE))
+    matrix = sparse.csc_array(sparse.kronsum(laplacian, laplacian))
     load = np.ones(_SIDE**2)
     times = []
     for _ in range(_REPEATS):

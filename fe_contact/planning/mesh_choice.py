@@ -1,4 +1,4 @@
-"""Which mesh and slices a tolerance or a time asks for, by the models of error and of cost."""
+"""Choice of mesh and slices for a tolerance or a time, by the models of error and of cost."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class MeshOption:
 
 @dataclass(frozen=True)
 class MeshChoice:
-    """A mesh with its slices, why, and whether the wish can be had.
+    """A mesh with its slices, the reason, and whether the request can be met.
 
     Attributes
     ----------
@@ -93,9 +93,9 @@ def mesh_for_time(
 ) -> MeshChoice:
     """Return the most exact option that is predicted to fit into `budget` CPU seconds, else the cheapest."""
     for option in sorted(options, key=lambda o: (o.error.total, o.effort)):
-        found = seconds(option)
-        if found <= budget:
-            return MeshChoice(option, True, f"predicted {found:.2g} CPU s")
+        predicted = seconds(option)
+        if predicted <= budget:
+            return MeshChoice(option, True, f"predicted {predicted:.2g} CPU s")
     least = min(options, key=_effort)
     reason = f"even the quickest mesh is predicted to take {seconds(least):.2g} CPU s"
     return MeshChoice(least, False, reason)

@@ -1,4 +1,4 @@
-"""What the method leaves out, however fine its meshes: its error against full contact, by regime.
+"""The error of the method against full contact by regime, whatever the mesh.
 
 The floor is what full contact has proved of ordinary pairs. To it comes the larger of two that have unlike
 signs. Displacements are small: large ones turn bodies and flanks, in proportion to STE over the module.

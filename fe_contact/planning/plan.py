@@ -41,7 +41,7 @@ SUPPORT_RATIO = 5.0
 
 @dataclass(frozen=True)
 class NodeRule:
-    """How densely positions are placed where none are requested.
+    """The density of positions where none are requested.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What runs were predicted to cost and did cost: the log that improves the prediction of the next one.
+"""The log of predicted and measured cost, which improves the prediction of the next run.
 
 Each line of the file is one stage of one run. The correction of a stage is the median of measured over
 predicted time of its last runs, in logarithms, among which two made-up runs stand that went as predicted: a
@@ -42,7 +42,7 @@ def _corrections(file: Path, changed: int, size: int) -> tuple[tuple[str, float]
         ratios.setdefault(stage, []).append(math.log(ratio))
     made_up = [0.0] * _MADE_UP
     return tuple(
-        (stage, math.exp(statistics.median([*found[-LAST:], *made_up]))) for stage, found in ratios.items()
+        (stage, math.exp(statistics.median([*logs[-LAST:], *made_up]))) for stage, logs in ratios.items()
     )
 
 
@@ -81,13 +81,13 @@ def _lines(file: Path) -> list[tuple[str, float]]:
         text = file.read_text(encoding="utf-8", errors="replace")
     except OSError:
         return []
-    found = []
+    entries = []
     for line in text.splitlines():
         try:
             entry = json.loads(line)
             ratio = float(entry["measured"]) / float(entry["predicted"])
             if isinstance(entry["stage"], str) and math.isfinite(ratio) and ratio > 0.0:
-                found.append((entry["stage"], ratio))
+                entries.append((entry["stage"], ratio))
         except (ValueError, KeyError, TypeError, ZeroDivisionError):
             continue
-    return found
+    return entries

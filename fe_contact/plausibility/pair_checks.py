@@ -33,7 +33,7 @@ def pair_findings(
     *,
     loads_as: str = "torques",
 ) -> tuple[Finding, ...]:
-    """Return what is implausible about a pair and what is asked of it.
+    """Return what is implausible about a pair and its request.
 
     Parameters
     ----------
@@ -101,11 +101,11 @@ def _amount(field: str, amount: float, module: float) -> Iterator[Finding]:
     if not amount:
         return
     low, high = CHECKS["relief_amount"].low or 0.0, CHECKS["relief_over_module"].high or math.inf
-    found = [*assessed("relief_amount", field, amount, "m", reason="smaller than can be made or measured")]
+    findings = [*assessed("relief_amount", field, amount, "m", reason="smaller than can be made or measured")]
     if not field.endswith("thickness_allowance"):
         reason = f"{abs(amount) / module:.2g} modules are no modification"
-        found += assessed("relief_over_module", field, amount, "m", scale=module, reason=reason)
-    for finding in found:
+        findings += assessed("relief_over_module", field, amount, "m", scale=module, reason=reason)
+    for finding in findings:
         yield replace(finding, low=low, high=high * module)
 
 

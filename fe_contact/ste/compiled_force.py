@@ -60,9 +60,9 @@ class CompiledForce:
         meanwhile.
         """
         size = points.shape[1]
-        found = Forces(np.empty(size), np.empty(size), np.empty(size, np.int8))
-        sample_forces(self.table, points, *found)
-        return found
+        forces = Forces(np.empty(size), np.empty(size), np.empty(size, np.int8))
+        sample_forces(self.table, points, *forces)
+        return forces
 
 
 def _widths(axis: Axis) -> FloatArray:

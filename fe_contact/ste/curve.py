@@ -32,7 +32,7 @@ class Curve:
     torque : float
         The load as torque on gear 1, N m.
     position : (Q,) array
-        Base pitches, as asked (not wrapped).
+        Base pitches, as requested (not wrapped).
     ste : (Q,) array
         Static transmission error, m.
     error : (Q,) array
@@ -92,13 +92,13 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
     mesh = slice(database.period - 1, None, database.period)
     lowest, highest = int(np.argmin(ste)), int(np.argmax(ste))
     mean_error, ripple_error, *harmonic_errors = _errors(database, point, band, below, ste, even.size)
-    asked, *asked_error = _evaluate(database, force, point, position)
+    values, *error_parts = _evaluate(database, force, point, position)
     return Curve(
         point=point,
         torque=point.force * database.facts.base_radius[0] * math.cos(database.facts.base_helix_angle),
         position=position,
-        ste=asked,
-        error=sum(asked_error, np.zeros(position.size)),
+        ste=values,
+        error=sum(error_parts, np.zeros(position.size)),
         pair=pairs_seen(database, position),
         load_share=load_share(database, position, point),
         mean=Estimate(float(np.mean(ste[: even.size])), mean_error, "m"),

@@ -21,7 +21,7 @@ Quantities = tuple[FloatArray, NDArray[np.complex128]]
 
 
 def quantity_changes(
-    position: FloatArray, one: FloatArray, other: FloatArray, period: int, at: FloatArray | None = None
+    position: FloatArray, curves: FloatArray, other: FloatArray, period: int, at: FloatArray | None = None
 ) -> FloatArray:
     """Return by how much the quantities of two sets of curves differ, (22, C) in m.
 
@@ -32,13 +32,13 @@ def quantity_changes(
     Parameters
     ----------
     position : ndarray, shape (P,)
-        Knots of `one` in base pitches, increasing in [0, period).
-    one, other : ndarray, shapes (P, C), (Q, C)
+        Knots of `curves` in base pitches, increasing in [0, period).
+    curves, other : ndarray, shapes (P, C), (Q, C)
         STE in m; NaN where a solution failed. Such a row is left out of the curves it belongs to.
     period : int
         Base pitches.
     at : ndarray, shape (Q,), optional
-        Knots of `other`; default: those of `one`.
+        Knots of `other`; default: those of `curves`.
 
     Returns
     -------
@@ -46,24 +46,24 @@ def quantity_changes(
         NaN for curves with fewer than eight rows.
     """
     knots = position if at is None else at
-    good = np.isfinite(one) if at is not None else np.isfinite(one) & np.isfinite(other)
+    good = np.isfinite(curves) if at is not None else np.isfinite(curves) & np.isfinite(other)
     beside = np.isfinite(other) if at is not None else good
     if good.all() and beside.all():
         if at is not None:
-            return _changes(_quantities(position, one, period), _quantities(knots, other, period))
-        ripple, lines = _quantities(position, np.concatenate([one, other], axis=1), period)
+            return _changes(_quantities(position, curves, period), _quantities(knots, other, period))
+        ripple, lines = _quantities(position, np.concatenate([curves, other], axis=1), period)
         parts = zip(np.split(ripple, 2), np.split(lines, 2, axis=1), strict=True)
-        return _with_bend(_changes(*parts), one - other)
-    found = np.full((QUANTITIES, one.shape[1]), np.nan)
-    for c in range(one.shape[1]):
+        return _with_bend(_changes(*parts), curves - other)
+    changes = np.full((QUANTITIES, curves.shape[1]), np.nan)
+    for c in range(curves.shape[1]):
         rows, others = good[:, c], beside[:, c]
         if min(rows.sum(), others.sum()) >= _FEWEST_ROWS:
-            first = _quantities(position[rows], one[rows, c : c + 1], period)
+            first = _quantities(position[rows], curves[rows, c : c + 1], period)
             second = _quantities(knots[others], other[others, c : c + 1], period)
-            found[:, c] = _changes(first, second)[:, 0]
+            changes[:, c] = _changes(first, second)[:, 0]
             if at is None:
-                found[:, c : c + 1] = _with_bend(found[:, c : c + 1], (one - other)[rows, c : c + 1])
-    return found
+                changes[:, c : c + 1] = _with_bend(changes[:, c : c + 1], (curves - other)[rows, c : c + 1])
+    return changes
 
 
 def quantity_derivatives(values: FloatArray, period: int) -> FloatArray:
@@ -146,7 +146,7 @@ def _quantities(position: FloatArray, values: FloatArray, period: int) -> Quanti
     return np.asarray(np.ptp(values, axis=0)), lines
 
 
-def _changes(one: Quantities, other: Quantities) -> FloatArray:
+def _changes(quantities: Quantities, other: Quantities) -> FloatArray:
     """Differences of two sets of quantities, (22, C)."""
-    lines = np.abs(one[1] - other[1])
-    return np.concatenate([lines[:1], np.abs(one[0] - other[0])[None], lines[1:]])
+    lines = np.abs(quantities[1] - other[1])
+    return np.concatenate([lines[:1], np.abs(quantities[0] - other[0])[None], lines[1:]])

@@ -1,4 +1,4 @@
-"""What an STE database says about its gear pair and about its own making."""
+"""Facts of an STE database: its gear pair and its computation."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ class PairFacts:
 
 @dataclass(frozen=True)
 class Metadata:
-    """How a database came to be: plain JSON throughout, copied on construction.
+    """The computation of a database: plain JSON throughout, copied on construction.
 
     Attributes
     ----------

@@ -154,7 +154,7 @@ class SteFields:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is implausible about the case or its results, in words; empty where nothing is."""
+        """Warnings about an implausible case or result, in words; empty where there are none."""
         return tuple(finding["message"] for finding in self.metadata.warnings)
 
     @property
@@ -173,7 +173,7 @@ class SteFields:
         )
 
     def failure_message(self, shown: int = 5) -> str:
-        """How many points failed, why, and which (the first `shown`)."""
+        """Return number, reasons and positions of the points that failed (the first `shown`)."""
         points = np.argwhere(self.failed)
         listed = "; ".join(self._describe(tuple(point)) for point in points[:shown])
         more = f"; and {len(points) - shown} more" if len(points) > shown else ""

@@ -19,7 +19,7 @@ LIFTED_OFF, ABOVE_TABLE, OUTSIDE_MISALIGNMENT, OUTSIDE_CENTER_DISTANCE = 1, 2, 4
 
 
 class KernelTable(NamedTuple):
-    """What the kernel reads.
+    """The arrays that the kernel reads.
 
     Attributes
     ----------
@@ -76,15 +76,15 @@ def _interval(knots: FloatArray, first: int, size: int, closed: bool, inside: fl
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _corners(place: IntArray, active: int, left: int, size: int) -> None:
+def _corners(offset: IntArray, active: int, left: int, size: int) -> None:
     """Multiply the corners found on `active` axes by the two knots of one more, or by its only one."""
     for corner in range((1 << active) - 1, -1, -1):
-        begin = place[corner] * size
+        begin = offset[corner] * size
         if size > 1:
-            place[2 * corner] = begin + left
-            place[2 * corner + 1] = begin + (left + 1 if left + 1 < size else 0)
+            offset[2 * corner] = begin + left
+            offset[2 * corner + 1] = begin + (left + 1 if left + 1 < size else 0)
         else:
-            place[corner] = begin
+            offset[corner] = begin
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -105,29 +105,29 @@ def _factors(factor: FloatArray, weight: FloatArray, order: IntArray) -> None:
         for o in range(corners):
             total = 1.0
             for axis in range(active):
-                one = weight[axis, (corner >> (active - 1 - axis)) & 1, order[o, axis]]
-                total = one if axis == 0 else total * one
+                term = weight[axis, (corner >> (active - 1 - axis)) & 1, order[o, axis]]
+                total = term if axis == 0 else total * term
             factor[corner, o] = total
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _value(numbers: FloatArray, place: IntArray, factor: FloatArray, level: int) -> float:
+def _value(numbers: FloatArray, offset: IntArray, factor: FloatArray, level: int) -> float:
     """Return one level at the query that was placed: `LevelGrid._sum`."""
-    total, corners = 0.0, place.size
+    total, corners = 0.0, offset.size
     for corner in range(corners):
-        start = place[corner] + level * corners
+        start = offset[corner] + level * corners
         for o in range(corners):
             total = total + factor[corner, o] * numbers[start + o]
     return total
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _level_below(numbers: FloatArray, place: IntArray, factor: FloatArray, levels: int, d: float) -> int:
+def _level_below(numbers: FloatArray, offset: IntArray, factor: FloatArray, levels: int, d: float) -> int:
     """Return the highest level not above a deflection, -1 below lift-off: `MeshForce._level_below`."""
     low, high = -1, levels
     while high - low > 1:
         middle = (low + high) >> 1
-        if _value(numbers, place, factor, middle) <= d:
+        if _value(numbers, offset, factor, middle) <= d:
             low = middle
         else:
             high = middle
@@ -153,19 +153,19 @@ def _at_deflection(
     level: FloatArray,
     deflection: FloatArray,
     stiffness: FloatArray,
-    place: IntArray,
+    offset: IntArray,
     factor: FloatArray,
     d: float,
 ) -> tuple[float, float, int]:
     """Force, stiffness and validity at deflection `d` of the query that was placed: `MeshForce.force_at`."""
-    below = _level_below(deflection, place, factor, level.size, d)
+    below = _level_below(deflection, offset, factor, level.size, d)
     if below < 0:
         return 0.0, 0.0, LIFTED_OFF
     k = min(below, level.size - 2)
-    top, end = _value(deflection, place, factor, k + 1), _value(stiffness, place, factor, k + 1)
+    top, end = _value(deflection, offset, factor, k + 1), _value(stiffness, offset, factor, k + 1)
     if below == level.size - 1:
         return level[k + 1] + end * (d - top), end, ABOVE_TABLE if d > top else 0
-    bottom, begin = _value(deflection, place, factor, k), _value(stiffness, place, factor, k)
+    bottom, begin = _value(deflection, offset, factor, k), _value(stiffness, offset, factor, k)
     force, slope = _between(d, bottom, top, level[k], level[k + 1], begin, end)
     return force, slope, 0
 
@@ -185,14 +185,14 @@ def sample_forces(
     knots, spacing, first, size, period, level, deflections, stiffnesses, order = table
     corners = order.shape[0]
     weight, factor = np.empty((3, 2, 2)), np.empty((corners, corners))
-    place, stride = np.zeros(corners, np.int64), level.size * corners
+    offset, stride = np.zeros(corners, np.int64), level.size * corners
     for i in range(force.size):
-        place[0], flags, active = 0, 0, 0
+        offset[0], flags, active = 0, 0, 0
         for axis in range(3):
             turn, query = period if axis == 0 else 0.0, points[axis, i]
             inside = _inside(knots, first[axis], size[axis], turn, query)
             left = _interval(knots, first[axis], size[axis], turn > 0.0, inside)
-            _corners(place, active, left, size[axis])
+            _corners(offset, active, left, size[axis])
             if size[axis] > 1:
                 knot = first[axis] + left
                 width = spacing[knot]
@@ -201,9 +201,9 @@ def sample_forces(
             if turn == 0.0 and query != inside:
                 flags += OUTSIDE_MISALIGNMENT if axis == 1 else OUTSIDE_CENTER_DISTANCE
         for corner in range(corners):
-            place[corner] *= stride
+            offset[corner] *= stride
         _factors(factor, weight, order)
         force[i], stiffness[i], known = _at_deflection(
-            level, deflections, stiffnesses, place, factor, points[3, i]
+            level, deflections, stiffnesses, offset, factor, points[3, i]
         )
         validity[i] = flags + known

@@ -55,13 +55,13 @@ def held_out_error(database: SteDatabase, other: SteDatabase) -> HeldOutError:
     truth = other.static_transmission_error
     error = np.abs(database.ste(*grid) - truth)
     swing = np.ptp(truth, axis=0)
-    place = np.unravel_index(int(np.argmax(error)), error.shape)
+    worst = np.unravel_index(int(np.argmax(error)), error.shape)
     return HeldOutError(
         float(error.max()),
         _rms(error.ravel()),
         _relative(error.max(axis=0), swing),
         _relative(np.sqrt(np.mean(error**2, axis=0)), swing),
-        *(float(axis[place]) for axis in grid),
+        *(float(axis[worst]) for axis in grid),
     )
 
 

@@ -67,7 +67,7 @@ class Axis:
 
 @dataclass(frozen=True)
 class Stencil:
-    """Where queries fall: the two knots, interval width, fraction in [0, 1], beyond an open end or not."""
+    """Stencil of queries: the two knots, interval width, fraction in [0, 1], beyond an open end or not."""
 
     left: IntArray
     right: IntArray
@@ -108,18 +108,18 @@ def ordered_slopes(axis: Axis, levels: FloatArray) -> FloatArray:
     """
     if len(axis.knots) == 1:
         return np.zeros_like(levels)
-    wanted = _akima_slopes(axis, levels)
+    akima = _akima_slopes(axis, levels)
     low, high = _monotone_box(axis, levels)
     fall, rise = _gap_bounds(axis, np.diff(levels, axis=-1))
     for k in range(1, levels.shape[-1]):
         low[..., k] = np.maximum(low[..., k], low[..., k - 1] - fall[..., k - 1])
         high[..., k] = np.minimum(high[..., k], high[..., k - 1] + rise[..., k - 1])
-    slopes = np.clip(wanted, low, high)
+    slopes = np.clip(akima, low, high)
     for k in range(levels.shape[-1] - 2, -1, -1):
         above = slopes[..., k + 1]
         bottom = np.maximum(low[..., k], above - rise[..., k])
         top = np.minimum(high[..., k], above + fall[..., k])
-        slopes[..., k] = np.clip(wanted[..., k], bottom, top)
+        slopes[..., k] = np.clip(akima[..., k], bottom, top)
     return slopes
 
 
@@ -177,7 +177,7 @@ def _extended_chords(chords: FloatArray) -> FloatArray:
 
 
 def _gap_bounds(axis: Axis, gaps: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """How fast the gap to the next curve may fall and rise at every knot."""
+    """Bounds on the slope of the gap to the next curve at every knot, down and up."""
     spacing = axis.spacing.reshape(-1, *(1,) * (gaps.ndim - 1))
     before, after = axis.neighbors(np.broadcast_to(spacing, (len(spacing), *gaps.shape[1:])), 0.0)
     allowed = 3.0 * (1.0 - _GAP_KEPT) * gaps

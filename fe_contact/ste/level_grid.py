@@ -42,10 +42,10 @@ class LevelGrid:
         sides = product(*((0, 1) if len(axis.knots) > 1 else (0,) for axis in self.axes))
         total: FloatArray | float = 0.0
         for corner in sides:
-            places = ((stencil.left, stencil.right)[side] for stencil, side in zip(at, corner, strict=True))
-            place = (*(index[:, None] for index in places), columns)
+            indices = ((stencil.left, stencil.right)[side] for stencil, side in zip(at, corner, strict=True))
+            node = (*(index[:, None] for index in indices), columns)
             for order, entry in self.nodal.items():
-                total = total + self._factor(weights, corner, order) * entry[place]
+                total = total + self._factor(weights, corner, order) * entry[node]
         return np.asarray(total)
 
     def _factor(self, weights: list[FloatArray], corner: Order, order: Order) -> FloatArray:
@@ -158,11 +158,11 @@ def _bernstein(axis: Axis, along: int, value: FloatArray, slope: FloatArray | No
 def _largest_product(first: FloatArray, second: FloatArray, dims: int) -> FloatArray:
     """Largest Bernstein coefficient, per cell, of the product of two control nets."""
     sums: dict[Order, FloatArray | float] = {}
-    places = list(product(*(range(size) for size in first.shape[:dims])))
-    for one, other in product(places, places):
-        share = prod(_product_weight(size, i, j) for size, i, j in zip(first.shape, one, other, strict=False))
-        total = tuple(i + j for i, j in zip(one, other, strict=True))
-        sums[total] = sums.get(total, 0.0) + share * first[one] * second[other]
+    indices = list(product(*(range(size) for size in first.shape[:dims])))
+    for p, q in product(indices, indices):
+        share = prod(_product_weight(size, i, j) for size, i, j in zip(first.shape, p, q, strict=False))
+        total = tuple(i + j for i, j in zip(p, q, strict=True))
+        sums[total] = sums.get(total, 0.0) + share * first[p] * second[q]
     return np.asarray(np.max(np.array(list(sums.values())), axis=0))
 
 

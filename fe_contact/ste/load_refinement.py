@@ -116,9 +116,9 @@ def _on_cubic(levels: LoadLevels, k: int, force: FloatArray) -> Pair:
     cubic = ForceCubic(
         deflection, flat, np.broadcast_to(levels.force[k : k + 2], flat.shape), stiffness, flat
     )
-    asked, nowhere = np.tile(force, len(flat) // force.size), np.zeros(len(flat), bool)
-    found = cubic.deflection(asked, nowhere)
-    return found.reshape(shape), cubic.sample(found, nowhere, nowhere)[1].reshape(shape)
+    forces, nowhere = np.tile(force, len(flat) // force.size), np.zeros(len(flat), bool)
+    at_force = cubic.deflection(forces, nowhere)
+    return at_force.reshape(shape), cubic.sample(at_force, nowhere, nowhere)[1].reshape(shape)
 
 
 def _merged(pieces: list[LoadLevels]) -> LoadLevels:

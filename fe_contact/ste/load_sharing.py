@@ -35,13 +35,13 @@ def load_share(database: SteFields, position: FloatArray, point: OperatingPoint)
     pitch, fraction = np.floor(position).astype(np.int64), position
     if database.period > 1:
         fraction = position - pitch
-    asked = fraction[:, None] + pairs_seen(database, position)
+    query = fraction[:, None] + pairs_seen(database, position)
     met = (pairs_seen(database, position) - pitch[:, None]) % database.period
-    share = np.empty(asked.shape)
+    share = np.empty(query.shape)
     for teeth in np.unique(met):
         of_teeth = met == teeth
         phase, shares = _over_phase(database, stored, int(teeth))
-        share[of_teeth] = interpolate(Axis(phase), shares, asked[of_teeth])
+        share[of_teeth] = interpolate(Axis(phase), shares, query[of_teeth])
     share = np.maximum(share, 0.0)
     return np.asarray(share / share.sum(axis=1, keepdims=True))
 

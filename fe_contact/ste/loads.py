@@ -1,4 +1,4 @@
-"""Which load, misalignment and center distance a question means."""
+"""The load, misalignment and center distance of a query."""
 
 from __future__ import annotations
 
@@ -51,10 +51,10 @@ def operating_point(
     )
 
 
-def default_value(asked: float | None, axis: FloatArray) -> float:
-    """Return what is asked; else zero, or the only value of an axis of length 1."""
-    if asked is not None:
-        return asked
+def default_value(value: float | None, axis: FloatArray) -> float:
+    """Return the value; without one zero, or the only value of an axis of length 1."""
+    if value is not None:
+        return value
     return float(axis[0]) if axis.size == 1 else 0.0
 
 
@@ -63,19 +63,19 @@ def _normal_force(database: SteFields, torque: float | None, force: float | None
     if (torque is None) == (force is None):
         raise InputError("torque, force", (torque, force), "exactly one of the two")
     if torque is not None:
-        name, unit, stored, asked = "torque", "N m", database.torque, positive("torque", torque)
+        name, unit, stored, value = "torque", "N m", database.torque, positive("torque", torque)
     else:
-        name, unit, stored, asked = "force", "N", database.force, positive("force", force or 0.0)
-    known = np.flatnonzero(np.isclose(stored, asked, rtol=1e-12, atol=0.0))
+        name, unit, stored, value = "force", "N", database.force, positive("force", force or 0.0)
+    known = np.flatnonzero(np.isclose(stored, value, rtol=1e-12, atol=0.0))
     if known.size:
         return float(database.force[known[0]])
-    if asked > stored[-1]:
+    if value > stored[-1]:
         bound = at_most(float(stored[-1]), unit, note=", the highest load stored")
-        raise InputError(name, asked, bound, "Add it to the case.")
-    return asked if torque is None else database.facts.normal_force(asked)
+        raise InputError(name, value, bound, "Add it to the case.")
+    return value if torque is None else database.facts.normal_force(value)
 
 
-def _inside(name: str, asked: float | None, axis: FloatArray) -> float:
+def _inside(name: str, value: float | None, axis: FloatArray) -> float:
     """Return a value inside the ends of its axis."""
     hint = "The table has no such axis; add values to the case." if axis.size == 1 else "Add it to the case."
-    return within(name, default_value(asked, axis), float(axis[0]), float(axis[-1]), hint)
+    return within(name, default_value(value, axis), float(axis[0]), float(axis[-1]), hint)

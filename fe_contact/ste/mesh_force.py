@@ -27,7 +27,7 @@ SlopeRule = Callable[[Axis, FloatArray], FloatArray]
 
 
 class Validity(IntFlag):
-    """What a force sample rests on; flags add up."""
+    """Validity of a force sample; flags add up."""
 
     INSIDE = 0  # between lift-off and the highest stored load
     LIFTED_OFF = 1  # no contact; the zero force is right
@@ -152,7 +152,7 @@ class MeshForce:
         return deflection.reshape(shape), validity.astype(np.int8).reshape(shape)
 
     def _stencils(self, x: FloatArray, m: FloatArray, c: FloatArray) -> tuple[Stencil, Stencil, Stencil]:
-        """Where the queries fall on the three axes."""
+        """Stencils of the queries on the three axes."""
         first, second, third = self.axes
         return first.stencil(x), second.stencil(m), third.stencil(c)
 

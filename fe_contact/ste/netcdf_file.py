@@ -74,12 +74,12 @@ def _is_text(dataset: Any) -> bool:
 
 def digest(arrays: Mapping[str, Any], before: str = "") -> str:
     """SHA-256 over the text `before`, and names, types, shapes and bytes of the arrays, in their order."""
-    found = hashlib.sha256(before.encode())
+    hasher = hashlib.sha256(before.encode())
     for name, values in arrays.items():
         array = np.ascontiguousarray(values)
-        found.update(f"{name} {array.dtype.newbyteorder('<').str} {array.shape};".encode())
-        found.update(array.astype(array.dtype.newbyteorder("<"), copy=False).tobytes())
-    return found.hexdigest()
+        hasher.update(f"{name} {array.dtype.newbyteorder('<').str} {array.shape};".encode())
+        hasher.update(array.astype(array.dtype.newbyteorder("<"), copy=False).tobytes())
+    return hasher.hexdigest()
 
 
 def _publish(temporary: str, path: Path) -> None:

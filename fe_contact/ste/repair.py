@@ -1,4 +1,4 @@
-"""What can still be made of a table with failed points or with noise."""
+"""Repair of a table with failed points or with noise."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _LEAST_COMPLIANCE = 0.1
 
 @dataclass(frozen=True)
 class Repair:
-    """What `monotone_repaired` changed.
+    """The change by `monotone_repaired`.
 
     Attributes
     ----------
@@ -83,8 +83,8 @@ def monotone_repaired(table: Table) -> tuple[Table, Repair]:
     falling = np.argwhere(np.any(np.diff(levels, axis=-1) <= 0.0, axis=-1))
     least = _LEAST_COMPLIANCE * float(table.tangent_compliance.min())
     mended = levels.copy()
-    for place in map(tuple, falling):
-        mended[place] = _isotonic(levels[place], table.force, least)
+    for index in map(tuple, falling):
+        mended[index] = _isotonic(levels[index], table.force, least)
     change = np.moveaxis(np.abs(mended - levels)[..., 1:], -1, 1)
     report = _report(table, len(falling), change)
     metadata = replace(table.metadata, receipt=table.metadata.receipt | {"monotone_repair": asdict(report)})
@@ -121,7 +121,7 @@ def _isotonic(levels: FloatArray, force: FloatArray, least: float) -> FloatArray
 
 
 def _report(table: SteFields, curves: int, change: FloatArray) -> Repair:
-    """Where and how much."""
-    place = np.unravel_index(int(np.argmax(change)), change.shape)
-    where = {name: float(getattr(table, name)[i]) for name, i in zip(GRID, place, strict=True)}
-    return Repair(curves, float(change[place]), **where)
+    """Report the size and the position of the largest change."""
+    worst = np.unravel_index(int(np.argmax(change)), change.shape)
+    where = {name: float(getattr(table, name)[i]) for name, i in zip(GRID, worst, strict=True)}
+    return Repair(curves, float(change[worst]), **where)

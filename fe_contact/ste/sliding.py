@@ -1,4 +1,4 @@
-"""Where along the path of contact the load slides, and which way: what turns a load into friction.
+"""Sliding along the path of contact: the position of the load and the sense in which it slides.
 
 A pair that touches at y from the pitch point, along the line of action in the sense in which the driving
 flank pushes, slides at (omega_1 + omega_2) y. Friction on the driven gear has the sign of y, and its moment

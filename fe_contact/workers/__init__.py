@@ -1,4 +1,4 @@
-"""Who does independent tasks: this process, an executor, or a Dask cluster; results do not depend on which.
+"""Workers for independent tasks: this process, an executor, or a Dask cluster; results do not depend on it.
 
 A task is a plain function of something large that all tasks share and of one small item. Items are fixed by
 the caller, whatever the number of workers, and results come in the order of the items.

@@ -126,7 +126,7 @@ class ByDask:
 
     @property
     def _address(self) -> str:
-        """Where the scheduler is."""
+        """Address of the scheduler."""
         return str(self.client.scheduler.address) if self.client.scheduler else "the cluster"
 
 

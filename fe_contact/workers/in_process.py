@@ -1,4 +1,4 @@
-"""What workers are, and the simplest: this process."""
+"""The protocol of workers, and the simplest of them: this process."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Workers(Protocol):
 
     @property
     def cost(self) -> RunCost:
-        """What remote tasks have cost, beside the CPU time of this process."""
+        """Cost of remote tasks, beside the CPU time of this process."""
         ...
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:

@@ -31,7 +31,7 @@ class OrHere:
 
     @property
     def cost(self) -> RunCost:
-        """What the others did."""
+        """Cost of the tasks that the other workers did."""
         return self.others.cost
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:

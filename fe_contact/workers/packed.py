@@ -1,4 +1,4 @@
-"""What tasks share, pickled once."""
+"""Arguments that tasks share, pickled once."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class PassedFiles:
 
     @cached_property
     def path(self) -> Path:
-        """Where it is, made when first requested."""
+        """The folder, made when first requested."""
         path = Path(tempfile.mkdtemp(prefix="lineofaction-"))
         weakref.finalize(self, shutil.rmtree, path, ignore_errors=True)
         return path

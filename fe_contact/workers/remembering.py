@@ -45,7 +45,7 @@ class Remembering:
 
     @property
     def cost(self) -> RunCost:
-        """What the others did this time."""
+        """Cost of the tasks that the other workers did this time."""
         return self.others.cost
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
@@ -56,12 +56,12 @@ class Remembering:
             return
         kept = [_read(file) for file in files]
         missing = [item for item, known in zip(items, kept, strict=True) if known is None]
-        found = self.others.run(function, shared, missing)
+        results = self.others.run(function, shared, missing)
         for file, known in zip(files, kept, strict=True):
             if known is not None:
                 yield known[0]
                 continue
-            result = next(found)
+            result = next(results)
             _write(file, result)
             yield result
 

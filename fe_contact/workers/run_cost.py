@@ -1,4 +1,4 @@
-"""What tasks cost those who did them."""
+"""Cost of tasks to the workers that did them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ R = TypeVar("R")
 
 @dataclass
 class RunCost:
-    """What remote tasks have cost so far; the one thing here that changes.
+    """Cost of remote tasks so far; the only state here that changes.
 
     Work that is lost with its worker is not in it: nobody can tell.
 

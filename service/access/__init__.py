@@ -1,4 +1,4 @@
-"""Who may use the service, and how much of it: keys kept as hashes, rates of requests."""
+"""Access to the service: keys kept as hashes, rates of requests."""
 
 from service.access.key_file import AccessKey, KeyFile
 from service.access.keyring import Keyring, open_keyring

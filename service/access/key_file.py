@@ -24,7 +24,7 @@ _FIELDS = {"name", "sha256", "created", "requests_per_minute", "unfinished_jobs"
 
 @dataclass(frozen=True)
 class AccessKey:
-    """What is kept of a key.
+    """The record of a key.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Whose a presented key is: compared in constant time, from a file that may change while the service runs."""
+"""Look-up of a presented key: in constant time, from a file that may change while the service runs."""
 
 from __future__ import annotations
 
@@ -41,11 +41,11 @@ class Keyring:
         All keys are compared, each in constant time: how long the answer takes tells nothing about them.
         """
         digest = digest_of(presented)
-        found = None
+        holder = None
         for key in self._current():
             if hmac.compare_digest(digest, key.sha256):
-                found = key
-        return found
+                holder = key
+        return holder
 
     def _current(self) -> tuple[AccessKey, ...]:
         """Return the keys as the file has them now."""

@@ -49,7 +49,7 @@ def analyzed(
     report: Report,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> SteDatabase:
-    """Return the database of a case, not asked of a service; condensed gears are kept in the user's cache."""
+    """Compute the database of a case in this process; condensed gears are kept in the user's cache."""
     pair = check_case(case)
     with boundary_errors():
         database = ste_database(

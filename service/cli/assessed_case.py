@@ -12,7 +12,7 @@ from service.schemas.flank import FlankPoint
 
 
 def assessed_case(file: Path, point: FlankPoint | None = None) -> Case:
-    """Return the case in a file, at one load and alignment if asked; warn of what is implausible about it.
+    """Return the case in a file, at one load and alignment if requested; warn of what is implausible.
 
     Raises
     ------

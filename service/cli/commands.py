@@ -1,4 +1,4 @@
-"""The program ``loa``: its verbs, of which each loads the module that does the work when asked."""
+"""The program ``loa``: its verbs, each of which loads the module that does the work when it is called."""
 
 from __future__ import annotations
 
@@ -59,9 +59,9 @@ def main() -> None:
     app()
 
 
-def _version(asked: bool) -> None:
+def _version(requested: bool) -> None:
     """Print the version and end."""
-    if asked:
+    if requested:
         from service.version import solver_version  # noqa: PLC0415 (start-up time)
 
         typer.echo(f"loa {solver_version()}")

@@ -18,29 +18,30 @@ from service.store.schema import Schema, shown
 Json = dict[str, Any]
 
 
-def run_upgrade(*, as_json: bool, **given: object) -> None:
+def run_upgrade(*, as_json: bool, **options: object) -> None:
     """Upgrade, and tell from which schema to which."""
-    schema, name = _schema(given)
+    schema, name = _schema(options)
     before = schema.revision()
     schema.upgrade()
     facts: Json = {"database": name, "before": before, "schema": REVISIONS[-1]}
     _tell(facts, f"{name}: {before or 'no tables'} -> {REVISIONS[-1]}", as_json=as_json)
 
 
-def run_status(*, as_json: bool, **given: object) -> None:
+def run_status(*, as_json: bool, **options: object) -> None:
     """Tell both schemas; fail if they differ."""
-    schema, name = _schema(given)
-    found, current = schema.revision(), REVISIONS[-1]
-    facts: Json = {"database": name, "schema": found, "program": current, "up_to_date": found == current}
-    state = "up to date" if found == current else f"this program needs {current}"
-    _tell(facts, f"{name}: {found or 'no tables'}, {state}", as_json=as_json)
-    if found != current:
+    schema, name = _schema(options)
+    stored, current = schema.revision(), REVISIONS[-1]
+    facts: Json = {"database": name, "schema": stored, "program": current}
+    facts["up_to_date"] = stored == current
+    state = "up to date" if stored == current else f"this program needs {current}"
+    _tell(facts, f"{name}: {stored or 'no tables'}, {state}", as_json=as_json)
+    if stored != current:
         raise typer.Exit(EXIT_FAILED)
 
 
-def _schema(given: dict[str, object]) -> tuple[Schema, str]:
+def _schema(options: dict[str, object]) -> tuple[Schema, str]:
     """Return the schema of the database of the settings, and the database's name."""
-    settings = load_settings(**given)
+    settings = load_settings(**options)
     keep_private()
     engine = database_engine(
         settings.database_address or settings.data_directory / DATABASE_FILE, pooled=False

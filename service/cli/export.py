@@ -35,7 +35,7 @@ def run_export(
     _refuse_output(output)
     pair = check_case(case, whole_table=False)
     with progress_bar() as report, boundary_errors():
-        found = deformed_pairs(
+        pairs = deformed_pairs(
             pair,
             operating_point(case),
             analysis_options(case),
@@ -43,11 +43,11 @@ def run_export(
             at=where,
             beside=beside,
         )
-    written = _written(found, output)
+    written = _written(pairs, output)
     if as_json:
-        print_json({"written": [str(path) for path in written], "positions": _figures(found)})
+        print_json({"written": [str(path) for path in written], "positions": _figures(pairs)})
     else:
-        _show(found, written)
+        _show(pairs, written)
 
 
 def _refuse_output(output: Path) -> None:
@@ -58,19 +58,19 @@ def _refuse_output(output: Path) -> None:
         raise BadInput.of("output", str(output), "in a folder that exists", "Make the folder first.")
 
 
-def _written(found: tuple[DeformedPair, ...], output: Path) -> list[Path]:
+def _written(pairs: tuple[DeformedPair, ...], output: Path) -> list[Path]:
     """Write two files per position, numbered if there are several, as viewers group them."""
     output.mkdir(exist_ok=True)
     written = []
-    for number, pair in enumerate(found):
-        ending = f"_{number:03d}.vtu" if len(found) > 1 else ".vtu"
+    for number, pair in enumerate(pairs):
+        ending = f"_{number:03d}.vtu" if len(pairs) > 1 else ".vtu"
         files = [output / f"{gear}{ending}" for gear in ("pinion", "wheel")]
         pair.write(*files)
         written += files
     return written
 
 
-def _figures(found: tuple[DeformedPair, ...]) -> list[dict[str, float]]:
+def _figures(pairs: tuple[DeformedPair, ...]) -> list[dict[str, float]]:
     """Return what each position came to."""
     return [
         {
@@ -80,7 +80,7 @@ def _figures(found: tuple[DeformedPair, ...]) -> list[dict[str, float]]:
             "largest_displacement_wheel_um": _largest(pair.wheel.displacement),
             "residual": max(pair.pinion.residual, pair.wheel.residual),
         }
-        for pair in found
+        for pair in pairs
     ]
 
 
@@ -89,12 +89,12 @@ def _largest(displacement: FloatArray) -> float:
     return float(np.linalg.norm(displacement, axis=1).max() / UM)
 
 
-def _show(found: tuple[DeformedPair, ...], written: list[Path]) -> None:
+def _show(pairs: tuple[DeformedPair, ...], written: list[Path]) -> None:
     """Print the figures for people."""
     columns = ["position", "STE um", "pinion moves um", "wheel moves um", "residual"]
     rows = [
         [f"{row['position']:.4g}", *(f"{value:.4g}" for name, value in row.items() if name != "position")]
-        for row in _figures(found)
+        for row in _figures(pairs)
     ]
     out = console()
     out.print(table(columns, rows))

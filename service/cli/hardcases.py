@@ -72,8 +72,8 @@ def _show(outcomes: Sequence[Outcome], output: Path | None) -> None:
     passed = sum(outcome.passed for outcome in outcomes)
     seconds = sum(outcome.seconds for outcome in outcomes)
     busy = sum(outcome.cpu_seconds for outcome in outcomes)
-    said = f"{passed} of {len(outcomes)} scenes passed in {seconds:.1f} s ({busy:.1f} s of CPU time)"
-    out.print(said, highlight=False)
+    summary = f"{passed} of {len(outcomes)} scenes passed in {seconds:.1f} s ({busy:.1f} s of CPU time)"
+    out.print(summary, highlight=False)
     if output is not None:
         out.print(f"written to {output}", highlight=False)
 

@@ -20,19 +20,19 @@ def until_interrupted() -> Iterator[Callable[[], bool]]:
 
     Outside the main thread, where signals cannot be handled, it never does.
     """
-    asked = threading.Event()
+    interrupted = threading.Event()
 
     def ask(_number: int, _frame: FrameType | None) -> None:
-        if asked.is_set():
+        if interrupted.is_set():
             raise KeyboardInterrupt
-        asked.set()
+        interrupted.set()
 
     if threading.current_thread() is not threading.main_thread():
-        yield asked.is_set
+        yield interrupted.is_set
         return
     before = [signal.signal(number, ask) for number in _SIGNALS]
     try:
-        yield asked.is_set
+        yield interrupted.is_set
     finally:
         for number, handler in zip(_SIGNALS, before, strict=True):
             signal.signal(number, handler)

@@ -1,4 +1,4 @@
-"""What the verbs print: JSON or tables on standard output, progress on standard error."""
+"""Output of the verbs: JSON or tables on standard output, progress on standard error."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ def table(
     columns: Sequence[str], rows: Sequence[Sequence[str]], title: str = "", words: Sequence[str] = ()
 ) -> Table:
     """Return a table of right-aligned numbers; columns of `words` are aligned left."""
-    found = Table(title=title or None, box=None, pad_edge=False, title_justify="left")
+    grid = Table(title=title or None, box=None, pad_edge=False, title_justify="left")
     for column in columns:
-        found.add_column(column, justify="left" if column in words else "right")
+        grid.add_column(column, justify="left" if column in words else "right")
     for row in rows:
-        found.add_row(*row)
-    return found
+        grid.add_row(*row)
+    return grid
 
 
 def csv_text(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

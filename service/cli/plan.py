@@ -16,14 +16,14 @@ from service.units import UM
 
 def run_plan(file: Path, time_budget_s: float | None, *, as_json: bool) -> None:
     """Plan, print."""
-    found = plan_of(assessed_case(file), time_budget_s, cache_home() / "compliance")
+    plan = plan_of(assessed_case(file), time_budget_s, cache_home() / "compliance")
     if as_json:
-        print_json(found.to_json())
+        print_json(plan.to_json())
     else:
-        _show(found)
+        _show(plan)
 
 
-def _show(found: RunPlan) -> None:
+def _show(plan: RunPlan) -> None:
     """Print the plan for people."""
     out = console()
     head = ["mesh", "CPU s", *STAGES, "memory MiB", "error %", "of which model %", "mean um", "p-p um", ""]
@@ -36,20 +36,20 @@ def _show(found: RunPlan) -> None:
             f"{100.0 * entry.error.total:.2g}",
             f"{100.0 * entry.error.model:.2g}",
             *(_micrometers(error) for error in (entry.error.mean, entry.error.peak_to_peak)),
-            "chosen" if entry is found.chosen else "",
+            "chosen" if entry is plan.chosen else "",
         ]
-        for entry in found.levels
+        for entry in plan.levels
     ]
     out.print(table(head, rows, "Predicted, nothing computed"))
-    model = found.plan.discretization.to_json()["model"].replace("_", " ")
-    positions = found.plan.positions or f"about {found.chosen.cost.positions}, placed where the curve bends"
+    model = plan.plan.discretization.to_json()["model"].replace("_", " ")
+    positions = plan.plan.positions or f"about {plan.chosen.cost.positions}, placed where the curve bends"
     out.print(
-        f"model {model}; positions {positions}; mesh {found.choice.option.name}: {found.choice.reason}",
+        f"model {model}; positions {positions}; mesh {plan.choice.option.name}: {plan.choice.reason}",
         highlight=False,
     )
-    if found.conflict or not found.choice.met:
-        out.print(found.conflict or f"cannot be had: {found.choice.reason}", highlight=False)
-    for line in ledger_lines(found.to_json()["effect_ledger"]):
+    if plan.conflict or not plan.choice.met:
+        out.print(plan.conflict or f"cannot be had: {plan.choice.reason}", highlight=False)
+    for line in ledger_lines(plan.to_json()["effect_ledger"]):
         out.print(line, highlight=False)
 
 

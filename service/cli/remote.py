@@ -24,22 +24,22 @@ _OF_BOTH = studies_of("case or scene")
 
 
 @dataclass(frozen=True)
-class Wish:
-    """What is to be run on a file: a process, None for the file's own, and further inputs as JSON."""
+class ProcessRequest:
+    """A process to run on a file, None for the file's own, and further inputs as JSON."""
 
     process: str | None = None
     inputs: str | None = None
 
 
 def run_submit(
-    file: Path, service: str, wish: Wish, *, wait: bool, output: Path | None, as_json: bool
+    file: Path, service: str, request: ProcessRequest, *, wait: bool, output: Path | None, as_json: bool
 ) -> None:
-    """Submit; wait and write if asked."""
+    """Submit; wait and write if requested."""
     if output is not None:
         check_writable(output)
-    further = _further(wish)
+    further = _further(request)
     with LineOfActionClient(service) as client:
-        state = _submitted(client, file, wish.process, further)
+        state = _submitted(client, file, request.process, further)
         warn(state.warnings)
         facts: dict[str, object] = {"job": state.id, "process": state.process, "status": state.status}
         if wait or output is not None:
@@ -57,23 +57,23 @@ def run_submit(
         )
 
 
-def _further(wish: Wish) -> dict[str, Any]:
+def _further(request: ProcessRequest) -> dict[str, Any]:
     """Return the further inputs of a process."""
     known = (*_OF_CASES, *_OF_SCENES, *_OF_BOTH)
-    if wish.process not in (None, *known):
-        raise BadInput.of("--process", wish.process, f"one of {', '.join(known)}", "Or leave it out.")
-    if wish.inputs is None:
+    if request.process not in (None, *known):
+        raise BadInput.of("--process", request.process, f"one of {', '.join(known)}", "Or leave it out.")
+    if request.inputs is None:
         return {}
     example = """For example --inputs '{"misalignment_um": 30}'."""
-    if wish.process is None:
-        raise BadInput.of("--inputs", wish.inputs, "given with --process", example)
+    if request.process is None:
+        raise BadInput.of("--inputs", request.inputs, "given with --process", example)
     try:
-        found = json.loads(wish.inputs)
+        inputs = json.loads(request.inputs)
     except json.JSONDecodeError:
-        found = None
-    if not isinstance(found, dict) or "case" in found or "scene" in found:
-        raise BadInput.of("--inputs", wish.inputs, "a JSON object without case and scene", example)
-    return found
+        inputs = None
+    if not isinstance(inputs, dict) or "case" in inputs or "scene" in inputs:
+        raise BadInput.of("--inputs", request.inputs, "a JSON object without case and scene", example)
+    return inputs
 
 
 def _submitted(
@@ -114,8 +114,8 @@ def run_fetch(name: str, output: Path, service: str, *, as_json: bool) -> None:
         if re.fullmatch("[0-9a-f]{64}", name):
             key, (file, kind) = name, client.fetch_result(name)
         else:
-            found = _ended(client, name)
-            file, key, kind = client.fetch_file(found.key, found.kind), found.key, found.kind
+            result = _ended(client, name)
+            file, key, kind = client.fetch_file(result.key, result.kind), result.key, result.kind
     shutil.copyfile(file, output)
     warn(stamped(output))
     _show({"hash": key, "kind": kind, "file": str(output)}, as_json)

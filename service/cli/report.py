@@ -30,7 +30,7 @@ from service.studies.flank.run import flanks_of
 def run_report(
     files: Sequence[Path], output: Path, images: Path | None, *, flank: bool, as_json: bool
 ) -> None:
-    """Write the page, and the pictures if asked; compute the flank results if asked."""
+    """Write the page; draw the pictures and compute the flank results if requested."""
     for file in files:
         if not file.is_file():
             raise BadInput.of("file", str(file), "a file of results", "Check the path.")

@@ -24,7 +24,7 @@ def effect_lines(ledger: Mapping[str, Any]) -> list[str]:
         if entry.get("price")
     ]
     influences = [
-        f"without {name} about {one['words']} ({one['freedoms']:+d} freedoms, {one['rows']:+d} rows with it)"
-        for name, one in ledger.get("worths", {}).items()
+        f"without {name} about {row['words']} ({row['freedoms']:+d} freedoms, {row['rows']:+d} rows with it)"
+        for name, row in ledger.get("worths", {}).items()
     ]
     return [*lines, *prices, *influences]

@@ -38,26 +38,26 @@ def _checked(scene: SceneInput, folder: Path, source: TableSource) -> Scene:
     facts = {mesh.name: _facts(i, mesh, folder, tables) for i, mesh in enumerate(scene.meshes)}
     warn(scene_warnings(scene, check_scene(scene, facts)))
     databases = {mesh.name: tables.of(i, mesh) for i, mesh in enumerate(scene.meshes)}
-    found = dynamic_scene(scene, databases)
-    warn(scene_warnings(scene, found, {name: table.metadata.warnings for name, table in databases.items()}))
-    return found
+    built = dynamic_scene(scene, databases)
+    warn(scene_warnings(scene, built, {name: table.metadata.warnings for name, table in databases.items()}))
+    return built
 
 
 def _facts(index: int, mesh: MeshInput, folder: Path, tables: MeshTables) -> PairFacts:
     """Return the facts of a mesh's pair; of a case without computing anything."""
-    place = f"meshes[{index}]"
-    case = case_of_mesh(mesh, place, folder)
+    field = f"meshes[{index}]"
+    case = case_of_mesh(mesh, field, folder)
     if case is None:
         return tables.of(index, mesh).facts
     try:
-        warn(within(warning, place) for warning in case_warnings(case))
+        warn(within(warning, field) for warning in case_warnings(case))
         return facts_of(check_case(case))
     except BadInput as error:
-        raise error.within(f"{place}.case") from None
+        raise error.within(f"{field}.case") from None
 
 
 class _Here:
-    """Who computes databases in this process, and holds none."""
+    """A source that computes databases in this process, and holds none."""
 
     def __init__(self, report: Report) -> None:
         self._report = report

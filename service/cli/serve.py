@@ -27,9 +27,9 @@ _KEPT_S = 75
 first, a request that is on its way just then would be answered with a reset."""
 
 
-def run_serve(*, works: bool = True, **given: object) -> None:
+def run_serve(*, works: bool = True, **options: object) -> None:
     """Serve until stopped by SIGTERM or SIGINT; workers, if it `works`, end with it."""
-    settings = load_settings(**given)
+    settings = load_settings(**options)
     keep_private()
     log_to_standard_error()
     open_keyring(settings)  # refused before a socket is opened
@@ -83,7 +83,7 @@ def _stopped(_number: int, _frame: FrameType | None) -> NoReturn:
 
 
 def _listener(settings: Settings) -> socket.socket:
-    """Return a socket bound to the address, so that a port in use is told before anything starts."""
+    """Return a socket bound to the address, so that a port in use is reported before anything starts."""
     family, kind, protocol, _, address = socket.getaddrinfo(
         settings.host, settings.port, type=socket.SOCK_STREAM
     )[0]

@@ -58,9 +58,9 @@ def open_ste(file: Path) -> SteDatabase:
 def _arguments(request: CurveRequest) -> dict[str, Any]:
     """Return the checked arguments of the curve."""
     if (request.torque is None) == (request.force is None):
-        given = None if request.torque is None else f"--torque {request.torque:g} --force {request.force:g}"
+        both = None if request.torque is None else f"--torque {request.torque:g} --force {request.force:g}"
         raise BadInput.of(
-            "--torque", given, "given, or --force instead, but not both", "For example --torque 100."
+            "--torque", both, "given, or --force instead, but not both", "For example --torque 100."
         )
     names = ("torque", "force", "misalignment_um", "center_distance_change_mm")
     for name in names:
@@ -80,12 +80,12 @@ def positions(text: str) -> list[float]:
     """Positions of ``--at``."""
     bound = f"numbers from {-_FARTHEST:g} to {_FARTHEST:g}, separated by commas"
     try:
-        found = [float(part) for part in text.split(",")]
+        numbers = [float(part) for part in text.split(",")]
     except ValueError:
         raise BadInput.of("--at", text, bound, "For example --at 0,0.25,0.5.") from None
-    if not all(abs(position) <= _FARTHEST for position in found):
+    if not all(abs(position) <= _FARTHEST for position in numbers):
         raise BadInput.of("--at", text, bound, "One base pitch is 1.")
-    return found
+    return numbers
 
 
 def _rows(curve: dict[str, Any]) -> list[list[str]]:

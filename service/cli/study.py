@@ -40,61 +40,61 @@ Json = dict[str, Any]
 Writer = Callable[[Any, Path], object]
 
 
-def run_study(study: Study, given: Json) -> None:
-    """Run a study as its verb was called; `given` holds argument and options by their names."""
-    files = given[study.argument] if study.several else [given[study.argument]]
+def run_study(study: Study, options: Json) -> None:
+    """Run a study as its verb was called; `options` holds argument and options by their names."""
+    files = options[study.argument] if study.several else [options[study.argument]]
     read = [_read(study, file) for file in files]
-    inputs = _inputs(study, given)
+    inputs = _inputs(study, options)
     subjects = [(_assessed(study.run.narrowed(subject, inputs)), folder) for subject, folder in read]
-    targets = _targets(study, given["output"])
+    targets = _targets(study, options["output"])
     for subject, _ in subjects:
         study.run.check(subject, inputs)
-    executor = ExecutorChoice(given.get("workers", 1), given.get("dask"))
+    executor = ExecutorChoice(options.get("workers", 1), options.get("dask"))
     stopping = until_interrupted if study.run.interruptible else nullcontext
     with open_executor(executor) as workers, progress_bar() as report, stopping() as cancel:
         means = Means(cache_home(), report, workers, cancel)
         results = [
-            study.run.compute(_made(subject, folder, given, report), inputs, means)
+            study.run.compute(_made(subject, folder, options, report), inputs, means)
             for subject, folder in subjects
         ]
         interrupted = cancel is not None and cancel()
-    found = results[0]
+    result = results[0]
     if study.several:
-        found = study.run.joined(dict(zip(_names(study, files), results, strict=True)))
-    warn(study.run.warnings(found) or ())
-    _tell(study, found, targets, given)
+        result = study.run.joined(dict(zip(_names(study, files), results, strict=True)))
+    warn(study.run.warnings(result) or ())
+    _tell(study, result, targets, options)
     if interrupted:
         raise KeyboardInterrupt("interrupted. What is above is the best of what was computed so far.")
-    if failure := study.run.failure(found):
+    if failure := study.run.failure(result):
         raise JobFailed(failure)
 
 
-def _tell(study: Study, found: Any, targets: list[Path], given: Json) -> None:
+def _tell(study: Study, result: Any, targets: list[Path], options: Json) -> None:
     """Write the files, and print the result in the form that was requested."""
     for target in targets:
         target.parent.mkdir(exist_ok=True)
-        _writers(study)[target.suffix](found, target)
+        _writers(study)[target.suffix](result, target)
         stamp(target, warnings_so_far())
-    if given["json"]:
-        print_json(_written(study, targets) | study.run.facts(found))
-    elif given.get("csv"):
-        sys.stdout.write(_csv(study, found))
+    if options["json"]:
+        print_json(_written(study, targets) | study.run.facts(result))
+    elif options.get("csv"):
+        sys.stdout.write(_csv(study, result))
     else:
-        _show(study, found, targets)
+        _show(study, result, targets)
 
 
-def _inputs(study: Study, given: Json) -> Any:
+def _inputs(study: Study, options: Json) -> Any:
     """Return the inputs, from their file or the options that were given."""
     if study.from_file:
-        return read_model(study.inputs, given["study"])
-    return validated(study.inputs, _fields(study, given))
+        return read_model(study.inputs, options["study"])
+    return validated(study.inputs, _fields(study, options))
 
 
-def _fields(study: Study, given: Json) -> Json:
+def _fields(study: Study, options: Json) -> Json:
     """Return the fields of the inputs, from the options that were given."""
     fields = {}
     for name, field in study.inputs.model_fields.items():
-        value, spelling = given[name], spelling_of(field)
+        value, spelling = options[name], spelling_of(field)
         if spelling and spelling.value is not None:
             value = spelling.value if value else field.default
         elif value is not None and (kind := item_type(field)):
@@ -120,11 +120,11 @@ def _assessed(subject: Case | SceneInput) -> Case | SceneInput:
     return subject
 
 
-def _made(subject: Case | SceneInput, folder: Path, given: Json, report: Report) -> Any:
+def _made(subject: Case | SceneInput, folder: Path, options: Json, report: Report) -> Any:
     """Return the case, or the scene with its tables."""
     if isinstance(subject, Case):
         return subject
-    return scene_with_tables(subject, folder, given["service"], report)
+    return scene_with_tables(subject, folder, options["service"], report)
 
 
 def _names(study: Study, files: Sequence[Path]) -> list[str]:
@@ -151,16 +151,16 @@ def _writers(study: Study) -> dict[str, Writer]:
     return {
         ".nc": run.save,
         ".json": run.save_facts,
-        ".png": lambda found, file: file.write_bytes(png(page.figure(found))),
-        ".html": lambda found, file: write_whole(page.page(found), file, warnings=messages()),
-        ".csv": lambda found, file: file.write_text(_csv(study, found), encoding="utf-8"),
+        ".png": lambda result, file: file.write_bytes(png(page.figure(result))),
+        ".html": lambda result, file: write_whole(page.page(result), file, warnings=messages()),
+        ".csv": lambda result, file: file.write_text(_csv(study, result), encoding="utf-8"),
         **run.writers,
     }
 
 
-def _csv(study: Study, found: Any) -> str:
+def _csv(study: Study, result: Any) -> str:
     """Return the numbers of the plot as CSV."""
-    series = study.page.series(found)
+    series = study.page.series(result)
     return csv_text(series.head, series.rows)
 
 
@@ -172,10 +172,10 @@ def _written(study: Study, targets: list[Path]) -> Json:
     return {"written": names[0], "file": names[0]} if names else {}
 
 
-def _show(study: Study, found: Any, targets: list[Path]) -> None:
+def _show(study: Study, result: Any, targets: list[Path]) -> None:
     """Print tables and lines for people."""
     out = console()
-    for part in study.page.text(found):
+    for part in study.page.text(result):
         if isinstance(part, str):
             out.print(part, highlight=False)
         else:

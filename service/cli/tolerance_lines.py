@@ -1,4 +1,4 @@
-"""What `loa analyze` says of a tolerance: drafts while it refines, its passes, and whether it is met."""
+"""Lines of `loa analyze` about a tolerance: drafts while it refines, its passes, and whether it is met."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def tolerance_lines(receipt: Json) -> Iterator[str]:
     yield _verdict(kept)
     passes = receipt.get("passes", ())
     if len(passes) > 1:
-        yield from (_pass(number, one) for number, one in enumerate(passes, 1))
+        yield from (_pass(number, entry) for number, entry in enumerate(passes, 1))
     for beyond in kept.get("between_nodes", ()):
         name, unit, symbol = _AXES[beyond["axis"]]
         low, high = (f"{value / unit:.6g}" for value in beyond["between"])
@@ -53,16 +53,16 @@ def tolerance_warnings(receipt: Json) -> Iterable[Json]:
 
 def _verdict(kept: Json) -> str:
     """Return whether the tolerance is met."""
-    asked = f"tolerance {100 * kept['relative']:.3g} % or {kept['floor_m'] / NM:.3g} nm"
+    tolerance = f"tolerance {100 * kept['relative']:.3g} % or {kept['floor_m'] / NM:.3g} nm"
     if kept["met"] is None:
-        return f"{asked}: errors not estimated"
+        return f"{tolerance}: errors not estimated"
     share = "" if kept["used"] is None else f", largest error {kept['used']:.2g} of it"
-    return f"{asked}: {'met' if kept['met'] else 'NOT met'}{share}"
+    return f"{tolerance}: {'met' if kept['met'] else 'NOT met'}{share}"
 
 
-def _pass(number: int, one: Json) -> str:
+def _pass(number: int, entry: Json) -> str:
     """Return what one pass ran, cost and used."""
-    mesh = one["level"] if one["slices"] == 1 else f"{one['level']}, {one['slices']} slices"
-    used = "failed" if one["used"] is None else f"used {one['used']:.2g}"
-    refined = f", refined {', '.join(one['refined'])}" if one["refined"] else ""
-    return f"pass {number}: {one['model']}, {mesh}, {one['cpu_seconds']:.2g} CPU s, {used}{refined}"
+    mesh = entry["level"] if entry["slices"] == 1 else f"{entry['level']}, {entry['slices']} slices"
+    used = "failed" if entry["used"] is None else f"used {entry['used']:.2g}"
+    refined = f", refined {', '.join(entry['refined'])}" if entry["refined"] else ""
+    return f"pass {number}: {entry['model']}, {mesh}, {entry['cpu_seconds']:.2g} CPU s, {used}{refined}"

@@ -1,4 +1,4 @@
-"""What a verb warns of: printed before its numbers, in its JSON, and by its exit code if it is strict."""
+"""Warnings of a verb: printed before its numbers, in its JSON, and by its exit code if it is strict."""
 
 from __future__ import annotations
 

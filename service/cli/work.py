@@ -17,9 +17,9 @@ from service.store import DirectoryLock
 from service.store.schema import shown
 
 
-def run_work(**given: object) -> None:
+def run_work(**options: object) -> None:
     """Run jobs until stopped by SIGTERM or SIGINT; workers end with the scheduler."""
-    settings = load_settings(**given)
+    settings = load_settings(**options)
     keep_private()
     log_to_standard_error()
     lock = DirectoryLock(settings.data_directory)

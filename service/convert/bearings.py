@@ -12,76 +12,76 @@ from service.schemas.scene_bodies import BearingInput, BushingInput, PlanetBeari
 from service.units import MM, MRAD, UM
 
 
-def bushing_of(index: int, given: BushingInput) -> Bushing:
+def bushing_of(index: int, bushing: BushingInput) -> Bushing:
     """Return a bushing."""
     with named(f"bushings[{index}]"):
         return Bushing(
-            name=given.name,
-            shaft=given.shaft,
-            position=given.position_mm * MM,
-            radial_stiffness=given.radial_stiffness_n_per_m,
-            axial_stiffness=given.axial_stiffness_n_per_m,
-            radial_damping=given.radial_damping_n_s_per_m,
-            axial_damping=given.axial_damping_n_s_per_m,
-            damping_ratio=given.damping_ratio,
-            stiffness=given.stiffness_matrix,
-            damping=given.damping_matrix,
-            preload=_preload(given),
+            name=bushing.name,
+            shaft=bushing.shaft,
+            position=bushing.position_mm * MM,
+            radial_stiffness=bushing.radial_stiffness_n_per_m,
+            axial_stiffness=bushing.axial_stiffness_n_per_m,
+            radial_damping=bushing.radial_damping_n_s_per_m,
+            axial_damping=bushing.axial_damping_n_s_per_m,
+            damping_ratio=bushing.damping_ratio,
+            stiffness=bushing.stiffness_matrix,
+            damping=bushing.damping_matrix,
+            preload=_preload(bushing),
         )
 
 
-def _preload(given: BushingInput) -> tuple[float, ...] | None:
+def _preload(bushing: BushingInput) -> tuple[float, ...] | None:
     """Force and moment on the shaft; None where neither is given."""
-    if given.preload_force_n is None and given.preload_moment_n_m is None:
+    if bushing.preload_force_n is None and bushing.preload_moment_n_m is None:
         return None
-    return (*(given.preload_force_n or (0.0,) * 3), *(given.preload_moment_n_m or (0.0,) * 2))
+    return (*(bushing.preload_force_n or (0.0,) * 3), *(bushing.preload_moment_n_m or (0.0,) * 2))
 
 
 def rolling_contacts_of(scene: SceneInput) -> Iterator[RollingContact]:
     """Yield the rolling contacts of all bearings."""
     for field, bearing in _bearings(scene):
-        given = bearing.rolling_contact
-        if given is not None:
+        law = bearing.rolling_contact
+        if law is not None:
             with named(f"{field}.rolling_contact"):
                 yield RollingContact(
                     bearing.name,
-                    given.stiffness_n_per_m_n,
-                    given.exponent,
-                    given.radial_clearance_um * UM,
-                    given.damping_n_s_per_m,
-                    given.damping_ratio,
+                    law.stiffness_n_per_m_n,
+                    law.exponent,
+                    law.radial_clearance_um * UM,
+                    law.damping_n_s_per_m,
+                    law.damping_ratio,
                 )
 
 
 def spring_curves_of(scene: SceneInput) -> Iterator[SpringCurve]:
     """Yield the curves of all bearings."""
     for field, bearing in _bearings(scene):
-        for place, given in enumerate(bearing.spring_curves):
-            ways = tuple(value * UM for value in given.displacement_um or ())
-            ways = ways or tuple(value * MRAD for value in given.tilt_mrad or ())
-            with named(f"{field}.spring_curves[{place}]"):
+        for number, curve in enumerate(bearing.spring_curves):
+            ways = tuple(value * UM for value in curve.displacement_um or ())
+            ways = ways or tuple(value * MRAD for value in curve.tilt_mrad or ())
+            with named(f"{field}.spring_curves[{number}]"):
                 yield SpringCurve(
-                    bearing.name, given.direction, ways, tuple(given.force_n or given.moment_n_m or ())
+                    bearing.name, curve.direction, ways, tuple(curve.force_n or curve.moment_n_m or ())
                 )
 
 
-def planet_bearing_of(index: int, given: PlanetBearingInput) -> PlanetBearing:
+def planet_bearing_of(index: int, bearing: PlanetBearingInput) -> PlanetBearing:
     """Return a planet's bearing."""
     with named(f"planet_bearings[{index}]"):
         return PlanetBearing(
-            name=given.name,
-            shaft=given.shaft,
-            carrier=given.carrier,
-            position=given.position_mm * MM,
-            radial_stiffness=given.radial_stiffness_n_per_m,
-            axial_stiffness=given.axial_stiffness_n_per_m,
-            radial_damping=given.radial_damping_n_s_per_m,
-            axial_damping=given.axial_damping_n_s_per_m,
-            damping_ratio=given.damping_ratio,
-            radial_error=given.radial_error_um * UM,
-            tangential_error=given.tangential_error_um * UM,
-            stiffness=given.stiffness_matrix,
-            damping=given.damping_matrix,
+            name=bearing.name,
+            shaft=bearing.shaft,
+            carrier=bearing.carrier,
+            position=bearing.position_mm * MM,
+            radial_stiffness=bearing.radial_stiffness_n_per_m,
+            axial_stiffness=bearing.axial_stiffness_n_per_m,
+            radial_damping=bearing.radial_damping_n_s_per_m,
+            axial_damping=bearing.axial_damping_n_s_per_m,
+            damping_ratio=bearing.damping_ratio,
+            radial_error=bearing.radial_error_um * UM,
+            tangential_error=bearing.tangential_error_um * UM,
+            stiffness=bearing.stiffness_matrix,
+            damping=bearing.damping_matrix,
         )
 
 

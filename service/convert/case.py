@@ -84,52 +84,52 @@ def boundary_errors(prefix: str = "") -> Iterator[None]:
 
 def _gear(name: str, pair: PairInput, material: MaterialInput, hand: float) -> Gear:
     """One external gear of the pair; mating ones have opposite hands."""
-    given = getattr(pair, name)
+    gear = getattr(pair, name)
     with inside(name):
         return Gear(
-            bore_diameter=given.bore_diameter_mm * MM,
-            blank=declared_part(GearBlank, given.blank, "blank"),
-            seat=_seat(given.seat),
-            **_toothing(given, pair, material, hand),
+            bore_diameter=gear.bore_diameter_mm * MM,
+            blank=declared_part(GearBlank, gear.blank, "blank"),
+            seat=_seat(gear.seat),
+            **_toothing(gear, pair, material, hand),
         )
 
 
 def _ring_gear(pair: PairInput, material: MaterialInput) -> RingGear:
     """Return the wheel as a ring gear, which has the hand of its pinion."""
-    given: WheelInput = pair.wheel
+    wheel: WheelInput = pair.wheel
     with inside("wheel"):
         return RingGear(
-            rim_diameter=(given.rim_diameter_mm or 0.0) * MM,
-            cutter_teeth=given.cutter_teeth or 0,
-            cutter_profile_shift_coefficient=given.cutter_profile_shift_coefficient or 0.0,
-            **_toothing(given, pair, material, +1.0),
+            rim_diameter=(wheel.rim_diameter_mm or 0.0) * MM,
+            cutter_teeth=wheel.cutter_teeth or 0,
+            cutter_profile_shift_coefficient=wheel.cutter_profile_shift_coefficient or 0.0,
+            **_toothing(wheel, pair, material, +1.0),
         )
 
 
-def _toothing(given: ToothingInput, pair: PairInput, material: MaterialInput, hand: float) -> Json:
+def _toothing(toothing: ToothingInput, pair: PairInput, material: MaterialInput, hand: float) -> Json:
     """Fields that external gears and ring gears share."""
-    tip = given.tip_diameter_mm
+    tip = toothing.tip_diameter_mm
     return {
-        "teeth": given.teeth,
+        "teeth": toothing.teeth,
         "normal_module": pair.normal_module_mm * MM,
-        "face_width": given.face_width_mm * MM,
+        "face_width": toothing.face_width_mm * MM,
         "normal_pressure_angle": pair.normal_pressure_angle_deg * DEGREE,
         "helix_angle": hand * pair.helix_angle_deg * DEGREE if pair.helix_angle_deg else 0.0,
         "tip_diameter": None if tip is None else tip * MM,
-        "thickness_allowance": given.thickness_allowance_um * UM,
-        "modification": _modification(given),
-        "material": Material(**in_si(Material, given.material or material)),
-        "pitch_deviation": PitchDeviation(tuple(value * UM for value in given.pitch_deviation_um)),
-        **{coefficient: getattr(given, coefficient) for coefficient in _COEFFICIENTS},
+        "thickness_allowance": toothing.thickness_allowance_um * UM,
+        "modification": _modification(toothing),
+        "material": Material(**in_si(Material, toothing.material or material)),
+        "pitch_deviation": PitchDeviation(tuple(value * UM for value in toothing.pitch_deviation_um)),
+        **{coefficient: getattr(toothing, coefficient) for coefficient in _COEFFICIENTS},
     }
 
 
-def _seat(given: BoreSeatInput | None) -> BoreSeat:
+def _seat(seat: BoreSeatInput | None) -> BoreSeat:
     """Return the seat of the bore; without one it is fixed."""
-    if given is None:
+    if seat is None:
         return BoreSeat()
     with inside("seat"):
-        return BoreSeat(**in_si(BoreSeat, given), key=declared_part(Key, given.key, "key"))
+        return BoreSeat(**in_si(BoreSeat, seat), key=declared_part(Key, seat.key, "key"))
 
 
 def _shaft(name: str, gear: ToothingInput) -> Shaft | None:
@@ -137,14 +137,14 @@ def _shaft(name: str, gear: ToothingInput) -> Shaft | None:
     return declared_part(Shaft, gear.shaft, f"{name}.shaft")
 
 
-def _modification(given: ToothingInput) -> FlankModification:
+def _modification(toothing: ToothingInput) -> FlankModification:
     """Return the flank modification of a gear."""
-    return FlankModification(**in_si(FlankModification, given), flank_grid=_flank_grid(given))
+    return FlankModification(**in_si(FlankModification, toothing), flank_grid=_flank_grid(toothing))
 
 
-def _flank_grid(given: ToothingInput) -> FlankGrid | None:
+def _flank_grid(toothing: ToothingInput) -> FlankGrid | None:
     """Return the free-form flank of a gear, None if it has none."""
-    grid = given.flank_grid
+    grid = toothing.flank_grid
     if grid is None:
         return None
     with inside("flank_grid"):

@@ -14,7 +14,7 @@ def check_case(case: Case, *, whole_table: bool = True) -> ParallelAxes:
     Raises
     ------
     BadInput
-        No such pair, or a wish that no plan can meet.
+        No such pair, or a request that no plan can meet.
     """
     pair = gear_pair(case)
     with boundary_errors():

@@ -13,7 +13,7 @@ def case_of_file(file: Path) -> dict[str, Any] | None:
     """Return the case with all defaults, None if the file is none that can be read."""
     try:
         with h5py.File(file) as content:
-            found = json.loads(content.attrs["case"])
+            case = json.loads(content.attrs["case"])
     except (OSError, KeyError, TypeError, ValueError):
         return None
-    return found if isinstance(found, dict) else None
+    return case if isinstance(case, dict) else None

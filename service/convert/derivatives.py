@@ -14,19 +14,19 @@ from service.units import MM, UM, factor
 Json = dict[str, Any]
 
 
-def derivatives_json(found: CurveDerivatives) -> Iterator[Json]:
+def derivatives_json(derivatives: CurveDerivatives) -> Iterator[Json]:
     """Yield the derivatives of the curve at each torque."""
-    names = [boundary_name(name) for name in found.names]
-    flanks = {gear: found.on_flank(gear) for gear in ("pinion", "wheel")}
-    for k in range(found.torque.size):
+    names = [boundary_name(name) for name in derivatives.names]
+    flanks = {gear: derivatives.on_flank(gear) for gear in ("pinion", "wheel")}
+    for k in range(derivatives.torque.size):
         by = {}
         for a, name in enumerate(names):
             scale = factor(name) / UM
-            harmonics = scale * found.harmonics[a, :, k]
+            harmonics = scale * derivatives.harmonics[a, :, k]
             by[name] = {
-                "ste_um": (scale * found.by[a, :, k]).tolist(),
-                "mean_um": float(scale * found.mean[a, k]),
-                "peak_to_peak_um": float(scale * found.peak_to_peak[a, k]),
+                "ste_um": (scale * derivatives.by[a, :, k]).tolist(),
+                "mean_um": float(scale * derivatives.mean[a, k]),
+                "peak_to_peak_um": float(scale * derivatives.peak_to_peak[a, k]),
                 "harmonics_um": [float(value) if np.isfinite(value) else None for value in harmonics],
             }
         yield {"by": by} | {gear: _flank(flank, k) for gear, flank in flanks.items()}

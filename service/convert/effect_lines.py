@@ -11,8 +11,8 @@ from service.convert.effect_sizes import by_size, influence_place, influence_wor
 def ledger_lines(ledger: Iterable[Mapping[str, Any]]) -> Iterator[str]:
     """Yield the decision about every effect, its influence at the nominal load, and its price."""
     shown, trifles = by_size(ledger)
-    if place := influence_place(ledger):
-        yield f"influence of effects: what leaving one out changes, estimated {place}"
+    if where := influence_place(ledger):
+        yield f"influence of effects: what leaving one out changes, estimated {where}"
     for entry in shown:
         state = "on " if entry["on"] else "off"
         yield f"effect {entry['name']}: {state} ({entry['choice']}); {entry['reason']}"
@@ -34,26 +34,26 @@ def cost_words(entry: Mapping[str, Any]) -> str:
 
 def assumption_lines(receipt: Mapping[str, Any]) -> Iterator[str]:
     """Yield what was repeated and why, and the assumptions that do not hold."""
-    for again in receipt.get("repeated", ()):
-        for name, reason in again["turned_on"].items():
-            yield f"repeated with {name}: {reason} ({again['cpu_seconds']:.2g} CPU s)"
-    for one in receipt.get("assumptions", ()):
-        if one["holds"] is False:
-            yield f"DOES NOT HOLD: {one['assumption']}; {one['reason']}"
+    for run in receipt.get("repeated", ()):
+        for name, reason in run["turned_on"].items():
+            yield f"repeated with {name}: {reason} ({run['cpu_seconds']:.2g} CPU s)"
+    for check in receipt.get("assumptions", ()):
+        if check["holds"] is False:
+            yield f"DOES NOT HOLD: {check['assumption']}; {check['reason']}"
 
 
 def run_lines(attributes: Mapping[str, Any]) -> Iterator[str]:
     """Yield what a dynamic run was repeated for, and what it took for granted that does not hold."""
-    again = attributes.get("receipt", {}).get("repeated")
-    if again:
-        for name, reason in again["turned_on"].items():
-            since = f", from {again['since']:.6g} s on" if again.get("since") else ""
-            yield f"repeated with {name}: {reason} (first run {again['seconds']:.2g} s{since})"
+    earlier = attributes.get("receipt", {}).get("repeated")
+    if earlier:
+        for name, reason in earlier["turned_on"].items():
+            since = f", from {earlier['since']:.6g} s on" if earlier.get("since") else ""
+            yield f"repeated with {name}: {reason} (first run {earlier['seconds']:.2g} s{since})"
     corrected = {**attributes, **attributes.get("receipt", {})}.get("base_radius_corrected", {})
     for gear, radius in corrected.items():
-        given, used = (1e3 * radius[name] for name in ("given", "used"))
-        yield f"base radius of {gear} corrected from {given:.6g} to {used:.6g} mm: one base pitch per train"
-    for one in attributes.get("effect_ledger", {}).get("checks", ()):
-        if one["holds"] is False:
-            part = one["part"] or one["effect"]
-            yield f"DOES NOT HOLD: {one['assumption']} ({part}); {one['reason']}"
+        stated, used = (1e3 * radius[name] for name in ("given", "used"))
+        yield f"base radius of {gear} corrected from {stated:.6g} to {used:.6g} mm: one base pitch per train"
+    for check in attributes.get("effect_ledger", {}).get("checks", ()):
+        if check["holds"] is False:
+            part = check["part"] or check["effect"]
+            yield f"DOES NOT HOLD: {check['assumption']} ({part}); {check['reason']}"

@@ -77,7 +77,7 @@ def force_answer(law: CompiledForce, points: FloatArray) -> ForceAnswer:
     JobFailed
         The table gives no number somewhere.
     """
-    found = law.force_at(points)
-    if not (np.isfinite(found.force).all() and np.isfinite(found.stiffness).all()):
+    forces = law.force_at(points)
+    if not (np.isfinite(forces.force).all() and np.isfinite(forces.stiffness).all()):
         raise JobFailed("The table gives no number at some of these points. Compute it again.")
-    return ForceAnswer(found.force, found.stiffness / N_PER_UM, found.validity)
+    return ForceAnswer(forces.force, forces.stiffness / N_PER_UM, forces.validity)

@@ -42,14 +42,14 @@ def condensed_of(file: Path, cache: Path, *, compute: bool = False) -> tuple[Cas
     # strict models take JSON's lists for tuples only from text
     case = Case.model_validate_json(json.dumps(database.metadata.case))
     with boundary_errors():
-        found = condensed_pair(gear_pair(case), database, dict(case.effects), cache, compute=compute)
-    if found is None:
+        bodies = condensed_pair(gear_pair(case), database, dict(case.effects), cache, compute=compute)
+    if bodies is None:
         raise NotAnalyzed(
             "The compliance of these gears is not in the cache of this service: they were analyzed "
             "elsewhere, or it was removed. Ask once with condense = true: it is then computed here first, in "
             "seconds in the plane and up to some minutes over the face."
         )
-    return case, found
+    return case, bodies
 
 
 def live_curves(case: Case, bodies: CondensedPair, change: LiveInput) -> Json:
@@ -63,10 +63,10 @@ def live_curves(case: Case, bodies: CondensedPair, change: LiveInput) -> Json:
         answer = {"curves": curves, **_receipt(table)}
         if change.derivatives:
             begin = time.process_time()
-            place = torques, None, skew, change.center_distance_change_mm * MM
+            point = torques, None, skew, change.center_distance_change_mm * MM
             with boundary_errors():
-                found = curve_derivatives(bodies, pair, *place)
-            for curve, derivatives in zip(curves, derivatives_json(found), strict=True):
+                changes = curve_derivatives(bodies, pair, *point)
+            for curve, derivatives in zip(curves, derivatives_json(changes), strict=True):
                 curve["derivatives"] = derivatives
             answer["cost"]["derivatives_cpu_seconds"] = time.process_time() - begin
     except BadInput as error:
@@ -87,7 +87,7 @@ def _curve(table: SteDatabase, k: int) -> Json:
 def _receipt(table: SteDatabase) -> Json:
     """Return what is known of the making of the curves."""
     receipt, ledger = table.metadata.receipt, cast("list[Json]", table.metadata.effect_ledger)
-    found: list[Json] = receipt["assumptions"]
+    assumptions: list[Json] = receipt["assumptions"]
     stages = receipt["stages"]
     return {
         "effects": {entry["name"]: entry["on"] for entry in ledger},
@@ -95,8 +95,8 @@ def _receipt(table: SteDatabase) -> Json:
         "discretisation_error": receipt["discretisation_error"],
         "not_estimated": receipt["not_estimated"],
         "residuals_max": receipt["residuals_max"],
-        "assumptions": [one for one in found if one["holds"] is not None],
-        "not_checked": [one for one in found if one["holds"] is None],
+        "assumptions": [check for check in assumptions if check["holds"] is not None],
+        "not_checked": [check for check in assumptions if check["holds"] is None],
         "cost": {
             f"{name.replace(' ', '_')}_cpu_seconds": stage["cpu_seconds"] for name, stage in stages.items()
         },
@@ -119,5 +119,5 @@ def changed_case(case: Case, change: LiveInput) -> Case:
 def _as_asked(fault: Fault) -> Fault:
     """Name a fault by the field of the question, whose alignments are single values."""
     name = fault.field.removesuffix("[0]") if fault.field.startswith("errors.") else fault.field
-    name = next((name.removeprefix(place) for place in _PLACES if name.startswith(place)), name)
+    name = next((name.removeprefix(prefix) for prefix in _PLACES if name.startswith(prefix)), name)
     return Fault(name, fault.value, fault.bound, fault.suggestion)

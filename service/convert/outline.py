@@ -36,10 +36,10 @@ def outline_json(case: Case) -> Json:
         angles = mesh_angles(pair, 0.0)
         sign = pair.wheel.sign
         gears = {"pinion": _gear(pair.pinion), "wheel": _gear(pair.wheel)}
-    places = ((0.0, 0.0), (0.0, sign * pair.center_distance))
+    centers = ((0.0, 0.0), (0.0, sign * pair.center_distance))
     turns = (-1.0, -1.0 if pair.internal else 1.0)
-    for gear, angle, place, turn in zip(gears.values(), angles, places, turns, strict=True):
-        gear |= {"angle_deg": angle / DEGREE, "centre_mm": [value / MM for value in place], "turn": turn}
+    for gear, angle, center, turn in zip(gears.values(), angles, centers, turns, strict=True):
+        gear |= {"angle_deg": angle / DEGREE, "centre_mm": [value / MM for value in center], "turn": turn}
     return gears | {"internal": pair.internal, "path_of_contact": _path(pair), "figures": _figures(pair)}
 
 
@@ -66,11 +66,11 @@ def _path(pair: ParallelAxes) -> Json:
     alpha = pair.working_pressure_angle
     along = np.array([math.cos(alpha), math.sin(alpha)])
     foot = pair.pinion.base_radius * np.array([-math.sin(alpha), math.cos(alpha)])
-    found = {
+    points = {
         name: _points((foot + roll * along)[None, :])[0]
         for name, roll in zip("ABCDE", pair.active_path.points, strict=True)
     }
-    return {"points_mm": found, "base_pitch_mm": pair.base_pitch / MM}
+    return {"points_mm": points, "base_pitch_mm": pair.base_pitch / MM}
 
 
 def _figures(pair: ParallelAxes) -> Json:

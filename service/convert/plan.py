@@ -15,7 +15,7 @@ def plan_of(case: Case, time_budget_s: float | None, cache: Path | None) -> RunP
     Raises
     ------
     BadInput
-        No such pair, or a wish that no plan can meet.
+        No such pair, or a request that no plan can meet.
     """
     pair = gear_pair(case)
     axes, options = table_axes(case), analysis_options(case)

@@ -39,7 +39,7 @@ def case_warnings(case: Case) -> list[Json]:
 
 
 def scene_warnings(
-    given: SceneInput, scene: Scene, tables: Mapping[str, Iterable[Json]] = MappingProxyType({})
+    inputs: SceneInput, scene: Scene, tables: Mapping[str, Iterable[Json]] = MappingProxyType({})
 ) -> list[Json]:
     """Return what is implausible about a scene, and about the tables of its meshes.
 
@@ -59,21 +59,21 @@ def scene_warnings(
     """
     with named(""):
         findings = [finding.to_json() for finding in scene_findings(scene)]
-    found = phrased([one for one in findings if _in_file(given, one["field"])], scene_field)
-    for index, mesh in enumerate(given.meshes):
-        found += [within(warning, f"meshes[{index}]") for warning in tables.get(mesh.name, ())]
-    return unique(found)
+    warnings = phrased([each for each in findings if _in_file(inputs, each["field"])], scene_field)
+    for index, mesh in enumerate(inputs.meshes):
+        warnings += [within(warning, f"meshes[{index}]") for warning in tables.get(mesh.name, ())]
+    return unique(warnings)
 
 
-def _in_file(given: SceneInput, field: str) -> bool:
+def _in_file(inputs: SceneInput, field: str) -> bool:
     """Whether a field is of a part in the file, and not of a further planet, which is its copy."""
     part = re.match(r"(\w+)\[(\d+)\]", field)
-    return part is None or int(part.group(2)) < len(getattr(given, part.group(1)))
+    return part is None or int(part.group(2)) < len(getattr(inputs, part.group(1)))
 
 
-def within(warning: Json, place: str) -> Json:
+def within(warning: Json, owner: str) -> Json:
     """Return a warning of a case as one of what the case is part of."""
-    field = f"{place}.case.{warning['field']}"
+    field = f"{owner}.case.{warning['field']}"
     return warning | {"field": field, "message": warning["message"].replace(warning["field"], field, 1)}
 
 

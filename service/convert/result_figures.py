@@ -1,4 +1,4 @@
-"""What a stored file says in JSON, by the kind of the result."""
+"""The figures of a stored file in JSON, by the kind of the result."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a run's file says about itself."""
+"""The attributes of a run's file."""
 
 from __future__ import annotations
 

@@ -122,22 +122,22 @@ def _assembled(scene: SceneInput, facts: Mapping[str, PairFacts], meshes: tuple[
         )
 
 
-def _inertia(given: InertiaInput) -> Inertia:
+def _inertia(inertia: InertiaInput) -> Inertia:
     """Inertia as given."""
-    return Inertia(given.mass_kg, given.polar_kg_m2, given.transverse_kg_m2)
+    return Inertia(inertia.mass_kg, inertia.polar_kg_m2, inertia.transverse_kg_m2)
 
 
-def _gear(index: int, given: GearBodyInput, teeth: Teeth) -> GearBody:
+def _gear(index: int, gear: GearBodyInput, teeth: Teeth) -> GearBody:
     """Return a gear with the teeth of its mesh."""
     with named(f"gears[{index}]"):
-        if given.inertia is None:
-            inertia = hollow_cylinder(teeth.pitch_diameter, teeth.face_width, given.bore_diameter_mm * MM)
+        if gear.inertia is None:
+            inertia = hollow_cylinder(teeth.pitch_diameter, teeth.face_width, gear.bore_diameter_mm * MM)
         else:
-            inertia = _inertia(given.inertia)
+            inertia = _inertia(gear.inertia)
         return GearBody(
-            name=given.name,
-            shaft=given.shaft,
-            position=given.position_mm * MM,
+            name=gear.name,
+            shaft=gear.shaft,
+            position=gear.position_mm * MM,
             teeth=teeth.teeth,
             base_radius=teeth.base_radius,
             face_width=teeth.face_width,
@@ -147,30 +147,30 @@ def _gear(index: int, given: GearBodyInput, teeth: Teeth) -> GearBody:
         )
 
 
-def _housing(index: int, given: HousingInput) -> Housing:
+def _housing(index: int, housing: HousingInput) -> Housing:
     """Return a housing."""
     with named(f"housings[{index}]"):
-        return Housing(given.name, given.bushings, given.stiffness_matrix, given.damping_matrix)
+        return Housing(housing.name, housing.bushings, housing.stiffness_matrix, housing.damping_matrix)
 
 
-def _coupling(index: int, given: CouplingInput) -> Coupling:
+def _coupling(index: int, coupling: CouplingInput) -> Coupling:
     """Return a coupling."""
     with named(f"couplings[{index}]"):
         return Coupling(
-            given.name,
-            given.first,
-            given.second,
-            given.torsional_stiffness_n_m_per_rad,
-            given.torsional_damping_n_m_s_per_rad,
-            given.position_mm * MM,
-            given.stiffness_matrix,
-            given.damping_matrix,
+            coupling.name,
+            coupling.first,
+            coupling.second,
+            coupling.torsional_stiffness_n_m_per_rad,
+            coupling.torsional_damping_n_m_s_per_rad,
+            coupling.position_mm * MM,
+            coupling.stiffness_matrix,
+            coupling.damping_matrix,
         )
 
 
-def _with_all_planets(given: SceneInput, scene: Scene) -> Scene:
+def _with_all_planets(inputs: SceneInput, scene: Scene) -> Scene:
     """Return the scene with every planet there as often as requested."""
-    for index, planets in enumerate(given.planets):
+    for index, planets in enumerate(inputs.planets):
         angles = None if planets.angles_deg is None else [angle * DEGREE for angle in planets.angles_deg]
         errors = None
         if planets.radial_errors_um is not None or planets.tangential_errors_um is not None:
@@ -182,103 +182,103 @@ def _with_all_planets(given: SceneInput, scene: Scene) -> Scene:
     return scene
 
 
-def _mesh(index: int, given: MeshInput, table: MeshTable, base_pitch: float) -> GearMesh:
+def _mesh(index: int, mesh: MeshInput, table: MeshTable, base_pitch: float) -> GearMesh:
     """Return a mesh with its force table."""
     with named(f"meshes[{index}]"):
         return GearMesh(
-            name=given.name,
-            driver=given.driver,
-            driven=given.driven,
+            name=mesh.name,
+            driver=mesh.driver,
+            driven=mesh.driven,
             table=table,
-            technique=given.technique,
-            damping=given.damping_n_s_per_m,
-            damping_ratio=given.damping_ratio,
-            nominal_force=given.nominal_force_n,
-            position_offset=given.position_offset,
-            misalignment=given.misalignment_um * UM,
-            center_distance_change=given.center_distance_change_mm * MM,
-            coast=_coast_flank(given.coast_flank, base_pitch),
-            friction=given.friction,
+            technique=mesh.technique,
+            damping=mesh.damping_n_s_per_m,
+            damping_ratio=mesh.damping_ratio,
+            nominal_force=mesh.nominal_force_n,
+            position_offset=mesh.position_offset,
+            misalignment=mesh.misalignment_um * UM,
+            center_distance_change=mesh.center_distance_change_mm * MM,
+            coast=_coast_flank(mesh.coast_flank, base_pitch),
+            friction=mesh.friction,
         )
 
 
-def _coast_flank(given: CoastFlankInput | None, base_pitch: float) -> CoastFlank | None:
+def _coast_flank(flank: CoastFlankInput | None, base_pitch: float) -> CoastFlank | None:
     """Return the coast flank; teeth that are equally thick share the pitch less the backlash."""
-    if given is None:
+    if flank is None:
         return None
-    backlash = given.backlash_um * UM
-    thickness = given.tooth_thickness
+    backlash = flank.backlash_um * UM
+    thickness = flank.tooth_thickness
     with named("coast_flank"):
         return CoastFlank(backlash, 0.5 * (1.0 - backlash / base_pitch) if thickness is None else thickness)
 
 
-def _drive(index: int, given: DriveInput) -> ImposedRotation:
+def _drive(index: int, drive: DriveInput) -> ImposedRotation:
     """Return a drive."""
     with named(f"drives[{index}]"):
         law: TimeLaw | AngleLaw
-        if given.angle_deg is not None:
-            law = AngleLaw(given.time_s, tuple(value * DEGREE for value in given.angle_deg))
+        if drive.angle_deg is not None:
+            law = AngleLaw(drive.time_s, tuple(value * DEGREE for value in drive.angle_deg))
         else:
-            law = TimeLaw(given.time_s, tuple(v * RPM for v in given.speed_rpm or ()), given.course)
+            law = TimeLaw(drive.time_s, tuple(v * RPM for v in drive.speed_rpm or ()), drive.course)
         return ImposedRotation(
-            given.name,
-            given.shaft,
+            drive.name,
+            drive.shaft,
             law,
-            given.stiffness_n_m_per_rad,
-            given.damping_n_m_s_per_rad,
-            given.position_mm * MM,
+            drive.stiffness_n_m_per_rad,
+            drive.damping_n_m_s_per_rad,
+            drive.position_mm * MM,
         )
 
 
-def _free_rotation(index: int, given: FreeRotationInput) -> FreeRotation:
+def _free_rotation(index: int, rotation: FreeRotationInput) -> FreeRotation:
     """Return a free rotation."""
     with named(f"free_rotations[{index}]"):
-        return FreeRotation(given.name, given.shaft, given.initial_speed_rpm * RPM, given.sense)
+        return FreeRotation(rotation.name, rotation.shaft, rotation.initial_speed_rpm * RPM, rotation.sense)
 
 
-def _load(index: int, given: LoadTorqueInput) -> LoadTorque:
+def _load(index: int, load: LoadTorqueInput) -> LoadTorque:
     """Return a load."""
     with named(f"loads[{index}]"):
-        law = TimeLaw(given.time_s, given.torque_n_m, given.course)
-        return LoadTorque(given.name, given.shaft, law, given.position_mm * MM)
+        law = TimeLaw(load.time_s, load.torque_n_m, load.course)
+        return LoadTorque(load.name, load.shaft, law, load.position_mm * MM)
 
 
-def _speed_torque(index: int, given: SpeedTorqueInput) -> SpeedTorque:
+def _speed_torque(index: int, torque: SpeedTorqueInput) -> SpeedTorque:
     """Return a torque by speed."""
     with named(f"speed_torques[{index}]"):
-        speed = [value * RPM for value in given.speed_rpm]
-        if given.kind == "table":
-            curve = SpeedCurve.table(speed, given.torque_n_m)
-        elif given.kind == "quadratic":
-            curve = SpeedCurve.quadratic(given.torque_n_m[0], speed[0])
+        speed = [value * RPM for value in torque.speed_rpm]
+        if torque.kind == "table":
+            curve = SpeedCurve.table(speed, torque.torque_n_m)
+        elif torque.kind == "quadratic":
+            curve = SpeedCurve.quadratic(torque.torque_n_m[0], speed[0])
         else:
-            curve = SpeedCurve.constant(given.torque_n_m[0], speed[0])
-        return SpeedTorque(given.name, given.shaft, curve, given.position_mm * MM)
+            curve = SpeedCurve.constant(torque.torque_n_m[0], speed[0])
+        return SpeedTorque(torque.name, torque.shaft, curve, torque.position_mm * MM)
 
 
 def _outputs(scene: SceneInput) -> Outputs:
     """Return what to store."""
-    given = scene.outputs
+    outputs = scene.outputs
     with named("outputs"):
         return Outputs(
-            given.sample_rate_hz,
-            given.bearing_forces,
-            given.displacements,
-            accelerations=given.accelerations,
-            receipt=given.receipt,
-            mesh_orders=given.mesh_orders,
-            anti_alias=given.anti_alias,
+            outputs.sample_rate_hz,
+            outputs.bearing_forces,
+            outputs.displacements,
+            accelerations=outputs.accelerations,
+            receipt=outputs.receipt,
+            mesh_orders=outputs.mesh_orders,
+            anti_alias=outputs.anti_alias,
         )
 
 
 def _integration(scene: SceneInput) -> Integration:
     """Return how to integrate."""
-    given = scene.integration
+    integration = scene.integration
     with named("integration"):
         return Integration(
-            method=given.method,
-            tolerance=given.tolerance_nm * NM,
-            fixed_step=given.fixed_step_s,
+            method=integration.method,
+            tolerance=integration.tolerance_nm * NM,
+            fixed_step=integration.fixed_step_s,
             smallest_step=_SMALLEST_STEP_S,
-            largest_step=given.largest_step_s,
+            largest_step=integration.largest_step_s,
         )

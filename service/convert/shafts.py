@@ -14,49 +14,49 @@ from service.units import MM
 GPA = 1e9
 
 
-def shaft_of(index: int, given: ShaftInput) -> Shaft:
+def shaft_of(index: int, shaft: ShaftInput) -> Shaft:
     """Return a shaft; a diameter is one section of steel, an inertia alone is rigid."""
-    x, y, z = given.origin_mm
-    sections = _sections(index, given)
+    x, y, z = shaft.origin_mm
+    sections = _sections(index, shaft)
     with named(f"shafts[{index}]"):
         return Shaft(
-            given.name,
-            given.length_mm * MM,
+            shaft.name,
+            shaft.length_mm * MM,
             (x * MM, y * MM, z * MM),
-            _inertia(given.inertia),
-            given.frame,
+            _inertia(shaft.inertia),
+            shaft.frame,
             sections,
-            given.damping_ratio,
+            shaft.damping_ratio,
         )
 
 
-def _inertia(given: InertiaInput | None) -> Inertia:
+def _inertia(part: InertiaInput | None) -> Inertia:
     """Return the inertia of a rigid shaft."""
-    return Inertia() if given is None else Inertia(given.mass_kg, given.polar_kg_m2, given.transverse_kg_m2)
+    return Inertia() if part is None else Inertia(part.mass_kg, part.polar_kg_m2, part.transverse_kg_m2)
 
 
-def _sections(index: int, given: ShaftInput) -> tuple[BeamSection, ...]:
+def _sections(index: int, shaft: ShaftInput) -> tuple[BeamSection, ...]:
     """Return the pieces; their lengths, which agree with the shaft's, to the last digit."""
-    if given.diameter_mm is not None:
-        return (BeamSection(given.length_mm * MM, given.diameter_mm * MM),)
-    parts = given.sections or ()
+    if shaft.diameter_mm is not None:
+        return (BeamSection(shaft.length_mm * MM, shaft.diameter_mm * MM),)
+    parts = shaft.sections or ()
     together = sum(part.length_mm for part in parts)
-    found = []
-    for place, part in enumerate(parts):
-        with named(f"shafts[{index}].sections[{place}]"):
-            found.append(_section(part, part.length_mm * (given.length_mm / together) * MM))
-    return tuple(found)
+    sections = []
+    for number, part in enumerate(parts):
+        with named(f"shafts[{index}].sections[{number}]"):
+            sections.append(_section(part, part.length_mm * (shaft.length_mm / together) * MM))
+    return tuple(sections)
 
 
-def _section(given: SectionInput, length: float) -> BeamSection:
+def _section(section: SectionInput, length: float) -> BeamSection:
     """Return a piece of the `length` (m)."""
     return BeamSection(
         length,
-        given.outer_diameter_mm * MM,
-        given.bore_diameter_mm * MM,
-        given.youngs_modulus_gpa * GPA,
-        given.poissons_ratio,
-        given.density_kg_per_m3,
+        section.outer_diameter_mm * MM,
+        section.bore_diameter_mm * MM,
+        section.youngs_modulus_gpa * GPA,
+        section.poissons_ratio,
+        section.density_kg_per_m3,
     )
 
 

@@ -1,4 +1,4 @@
-"""Who does the tasks of a study: a job, or one started from the command line."""
+"""The workers of a study: those of a job, or of the command line."""
 
 from __future__ import annotations
 

@@ -15,13 +15,13 @@ def toml_text(content: Mapping[str, Any]) -> str:
 
 def _table(content: Mapping[str, Any], path: tuple[str, ...], head: str = "[{}]") -> Iterator[str]:
     """Write a table: its values first, then the tables in it."""
-    given = {name: value for name, value in content.items() if value is not None}
-    values = {name: value for name, value in given.items() if not _holds_tables(value)}
-    if path and (values or not given or head != "[{}]"):
+    present = {name: value for name, value in content.items() if value is not None}
+    values = {name: value for name, value in present.items() if not _holds_tables(value)}
+    if path and (values or not present or head != "[{}]"):
         yield f"\n{head.format('.'.join(path))}"
     for name, value in values.items():
         yield f"{name} = {_value(value)}"
-    for name, value in given.items():
+    for name, value in present.items():
         if isinstance(value, Mapping):
             yield from _table(value, (*path, name))
         elif _holds_tables(value):

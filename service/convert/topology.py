@@ -1,4 +1,4 @@
-"""What a scene's meshes say about its gears and axes."""
+"""The gears and axes of a scene by its meshes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _SAME = 1e-6  # relative; lengths that are typed with a few digits agree to this
 
 @dataclass(frozen=True)
 class Teeth:
-    """What a mesh says about one of its gears; SI units, the helix angle with the hand's sign."""
+    """One gear as its mesh describes it; SI units, the helix angle with the hand's sign."""
 
     teeth: int
     base_radius: float
@@ -46,7 +46,7 @@ def facts_of(pair: ParallelAxes) -> PairFacts:
 
 def teeth_of(scene: SceneInput, facts: Mapping[str, PairFacts]) -> dict[str, Teeth]:
     """Teeth of every gear, by name; a gear in two meshes must be the same in both."""
-    found: dict[str, Teeth] = {}
+    by_name: dict[str, Teeth] = {}
     for index, mesh in enumerate(scene.meshes):
         if mesh.wheel_drives and not facts[mesh.name].internal:
             bound = "left out: the wheel of this case is no ring gear"
@@ -54,18 +54,18 @@ def teeth_of(scene: SceneInput, facts: Mapping[str, PairFacts]) -> dict[str, Tee
             raise BadInput.of(f"meshes[{index}].wheel_drives", True, bound, advice)
         for side, role in enumerate(("driven", "driver") if mesh.wheel_drives else ("driver", "driven")):
             name, teeth = getattr(mesh, role), _side(facts[mesh.name], side)
-            known = found.setdefault(name, teeth)
+            known = by_name.setdefault(name, teeth)
             if known.teeth != teeth.teeth or not math.isclose(
                 known.base_radius, teeth.base_radius, rel_tol=PRINTED
             ):
                 bound = f"the gear of {known.teeth} teeth that its other mesh has ({teeth.teeth} teeth here)"
                 raise BadInput.of(f"meshes[{index}].{role}", name, bound, "Check the cases of both meshes.")
     for index, gear in enumerate(scene.gears):
-        if gear.name not in found:
+        if gear.name not in by_name:
             raise BadInput.of(
                 f"gears[{index}].name", gear.name, "part of a mesh", "Add it to a mesh or remove it."
             )
-    return found
+    return by_name
 
 
 def _side(facts: PairFacts, side: int) -> Teeth:
@@ -81,14 +81,14 @@ def check_center_distances(scene: SceneInput, facts: Mapping[str, PairFacts]) ->
     """Refuse axes of meshing gears that are not as far apart as their database says."""
     origin = {shaft.name: shaft.origin_mm for shaft in scene.shafts}
     carrier = {gear.name: gear.shaft for gear in scene.gears}
-    place = {shaft.name: index for index, shaft in enumerate(scene.shafts)}
+    number = {shaft.name: index for index, shaft in enumerate(scene.shafts)}
     for mesh in scene.meshes:
-        one, other = origin[carrier[mesh.driver]], origin[carrier[mesh.driven]]
-        distance = math.hypot(other[0] - one[0], other[1] - one[1])
-        wanted = facts[mesh.name].center_distance / MM
-        if not math.isclose(distance, wanted, rel_tol=_SAME):
-            field = f"shafts[{place[carrier[mesh.driven]]}].origin_mm"
+        first, second = origin[carrier[mesh.driver]], origin[carrier[mesh.driven]]
+        distance = math.hypot(second[0] - first[0], second[1] - first[1])
+        expected = facts[mesh.name].center_distance / MM
+        if not math.isclose(distance, expected, rel_tol=_SAME):
+            field = f"shafts[{number[carrier[mesh.driven]]}].origin_mm"
             bound = (
-                f"{wanted:.7g} mm across the axis from shaft {carrier[mesh.driver]}, not {distance:.7g} mm"
+                f"{expected:.7g} mm across the axis from shaft {carrier[mesh.driver]}, not {distance:.7g} mm"
             )
-            raise BadInput.of(field, list(other), bound, f"That is the center distance of mesh {mesh.name}.")
+            raise BadInput.of(field, list(second), bound, f"That is the center distance of mesh {mesh.name}.")

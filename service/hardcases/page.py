@@ -71,7 +71,7 @@ def _margins(outcomes: Sequence[Outcome]) -> Figure:
         for figure in outcome.figures
         if figure.use is not None and np.isfinite(figure.use)
     ]
-    place, use = np.array(points, dtype=float).reshape(-1, 2).T
+    scenes, use = np.array(points, dtype=float).reshape(-1, 2).T
     worst = max(use.tolist(), default=0.0)
     names = tuple(
         (str(index), o.scene.name, "passed" if o.passed else "FAILED", number(o.seconds, 3))
@@ -80,7 +80,7 @@ def _margins(outcomes: Sequence[Outcome]) -> Figure:
     panel = Panel(
         Axis("scene", limits=(0.0, len(outcomes) + 1.0)),
         Axis("part of the bound that is used", "log"),
-        (Line("figures", place, use, palette.BLUE, width=0, markers=True),),
+        (Line("figures", scenes, use, palette.BLUE, width=0, markers=True),),
         (Reference("bound", 1.0, "horizontal"),),
     )
     return Figure(

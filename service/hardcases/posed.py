@@ -85,11 +85,11 @@ def posed(
     """
     axes = TableAxes(torques, misalignments=[misalignment], pitches=pitches)
     checked = check_request(pair, axes, AnalysisOptions(level=level, model=model, effects=effects or {}))
-    asked = checked.request
-    plan = make_plan(pair, asked.load, asked.options, checked.model)
+    request = checked.request
+    plan = make_plan(pair, request.load, request.options, checked.model)
     contact = pair_contact(pair, plan, None) if bodies is None else _again(bodies, pair, plan)
-    (place,) = operating_points(asked.scene, asked.choices, contact).places
-    return Posed(place.contact, place.model)
+    (point,) = operating_points(request.scene, request.choices, contact).places
+    return Posed(point.contact, point.model)
 
 
 def even_positions(count: int) -> FloatArray:

@@ -47,7 +47,7 @@ class Measured:
 
     @property
     def use(self) -> float | None:
-        """How much of its bound a figure uses; None for a bound of zero or one met exactly (a count)."""
+        """Part of its bound that a figure uses; None for a bound of zero or one met exactly (a count)."""
         if self.value in (self.most, self.least):
             return None
         uses = []
@@ -100,7 +100,7 @@ def cpu_seconds() -> float:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a scene.
+    """The outcome of a scene.
 
     Attributes
     ----------
@@ -129,7 +129,7 @@ class Outcome:
 
     @property
     def failure(self) -> str:
-        """What went wrong; empty if it passed."""
+        """The failure in words; empty if it passed."""
         if self.ended_by or self.passed:
             return self.ended_by
         return (

@@ -1,4 +1,4 @@
-"""What every contact scene must obey: the conditions of contact, and a second solver that agrees."""
+"""Laws of every contact scene: the conditions of contact, and a second solver that agrees."""
 
 from __future__ import annotations
 

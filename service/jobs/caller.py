@@ -1,4 +1,4 @@
-"""Who submits, and how much at a time."""
+"""The caller who submits, and the limit of jobs at a time."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Caller:
-    """Who submits.
+    """The caller who submits.
 
     Attributes
     ----------

@@ -93,7 +93,7 @@ class _Telling(logging.Handler):
 
 
 class _Reporter:
-    """Progress of the work, thinned out in time; stages' starts and ends always pass."""
+    """Progress of the work, decimated in time; stages' starts and ends always pass."""
 
     def __init__(self, channel: TextIO) -> None:
         self._channel, self._stage, self._sent = channel, "", 0.0

@@ -68,7 +68,7 @@ class Claims:
         return self._claim(uuid.uuid4().hex, time.monotonic())
 
     @retried
-    def _claim(self, lease: str, asked: float) -> Claim | None:
+    def _claim(self, lease: str, requested: float) -> Claim | None:
         """Take a computation under a lease of this name, unless that was done already."""
         mine = select(computations).where(computations.c.lease == lease)
         waiting = select(computations).where(computations.c.state == "accepted")
@@ -76,7 +76,7 @@ class Claims:
         with writing(self._engine) as connection:
             row = connection.execute(mine).one_or_none()
             if row is not None:
-                return _claimed(row, asked)
+                return _claimed(row, requested)
             row = connection.execute(oldest).one_or_none()
             if row is None:
                 return None
@@ -84,7 +84,7 @@ class Claims:
             values |= {"owner": self._owner, "lease": lease, "leased_until": self._end(connection)}
             values |= {"message": "Starts.", "updated": now()}
             connection.execute(update(computations).where(computations.c.id == row.id).values(**values))
-            return _claimed(connection.execute(mine).one(), asked)
+            return _claimed(connection.execute(mine).one(), requested)
 
     def _end(self, connection: Connection) -> float:
         """Return when a lease that begins now ends, by the database's clock."""
@@ -164,11 +164,11 @@ class Claims:
             rows = connection.execute(
                 select(computations.c.id).where(*ended).with_for_update(skip_locked=True)
             )
-            found = list(rows.scalars())
+            orphans = list(rows.scalars())
             lease = {"lease": uuid.uuid4().hex, "owner": self._owner, "leased_until": self._end(connection)}
-            if not found:
+            if not orphans:
                 return []
-            chosen = computations.c.id.in_(found)
+            chosen = computations.c.id.in_(orphans)
             connection.execute(update(computations).where(chosen).values(**lease))
             return _running(connection, chosen)
 
@@ -190,12 +190,12 @@ def _under(claims: Collection[Claim]) -> ColumnElement[bool]:
 
 def _running(connection: Connection, which: ColumnElement[bool]) -> list[Claim]:
     """Return those that run, as claims under the leases they have."""
-    asked = time.monotonic()
+    requested = time.monotonic()
     rows = connection.execute(select(computations).where(which, computations.c.state == "running")).all()
-    return [_claimed(row, asked) for row in rows]
+    return [_claimed(row, requested) for row in rows]
 
 
-def _claimed(row: Row[Any], asked: float) -> Claim:
+def _claimed(row: Row[Any], requested: float) -> Claim:
     """Return a row as a claim."""
     inputs = json.loads(row.inputs)
-    return Claim(row.id, row.process, row.key, inputs, row.attempts, row.lease, asked)
+    return Claim(row.id, row.process, row.key, inputs, row.attempts, row.lease, requested)

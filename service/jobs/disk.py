@@ -1,4 +1,4 @@
-"""A disk that takes nothing more: how it shows, and what a job is told."""
+"""A disk that takes nothing more: how it shows, and the message of a job."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 def no_space(error: OSError) -> str:
-    """Return what a job is told whose files found no space; empty if that is not what went wrong."""
+    """Return the message of a job whose files found no space; empty if that is not what went wrong."""
     if error.errno not in _FULL:
         return ""
     return (

@@ -1,4 +1,4 @@
-"""How long computations took: a histogram in the database, in which each is counted when it ends.
+"""Durations of computations: a histogram in the database, in which each is counted when it ends.
 
 It is kept apart from the computations, so that it never falls when those are removed, and is the same for all
 services of one database.
@@ -42,15 +42,15 @@ def _count(connection: Connection, row: Row[Any]) -> None:
     """Count one computation."""
     span = datetime.fromisoformat(row.finished) - datetime.fromisoformat(row.started)
     seconds = max(span.total_seconds(), 0.0)  # machines' clocks differ
-    place = {"process": row.process, "outcome": row.state, "le": bound_of(seconds)}
+    key = {"process": row.process, "outcome": row.state, "le": bound_of(seconds)}
     insert = dialect_of(connection).insert(durations)
-    statement = insert.values(**place, number=1, seconds=seconds, attempts=row.attempts)
+    statement = insert.values(**key, number=1, seconds=seconds, attempts=row.attempts)
     more = {
         "number": durations.c.number + 1,
         "seconds": durations.c.seconds + seconds,
         "attempts": durations.c.attempts + row.attempts,
     }
-    connection.execute(statement.on_conflict_do_update(index_elements=list(place), set_=more))
+    connection.execute(statement.on_conflict_do_update(index_elements=list(key), set_=more))
 
 
 def bound_of(seconds: float) -> str:

@@ -1,4 +1,4 @@
-"""What is implausible about the inputs of a job, before it is done."""
+"""Warnings about implausible inputs of a job, before it is done."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ def input_warnings(inputs: str) -> tuple[Json, ...]:
         return ()
 
 
-def _warnings(given: Json) -> list[Json]:
+def _warnings(inputs: Json) -> list[Json]:
     """Assess a case or a scene."""
-    if given.get("scene") is not None:
-        return _of_scene(SceneInput.model_validate_json(json.dumps(given["scene"])))
-    if given.get("case") is not None:
-        return warnings_of_case(given["case"])
+    if inputs.get("scene") is not None:
+        return _of_scene(SceneInput.model_validate_json(json.dumps(inputs["scene"])))
+    if inputs.get("case") is not None:
+        return warnings_of_case(inputs["case"])
     return []
 
 
@@ -48,13 +48,13 @@ def warnings_of_case(case: Json) -> list[Json]:
 def _of_scene(scene: SceneInput) -> list[Json]:
     """Assess the cases of all meshes, and the scene itself where no mesh takes a stored table."""
     cases = {mesh.name: mesh.case for mesh in scene.meshes if mesh.case is not None}
-    found = [
+    warnings = [
         within(warning, f"meshes[{index}]")
         for index, mesh in enumerate(scene.meshes)
         if mesh.case is not None
         for warning in case_warnings(mesh.case)
     ]
     if len(cases) < len(scene.meshes):
-        return found
+        return warnings
     moving = check_scene(scene, {name: facts_of(gear_pair(case)) for name, case in cases.items()})
-    return [*found, *scene_warnings(scene, moving)]
+    return [*warnings, *scene_warnings(scene, moving)]

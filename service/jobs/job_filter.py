@@ -1,4 +1,4 @@
-"""Which jobs a list shows (OGC API - Processes 1.0, clause 12.2)."""
+"""The filter of a list of jobs (OGC API - Processes 1.0, clause 12.2)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from service.jobs.tables import computations, jobs
 
 
 class Timed(Protocol):
-    """What has begun and ended, RFC 3339."""
+    """A computation that has begun or ended, RFC 3339."""
 
     @property
     def started(self) -> str | None:
@@ -46,16 +46,16 @@ class JobFilter:
 
     def conditions(self) -> list[ColumnElement[bool]]:
         """Return what the database decides: all but the time run."""
-        found: list[ColumnElement[bool]] = []
+        conditions: list[ColumnElement[bool]] = []
         if self.processes:
-            found.append(computations.c.process.in_(self.processes))
+            conditions.append(computations.c.process.in_(self.processes))
         if self.statuses:
-            found.append(_status().in_(self.statuses))
+            conditions.append(_status().in_(self.statuses))
         if self.earliest is not None:
-            found.append(jobs.c.created >= self.earliest)
+            conditions.append(jobs.c.created >= self.earliest)
         if self.latest is not None:
-            found.append(jobs.c.created <= self.latest)
-        return found
+            conditions.append(jobs.c.created <= self.latest)
+        return conditions
 
     @property
     def asks_duration(self) -> bool:

@@ -25,7 +25,7 @@ logger = structlog.get_logger(__name__)
 
 @dataclass(frozen=True)
 class _Held:
-    """A claim, the end of its lease on our own clock, and how its worker is told of renewals."""
+    """A claim, the end of its lease on our own clock, and the call that reports renewals to its worker."""
 
     claim: Claim
     until: float
@@ -33,7 +33,7 @@ class _Held:
 
 
 class Leases:
-    """What one scheduler holds; renewed in a thread of its own, whatever the scheduler waits for.
+    """The leases of one scheduler; renewed in a thread of its own, whatever the scheduler waits for.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ class Leases:
             self._held.clear()
 
     def hold(self, claim: Claim, beat: Callable[[float], None]) -> None:
-        """Renew the lease of a fresh claim from now on; `beat` is told each new end."""
+        """Renew the lease of a fresh claim from now on; `beat` is called with each new end."""
         with self._lock:
             self._held[claim.lease] = _Held(claim, claim.asked + USABLE * self._lease_s, beat)
 
@@ -93,17 +93,17 @@ class Leases:
             held = list(self._held.values())
         if not held:
             return
-        asked = time.monotonic()
-        ours = self._claims.renew([one.claim for one in held])
-        usable = asked + USABLE * self._lease_s
-        for one in held:
-            if one.claim.id in ours and time.monotonic() < min(one.until, usable):
-                self._extend(one, usable)
+        sent = time.monotonic()
+        ours = self._claims.renew([entry.claim for entry in held])
+        usable = sent + USABLE * self._lease_s
+        for entry in held:
+            if entry.claim.id in ours and time.monotonic() < min(entry.until, usable):
+                self._extend(entry, usable)
 
-    def _extend(self, one: _Held, until: float) -> None:
+    def _extend(self, entry: _Held, until: float) -> None:
         """Note a renewal that came in time, and tell the worker."""
         with self._lock:
-            if one.claim.lease not in self._held:
+            if entry.claim.lease not in self._held:
                 return
-            self._held[one.claim.lease] = _Held(one.claim, until, one.beat)
-        one.beat(until)
+            self._held[entry.claim.lease] = _Held(entry.claim, until, entry.beat)
+        entry.beat(until)

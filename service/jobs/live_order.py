@@ -1,4 +1,4 @@
-"""What passes between the service and its live worker: orders one way, answers the other.
+"""Messages between the service and its live worker: orders one way, answers the other.
 
 An order is a line of JSON. An answer is a line of JSON, its head, and as many bytes as that says: the JSON
 for the caller, which the service passes on without reading it.
@@ -42,7 +42,7 @@ class LiveOrder:
 
 @dataclass(frozen=True)
 class AnswerHead:
-    """What goes before the bytes of an answer.
+    """The header before the bytes of an answer.
 
     Attributes
     ----------

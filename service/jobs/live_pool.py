@@ -2,7 +2,7 @@
 
 A question under the name of a caller makes the caller's earlier one obsolete if that has not begun: a slider
 that moves on asks for where it is now. The worker starts with the first question, is replaced when it dies or
-takes too long, and ends when nothing was asked for a while.
+takes too long, and ends when nothing was requested for a while.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class LiveLimits:
 
 @dataclass(frozen=True)
 class _Question:
-    """What one caller waits for."""
+    """The live request that one caller waits for."""
 
     order: LiveOrder
     future: Future[bytes] = field(default_factory=Future)

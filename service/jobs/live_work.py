@@ -1,4 +1,4 @@
-"""What the live worker does: curves of other flanks, and plans; in its own process, never the service's."""
+"""The work of the live worker: curves of other flanks, and plans; in its own process, never the service's."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ def live_ste(inputs: Json) -> Json:
     """Return the curves of a question; the compliances requested last stay in memory."""
     begin = time.process_time()
     question = LiveInput.model_validate_json(json.dumps(inputs["question"]))
-    places = Path(inputs["file"]), Path(inputs["cache"])
-    case, bodies = _bodies(inputs["key"], *places, compute=question.condense)
+    paths = Path(inputs["file"]), Path(inputs["cache"])
+    case, bodies = _bodies(inputs["key"], *paths, compute=question.condense)
     read = time.process_time() - begin
     answer = live_curves(case, bodies, question)
     answer["cost"]["compliance_cpu_seconds"] += read

@@ -21,7 +21,7 @@ from service.store.schema import Schema
 
 @dataclass(frozen=True)
 class Machinery:
-    """What works on one database and one store.
+    """The parts of the service that work on one database and one store.
 
     Attributes
     ----------
@@ -60,8 +60,8 @@ def job_machinery(settings: Settings, registry: Registry, *, works: bool = True)
     engine = open_database(settings.database_address or settings.data_directory / DATABASE_FILE)
     try:
         Schema(engine).check()
-        place = (settings.results_url, settings.results_cache_mb)
-        store = result_store(engine, settings.data_directory, *place)
+        target = (settings.results_url, settings.results_cache_mb)
+        store = result_store(engine, settings.data_directory, *target)
     except BaseException:
         engine.dispose()
         raise

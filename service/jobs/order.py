@@ -1,4 +1,4 @@
-"""What passes between the service and a worker: the order, the progress, the outcome."""
+"""Messages between the service and a worker: the order, the progress, the outcome."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class Product:
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a worker ended.
+    """The end of a worker.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a request checks beyond its schema, and the normalized inputs that are hashed and worked on.
+"""Checks of a request beyond its schema, and the normalized inputs that are hashed and worked on.
 
 Loads both libraries; the catalogue refers to these functions by name, so that a service answers before.
 """

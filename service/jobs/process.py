@@ -1,4 +1,4 @@
-"""What can be run: a process, and the registry of them."""
+"""A process that can be run, and the registry of all."""
 
 from __future__ import annotations
 

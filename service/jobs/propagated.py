@@ -1,4 +1,4 @@
-"""An error of another process, told as that process told it."""
+"""An error of another process, reported as that process reported it."""
 
 from __future__ import annotations
 

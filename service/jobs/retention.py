@@ -69,8 +69,8 @@ class Retention:
 
     def _jobs(self, since: str, *, dry_run: bool) -> Iterator[Leftover]:
         """Remove ended jobs that nobody requested since an instant, and the computations of no job."""
-        while found := self._forgotten(since, dry_run=dry_run):
-            yield from (Leftover("not asked for", f"job {name}", 0) for name in found)
+        while names := self._forgotten(since, dry_run=dry_run):
+            yield from (Leftover("not asked for", f"job {name}", 0) for name in names)
             if dry_run:
                 return
 
@@ -82,12 +82,12 @@ class Retention:
         old = select(jobs.c.id).join(computations, jobs.c.computation_id == computations.c.id)
         with writing(self._engine, in_turn=True) as connection:
             chosen = old.where(ended, unasked)
-            found = list(connection.execute(chosen if dry_run else chosen.limit(_AT_ONCE)).scalars())
+            names = list(connection.execute(chosen if dry_run else chosen.limit(_AT_ONCE)).scalars())
             if not dry_run:
-                connection.execute(delete(jobs).where(jobs.c.id.in_(found)))
-                wanted = exists().where(jobs.c.computation_id == computations.c.id)
-                connection.execute(delete(computations).where(ended, ~wanted))
-        return found
+                connection.execute(delete(jobs).where(jobs.c.id.in_(names)))
+                needed = exists().where(jobs.c.computation_id == computations.c.id)
+                connection.execute(delete(computations).where(ended, ~needed))
+        return names
 
     def _workspaces(self, *, dry_run: bool) -> Iterator[Leftover]:
         """Remove workspaces of computations that neither wait nor run."""
@@ -111,8 +111,8 @@ class Retention:
 
     def _old(self, folder: str) -> list[Path]:
         """Return what is in a folder of the data directory and not quite new."""
-        place = self._data_directory / folder
-        paths = sorted(place.iterdir()) if place.is_dir() else []
+        directory = self._data_directory / folder
+        paths = sorted(directory.iterdir()) if directory.is_dir() else []
         return [path for path in paths if time.time() - path.stat().st_mtime > GRACE_S]
 
     @retried

@@ -1,4 +1,4 @@
-"""What a request can check of a scene: whether it can be, and whether its tables can be had."""
+"""Checks of a scene at the request: it is feasible, and its tables can be had."""
 
 from __future__ import annotations
 
@@ -24,26 +24,26 @@ def check_scene_inputs(scene: SceneInput, store: ResultStore) -> None:
     )
 
 
-def _facts(place: str, mesh: MeshInput, store: ResultStore) -> PairFacts:
+def _facts(field: str, mesh: MeshInput, store: ResultStore) -> PairFacts:
     """Return the facts of a mesh's pair, from its case or its stored database."""
-    _check_source(place, mesh, store)
+    _check_source(field, mesh, store)
     if mesh.case is not None:
         try:
             return facts_of(check_case(mesh.case))
         except BadInput as error:
-            raise error.within(f"{place}.case") from None
+            raise error.within(f"{field}.case") from None
     return SteDatabase.from_netcdf(store.verified(str(mesh.database_hash), "database").path).facts
 
 
-def _check_source(place: str, mesh: MeshInput, store: ResultStore) -> None:
+def _check_source(field: str, mesh: MeshInput, store: ResultStore) -> None:
     """Refuse files of the callers, which a service does not read, and hashes it does not hold."""
     for name, path in (("case_file", mesh.case_file), ("database_file", mesh.database_file)):
         if path is not None:
             bound = "left out: the service reads no files of its callers"
             advice = "Write the case out, or submit it and give database_hash; the client does this for you."
-            raise BadInput.of(f"{place}.{name}", path, bound, advice)
+            raise BadInput.of(f"{field}.{name}", path, bound, advice)
     key = mesh.database_hash
     if key is not None and store.find(key, "database") is None:
         raise BadInput.of(
-            f"{place}.database_hash", key, "the hash of a stored database", "Submit its case first."
+            f"{field}.database_hash", key, "the hash of a stored database", "Submit its case first."
         )

@@ -117,15 +117,15 @@ class Scheduler:
     def _put_all_back(self) -> None:
         """End all workers; without a database the leases end by themselves."""
         running = list(self._running.values())
-        for one in running:
-            one.worker.end_group()
+        for run in running:
+            run.worker.end_group()
         deadline = time.monotonic() + _STOPPING_S
-        for one in running:
-            self._kill(one, "stopped", patience_s=max(deadline - time.monotonic(), 0.0))
+        for run in running:
+            self._kill(run, "stopped", patience_s=max(deadline - time.monotonic(), 0.0))
         with contextlib.suppress(ServiceError):
             self._settle_all()
-            for one in running:
-                self._claims.put_back(one.claim, "Waits: the service was stopped.", counted=False)
+            for run in running:
+                self._claims.put_back(run.claim, "Waits: the service was stopped.", counted=False)
 
     def _turn(self) -> None:
         """Do one round; what needs no database comes first."""
@@ -244,7 +244,7 @@ class Scheduler:
 
 
 def _too_late(deadline_s: float) -> str:
-    """Return what a job is told that took too long."""
+    """Return the message of a job that took too long."""
     return (
         f"The deadline of {deadline_s:g} s (LOA_DEADLINE_S) passed. Ask for a coarser level or fewer "
         "positions, of a run for a shorter one, or start the service with a later deadline."

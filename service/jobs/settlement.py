@@ -1,4 +1,4 @@
-"""The end of an attempt: what was made is stored, or the table told why there is nothing."""
+"""The end of an attempt: its products are stored, or the table states why there are none."""
 
 from __future__ import annotations
 

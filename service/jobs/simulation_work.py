@@ -42,14 +42,14 @@ class OrderedScene:
 
 def ordered_scene(order: WorkOrder, progress: Progress) -> OrderedScene:
     """Gather or compute the tables of the scene of an order."""
-    given = SceneInput.model_validate_json(json.dumps(order.inputs["scene"]))
+    inputs = SceneInput.model_validate_json(json.dumps(order.inputs["scene"]))
     products: list[Product] = []
     databases: dict[str, SteDatabase] = {}
-    for index, mesh in enumerate(given.meshes):
+    for index, mesh in enumerate(inputs.meshes):
         databases[mesh.name] = _table(order, index, mesh, products, progress)
-    scene = dynamic_scene(given, databases)
+    scene = dynamic_scene(inputs, databases)
     tables = {name: database.metadata.warnings for name, database in databases.items()}
-    return OrderedScene(scene, tuple(products), scene_warnings(given, scene, tables))
+    return OrderedScene(scene, tuple(products), scene_warnings(inputs, scene, tables))
 
 
 def _run(scene: Scene, file: Path, progress: Progress) -> None:

@@ -49,7 +49,7 @@ class Submissions:
         stored : bool
             Whether the store was seen to have the result.
         looked : str, optional
-            When that was asked: work that has ended since is shared too, its result being there by now.
+            When that was requested: work that has ended since is shared too, its result being there by now.
         caller : Caller
         delivery : Delivery
             The form in which this job shows its result.
@@ -123,21 +123,21 @@ class Submissions:
             with writing(self._engine, patience_ms=BRIEF_MS) as connection:
                 connection.execute(update(jobs).where(jobs.c.id == row.job_id).values(asked=now()))
 
-    def page(self, limit: int, wanted: JobFilter = EVERY_JOB, after: Mark | None = None) -> list[Job]:
+    def page(self, limit: int, job_filter: JobFilter = EVERY_JOB, after: Mark | None = None) -> list[Job]:
         """Return up to `limit` jobs that are wanted, the newest first, those behind the mark `after`."""
-        found: list[Job] = []
-        size = _LOOKED_AT if wanted.asks_duration else limit
+        matching: list[Job] = []
+        size = _LOOKED_AT if job_filter.asks_duration else limit
         while True:
-            looked_at = self._newest(size, wanted, after)
-            found += [job for job in looked_at if wanted.lasted(job)]
-            if len(looked_at) < size or len(found) >= limit:
-                return found[:limit]
+            looked_at = self._newest(size, job_filter, after)
+            matching += [job for job in looked_at if job_filter.lasted(job)]
+            if len(looked_at) < size or len(matching) >= limit:
+                return matching[:limit]
             after = Mark(looked_at[-1].created, looked_at[-1].id)
 
     @retried
-    def _newest(self, limit: int, wanted: JobFilter, after: Mark | None) -> list[Job]:
+    def _newest(self, limit: int, job_filter: JobFilter, after: Mark | None) -> list[Job]:
         """Return jobs that meet what the database decides."""
-        statement = select_jobs().where(*wanted.conditions())
+        statement = select_jobs().where(*job_filter.conditions())
         if after is not None:
             statement = statement.where(behind(after, jobs.c.created, jobs.c.id))
         with reading(self._engine) as connection:

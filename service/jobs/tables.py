@@ -1,4 +1,4 @@
-"""Tables of jobs: a job is one caller's wish, a computation is the work that several jobs may share."""
+"""Tables of jobs: a job is one caller's request, a computation is the work that several jobs may share."""
 
 from __future__ import annotations
 

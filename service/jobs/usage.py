@@ -1,4 +1,4 @@
-"""What a worker took: time, CPU time, memory."""
+"""Resources that a worker used: time, CPU time, memory."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ BYTES_PER_MB = float(1 << 20)
 
 @dataclass(frozen=True)
 class Usage:
-    """What a worker took from its start to its end.
+    """Resources that a worker used from its start to its end.
 
     Attributes
     ----------
@@ -20,7 +20,7 @@ class Usage:
     cpu_s : float
         CPU time of the process and of what it has waited for, s.
     peak_mb : float
-        Most resident memory, MB: as the process itself has told with its outcome; of one that told none at
+        Most resident memory, MB: as the process itself reported with its outcome; of one that did not, at
         least that of the process that started it, whose memory the system counts until the program is loaded.
     """
 

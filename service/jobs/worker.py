@@ -170,7 +170,7 @@ class Worker:
 
 
 def _cause(code: int) -> str:
-    """Why a worker ended without an outcome."""
+    """Return why a worker ended without an outcome."""
     if name := ending_signal(code):
         hint = " (it may have run out of memory)" if name in _OF_LITTLE_MEMORY else ""
         return f"The worker was ended by {name}{hint}."

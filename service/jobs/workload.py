@@ -1,4 +1,4 @@
-"""What the database tells of the load: equal for all services on it, whoever is asked."""
+"""The load as the database knows it: equal for all services on it."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def _durations(connection: Connection) -> tuple[Durations, ...]:
     """Add classes up to histograms."""
     rows = connection.execute(select(durations).order_by(durations.c.process, durations.c.outcome)).all()
     names = dict.fromkeys((row.process, row.outcome) for row in rows)
-    found = []
+    histograms = []
     for process, outcome in names:
         mine = [row for row in rows if (row.process, row.outcome) == (process, outcome)]
         bounds = sorted({bound_of(b) for b in BOUNDS_S} | {row.le for row in mine}, key=float)
@@ -106,8 +106,8 @@ def _durations(connection: Connection) -> tuple[Durations, ...]:
             (bound, sum(row.number for row in mine if float(row.le) <= float(bound))) for bound in bounds
         )
         seconds, attempts = sum(row.seconds for row in mine), sum(row.attempts for row in mine)
-        found.append(Durations(process, outcome, buckets, seconds, attempts))
-    return tuple(found)
+        histograms.append(Durations(process, outcome, buckets, seconds, attempts))
+    return tuple(histograms)
 
 
 def _results(connection: Connection) -> tuple[tuple[str, int, int], ...]:

@@ -58,6 +58,6 @@ def _own() -> dict[str, Path]:
 
 def _plotly() -> Path:
     """Return the script in the plotly package, which need not be imported for it."""
-    found = importlib.util.find_spec("plotly")
-    assert found is not None and found.origin is not None
-    return Path(found.origin).parent / "package_data" / PLOTLY
+    spec = importlib.util.find_spec("plotly")
+    assert spec is not None and spec.origin is not None
+    return Path(spec.origin).parent / "package_data" / PLOTLY

@@ -1,4 +1,4 @@
-"""What can go wrong at the boundary, in one tree and one shape.
+"""The errors of the boundary, in one tree and one shape.
 
 ::
 

@@ -1,4 +1,4 @@
-"""What may be asked again later, or after something else."""
+"""Errors of requests that may be repeated later, or after something else."""
 
 from __future__ import annotations
 

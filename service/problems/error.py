@@ -1,4 +1,4 @@
-"""What all errors of the service share, and the two that anything may raise."""
+"""The base of all errors of the service, and the two that anything may raise."""
 
 from __future__ import annotations
 

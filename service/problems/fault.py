@@ -61,14 +61,14 @@ def _pieces(value: object) -> Iterator[str]:
     """Yield what `repr` would write, piece by piece, so that no more of a long list is written than shown."""
     if type(value) is list:
         yield "["
-        for place, item in enumerate(value):
-            yield ", " if place else ""
+        for index, item in enumerate(value):
+            yield ", " if index else ""
             yield from _pieces(item)
         yield "]"
     elif type(value) is dict:
         yield "{"
-        for place, (name, item) in enumerate(value.items()):
-            yield f", {name!r}: " if place else f"{name!r}: "
+        for index, (name, item) in enumerate(value.items()):
+            yield f", {name!r}: " if index else f"{name!r}: "
             yield from _pieces(item)
         yield "}"
     else:

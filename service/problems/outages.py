@@ -1,4 +1,4 @@
-"""What does not answer, or not as it should."""
+"""Errors of parts that do not answer, or not as they should."""
 
 from __future__ import annotations
 

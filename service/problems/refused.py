@@ -66,7 +66,7 @@ class HeadTooLarge(ServiceError):
 
 
 class Malformed(ServiceError):
-    """What came is no request."""
+    """The bytes received are no request."""
 
     status = 400
     type = "urn:lineofaction:problem:malformed"

@@ -48,7 +48,7 @@ def order_amplitudes(
     frequency: FloatArray, amplitude: FloatArray, mesh: FloatArray
 ) -> list[tuple[float, float]]:
     """Return frequency and amplitude of the largest line in the band that each mesh order sweeps."""
-    found = []
+    peaks = []
     spacing = float(frequency[0])  # the first line stands one spacing above zero
     for order in range(1, ORDERS + 1):
         low, high = order * float(mesh.min()) - spacing, order * float(mesh.max()) + spacing
@@ -56,8 +56,8 @@ def order_amplitudes(
         if band.size == 0:
             break
         peak = band[np.argmax(amplitude[band])]
-        found.append((float(frequency[peak]), float(amplitude[peak])))
-    return found
+        peaks.append((float(frequency[peak]), float(amplitude[peak])))
+    return peaks
 
 
 def _panel(frequency: FloatArray, amplitude: FloatArray, mesh: float, valid: int) -> Panel:

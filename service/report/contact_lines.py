@@ -13,35 +13,35 @@ from service.report.figure import Axis, Figure, FloatArray, Panel, Reference, St
 SHOWN = 8  # positions
 
 
-def contact_lines(found: LoadDistribution) -> Figure:
+def contact_lines(flanks: LoadDistribution) -> Figure:
     """Draw contact lines at positions spread over the cycle, and those of the largest pressure alone."""
-    worst = int(found.pressure.max(axis=(1, 2)).argmax())
-    step = max(found.position.size // SHOWN, 1)
-    chosen = np.arange(0, found.position.size, step)
-    load = _strokes(found, chosen, 1e-3 * found.line_load, "line load, N/mm")
-    pressure = _strokes(found, np.array([worst]), 1e-6 * found.pressure, "Hertz pressure, MPa")
-    at = f"{found.position[worst]:.3g}"
-    x, y = _axes(found)
+    worst = int(flanks.pressure.max(axis=(1, 2)).argmax())
+    step = max(flanks.position.size // SHOWN, 1)
+    chosen = np.arange(0, flanks.position.size, step)
+    load = _strokes(flanks, chosen, 1e-3 * flanks.line_load, "line load, N/mm")
+    pressure = _strokes(flanks, np.array([worst]), 1e-6 * flanks.pressure, "Hertz pressure, MPa")
+    at = f"{flanks.position[worst]:.3g}"
+    x, y = _axes(flanks)
     return Figure(
         key="contact_lines",
         title="Contact lines in the plane of action",
         caption="Where the tooth pairs touch: face across, path of contact upwards from the pinion's root "
         "(A) to its tip (E). Color and thickness: what the line carries there; thin gray: the flanks could "
         "touch but carry nothing.",
-        alternative=f"At most {number(float(1e-3 * found.line_load.max()), 4)} N/mm; at position {at}, the "
-        f"one of the largest pressure, {_carrying(found, worst)} tooth pairs carry load.",
+        alternative=f"At most {number(float(1e-3 * flanks.line_load.max()), 4)} N/mm; at position {at}, the "
+        f"one of the largest pressure, {_carrying(flanks, worst)} tooth pairs carry load.",
         content=(
-            Panel(x, y, (), _marks(found), f"line load at {chosen.size} positions of the cycle", load),
-            Panel(x, y, (), _marks(found), f"pressure at position {at}, where it is largest", pressure),
+            Panel(x, y, (), _marks(flanks), f"line load at {chosen.size} positions of the cycle", load),
+            Panel(x, y, (), _marks(flanks), f"pressure at position {at}, where it is largest", pressure),
         ),
-        table=_table(found, chosen),
+        table=_table(flanks, chosen),
     )
 
 
-def _axes(found: LoadDistribution) -> tuple[Axis, Axis]:
+def _axes(flanks: LoadDistribution) -> tuple[Axis, Axis]:
     """Face and path of contact, mm."""
-    low, high = (1e3 * end for end in found.scene.common_face)
-    start, *_, end = (1e3 * point for point in found.scene.path_of_contact)
+    low, high = (1e3 * end for end in flanks.scene.common_face)
+    start, *_, end = (1e3 * point for point in flanks.scene.path_of_contact)
     room = 0.06 * (end - start)
     return (
         Axis("face position, mm (0 = mid-face of the pinion)", limits=(low, high)),
@@ -49,9 +49,9 @@ def _axes(found: LoadDistribution) -> tuple[Axis, Axis]:
     )
 
 
-def _marks(found: LoadDistribution) -> tuple[Reference, ...]:
+def _marks(flanks: LoadDistribution) -> tuple[Reference, ...]:
     """Mark A, C, E, and B and D where one pair alone can carry."""
-    points = dict(zip("ABCDE", found.scene.path_of_contact, strict=True))
+    points = dict(zip("ABCDE", flanks.scene.path_of_contact, strict=True))
     single = points["A"] < points["B"] < points["D"] < points["E"]
     names = "ABCDE" if single else "ACE"
     return tuple(
@@ -59,32 +59,32 @@ def _marks(found: LoadDistribution) -> tuple[Reference, ...]:
     )
 
 
-def _strokes(found: LoadDistribution, chosen: IntArray, values: FloatArray, label: str) -> Strokes:
+def _strokes(flanks: LoadDistribution, chosen: IntArray, values: FloatArray, label: str) -> Strokes:
     """One stroke per slice that can touch, as long as the slice is wide and as oblique as the helix."""
-    present = (found.on_path | (found.force > 0.0))[chosen]
-    roll, face = 1e3 * found.roll_length_1[chosen], 1e3 * found.face_position
-    rise = -0.5e3 * found.slice_width * math.tan(found.base_helix_angle) * found.on_path[chosen]
-    half = 0.5e3 * found.slice_width
+    present = (flanks.on_path | (flanks.force > 0.0))[chosen]
+    roll, face = 1e3 * flanks.roll_length_1[chosen], 1e3 * flanks.face_position
+    rise = -0.5e3 * flanks.slice_width * math.tan(flanks.base_helix_angle) * flanks.on_path[chosen]
+    half = 0.5e3 * flanks.slice_width
     x = np.stack(np.broadcast_arrays(face - half, face + half), axis=-1)
     ends = np.stack([roll - rise, roll + rise], axis=-1)[present]
     across = np.broadcast_to(x, (*present.shape, 2))[present]
     return Strokes(across, ends, values[chosen][present], label, float(values.max()))
 
 
-def _carrying(found: LoadDistribution, position: int) -> int:
+def _carrying(flanks: LoadDistribution, position: int) -> int:
     """Count the pairs that carry load."""
-    return int(np.count_nonzero(found.force[position].sum(axis=-1)))
+    return int(np.count_nonzero(flanks.force[position].sum(axis=-1)))
 
 
-def _table(found: LoadDistribution, chosen: IntArray) -> Table:
+def _table(flanks: LoadDistribution, chosen: IntArray) -> Table:
     """Pairs in contact, line load and pressure at the positions shown."""
     rows = tuple(
         (
-            f"{found.position[k]:.4g}",
-            str(_carrying(found, int(k))),
-            number(1e-3 * float(found.line_load[k].max())),
-            number(float(found.line_load_factor[k]), 3),
-            number(1e-6 * float(found.pressure[k].max())),
+            f"{flanks.position[k]:.4g}",
+            str(_carrying(flanks, int(k))),
+            number(1e-3 * float(flanks.line_load[k].max())),
+            number(float(flanks.line_load_factor[k]), 3),
+            number(1e-6 * float(flanks.pressure[k].max())),
         )
         for k in chosen
     )

@@ -1,4 +1,4 @@
-"""What the page holds, from whatever was read."""
+"""The content of the page, by what was read."""
 
 from __future__ import annotations
 

@@ -45,12 +45,12 @@ def deviation_curves(database: SteDatabase) -> Figure:
 
 
 def _ripple(
-    database: SteDatabase, deviations: FloatArray, place: Callable[[float], tuple[float, float]]
+    database: SteDatabase, deviations: FloatArray, point: Callable[[float], tuple[float, float]]
 ) -> FloatArray:
     """Peak to peak in um (n, F) at the places of the deviations."""
-    found = np.empty((deviations.size, database.force.size))
+    ripple = np.empty((deviations.size, database.force.size))
     for i, deviation in enumerate(deviations):
-        misalignment, change = place(float(deviation))
+        misalignment, change = point(float(deviation))
         for k, force in enumerate(database.force):
             curve = database.curve(
                 force=float(force),
@@ -58,8 +58,8 @@ def _ripple(
                 center_distance_change=change,
                 allow_failed=True,
             )
-            found[i, k] = 1e6 * curve.peak_to_peak.value
-    return found
+            ripple[i, k] = 1e6 * curve.peak_to_peak.value
+    return ripple
 
 
 def _words(database: SteDatabase, axes: list[tuple[Axis, FloatArray, FloatArray]]) -> str:

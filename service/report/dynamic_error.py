@@ -29,10 +29,10 @@ def dynamic_error(run: RunSeries) -> Figure:
 
 def _panel(run: RunSeries, speed: float, window: slice) -> Panel:
     """Draw one speed."""
-    place = run.position[window] - np.floor(run.position[window][0] + 1e-6)
+    position = run.position[window] - np.floor(run.position[window][0] + 1e-6)
     lines = (
-        Line("dynamic", place, 1e6 * run.dynamic_error[window], palette.BLUE),
-        Line("static", place, 1e6 * run.static_error[window], palette.VERMILLION, "dash"),
+        Line("dynamic", position, 1e6 * run.dynamic_error[window], palette.BLUE),
+        Line("static", position, 1e6 * run.static_error[window], palette.VERMILLION, "dash"),
     )
     title = f"{number(speed, 3)} rpm, passed at {number(float(run.time[window].mean()), 3)} s"
     return Panel(_X, Axis("transmission error, µm"), lines, title=title)

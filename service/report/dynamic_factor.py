@@ -15,14 +15,14 @@ PITCHES = 16
 
 def dynamic_factor_figure(run: RunResult) -> Figure:
     """Draw largest, mean and least mesh force over the nominal one."""
-    found = dynamic_factor(run, PITCHES)
-    axis, place = run_axis(run, found.time)
+    factor = dynamic_factor(run, PITCHES)
+    axis, abscissa = run_axis(run, factor.time)
     lines = (
-        Line("largest", place, found.largest, palette.VERMILLION),
-        Line("mean", place, found.mean, palette.INK, "dash"),
-        Line("least", place, found.least, palette.BLUE),
+        Line("largest", abscissa, factor.largest, palette.VERMILLION),
+        Line("mean", abscissa, factor.mean, palette.INK, "dash"),
+        Line("least", abscissa, factor.least, palette.BLUE),
     )
-    worst = int(np.argmax(found.largest))
+    worst = int(np.argmax(factor.largest))
     unit = axis.label.rpartition(",")[2].strip()
     return Figure(
         key="dynamic_factor",
@@ -30,7 +30,7 @@ def dynamic_factor_figure(run: RunResult) -> Figure:
         caption=f"Force of the driving flank over the nominal one, in blocks of {PITCHES} pitches. "
         "The largest is the dynamic factor K_v; where the least is 0 the flanks part. The mean differs "
         "from 1 by what accelerates the train.",
-        alternative=f"Largest {number(float(found.largest[worst]), 4)} at "
-        f"{number(float(place[worst]), 3)} {unit}, least {number(float(found.least.min()), 3)}.",
+        alternative=f"Largest {number(float(factor.largest[worst]), 4)} at "
+        f"{number(float(abscissa[worst]), 3)} {unit}, least {number(float(factor.least.min()), 3)}.",
         content=(Panel(axis, Axis("mesh force over nominal, 1"), lines),),
     )

@@ -1,4 +1,4 @@
-"""What the page says of a run: main results, figures, accuracy, cost, effects and scene."""
+"""A run on the page: main results, figures, accuracy, cost, effects and scene."""
 
 from __future__ import annotations
 
@@ -104,8 +104,8 @@ def _contact(run: RunResult) -> Table:
     shares = contact_shares(run)
     states = tuple(shares[0])
     rows = tuple(
-        (mesh, *(number(100.0 * found[state], 3) for state in states))
-        for mesh, found in zip(run.mesh, shares, strict=True)
+        (mesh, *(number(100.0 * share[state], 3) for state in states))
+        for mesh, share in zip(run.mesh, shares, strict=True)
     )
     head = (
         "mesh",

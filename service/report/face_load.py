@@ -1,4 +1,4 @@
-"""Where along the face the load acts, and the largest pressure, over position."""
+"""Position of the load along the face, and the largest pressure, over position."""
 
 from __future__ import annotations
 

@@ -29,10 +29,10 @@ def records(caption: str, content: Sequence[Mapping[str, Any]]) -> Table:
 
 def side_by_side(caption: str, columns: Mapping[str, Mapping[str, Any]]) -> Table:
     """Tabulate settings of the same names beside each other, for example of both gears."""
-    found = {name: dict(_rows(content)) for name, content in columns.items()}
-    labels = dict.fromkeys(label for content in found.values() for label in content)
-    rows = tuple((label, *(content.get(label, "") for content in found.values())) for label in labels)
-    return Table(caption, ("quantity", *found), rows)
+    contents = {name: dict(_rows(content)) for name, content in columns.items()}
+    labels = dict.fromkeys(label for content in contents.values() for label in content)
+    rows = tuple((label, *(content.get(label, "") for content in contents.values())) for label in labels)
+    return Table(caption, ("quantity", *contents), rows)
 
 
 def _rows(content: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, str]]:

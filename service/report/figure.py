@@ -1,4 +1,4 @@
-"""What a plot shows, apart from how it is drawn: one description for plotly and matplotlib."""
+"""The content of a plot: one description for plotly and matplotlib."""
 
 from __future__ import annotations
 

@@ -95,9 +95,9 @@ def _finish(ax: Axes, panel: Panel) -> None:
     for reference in panel.references:
         _refer(ax, reference, boxed=panel.shade is not None)
     for note in panel.notes:
-        place = (-5 if note.left else 5, 4 + _NOTE_ROW * note.row - (8 if note.row < 0 else 0))
+        offset = (-5 if note.left else 5, 4 + _NOTE_ROW * note.row - (8 if note.row < 0 else 0))
         side = "right" if note.left else "left"
-        ax.annotate(note.text, (note.x, note.y), place, textcoords="offset points", ha=side, fontsize=8)
+        ax.annotate(note.text, (note.x, note.y), offset, textcoords="offset points", ha=side, fontsize=8)
     if panel.title:
         ax.set_title(panel.title, loc="left", fontsize=10, fontweight="bold")
     ax.grid(color=palette.GRID, lw=0.6)

@@ -29,7 +29,7 @@ _READERS: dict[str, tuple[tuple[str, str], Callable[[Path], Any]]] = {
 
 @dataclass(frozen=True)
 class Inputs:
-    """What was read; at least one of them.
+    """The results that were read; at least one of them.
 
     `pages` are those of studies, by the kind of their results; `warnings` are those of all files, in words.
     """

@@ -57,11 +57,11 @@ def _panels(panels: tuple[Panel, ...]) -> Json:
     for index, panel in enumerate(panels):
         suffix = str(index + 1) if index else ""
         domain = _domain(_PANEL_HEIGHT * index + sum(gaps[:index]), inner)
-        place = {"domain": domain, "anchor": "x" + suffix}
+        frame = {"domain": domain, "anchor": "x" + suffix}
         layout["xaxis" + suffix] = _axis(panel.x) | {"anchor": "y" + suffix}
         if repeats_below(panels, index):
             layout["xaxis" + suffix] |= {"title": {"text": ""}}
-        layout["yaxis" + suffix] = _axis(panel.y) | place
+        layout["yaxis" + suffix] = _axis(panel.y) | frame
         layout["annotations"] += _panel_title(panel, suffix) + _notes(panel, suffix)
         if panel.shade is not None:
             data += shade_traces(panel.shade, suffix, domain)
@@ -148,22 +148,22 @@ def _panel_title(panel: Panel, suffix: str) -> list[Json]:
     """Put the panel's title at its upper left, inside the plot's frame of reference."""
     if not panel.title:
         return []
-    place = {"xref": f"x{suffix} domain", "yref": f"y{suffix} domain", "x": 0, "y": 1}
+    frame = {"xref": f"x{suffix} domain", "yref": f"y{suffix} domain", "x": 0, "y": 1}
     anchor = {"xanchor": "left", "yanchor": "bottom", "showarrow": False}
-    return [place | anchor | {"text": f"<b>{panel.title}</b>"}]
+    return [frame | anchor | {"text": f"<b>{panel.title}</b>"}]
 
 
 def _notes(panel: Panel, suffix: str) -> list[Json]:
     """Put short texts beside their points; annotations count decades on a logarithmic axis."""
-    found = []
+    notes = []
     for note in panel.notes:
-        place = {"xref": "x" + suffix, "yref": "y" + suffix, "showarrow": False, "text": note.text}
+        annotation = {"xref": "x" + suffix, "yref": "y" + suffix, "showarrow": False, "text": note.text}
         for name, axis, value in (("x", panel.x, note.x), ("y", panel.y, note.y)):
-            place[name] = float(np.log10(value)) if axis.scale == "log" else value
+            annotation[name] = float(np.log10(value)) if axis.scale == "log" else value
         shifts = {"xshift": -4 if note.left else 4, "yshift": _NOTE_ROW * note.row}
         side = {"xanchor": "right" if note.left else "left", "yanchor": "bottom"}
-        found.append(place | shifts | side | {"font": {"size": 12}})
-    return found
+        notes.append(annotation | shifts | side | {"font": {"size": 12}})
+    return notes
 
 
 def _add_reference(layout: Json, reference: Reference, panel: Panel, suffix: str) -> None:
@@ -178,13 +178,13 @@ def _add_reference(layout: Json, reference: Reference, panel: Panel, suffix: str
     layout["shapes"].append({"type": "line", "layer": layer} | along | extent | stroke)
     scale = panel.x.scale if upright else panel.y.scale
     value = float(np.log10(reference.value)) if scale == "log" else reference.value
-    place = {"x": value, "y": 1} if upright else {"x": reference.at, "y": value}
+    position = {"x": value, "y": 1} if upright else {"x": reference.at, "y": value}
     across = "left" if upright else "center" if reference.at == 0.5 else "right"
     anchor = {"xanchor": across, "yanchor": "top" if upright else "bottom"}
     text: Json = {"text": reference.label, "showarrow": False, "font": {"size": 12, "color": palette.MUTED}}
     if panel.shade is not None:
         text |= {"bgcolor": "rgba(255,255,255,0.8)", "font": {"size": 12, "color": palette.INK}}
-    layout["annotations"].append(along | place | anchor | text)
+    layout["annotations"].append(along | position | anchor | text)
 
 
 def _surface(surface: Surface) -> Json:

@@ -22,9 +22,9 @@ def color_scale() -> list[list[Any]]:
 
 def shade_traces(shade: HeatMap | Strokes, suffix: str, domain: list[float]) -> list[Json]:
     """Return the traces of one panel whose axes carry `suffix` and which spans `domain` of the height."""
-    place = {"xaxis": "x" + suffix, "yaxis": "y" + suffix, "showlegend": False}
+    axes = {"xaxis": "x" + suffix, "yaxis": "y" + suffix, "showlegend": False}
     traces = [_cells(shade, domain)] if isinstance(shade, HeatMap) else _strokes(shade, domain)
-    return [place | trace for trace in traces]
+    return [axes | trace for trace in traces]
 
 
 def _color_bar(label: str, domain: list[float]) -> Json:

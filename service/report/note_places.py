@@ -51,17 +51,17 @@ def placed(notes: Sequence[Note], x: Axis, y: Axis, y_range: tuple[float, float]
     taken = [
         _Box(a - size[0], a + size[0], b - size[1], b + size[1]) for a, b in zip(across, along, strict=True)
     ]
-    found, lowest = list(notes), -_MARGIN if y.limits is None else 0.0
+    moved, lowest = list(notes), -_MARGIN if y.limits is None else 0.0
     for k in np.argsort(across, kind="stable"):
-        boxes = {place: _text(notes[k].text, across[k], along[k], *place) for place in _PLACES}
-        place = next((at for at, box in boxes.items() if _is_free(box, taken, lowest)), _PLACES[0])
-        taken.append(boxes[place])
-        found[k] = replace(notes[k], row=place[0], left=place[1])
-    return tuple(found)
+        boxes = {slot: _text(notes[k].text, across[k], along[k], *slot) for slot in _PLACES}
+        slot = next((at for at, box in boxes.items() if _is_free(box, taken, lowest)), _PLACES[0])
+        taken.append(boxes[slot])
+        moved[k] = replace(notes[k], row=slot[0], left=slot[1])
+    return tuple(moved)
 
 
 def _text(text: str, x: float, y: float, row: int, left: bool) -> _Box:
-    """Where a text beside the point (x, y) lies."""
+    """Return the box of a text beside the point (x, y)."""
     width, low = _CHARACTER * len(text), y + row * _HEIGHT - 0.5 * _HEIGHT + (_RISE if row >= 0 else 0.0)
     start = x - _GAP - width if left else x + _GAP
     return _Box(start, start + width, low, low + _HEIGHT)
@@ -75,7 +75,7 @@ def _is_free(box: _Box, taken: Sequence[_Box], lowest: float) -> bool:
 
 
 def _part(values: FloatArray, axis: Axis, limits: tuple[float, float]) -> FloatArray:
-    """Where values lie between the limits of an axis, 0 to 1."""
+    """Return the positions of values between the limits of an axis, 0 to 1."""
     ends = np.asarray(limits)
     if axis.scale == "log":
         values, ends = np.log10(values), np.log10(ends)

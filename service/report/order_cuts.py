@@ -21,21 +21,21 @@ def order_cuts(run: RunResult) -> Figure:
     valid = highest_valid_order(run)
     last = max(min(ORDERS, valid), 1)
     made = order_waterfall(run, signal.series, max(SHORTEST, int(travel / POINTS)), last)
-    axis, place = run_axis(run, made.time)
+    axis, abscissa = run_axis(run, made.time)
     cuts = [signal.of(made.cut(order)) for order in range(1, last + 1)]
     lines = tuple(
-        Line(f"{order}×", place, cut, palette.category(order - 1), width=1.4)
+        Line(f"{order}×", abscissa, cut, palette.category(order - 1), width=1.4)
         for order, cut in enumerate(cuts, start=1)
     )
     peaks = [(order, int(np.argmax(cut)), cut) for order, cut in enumerate(cuts, start=1)]
     words = "; ".join(
-        f"{k}×: {number(float(c[i]), 3)} {made.unit} at {number(float(place[i]), 3)}" for k, i, c in peaks
+        f"{k}×: {number(float(c[i]), 3)} {made.unit} at {number(float(abscissa[i]), 3)}" for k, i, c in peaks
     )
     rows = tuple(
         (
             str(k),
             number(float(c[i]), 4),
-            number(float(place[i]), 4),
+            number(float(abscissa[i]), 4),
             number(float(k * made.mesh_frequency[i]), 4),
         )
         for k, i, c in peaks

@@ -99,13 +99,13 @@ def _header(page: Page) -> str:
         f"<div><dt>{escape(h.name)}</dt><dd>{escape(h.value)} <small>{escape(h.remark)}</small></dd></div>"
         for h in page.headlines
     )
-    places = "".join(
+    entries = "".join(
         f'<li><a href="#part-{i}">{escape(section.title)}</a></li>'
         for i, section in enumerate(page.sections, start=1)
     )
     return (
         f'<header>\n<h1>{escape(page.title)}</h1>\n<p class="lead">{escape(page.lead)}</p>\n{alarms}'
-        f'<dl class="headline">{results}</dl>\n<nav aria-label="Contents"><ol>{places}</ol></nav>\n</header>'
+        f'<dl class="headline">{results}</dl>\n<nav aria-label="Contents"><ol>{entries}</ol></nav>\n</header>'
     )
 
 

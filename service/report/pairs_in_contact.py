@@ -1,4 +1,4 @@
-"""How many tooth pairs carry the load of a table, in words: captions speak of the case at hand."""
+"""Number of tooth pairs that carry the load of a table, in words for the captions."""
 
 from __future__ import annotations
 

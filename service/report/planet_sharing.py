@@ -13,8 +13,8 @@ from service.report.figure import Axis, Figure, Line, Panel, Table, number
 
 def planet_sharing(run: RunResult) -> Figure | None:
     """Draw what each planet carries at sun and ring; None without planets."""
-    found = planet_load_sharing(run)
-    if not found:
+    sharings = planet_load_sharing(run)
+    if not sharings:
         return None
     rows = tuple(
         (
@@ -24,17 +24,17 @@ def planet_sharing(run: RunResult) -> Figure | None:
             number(float(np.nanmin(ratio))),
             number(float(np.nanmax(ratio))),
         )
-        for sharing in found
+        for sharing in sharings
         for mesh, mean, ratio in zip(sharing.mesh, sharing.mean, sharing.ratio, strict=True)
     )
-    factors = "; ".join(f"{s.central} {number(s.mesh_load_factor)}" for s in found)
+    factors = "; ".join(f"{s.central} {number(s.mesh_load_factor)}" for s in sharings)
     return Figure(
         key="planet_sharing",
         title="Load sharing of the planets",
         caption="Force of each planet's mesh times the number of planets over the sum of their forces: 1 "
         "where all carry the same.",
         alternative=f"Largest share in the mean (K_gamma): {factors}.",
-        content=tuple(_panel(run, sharing) for sharing in found),
+        content=tuple(_panel(run, sharing) for sharing in sharings),
         table=Table("Load sharing", ("gear", "mesh", "of means", "least", "largest"), rows),
     )
 

@@ -35,8 +35,8 @@ def ripple_over_torque(database: SteDatabase) -> Figure:
 
 def _ripple(across: Axis, torque: FloatArray, curves: dict[int, Curve]) -> Panel:
     """Draw peak-to-peak."""
-    found = [curve.peak_to_peak for curve in curves.values()]
-    value, error = (_UM * np.array(these) for these in ([e.value for e in found], [e.error for e in found]))
+    sizes = [curve.peak_to_peak for curve in curves.values()]
+    value, error = (_UM * np.array(these) for these in ([e.value for e in sizes], [e.error for e in sizes]))
     line = Line("peak to peak", torque, value, palette.BLUE, markers=True, band=error)
     top = 1.05 * float(np.nanmax(value + np.nan_to_num(error)))
     return Panel(across, Axis("peak to peak, µm", limits=(0.0, top)), (line,), title="Peak to peak")
@@ -61,19 +61,19 @@ def _harmonics(across: Axis, torque: FloatArray, curves: dict[int, Curve]) -> Pa
 
 def _level(curve: Curve, order: int) -> float:
     """Amplitude of a harmonic in dB re 1 µm; NaN where it is below its error."""
-    one = curve.harmonics[order]
-    shown = one.value > 0.0 and not one.error >= one.value
-    return 20.0 * float(np.log10(_UM * one.value)) if shown else float("nan")
+    harmonic = curve.harmonics[order]
+    shown = harmonic.value > 0.0 and not harmonic.error >= harmonic.value
+    return 20.0 * float(np.log10(_UM * harmonic.value)) if shown else float("nan")
 
 
 def _words(database: SteDatabase, curves: dict[int, Curve]) -> str:
     """Say where the ripple is least and largest."""
     labels = load_labels(database)
-    found = {load: curve.peak_to_peak.value for load, curve in curves.items()}
-    least, most = min(found, key=found.__getitem__), max(found, key=found.__getitem__)
+    ripple = {load: curve.peak_to_peak.value for load, curve in curves.items()}
+    least, most = min(ripple, key=ripple.__getitem__), max(ripple, key=ripple.__getitem__)
     return (
-        f"Peak to peak is least at {labels[least]}, {number(_UM * found[least], 3)} µm, "
-        f"and largest at {labels[most]}, {number(_UM * found[most], 3)} µm."
+        f"Peak to peak is least at {labels[least]}, {number(_UM * ripple[least], 3)} µm, "
+        f"and largest at {labels[most]}, {number(_UM * ripple[most], 3)} µm."
     )
 
 
@@ -81,7 +81,7 @@ def _table(database: SteDatabase, curves: dict[int, Curve]) -> Table:
     """Amplitudes of the harmonics at every load."""
     labels = load_labels(database)
     rows = tuple(
-        (labels[load], *(number(_UM * one.value, 3) for one in curve.harmonics[:HARMONICS]))
+        (labels[load], *(number(_UM * harmonic.value, 3) for harmonic in curve.harmonics[:HARMONICS]))
         for load, curve in curves.items()
     )
     head = ("torque", *(f"harmonic {k}, µm" for k in range(1, HARMONICS + 1)))

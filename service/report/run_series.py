@@ -1,4 +1,4 @@
-"""What the figures of a run are drawn from: one mesh with its driving gear, and all bearings."""
+"""The series behind the figures of a run: one mesh with its driving gear, and all bearings."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ MONOTONE = 0.2  # least change of speed over the run, of the highest, for a spee
 
 @dataclass(frozen=True)
 class Signal:
-    """Which series of a run, and the row of its first axis."""
+    """A series of a run, and the row of its first axis."""
 
     series: str
     row: int

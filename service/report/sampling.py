@@ -1,4 +1,4 @@
-"""How a run was sampled: its rate and filter, what that left out, and the peaks between the samples."""
+"""The sampling of a run: rate and filter, the part they removed, and the peaks between the samples."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ def sampling_table(run: RunResult) -> Table:
         *_filter(sampling),
         ("highest valid mesh order at the highest speed", str(highest_valid_order(run))),
     ]
-    for mesh, found in error.get("mesh_force", {}).items():
-        rows.append((f"mesh force of {mesh} above the pass band, N rms", number(float(found["removed"]), 3)))
-        rows.append((f"mesh force of {mesh} that may have folded, N rms", number(float(found["folded"]), 3)))
+    for mesh, part in error.get("mesh_force", {}).items():
+        rows.append((f"mesh force of {mesh} above the pass band, N rms", number(float(part["removed"]), 3)))
+        rows.append((f"mesh force of {mesh} that may have folded, N rms", number(float(part["folded"]), 3)))
     return Table("Sampling of the output", ("quantity", "value"), tuple(rows))
 
 
@@ -43,8 +43,8 @@ def peak_table(run: RunResult) -> Table:
     """Tabulate largest magnitude and rms of the forces, between the samples and before the filter."""
     rows = []
     for title, parts in run.receipt.get("peaks", {}).items():
-        for name, found in parts.items():
-            peaks, rms = (_each(found[key]) for key in ("peak", "rms"))
+        for name, part in parts.items():
+            peaks, rms = (_each(part[key]) for key in ("peak", "rms"))
             rows += [
                 (f"{title.replace('_', ' ')}, {name}{axis}", number(p, 5), number(r, 5))
                 for axis, p, r in zip(_axes(len(peaks)), peaks, rms, strict=True)

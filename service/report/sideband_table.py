@@ -18,11 +18,11 @@ def sideband_tables(run: RunResult) -> tuple[Table, ...]:
     if values.ndim > 1:
         values = values[values.var(axis=-1).argmax()]
     try:
-        found = sidebands(run, values)
+        lines = sidebands(run, values)
     except InputError:  # fewer than four revolutions
         return ()
-    least = SHARE * max(line.amplitude for line in found if line.number == 0)
-    beside = sorted((s for s in found if s.number and s.amplitude > least), key=lambda s: -s.amplitude)
+    least = SHARE * max(line.amplitude for line in lines if line.number == 0)
+    beside = sorted((s for s in lines if s.number and s.amplitude > least), key=lambda s: -s.amplitude)
     if not beside:
         return ()
     caption = f"Sidebands of the {signal.name}, once per revolution of a gear and its multiples"
@@ -32,5 +32,5 @@ def sideband_tables(run: RunResult) -> tuple[Table, ...]:
 
 def _row(line: Sideband) -> tuple[str, ...]:
     """One line."""
-    place = f"{line.number:+d} × {line.source}"
-    return str(line.mesh_order), place, number(line.order, 5), number(line.amplitude, 3)
+    offset = f"{line.number:+d} × {line.source}"
+    return str(line.mesh_order), offset, number(line.order, 5), number(line.amplitude, 3)

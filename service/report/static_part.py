@@ -1,4 +1,4 @@
-"""What the page says of an STE database: main results, figures, accuracy, cost, effects and case."""
+"""An STE database on the page: main results, figures, accuracy, cost, effects and case."""
 
 from __future__ import annotations
 
@@ -92,9 +92,9 @@ def effects_section(ledger: Any) -> Section:
     """Tabulate which effects were simulated, why, and their influence; trifles are folded away."""
     entries = [{"name": k, **v} for k, v in ledger.items()] if isinstance(ledger, dict) else ledger
     shown, trifles = by_size(entries)
-    place = influence_place(entries)
-    caption = f"Effect ledger; without an effect: change by leaving it out, estimated {place}"
-    main = _ledger_table(caption, shown) if place else records("Effect ledger", _columns(entries))
+    where = influence_place(entries)
+    caption = f"Effect ledger; without an effect: change by leaving it out, estimated {where}"
+    main = _ledger_table(caption, shown) if where else records("Effect ledger", _columns(entries))
     folded = (_ledger_table(trifles_title(trifles), trifles),) if trifles else ()
     return Section("Effects", tables=(main,), folded=folded)
 

@@ -1,4 +1,4 @@
-"""What caches may keep of an answer that was given for a key (RFC 9111)."""
+"""Cache control of an answer that was given for a key (RFC 9111)."""
 
 from __future__ import annotations
 

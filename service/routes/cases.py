@@ -66,14 +66,14 @@ class ExampleBody(BaseModel):
 @router.get("/examples", summary="Cases to begin with")
 def example_cases() -> list[ExampleBody]:
     """List the pairs that the page offers."""
-    return [_example(found) for found in examples()]
+    return [_example(example) for example in examples()]
 
 
 @router.post("/cases/outline", summary="Drawing of the two gears", responses=documented(400, 413, 415, 422))
 def outline(body: CaseRequest) -> dict[str, Any]:
     """Transverse outlines of both gears in mm, the path of contact, and the figures of the pair."""
-    found: dict[str, Any] = outline_json(body.inputs.case)
-    return found
+    drawing: dict[str, Any] = outline_json(body.inputs.case)
+    return drawing
 
 
 @router.post(
@@ -102,10 +102,10 @@ def to_toml(body: CaseRequest) -> TomlBody:
     return TomlBody(toml=toml_text(case_json(body.inputs.case)))
 
 
-def _example(found: Example) -> ExampleBody:
+def _example(example: Example) -> ExampleBody:
     """Return an example with all defaults."""
-    case = case_json(validated(Case, found.content))
-    return ExampleBody(name=found.name, title=found.title, note=found.note, case=case)
+    case = case_json(validated(Case, example.content))
+    return ExampleBody(name=example.name, title=example.title, note=example.note, case=case)
 
 
 def explained(handler: Any, model: type[BaseModel]) -> None:

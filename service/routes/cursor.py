@@ -27,10 +27,10 @@ Limit = Annotated[int, Query(ge=1, le=1000, description="Most entries on the pag
 
 def page_links(request: Request, path: str, last: Mark | None) -> list[Link]:
     """Return the links of a page: itself, and the next one behind `last` with the same parameters."""
-    given = [(name, value) for name, value in request.query_params.multi_items() if name != "cursor"]
+    parameters = [(name, value) for name, value in request.query_params.multi_items() if name != "cursor"]
     links = [Link(href=_href(path, request.query_params.multi_items()), rel="self", title="This page")]
     if last is not None:
-        following = _href(path, [*given, ("cursor", cursor_of(last))])
+        following = _href(path, [*parameters, ("cursor", cursor_of(last))])
         links.append(Link(href=following, rel="next", title="Next page"))
     return links
 
@@ -59,8 +59,8 @@ def mark_of(cursor: str | None) -> Mark | None:
         text = base64.b64decode(cursor + "=" * (-len(cursor) % 4), altchars=b"-_", validate=True).decode()
     except (binascii.Error, ValueError):
         text = ""
-    found = _MARK.match(text)
-    if found is None:
+    match = _MARK.match(text)
+    if match is None:
         advice = "Follow the link next of a page, or leave it out for the first page."
         raise BadInput.of("cursor", cursor, "taken from a page of this list", advice)
-    return Mark(*found.groups())
+    return Mark(*match.groups())

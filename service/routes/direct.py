@@ -25,7 +25,7 @@ def answered_by(handler: Handler) -> Callable[[Callable[..., None]], Callable[..
 class DirectRoute(APIRoute):
     """A route whose endpoint is `answered_by` a coroutine.
 
-    For what is asked thousands of times a second: solving dependencies costs more there than the answer.
+    For queries that come thousands of times a second: solving dependencies costs more there than the answer.
     """
 
     def get_route_handler(self) -> Callable[[Request], Any]:

@@ -11,7 +11,7 @@ router = APIRouter(tags=["effects"])
 
 
 class EffectBody(BaseModel):
-    """What an effect declares."""
+    """The declaration of an effect."""
 
     name: str
     needs: list[str]

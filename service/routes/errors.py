@@ -26,8 +26,8 @@ MEDIA_TYPE = "application/problem+json"
 def problem_response(facts: Mapping[str, Any], headers: Mapping[str, str] | None = None) -> Response:
     """Return a problem, which no cache keeps, in ASCII, so that nothing a caller sent can break it."""
     body = json.dumps(facts, allow_nan=False, ensure_ascii=True).encode()
-    told = {"Cache-Control": NO_STORE, **(headers or {})}
-    return Response(body, int(facts["status"]), told, media_type=MEDIA_TYPE)
+    fields = {"Cache-Control": NO_STORE, **(headers or {})}
+    return Response(body, int(facts["status"]), fields, media_type=MEDIA_TYPE)
 
 
 def problem_of(error: ServiceError) -> Response:
@@ -81,8 +81,8 @@ def _is_json(kind: str) -> bool:
 
 def _request_fault(item: Mapping[str, Any], model: type[BaseModel] | None) -> Fault:
     """One fault, named as in the case or scene file where it lies inside one."""
-    place, *loc = item["loc"]
-    if place != "body":
+    part, *loc = item["loc"]
+    if part != "body":
         return fault_of(item, None, loc)
     if item["type"] == "json_invalid":
         return Fault("body", None, "valid JSON", f"{item.get('ctx', {}).get('error', '')}.")

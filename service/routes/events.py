@@ -70,13 +70,13 @@ class _Stream(StreamingResponse):
 
 async def _changes(context: Context, job_id: str) -> AsyncIterator[bytes]:
     """Yield events until the job has ended; a thread is taken for each look only."""
-    told, last = b"", time.monotonic()
+    sent, last = b"", time.monotonic()
     while True:
         job = await run_in_threadpool(context.submissions.find, job_id)
         status = await run_in_threadpool(status_info, job, context.registry)
         document = status.model_dump_json().encode()
-        if document != told:
-            told, last = document, time.monotonic()
+        if document != sent:
+            sent, last = document, time.monotonic()
             yield b"event: status\ndata: " + document + b"\n\n"
         elif time.monotonic() - last > HEARTBEAT_S:
             last = time.monotonic()

@@ -1,4 +1,4 @@
-"""How much a body may hold before it is read: what its reading costs hangs on its parts, not on its bytes."""
+"""Limits of a body before it is read: the cost of reading depends on its parts, not on its bytes."""
 
 from __future__ import annotations
 

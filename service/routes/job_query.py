@@ -47,7 +47,7 @@ def job_filter(
     )
 
 
-Wanted = Annotated[JobFilter, Depends(job_filter)]
+JobQuery = Annotated[JobFilter, Depends(job_filter)]
 
 
 def _interval(text: str) -> tuple[str | None, str | None]:
@@ -65,7 +65,7 @@ def _interval(text: str) -> tuple[str | None, str | None]:
 
 def _instant(text: str) -> str:
     """Return an instant as it is stored."""
-    found = datetime.fromisoformat(text)
-    if found.tzinfo is None:
+    instant = datetime.fromisoformat(text)
+    if instant.tzinfo is None:
         raise ValueError(text)
-    return found.astimezone(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")
+    return instant.astimezone(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")

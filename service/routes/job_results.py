@@ -49,7 +49,7 @@ _ANSWERS: dict[int | str, dict[str, Any]] = {
 def results(
     job_id: str, request: Request, context: Ctx, response: AskedForm = None, mode: AskedMode = None
 ) -> Response:
-    """Return the result as the execution asked for it; say why there is none."""
+    """Return the result as the execution requested it; say why there is none."""
     job = context.submissions.find(job_id)
     _refuse_without_result(job)
     process = context.registry[job.process]

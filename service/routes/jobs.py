@@ -9,7 +9,7 @@ from service.jobs.process import Registry, on_demand
 from service.routes.context import Ctx
 from service.routes.cursor import Cursor, Limit, mark_of, page_links
 from service.routes.errors import documented
-from service.routes.job_query import Wanted
+from service.routes.job_query import JobQuery
 from service.schemas.ogc import JobList, JobStatus, Link, StatusInfo
 from service.store import Mark
 
@@ -19,10 +19,10 @@ input_warnings = on_demand("service.jobs.input_warnings:input_warnings")
 
 @router.get("", summary="Jobs", responses=documented(422))
 def jobs(
-    request: Request, context: Ctx, wanted: Wanted, limit: Limit = 100, cursor: Cursor = None
+    request: Request, context: Ctx, job_filter: JobQuery, limit: Limit = 100, cursor: Cursor = None
 ) -> JobList:
     """Jobs, the newest first; filters add up."""
-    page = context.submissions.page(limit + 1, wanted, mark_of(cursor))
+    page = context.submissions.page(limit + 1, job_filter, mark_of(cursor))
     shown = [status_info(job, context.registry) for job in page[:limit]]
     last = Mark(page[limit - 1].created, page[limit - 1].id) if len(page) > limit else None
     return JobList(jobs=shown, links=page_links(request, "/v1/jobs", last))
@@ -30,9 +30,8 @@ def jobs(
 
 @router.get("/{job_id}", summary="Status of a job", responses=documented(404))
 def job(job_id: str, context: Ctx) -> StatusInfo:
-    """How far the job is."""
-    found = context.submissions.find(job_id)
-    return status_info(found, context.registry)
+    """Status and progress of the job."""
+    return status_info(context.submissions.find(job_id), context.registry)
 
 
 @router.delete("/{job_id}", summary="Dismiss a job", responses=documented(404))

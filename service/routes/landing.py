@@ -12,7 +12,7 @@ router = APIRouter(tags=["service"])
 
 @router.get("/", summary="Landing page")
 def landing() -> Landing:
-    """Where everything is."""
+    """Return the links of the service."""
     relations = (
         ("/v1/", "self", "This page"),
         ("/openapi.json", "service-desc", "OpenAPI description"),

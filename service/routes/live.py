@@ -47,8 +47,8 @@ async def live_ste(key: Key, body: LiveInput, context: Ctx) -> Response:
 )
 async def plan(body: PlanRequest, context: Ctx) -> Response:
     """Predicted time by stage, memory and error of every mesh, and the effect ledger; nothing is computed."""
-    asked = body.inputs.model_dump(mode="json")
-    order = LiveOrder(PLAN, {**asked, "cache": _cache(context)})
+    inputs = body.inputs.model_dump(mode="json")
+    order = LiveOrder(PLAN, {**inputs, "cache": _cache(context)})
     return await _answer(context, order, body.caller)
 
 

@@ -1,4 +1,4 @@
-"""Which representation a caller wants and sends (RFC 9110, sections 8.3 and 12.5.1)."""
+"""The representation that a caller accepts and sends (RFC 9110, sections 8.3 and 12.5.1)."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def negotiated(accept: str, offered: Sequence[str]) -> str | None:
     ranges = [_range(part) for part in accept.split(",") if part.strip()]
     if not ranges:
         return offered[0]
-    ranked = [(*_wanted(ranges, kind), -place, kind) for place, kind in enumerate(offered)]
+    ranked = [(*_wanted(ranges, kind), -rank, kind) for rank, kind in enumerate(offered)]
     quality, *_, best = max(ranked)
     return best if quality > 0.0 else None
 
@@ -40,7 +40,7 @@ def _range(part: str) -> tuple[str, float]:
 def _wanted(ranges: Sequence[tuple[str, float]], kind: str) -> tuple[float, int]:
     """Return the weight of a type by the most specific range that names it, and its place from the end."""
     for name in (kind, f"{kind.partition('/')[0]}/*", "*/*"):
-        for place, (wanted, weight) in enumerate(ranges):
-            if wanted == name:
-                return weight, -place
+        for rank, (named, weight) in enumerate(ranges):
+            if named == name:
+                return weight, -rank
     return 0.0, 0

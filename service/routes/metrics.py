@@ -53,7 +53,7 @@ class Metrics:
 
 
 class _FromDatabase(Collector):
-    """What is read when asked; without a database, that it is gone."""
+    """Metrics of the database, read when requested; without one, that it is gone."""
 
     def __init__(self, workload: WorkloadReader) -> None:
         self._workload = workload
@@ -75,7 +75,7 @@ class _FromDatabase(Collector):
 
 
 class _Writable(Collector):
-    """What can be written, tried when asked."""
+    """Metrics of writing, tried when requested."""
 
     def __init__(self, writes: WriteCheck) -> None:
         self._writes = writes
@@ -107,10 +107,10 @@ def _ended(load: Workload) -> Iterable[Metric]:
     attempts = CounterMetricFamily(
         "loa_computation_attempts", "Attempts at computations that ended", labels=_ENDED
     )
-    for one in load.durations:
-        names = [one.process, one.outcome]
-        taken.add_metric(names, list(one.buckets), one.seconds)
-        attempts.add_metric(names, one.attempts)
+    for entry in load.durations:
+        names = [entry.process, entry.outcome]
+        taken.add_metric(names, list(entry.buckets), entry.seconds)
+        attempts.add_metric(names, entry.attempts)
     return taken, attempts
 
 

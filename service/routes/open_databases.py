@@ -1,4 +1,4 @@
-"""The STE databases asked last, kept open."""
+"""The STE databases queried last, kept open."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class OpenDatabase:
 
 
 class OpenDatabases:
-    """The databases asked last, read and verified once; they never change."""
+    """The databases queried last, read and verified once; they never change."""
 
     def __init__(self) -> None:
         self._open: OrderedDict[str, OpenDatabase] = OrderedDict()
@@ -56,9 +56,9 @@ class OpenDatabases:
 
     def get(self, store: ResultStore, key: str) -> OpenDatabase:
         """Return the database `key`, read if it is not open; raises as `ResultStore.verified`."""
-        found = self.at_hand(key)
-        if found is not None:
-            return found
+        opened = self.at_hand(key)
+        if opened is not None:
+            return opened
         with self._reading:  # many ask for a new table at once: it is read once
             return self.at_hand(key) or self._read(store, key)
 
@@ -67,9 +67,9 @@ class OpenDatabases:
         with LOADING:
             from fe_contact.ste import SteDatabase  # noqa: PLC0415 (start-up time)
 
-        found = OpenDatabase(SteDatabase.from_netcdf(store.verified(key, "database").path))
+        opened = OpenDatabase(SteDatabase.from_netcdf(store.verified(key, "database").path))
         with self._lock:
-            self._open[key] = found
+            self._open[key] = opened
             while len(self._open) > _MOST_OPEN:
                 self._open.popitem(last=False)
-        return found
+        return opened

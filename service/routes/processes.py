@@ -95,13 +95,13 @@ def _add_execution(router: APIRouter, process: Process) -> None:
         prefer: Prefer = "respond-async",
     ) -> StatusInfo:
         """Check the inputs and enter a job; equal work is shared, stored results are used."""
-        wanted = getattr(request.outputs, process.output)
+        output = getattr(request.outputs, process.output)
         field = f"outputs.{process.output}.transmissionMode"
-        form = delivery(request.response, wanted and wanted.transmissionMode, media_type, field)
+        form = delivery(request.response, output and output.transmissionMode, media_type, field)
         inputs = process.prepare(cast(BoundaryModel, request.inputs), context.store)
         status = _submit(context, process, inputs, caller, form)
         response.headers["Location"] = f"/v1/jobs/{status.jobID}"
-        if "respond-async" in [wish.partition(";")[0].strip().lower() for wish in prefer.split(",")]:
+        if "respond-async" in [item.partition(";")[0].strip().lower() for item in prefer.split(",")]:
             response.headers["Preference-Applied"] = "respond-async"
         return status
 

@@ -52,8 +52,8 @@ async def _answer(request: Request) -> Response:
     if sent not in READ:
         raise UnsupportedMediaType.of(sent, *READ)
     offered = (sent, *(kind for kind in READ if kind != sent))
-    wanted = negotiated(request.headers.get("accept", "*/*"), offered)
-    if wanted is None:
+    accepted = negotiated(request.headers.get("accept", "*/*"), offered)
+    if accepted is None:
         raise NotAcceptable(f"An answer can be {', '.join(READ)}. Accept one of them.")
     named = request.query_params.get("columns", _COLUMNS)
     if len(named) > _LONGEST_COLUMNS:  # also of bodies that do not need it
@@ -65,10 +65,10 @@ async def _answer(request: Request) -> Response:
     def work() -> bytes:
         """Read, evaluate, write."""
         table = opened or context.databases.get(context.store, key)
-        return WRITE[wanted](force_answer(table.law, READ[sent](body, columns)))
+        return WRITE[accepted](force_answer(table.law, READ[sent](body, columns)))
 
     small = len(body) <= _INLINE_BYTES and opened is not None and opened.compiled
-    return Response(work() if small else await run_in_threadpool(work), media_type=wanted)
+    return Response(work() if small else await run_in_threadpool(work), media_type=accepted)
 
 
 @router.post(

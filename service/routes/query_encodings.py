@@ -36,14 +36,14 @@ def points_of_cbor(body: bytes, _columns: Sequence[str]) -> FloatArray:
     try:
         if body.count(_EMPTY_LIST) > len(body) // 4 + 16:
             raise ValueError("lists of nothing, which cost more than numbers")
-        given = cbor2.loads(
+        query = cbor2.loads(
             body,
             tag_hook=_typed_array,
             semantic_decoders=_NO_TAGS,
             max_depth=_DEEPEST,
             allow_duplicate_keys=False,
         )
-        return points_of_model(QueryInput.model_validate(given))
+        return points_of_model(QueryInput.model_validate(query))
     except ValidationError as error:
         _refuse(error, "valid CBOR")
     except (cbor2.CBORError, ValueError, MemoryError, RecursionError, OverflowError):
@@ -110,8 +110,8 @@ def _typed_array(tag: Any, _immutable: bool) -> list[float]:
     """Read the one tag that a query may have."""
     if tag.tag != _FLOAT64_ARRAY or not isinstance(tag.value, bytes):
         raise ValueError("a tag that a query does not have")
-    found: list[float] = np.frombuffer(tag.value, "<f8").tolist()
-    return found
+    values: list[float] = np.frombuffer(tag.value, "<f8").tolist()
+    return values
 
 
 def _no_tag(_value: Any, _immutable: bool) -> NoReturn:

@@ -66,7 +66,7 @@ def known_result(context: Context, key: str) -> StoredResult:
 
 
 def _figures(context: Context, stored: StoredResult) -> dict[str, Any]:
-    """Return what a stored file says; the libraries that read it are loaded when they are asked."""
+    """Return the figures of a stored file; the libraries that read it are loaded when they are needed."""
     if stored.kind == "database":
         with LOADING:
             from service.convert.answers import metadata_json  # noqa: PLC0415 (start-up time)

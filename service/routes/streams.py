@@ -1,4 +1,4 @@
-"""How many event streams are open; of one event loop, so without a lock."""
+"""Count of open event streams; of one event loop, so without a lock."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ HEAVY = (
     "service.jobs.study_work",
     "fe_contact.ste.compiled_force",
 )
-"""The modules that handlers import when they are asked: both libraries."""
+"""The modules that handlers import when they are called: both libraries."""
 
 
 def warm_up(modules: Sequence[str] = HEAVY) -> threading.Thread:

@@ -68,10 +68,10 @@ class LoadInput(BoundaryModel):
     def _one_of_both(self) -> Self:
         """Exactly one kind of load."""
         if (self.torque_n_m is None) == (self.normal_force_n is None):
-            given = None if self.torque_n_m is None else list(self.torque_n_m)
+            value = None if self.torque_n_m is None else list(self.torque_n_m)
             refuse(
                 "torque_n_m",
-                given,
+                value,
                 "given, or normal_force_n instead, but not both",
                 "For example torque_n_m = [10, 100, 400].",
             )
@@ -101,7 +101,7 @@ class ErrorsInput(BoundaryModel):
 
 
 class AccuracyInput(BoundaryModel):
-    """What the planner is asked for: an accuracy, a time or a level; nothing given means tolerance 0.01."""
+    """The request to the planner: an accuracy, a time or a level; by default tolerance 0.01."""
 
     tolerance: float | None = Field(
         default=None, ge=1e-4, le=0.5, description="Relative, on mean and peak-to-peak STE", examples=[0.01]

@@ -1,4 +1,4 @@
-"""What a process takes that answers for cases and for scenes: one of them."""
+"""The inputs of a process for cases and for scenes: one of them."""
 
 from __future__ import annotations
 
@@ -25,6 +25,6 @@ class CaseOrScene(BoundaryModel):
     def _one_of_both(self) -> Self:
         """Refuse none of both, and both."""
         if (self.case is None) == (self.scene is None):
-            given = None if self.case is None else "beside a scene"
-            refuse("case", given, "given without a scene, left out beside one", "Give one of them.")
+            value = None if self.case is None else "beside a scene"
+            refuse("case", value, "given without a scene, left out beside one", "Give one of them.")
         return self

@@ -91,9 +91,9 @@ def figures(kind: type[Any], *kinds: Kind) -> tuple[Figure, ...]:
     """Return the declared numbers and names of a dataclass, those of some kinds if any are given."""
     defaults = {entry.name: entry.default for entry in fields(kind)}
     return tuple(
-        Figure(name, what, defaults[name])
-        for name, what in declarations(kind).items()
-        if what.bound is not None and (not kinds or what.kind in kinds)
+        Figure(name, fact, defaults[name])
+        for name, fact in declarations(kind).items()
+        if fact.bound is not None and (not kinds or fact.kind in kinds)
     )
 
 

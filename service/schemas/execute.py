@@ -16,7 +16,7 @@ _LINK = {"href", "rel", "type", "hreflang", "title"}
 
 
 class ExecuteBody(BoundaryModel):
-    """What the bodies of all executions share: inputs may be qualified values; nobody is called back."""
+    """The base of the bodies of all executions: inputs may be qualified values; nobody is called back."""
 
     @model_validator(mode="before")
     @classmethod
@@ -30,34 +30,34 @@ class ExecuteBody(BoundaryModel):
         inputs = body.get("inputs")
         if not isinstance(inputs, dict):
             return body
-        return body | {"inputs": {name: _value(name, given) for name, given in inputs.items()}}
+        return body | {"inputs": {name: _value(name, value) for name, value in inputs.items()}}
 
 
-def _value(name: str, given: Any) -> Any:
+def _value(name: str, value: Any) -> Any:
     """Return an input without the qualification it may have."""
-    if not isinstance(given, dict):
-        return given
-    if "href" in given and set(given) <= _LINK:
+    if not isinstance(value, dict):
+        return value
+    if "href" in value and set(value) <= _LINK:
         bound = "written out: the service reads no addresses that its callers name"
-        refuse(f"inputs.{name}.href", given["href"], bound, "Put what is there in its place.")
-    if "value" not in given or not set(given) <= _FORMAT | {"value"}:
-        return given
-    for field in sorted(_FORMAT & set(given)):
-        if field != "mediaType" or given[field] != JSON:
-            refuse(f"inputs.{name}.{field}", given[field], f"left out, or mediaType {JSON}", "")
-    return given["value"]
+        refuse(f"inputs.{name}.href", value["href"], bound, "Put what is there in its place.")
+    if "value" not in value or not set(value) <= _FORMAT | {"value"}:
+        return value
+    for field in sorted(_FORMAT & set(value)):
+        if field != "mediaType" or value[field] != JSON:
+            refuse(f"inputs.{name}.{field}", value[field], f"left out, or mediaType {JSON}", "")
+    return value["value"]
 
 
 @lru_cache(maxsize=8)
 def _wanted_output(media_type: str) -> type[BoundaryModel]:
-    """Return the model of what can be asked of an output of this type."""
+    """Return the model of a request for an output of this type."""
     kind = suffix_of_type(media_type).removeprefix(".").capitalize()
     type_field: Any = (Literal[media_type], Field(media_type, description="The one type of the output"))
     form = create_model(f"{kind}Format", __base__=BoundaryModel, mediaType=type_field)
-    said = "Default: value; of netCDF in a document: reference"
+    text = "Default: value; of netCDF in a document: reference"
     fields: dict[str, Any] = {
         "format": (form | None, Field(None, description="There is one format")),
-        "transmissionMode": (Literal["value", "reference"] | None, Field(None, description=said)),
+        "transmissionMode": (Literal["value", "reference"] | None, Field(None, description=text)),
     }
     return create_model(f"Wanted{kind}Output", __base__=BoundaryModel, **fields)
 

@@ -50,9 +50,9 @@ def innermost(items: Sequence[Any]) -> list[Any]:
 
     At most the first 50; see `service.schemas.few_faults`.
     """
-    places = [tuple(item["loc"]) for item in items]
-    around = {place[:depth] for place in places for depth in range(len(place))}
-    inner = (item for item, place in zip(items, places, strict=True) if place not in around)
+    locations = [tuple(item["loc"]) for item in items]
+    around = {location[:depth] for location in locations for depth in range(len(location))}
+    inner = (item for item, location in zip(items, locations, strict=True) if location not in around)
     return list(islice(inner, MOST_FAULTS))
 
 
@@ -99,19 +99,19 @@ def _model_in(annotation: object) -> type[BaseModel] | None:
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return annotation
     if get_origin(annotation) in (Union, types.UnionType, tuple, list, dict, Annotated):
-        found = (_model_in(argument) for argument in get_args(annotation))
-        return next((inner for inner in found if inner is not None), None)
+        models = (_model_in(argument) for argument in get_args(annotation))
+        return next((inner for inner in models if inner is not None), None)
     return None
 
 
 def _constraints(info: FieldInfo | None) -> dict[str, float]:
     """Numeric bounds of a field: gt, ge, lt, le."""
-    found: dict[str, float] = {}
+    limits: dict[str, float] = {}
     for item in _metadata(info.metadata if info else (), info.annotation if info else None):
         for name, kind in _LIMITS.items():
             if isinstance(item, kind):
-                found[name] = getattr(item, name)
-    return found
+                limits[name] = getattr(item, name)
+    return limits
 
 
 _LIMITS: dict[str, type] = {

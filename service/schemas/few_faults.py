@@ -15,7 +15,7 @@ from typing import Any, cast
 from pydantic_core import CoreSchema, PydanticKnownError, core_schema
 
 MOST_FAULTS = 50
-"""Faults that are told of one body."""
+"""Faults that are reported of one body."""
 
 _MOST_ENTRIES = 1000
 """Of tables in a list, and of names in a table, where no other number is declared."""

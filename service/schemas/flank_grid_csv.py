@@ -20,7 +20,7 @@ Table = dict[str, Any]
 
 
 def with_flank_grids(
-    table: Table, folder: Path, read_text: Callable[[Path], str], place: str = ""
+    table: Table, folder: Path, read_text: Callable[[Path], str], prefix: str = ""
 ) -> dict[str, Any]:
     """Return `table` with `flank_grid` in place of every `flank_grid_csv`, at any depth.
 
@@ -40,10 +40,10 @@ def with_flank_grids(
     BadInput
         A file that cannot be read or holds no complete grid.
     """
-    found = {key: _inside(value, folder, read_text, _joined(place, key)) for key, value in table.items()}
+    resolved = {key: _inside(value, folder, read_text, _joined(prefix, key)) for key, value in table.items()}
     if FIELD not in table:
-        return found
-    field, name = _joined(place, FIELD), found.pop(FIELD)
+        return resolved
+    field, name = _joined(prefix, FIELD), resolved.pop(FIELD)
     if not isinstance(name, str):
         raise BadInput.of(field, name, "the name of a CSV file in quotes", _HELP)
     if "flank_grid" in table:
@@ -52,21 +52,21 @@ def with_flank_grids(
         text = read_text(folder / name)
     except BadInput as error:
         raise error.within(field) from None
-    return found | {"flank_grid": flank_grid(text, field, name)}
+    return resolved | {"flank_grid": flank_grid(text, field, name)}
 
 
-def _inside(value: object, folder: Path, read_text: Callable[[Path], str], place: str) -> object:
+def _inside(value: object, folder: Path, read_text: Callable[[Path], str], prefix: str) -> object:
     """Look for grids inside a table or a list."""
     if isinstance(value, dict):
-        return with_flank_grids(value, folder, read_text, place)
+        return with_flank_grids(value, folder, read_text, prefix)
     if isinstance(value, list):
-        return [_inside(item, folder, read_text, f"{place}[{i}]") for i, item in enumerate(value)]
+        return [_inside(item, folder, read_text, f"{prefix}[{i}]") for i, item in enumerate(value)]
     return value
 
 
-def _joined(place: str, key: str) -> str:
+def _joined(prefix: str, key: str) -> str:
     """Dotted name of a field."""
-    return f"{place}.{key}" if place else key
+    return f"{prefix}.{key}" if prefix else key
 
 
 def flank_grid(text: str, field: str, name: str) -> Table:
@@ -141,7 +141,7 @@ def _row(cells: list[str], order: list[int], number: int) -> list[float]:
     """Return the three numbers of a row."""
     if len(cells) != len(COLUMNS):
         raise ValueError(f"a file with {len(COLUMNS)} values in each row; line {number} has {len(cells)}")
-    return [_number(cells[place], column, number) for place, column in zip(order, COLUMNS, strict=True)]
+    return [_number(cells[index], column, number) for index, column in zip(order, COLUMNS, strict=True)]
 
 
 def _number(cell: str, column: str, line: int) -> float:

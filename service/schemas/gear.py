@@ -45,7 +45,7 @@ class FlankGridInput(BoundaryModel):
 
 @with_fields(declared_in(FlankModification))
 class ToothingInput(BoundaryModel):
-    """What all gears have. Modifications: > 0 is material removed, normal to the involute, transverse."""
+    """Fields of all gears. Modifications: > 0 is material removed, normal to the involute, transverse."""
 
     teeth: int = Field(ge=5, le=1000, description="Number of teeth", examples=[20])
     face_width_mm: float = Field(ge=1e-3, le=5000.0, description="Face width in mm", examples=[25.0])

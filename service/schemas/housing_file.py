@@ -25,20 +25,20 @@ def with_housing_files(table: Table, folder: Path) -> Table:
     housings = table.get("housings")
     if not isinstance(housings, list):
         return table
-    return table | {"housings": [_written_out(given, folder, i) for i, given in enumerate(housings)]}
+    return table | {"housings": [_written_out(housing, folder, i) for i, housing in enumerate(housings)]}
 
 
-def _written_out(given: object, folder: Path, index: int) -> object:
+def _written_out(housing: object, folder: Path, index: int) -> object:
     """One housing with its file's matrices."""
     from dynamics.errors import InputError  # noqa: PLC0415 - the client reads scenes too, and stays light
     from dynamics.joints.housing import read_housing_matrices  # noqa: PLC0415
 
-    if not isinstance(given, dict) or FIELD not in given:
-        return given
-    field, name = f"housings[{index}].{FIELD}", given[FIELD]
+    if not isinstance(housing, dict) or FIELD not in housing:
+        return housing
+    field, name = f"housings[{index}].{FIELD}", housing[FIELD]
     if not isinstance(name, str):
         raise BadInput.of(field, name, "the name of a CSV or NPZ file in quotes", "See docs/case-file.md.")
-    if ROWS in given:
+    if ROWS in housing:
         raise BadInput.of(field, name, f"left out when {ROWS} is given", "Give one of the two.")
     try:
         stiffness, damping = read_housing_matrices(folder / name)
@@ -46,5 +46,5 @@ def _written_out(given: object, folder: Path, index: int) -> object:
         raise BadInput.of(
             field, name, str(error.bound), str(error.suggestion) or "See docs/case-file.md."
         ) from None
-    found = {key: value for key, value in given.items() if key != FIELD} | {ROWS: stiffness.tolist()}
-    return found if damping is None else found | {"damping_matrix": damping.tolist()}
+    resolved = {key: value for key, value in housing.items() if key != FIELD} | {ROWS: stiffness.tolist()}
+    return resolved if damping is None else resolved | {"damping_matrix": damping.tolist()}

@@ -34,7 +34,7 @@ Caller = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,64}$")]
 
 
 class LiveInput(BoundaryModel):
-    """What is different from the case of the database."""
+    """The differences from the case of the database."""
 
     torque_n_m: Torques = Field(
         description="Torques on the driving gear in N m, increasing, at most twice the highest of the case",
@@ -116,7 +116,7 @@ class FlankDerivative(BoundaryModel):
 
 
 class CurveDerivatives(BoundaryModel):
-    """What changes a curve, to first order; see docs/theory/contact.md."""
+    """The derivatives of a curve, to first order; see docs/theory/contact.md."""
 
     by: dict[str, CurveDerivative] = Field(
         description="By every figure that acts: per um, per mm of a length, per N m",
@@ -225,7 +225,7 @@ class LiveOutput(BoundaryModel):
 
 
 class PlanInputs(BoundaryModel):
-    """What is to be planned."""
+    """The case to plan."""
 
     case: Case = Field(description="The case, as in a case file")
     time_budget_s: float | None = Field(

@@ -1,4 +1,4 @@
-"""What all boundary models share: strict, closed, finite, frozen."""
+"""The base of all boundary models: strict, closed, finite, frozen."""
 
 from __future__ import annotations
 

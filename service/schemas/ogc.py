@@ -60,7 +60,7 @@ class AdditionalParameters(BaseModel):
 
 
 class ProcessSummary(BaseModel):
-    """What a process is."""
+    """The description of a process."""
 
     id: str
     title: str
@@ -119,7 +119,7 @@ class JobList(BaseModel):
 
 
 class ResultReference(BaseModel):
-    """Where a result is."""
+    """The address of a result."""
 
     href: str
     type: str

@@ -24,13 +24,13 @@ class SimulateInputs(BoundaryModel):
 
 
 class OfCase(BoundaryModel):
-    """What is studied: a case."""
+    """The subject of a study: a case."""
 
     case: Case = Field(description="The case, as in a case file")
 
 
 class OfScene(BoundaryModel):
-    """What is studied: a scene."""
+    """The subject of a study: a scene."""
 
     scene: SceneInput = Field(description="The scene, with cases written out or databases by hash")
 

@@ -1,4 +1,4 @@
-"""Batches of position and deflection asked of a stored database."""
+"""Queries of a stored database: batches of position and deflection."""
 
 from __future__ import annotations
 
@@ -75,8 +75,8 @@ class QueryInput(BoundaryModel):
         """All lists of one length, but for those of a single value."""
         points = len(self.position)
         for name in tuple(LIMITS)[1:]:
-            given = getattr(self, name)
-            count = len(given) if isinstance(given, tuple) else 1
+            values = getattr(self, name)
+            count = len(values) if isinstance(values, tuple) else 1
             if points == 1:
                 points = count
             elif count not in (1, points):

@@ -80,11 +80,11 @@ _SIGNS = {
 
 def _check_kind(model: type[BaseModel], table: dict[str, Any], path: Path) -> None:
     """Refuse a case given as a scene, or a scene given as a case, by that one fault."""
-    wanted = [sign for sign in _SIGNS if sign in model.model_fields]
-    given = [sign for sign in _SIGNS if sign in table]
-    if wanted and given and not set(wanted) & set(given):
-        found, takers = _SIGNS[given[0]]
-        raise BadInput.of("file", str(path), _SIGNS[wanted[0]][0], f"It holds {found}: {takers}.")
+    expected = [sign for sign in _SIGNS if sign in model.model_fields]
+    present = [sign for sign in _SIGNS if sign in table]
+    if expected and present and not set(expected) & set(present):
+        content, takers = _SIGNS[present[0]]
+        raise BadInput.of("file", str(path), _SIGNS[expected[0]][0], f"It holds {content}: {takers}.")
 
 
 def read_model(model: type[M], path: Path) -> M:

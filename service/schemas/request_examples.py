@@ -38,7 +38,7 @@ SCENE: Json = {
         {"name": name, "shaft": shaft, "position_mm": 100.0, "bore_diameter_mm": 40.0}
         for name, shaft in (("pinion", "input"), ("wheel", "output"))
     ],
-    "bushings": [_bushing(shaft, place) for shaft in ("input", "output") for place in (0.0, 200.0)],
+    "bushings": [_bushing(shaft, position) for shaft in ("input", "output") for position in (0.0, 200.0)],
     "meshes": [{"name": "mesh", "driver": "pinion", "driven": "wheel", "case": CASE, "damping_ratio": 0.15}],
     "drives": [{"name": "motor", "shaft": "input", "time_s": [0.0], "speed_rpm": [955.0]}],
     "loads": [{"name": "brake", "shaft": "output", "torque_n_m": [100.0]}],

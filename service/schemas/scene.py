@@ -111,14 +111,14 @@ class MeshInput(BoundaryModel):
     @model_validator(mode="after")
     def _one_source(self) -> Self:
         """Exactly one source of the table."""
-        given = [name for name in _SOURCES if getattr(self, name) is not None]
-        if len(given) != 1:
-            refuse("case", given or None, f"given once, as one of {', '.join(_SOURCES)}", "Keep one of them.")
+        names = [name for name in _SOURCES if getattr(self, name) is not None]
+        if len(names) != 1:
+            refuse("case", names or None, f"given once, as one of {', '.join(_SOURCES)}", "Keep one of them.")
         return self
 
 
 class RunInput(BoundaryModel):
-    """How long."""
+    """Duration of a run, and its reaction to an assumption that does not hold."""
 
     duration_s: float = Field(ge=0.0, le=1e6, description="Duration in s", examples=[5.0])
     on_violation: Literal["repeat", "fail", "report"] = Field(
@@ -130,7 +130,7 @@ class RunInput(BoundaryModel):
 
 
 class SceneAccuracyInput(BoundaryModel):
-    """What automatic effects are decided by."""
+    """The tolerance that decides automatic effects."""
 
     tolerance: float | None = Field(
         default=None,
@@ -143,7 +143,7 @@ class SceneAccuracyInput(BoundaryModel):
 
 
 class OutputsInput(BoundaryModel):
-    """What to store."""
+    """The outputs to store."""
 
     sample_rate_hz: float | None = Field(
         default=None,
@@ -181,7 +181,7 @@ class OutputsInput(BoundaryModel):
 
 
 class IntegrationInput(BoundaryModel):
-    """How to integrate in time."""
+    """Method and tolerances of the time integration."""
 
     method: Literal["implicit", "explicit"] = Field(
         default="implicit", description="Integrator", examples=["implicit"]
@@ -267,8 +267,8 @@ class SceneInput(BoundaryModel):
             _refuse_unknown(f"planets[{index}].planet", planets.planet, shafts)
         bushings = [bushing.name for bushing in self.bushings]
         for index, housing in enumerate(self.housings):
-            for place, name in enumerate(housing.bushings):
-                _refuse_unknown(f"housings[{index}].bushings[{place}]", name, bushings)
+            for number, name in enumerate(housing.bushings):
+                _refuse_unknown(f"housings[{index}].bushings[{number}]", name, bushings)
         gears = [gear.name for gear in self.gears]
         for index, mesh in enumerate(self.meshes):
             _refuse_unknown(f"meshes[{index}].driver", mesh.driver, gears)

@@ -111,16 +111,16 @@ class SpringCurveInput(BoundaryModel):
     def _of_its_direction(self) -> Self:
         """Displacement and force, or tilt and moment, as many of each."""
         tilts = self.direction.startswith("tilt")
-        wanted = ("tilt_mrad", "moment_n_m") if tilts else ("displacement_um", "force_n")
+        pair = ("tilt_mrad", "moment_n_m") if tilts else ("displacement_um", "force_n")
         for field in ("displacement_um", "force_n", "tilt_mrad", "moment_n_m"):
-            given = getattr(self, field)
-            if (given is None) == (field in wanted):
-                bound = "given" if field in wanted else "left out"
-                refuse(field, given, f'{bound} for direction "{self.direction}"')
-        first, second = (getattr(self, field) for field in wanted)
+            value = getattr(self, field)
+            if (value is None) == (field in pair):
+                bound = "given" if field in pair else "left out"
+                refuse(field, value, f'{bound} for direction "{self.direction}"')
+        first, second = (getattr(self, field) for field in pair)
         if len(first) != len(second):
-            refuse(wanted[1], list(second), f"a list of {len(first)}, one for each of {wanted[0]}")
-        for field, values in zip(wanted, (first, second), strict=True):
+            refuse(pair[1], list(second), f"a list of {len(first)}, one for each of {pair[0]}")
+        for field, values in zip(pair, (first, second), strict=True):
             if any(b <= a for a, b in pairwise(values)):
                 refuse(field, list(values), "strictly increasing")
         return self
@@ -294,9 +294,9 @@ class PlanetsInput(BoundaryModel):
     def _one_each(self) -> Self:
         """As many values as planets."""
         for field in ("angles_deg", "radial_errors_um", "tangential_errors_um"):
-            given = getattr(self, field)
-            if given is not None and len(given) != self.number:
+            values = getattr(self, field)
+            if values is not None and len(values) != self.number:
                 refuse(
-                    field, list(given), f"a list of {self.number}, one for each planet", "Or leave it out."
+                    field, list(values), f"a list of {self.number}, one for each planet", "Or leave it out."
                 )
         return self

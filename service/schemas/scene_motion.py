@@ -1,4 +1,4 @@
-"""What moves and loads a scene: drives, free rotations, torques by time and by speed."""
+"""Drives, free rotations, and torques by time and by speed of a scene."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from service.schemas.model import BoundaryModel, refuse
 from service.schemas.scene_types import Coordinate, Course, Name, Numbers, Times
 
 
-def place_of(what: str) -> Any:
+def place_of(subject: str) -> Any:
     """Return the field of a place along a flexible shaft."""
-    text = f"Where along a flexible shaft {what}, in mm from its left end"
+    text = f"Where along a flexible shaft {subject}, in mm from its left end"
     return Field(default=0.0, description=text, examples=[0.0])
 
 

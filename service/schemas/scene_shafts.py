@@ -79,8 +79,8 @@ class ShaftInput(BoundaryModel):
     @model_validator(mode="after")
     def _one_inertia(self) -> Self:
         """Exactly one source of inertia."""
-        given = [part for part in (self.diameter_mm, self.sections, self.inertia) if part is not None]
-        if len(given) != 1:
+        sources = [part for part in (self.diameter_mm, self.sections, self.inertia) if part is not None]
+        if len(sources) != 1:
             bound = "given, or sections or inertia instead, one of the three"
             refuse("diameter_mm", self.diameter_mm, bound, "For example 40.0.")
         if self.sections is not None:

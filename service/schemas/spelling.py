@@ -1,4 +1,4 @@
-"""How a field of a study's inputs is written on the command line."""
+"""The spelling of a field of a study's inputs on the command line."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is kept: a database, and content-addressed result files."""
+"""The store: a database, and content-addressed result files."""
 
 from service.store.database import BRIEF_MS, instant, now, open_database, reading, writing
 from service.store.dialects import dialect_of

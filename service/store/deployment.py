@@ -1,4 +1,4 @@
-"""Whose results they are: one database and one place of files belong together, and each names the other.
+"""A deployment: one database and one store of files that belong together; each names the other.
 
 A deployment is known by a random identifier. It stands in the database and in a note beside the files. Where
 the two differ nothing is served and nothing is removed.
@@ -41,7 +41,7 @@ deployments = Table(
 
 @dataclass(frozen=True)
 class _Owner:
-    """Whom a note names: a deployment and the database it had then."""
+    """The content of a note: a deployment and the database it had then."""
 
     deployment: str
     database: str

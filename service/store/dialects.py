@@ -38,7 +38,7 @@ _POOL: Mapping[str, Any] = {"pool_size": 5, "max_overflow": 15, "pool_timeout": 
 
 
 class Dialect(Protocol):
-    """What the store and the job table ask of a database beyond SQL that all understand."""
+    """The functions of a database beyond SQL that all understand, for the store and the job table."""
 
     upgrades_itself: bool
 
@@ -102,8 +102,8 @@ class SQLite:
 
     def check(self, connection: Connection) -> str | None:
         """Read every page, some 0.1 to 1 s for 100 MB."""
-        found = str(connection.exec_driver_sql("PRAGMA quick_check(1)").scalar_one())
-        return None if found == "ok" else found
+        verdict = str(connection.exec_driver_sql("PRAGMA quick_check(1)").scalar_one())
+        return None if verdict == "ok" else verdict
 
 
 def _make_private(file: Path) -> None:

@@ -1,4 +1,4 @@
-"""Where the files of results are kept: what any place must do, and a directory that does it."""
+"""The files of results: the protocol of any store, and a directory that keeps it."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ GRACE_S = 3600.0
 
 @dataclass(frozen=True)
 class Verified:
-    """What became of the files of the index.
+    """The state of the files of the index.
 
     Attributes
     ----------
@@ -129,7 +129,7 @@ def _is_ours(name: str) -> bool:
 
 
 def _why_orphan(name: str) -> str:
-    """Why a file may go; what was set aside is kept as long as anything young."""
+    """Return why a file may be removed; quarantined files are kept as long as anything young."""
     if name.endswith(PARTIAL):
         return "half written"
     return "damaged" if name.endswith(SET_ASIDE) else "not in the index"

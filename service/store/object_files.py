@@ -126,14 +126,14 @@ class ObjectFiles:
 
     def _evict(self) -> None:
         """Remove what was not read for longest, until the rest fits."""
-        found = []
+        files = []
         for path in self._cache.rglob("*"):
             with contextlib.suppress(FileNotFoundError):  # another process was quicker
                 if path.is_file():
                     facts = path.stat()
-                    found.append((facts.st_mtime, facts.st_size, path))
-        excess = sum(size for _, size, _ in found) - self._cache_bytes
-        for modified, size, path in sorted(found):
+                    files.append((facts.st_mtime, facts.st_size, path))
+        excess = sum(size for _, size, _ in files) - self._cache_bytes
+        for modified, size, path in sorted(files):
             if excess <= 0 or time.time() - modified < _IN_USE_S:
                 return
             path.unlink(missing_ok=True)

@@ -26,7 +26,7 @@ logger = structlog.get_logger(__name__)
 
 
 class _OnDatabase(Protocol):
-    """What works on a database."""
+    """An object that works on a database."""
 
     _engine: Engine
 
@@ -70,18 +70,18 @@ def retried(step: Callable[Concatenate[S, P], R]) -> Callable[Concatenate[S, P],
 
 
 def outage_of(error: SQLAlchemyError, engine: Engine) -> DatabaseUnavailable | None:
-    """Return what callers are told of an error of the database itself; None: it is the statement's."""
+    """Return the message about an error of the database itself; None: it is the statement's."""
     if is_lost(error, engine):
         return DatabaseUnavailable("The database cannot be reached. Try again in a while.")
     remedy = remedy_of(error, engine)
     return None if remedy is None else damaged(engine, str(getattr(error, "orig", error)), remedy)
 
 
-def damaged(engine: Engine, what: str, remedy: str) -> DatabaseDamaged:
-    """Return the error of a database that has to be mended; callers are not told where it is, the log is."""
+def damaged(engine: Engine, fault: str, remedy: str) -> DatabaseDamaged:
+    """Return the error of a database that has to be mended; the log alone says where it is."""
     where = engine.url.render_as_string(hide_password=True)
-    logger.error("database damaged", database=where, error=what, remedy=remedy)
-    error = DatabaseDamaged(f"The database cannot be used: {what}.")
+    logger.error("database damaged", database=where, error=fault, remedy=remedy)
+    error = DatabaseDamaged(f"The database cannot be used: {fault}.")
     error.add_note(f"{where}: {remedy}")
     return error
 

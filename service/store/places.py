@@ -1,4 +1,4 @@
-"""Where a service keeps its things: from its settings to a database and a store of results."""
+"""The database and the store of results by the settings of a service."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where files go before they are removed for good: each names the instant it came, by which it is dated."""
+"""The quarantine of files before they are removed for good: each names the instant it came."""
 
 from __future__ import annotations
 

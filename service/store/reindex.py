@@ -17,7 +17,7 @@ from service.store.results import IndexLine, ResultStore
 
 @dataclass(frozen=True)
 class Reindexed:
-    """What became of the files and the lines.
+    """The result of rebuilding the index: its files and lines.
 
     Attributes
     ----------

@@ -17,7 +17,7 @@ _NAME = re.compile(
 
 @dataclass(frozen=True)
 class ResultName:
-    """What the name of a file says of its result.
+    """The parts of the name of a result's file.
 
     Attributes
     ----------

@@ -82,8 +82,8 @@ def prepare_schema(engine: Engine) -> None:
         schema.upgrade()
         return
     _refuse_newer(revision, engine)
-    found = "it has no tables" if revision is None else f"it has {revision}"
-    bound = f"of schema {REVISIONS[-1]}: {found}"
+    state = "it has no tables" if revision is None else f"it has {revision}"
+    bound = f"of schema {REVISIONS[-1]}: {state}"
     raise BadInput.of("database_url", shown(engine), bound, "Run loa database upgrade first.")
 
 
@@ -96,8 +96,8 @@ def _revision(connection: Connection) -> str | None:
     """Read the number of the schema."""
     tables = inspect(connection).get_table_names()
     if "alembic_version" in tables:
-        found = connection.execute(text("SELECT version_num FROM alembic_version")).scalar()
-        return None if found is None else str(found)
+        revision = connection.execute(text("SELECT version_num FROM alembic_version")).scalar()
+        return None if revision is None else str(revision)
     return REVISIONS[0] if _UNNUMBERED in tables else None
 
 

@@ -28,7 +28,7 @@ logger = structlog.get_logger(__name__)
 
 @dataclass(frozen=True)
 class Writable:
-    """What can be written: of each part the fault, empty if there is none.
+    """Faults of writing by part, empty if there is none.
 
     `late`: the database did not answer in time, or others held it; nothing is known to be broken.
     """

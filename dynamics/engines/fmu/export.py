@@ -98,8 +98,8 @@ def _guid(content: Mapping[str, bytes]) -> str:
     digest = hashlib.sha256()
     for member in sorted(content):
         digest.update(member.encode() + b"\0" + hashlib.sha256(content[member]).digest())
-    found = digest.hexdigest()
-    return "{" + "-".join((found[:8], found[8:12], found[12:16], found[16:20], found[20:32])) + "}"
+    text = digest.hexdigest()
+    return "{" + "-".join((text[:8], text[8:12], text[12:16], text[16:20], text[20:32])) + "}"
 
 
 def _binary(content: Mapping[str, bytes], name: str) -> dict[str, bytes]:

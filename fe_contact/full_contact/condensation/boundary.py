@@ -131,10 +131,10 @@ def _divided(
 ) -> FloatArray:
     """Divide a curve between breaks; `length` is that of the curve per unit of its parameter, m."""
 
-    def wanted(at: FloatArray) -> FloatArray:
+    def element_size(at: FloatArray) -> FloatArray:
         return np.minimum(size(curve(at)), largest(at)) / length
 
-    parts = [divide(a, b, wanted, SAMPLES) for a, b in pairwise(breaks)]
+    parts = [divide(a, b, element_size, SAMPLES) for a, b in pairwise(breaks)]
     return np.concatenate([parts[0], *(part[1:] for part in parts[1:])])
 
 

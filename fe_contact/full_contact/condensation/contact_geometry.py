@@ -65,7 +65,7 @@ class PairGeometry:
         turn, center = rotation(self.lag_rate * at.lag), self.bodies[1].body.center
         rigid = (self.bodies[0].points, (self.bodies[1].points - center) @ turn.T + center)
         first, second = (u.reshape(-1, 2) for u in at.displacements)
-        places = (rigid[0] + first, rigid[1] + second @ turn.T)
+        deformed = (rigid[0] + first, rigid[1] + second @ turn.T)
 
         def lag(points: FloatArray) -> FloatArray:
             return np.asarray(self.lag_rate * (points - center)[:, ::-1] * [-1.0, 1.0])
@@ -73,7 +73,7 @@ class PairGeometry:
         gaps = []
         for site in self.sites:
             columns = [body.columns[site.ahead] for body in self.bodies]
-            curves = FlankCurve(places[0][columns[0]]), FlankCurve(places[1][columns[1]])
+            curves = FlankCurve(deformed[0][columns[0]]), FlankCurve(deformed[1][columns[1]])
             reference = FlankCurve(rigid[site.slave][columns[site.slave]])
             gaps.append(weak_gap(curves, reference, site.slave, lag))
         return self._gathered(gaps, at, turn)

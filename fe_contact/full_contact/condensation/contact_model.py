@@ -1,4 +1,4 @@
-"""What a full contact is solved in: plane strain, or the whole face."""
+"""The models of a full contact: plane strain, or the whole face."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MESH_STIFFNESS = 20e9 / 210e9
 
 
 class ContactModel(Protocol):
-    """How the plane mesh of a position becomes contacts."""
+    """The contacts made of the plane mesh of a position."""
 
     @property
     def count(self) -> int:

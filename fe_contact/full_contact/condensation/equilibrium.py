@@ -20,14 +20,14 @@ def bore_checks(bodies: Bodies, solutions: Sequence[Solution]) -> list[tuple[flo
     the work u f of both gears is p C p. Nothing condensed enters the reactions: all nodes are solved for.
     """
     reactions, work = zip(*(_of_body(bodies, number, solutions) for number in range(2)), strict=True)
-    found = []
+    checks = []
     for i, (contact, pressure, torque) in enumerate(solutions):
         driven = _moment(bodies[1], contact.forces[1] @ pressure)
         balance = max(abs(float(reactions[0][i]) / torque + 1.0), abs(float(reactions[1][i]) / driven + 1.0))
         elastic = float(pressure @ contact.system.compliance @ pressure)
         energy = abs(float(work[0][i] + work[1][i]) / elastic - 1.0)
-        found.append((max(balance, energy), abs(driven) / torque))
-    return found
+        checks.append((max(balance, energy), abs(driven) / torque))
+    return checks
 
 
 def _of_body(bodies: Bodies, number: int, solutions: Sequence[Solution]) -> tuple[FloatArray, FloatArray]:

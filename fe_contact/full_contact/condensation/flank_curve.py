@@ -71,9 +71,9 @@ class FlankCurve:
         hit = (piece >= 0) & (ahead[:, -1] <= 0.0)
         t = np.clip(piece, 0, self.pieces - 1) + 0.5
         for _ in range(_STEPS):
-            found = self.points(t)
-            value = np.einsum("qx,qx->q", found.at - origins, tangents)
-            t = t - value / np.einsum("qx,qx->q", found.slope, tangents)
+            points = self.points(t)
+            value = np.einsum("qx,qx->q", points.at - origins, tangents)
+            t = t - value / np.einsum("qx,qx->q", points.slope, tangents)
             t = np.clip(t, piece, piece + 1.0)
         return np.where(hit, t, np.nan)
 
@@ -85,9 +85,9 @@ class FlankCurve:
         piece = np.clip(np.count_nonzero(ahead > 0.0, axis=1) - 1, 0, self.pieces - 1)
         t = piece + 0.5
         for _ in range(_STEPS):
-            found = self.points(t)
+            points = self.points(t)
             tangents = reference.points(t).tangents
-            step = np.einsum("qx,qx->q", others - found.at, tangents)
-            step = step / np.einsum("qx,qx->q", found.slope, tangents)
+            step = np.einsum("qx,qx->q", others - points.at, tangents)
+            step = step / np.einsum("qx,qx->q", points.slope, tangents)
             t = np.clip(t + step, piece - 1.0, piece + 2.0)
         return np.asarray(t)

@@ -1,4 +1,4 @@
-"""How finely the contact and the bodies behind it are divided."""
+"""Resolution of the contact and of the bodies behind it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where tooth pairs may touch at one position, and how finely their flanks are divided there.
+"""Sites where tooth pairs may touch at one position, and the element sizes on their flanks.
 
 Hertz' half-width decides element sizes and the length of the strips, and nothing else.
 """
@@ -65,7 +65,7 @@ class ContactSite:
 
 @dataclass(frozen=True)
 class Range:
-    """What the sites of a position must hold.
+    """The range of loads that the sites of a position must hold.
 
     Attributes
     ----------
@@ -169,18 +169,18 @@ def _on_path(
     gears = (pair.pinion, pair.wheel)
     first, second = _arc(pair.pinion, roll), _arc(pair.wheel, float(pair.mating_roll_length(roll)))
     t = np.linspace(-SEARCHED, SEARCHED, SAMPLES) * widths.alone
-    places = (first + t, second - t)
+    positions = (first + t, second - t)
     gap = 0.5 * t**2 / widths.radius
-    for gear, s in zip(gears, places, strict=True):
+    for gear, s in zip(gears, positions, strict=True):
         gap = gap + np.where(s > tooth_profile(gear).s_tip, np.inf, material_removed(gear, s))
     reached = np.sqrt(2.0 * widths.radius * (gap - gap.min()))
     path = pair.path_of_contact
     slave = 0 if roll < 0.5 * (path.start + path.end) else 1
     size = np.clip(reached, widths.least, widths.largest) / resolution.per_half_width
     within = np.flatnonzero(reached < TOUCHING * widths.alone)
-    to_edge = tooth_profile(gears[1 - slave]).s_tip - places[1 - slave][np.argmin(gap)]
+    to_edge = tooth_profile(gears[1 - slave]).s_tip - positions[1 - slave][np.argmin(gap)]
     strips = []
-    for number, s in enumerate(places):
+    for number, s in enumerate(positions):
         edge = tooth_profile(gears[number]).s_tip
         more = MARGINS[number != slave] * widths.alone  # past the mate's edge too: the flanks slide
         low, high = float(s[within].min()) - more, min(float(s[within].max()) + more, edge)

@@ -87,8 +87,8 @@ def contact_tables(
             report(count / len(positions))
         clock = StageClock()
         with clock.stage("position"):
-            found = [solve_position(model, pair, torques, position, mesh) for mesh in meshes]
-        solved.append(_with_error(found[0], found[1]) if len(found) > 1 else found[0])
+            solutions = [solve_position(model, pair, torques, position, mesh) for mesh in meshes]
+        solved.append(_with_error(solutions[0], solutions[1]) if len(solutions) > 1 else solutions[0])
         seconds.append(clock.seconds["position"])
     return tuple(
         FullContactTable(

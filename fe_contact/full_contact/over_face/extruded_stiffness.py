@@ -98,13 +98,13 @@ def _products(
 
 def _linear_functions(triangles: IntArray, corners: IntArray, count: int) -> sp.csr_array:
     """Return the linear functions of corners in quadratic ones, (n, c): 1 there, 1/2 at mid-side nodes."""
-    place = np.full(count, -1)
-    place[corners] = np.arange(len(corners))
+    number = np.full(count, -1)
+    number[corners] = np.arange(len(corners))
     sides = np.concatenate([triangles[:, [0, 1, 3]], triangles[:, [1, 2, 4]], triangles[:, [2, 0, 5]]])
     _, first = np.unique(sides[:, 2], return_index=True)
     sides = sides[first]
     rows = np.concatenate([corners, sides[:, 2], sides[:, 2]])
-    columns = np.concatenate([place[corners], place[sides[:, 0]], place[sides[:, 1]]])
+    columns = np.concatenate([number[corners], number[sides[:, 0]], number[sides[:, 1]]])
     values = np.concatenate([np.ones(len(corners)), np.full(2 * len(sides), 0.5)])
     return sp.csr_array((values, (rows, columns)), shape=(count, len(corners)))
 
@@ -138,18 +138,18 @@ def _terms(
 def _integrals(nodes: FloatArray) -> dict[str, FloatArray]:
     """Return the element integrals (e, 6, 6) of f g, f,x g, f,y g and f,a g,b of nodes (e, 6, 2)."""
     slopes, values = shape_derivatives(POINTS), _shapes(POINTS)
-    found = {name: np.zeros((len(nodes), 6, 6)) for name in ("1", "x", "y", "xx", "xy", "yx", "yy")}
+    integrals = {name: np.zeros((len(nodes), 6, 6)) for name in ("1", "x", "y", "xx", "xy", "yx", "yy")}
     for slope, value, weight in zip(slopes, values, WEIGHTS, strict=True):
         jacobian = slope @ nodes  # (e, d, x)
         determinant = np.linalg.det(jacobian)
         x, y = np.moveaxis(np.linalg.solve(jacobian, np.broadcast_to(slope, (len(nodes), 2, 6))), 1, 0)
         area = (weight * determinant)[:, None, None]
-        found["1"] += area * np.outer(value, value)
+        integrals["1"] += area * np.outer(value, value)
         for name, own in (("x", x), ("y", y)):
-            found[name] += area * own[:, :, None] * value
+            integrals[name] += area * own[:, :, None] * value
             for other, right in (("x", x), ("y", y)):
-                found[name + other] += area * own[:, :, None] * right[:, None, :]
-    return found
+                integrals[name + other] += area * own[:, :, None] * right[:, None, :]
+    return integrals
 
 
 def _shapes(at: FloatArray) -> FloatArray:

@@ -44,7 +44,7 @@ def face_gap(section: Section, layers: Layers) -> FaceGap:
     planes = len(layers.planes)
     scalars, forces = [], []
     for side in (1, -1):
-        sections = [section(side * place) for place in z.tolist()]
+        sections = [section(side * position) for position in z.tolist()]
         over = np.zeros((len(z), 2 * planes - 1))
         over[:, planes - 1 :] = hats
         over = over if side > 0 else over[:, ::-1]
@@ -62,6 +62,6 @@ def face_gap(section: Section, layers: Layers) -> FaceGap:
 
 def _over_functions(sections: FloatArray, products: FloatArray, functions: int) -> FloatArray:
     """Return forces (2 k f, i j) from those of sections (q, 2 k, i) and products of f and hats (q, f j)."""
-    places, rows, hats = sections.shape
-    total = (sections.reshape(places, -1).T @ products).reshape(rows, hats, functions, -1)
+    points, rows, hats = sections.shape
+    total = (sections.reshape(points, -1).T @ products).reshape(rows, hats, functions, -1)
     return np.asarray(total.transpose(0, 2, 1, 3).reshape(rows * functions, -1))

@@ -71,7 +71,7 @@ class FaceGeometry:
 
         They balance the torque on gear 1, and on gear 2 the moment of the contact forces about its center.
         """
-        found = []
+        checks = []
         for contact, pressure, torque in solutions:
             reactions, applied = [], []
             for body, forces in zip(self.bodies, contact.forces, strict=True):
@@ -79,8 +79,8 @@ class FaceGeometry:
                 reactions.append(float(body.held_moment @ on_halves))
                 applied.append(float(body.arms @ on_halves))
             breach = max(abs(reactions[0] / torque + 1.0), abs(reactions[1] / applied[1] + 1.0))
-            found.append((breach, abs(applied[1]) / torque))
-        return found
+            checks.append((breach, abs(applied[1]) / torque))
+        return checks
 
     def _gathered(self, gaps: Sequence[FaceGap], at: Configuration) -> LinearizedContact:
         """Join the pairs, without hats that hardly face their mate."""
@@ -154,12 +154,12 @@ class _Sections:
     @cached_property
     def _normals(self) -> dict[tuple[int, int], FloatArray]:
         """Outward normals (k, 2) at the nodes of each strip, by gear and pair index."""
-        found = {}
+        normals = {}
         for number, body in enumerate(self.geometry.bodies):
             for ahead, columns in body.columns.items():
                 curve = FlankCurve(body.points[columns])
-                found[number, ahead] = curve.points(0.5 * np.arange(float(len(columns)))).normals
-        return found
+                normals[number, ahead] = curve.points(0.5 * np.arange(float(len(columns)))).normals
+        return normals
 
     def gap(self, site: ContactSite, z: float) -> tuple[WeakGap, float]:
         """Return the weak gap at a face position, and the angle by which gear 2 is turned there."""
@@ -170,12 +170,12 @@ class _Sections:
         turn, center = rotation(angle), geometry.bodies[1].body.center
         rigid, moved = zip(*(self._strip(number, site.ahead, z) for number in range(2)), strict=True)
         rigid = rigid[0], (rigid[1] - center) @ turn.T + center
-        places = rigid[0] + moved[0], rigid[1] + moved[1] @ turn.T
+        deformed = rigid[0] + moved[0], rigid[1] + moved[1] @ turn.T
 
         def lag(points: FloatArray) -> FloatArray:
             return np.asarray(rate * (points - center)[:, ::-1] * [-1.0, 1.0])
 
-        curves = FlankCurve(places[0]), FlankCurve(places[1])
+        curves = FlankCurve(deformed[0]), FlankCurve(deformed[1])
         return weak_gap(curves, FlankCurve(rigid[site.slave]), site.slave, lag), angle
 
     def _strip(self, number: int, ahead: int, z: float) -> tuple[FloatArray, FloatArray]:
@@ -184,6 +184,6 @@ class _Sections:
         gear = (self.geometry.pair.pinion, self.geometry.pair.wheel)[number]
         columns, strip = body.columns[ahead], body.body.strips[ahead]
         more = material_removed(gear, strip.s, z) - material_removed(gear, strip.s)
-        places = body.points[columns] - more[:, None] * self._normals[number, ahead]
+        positions = body.points[columns] - more[:, None] * self._normals[number, ahead]
         half = self.at.displacements[number].reshape(2, len(body.nodes), 2, -1)[0 if z > 0.0 else 1]
-        return places, half[columns] @ body.layers.functions(np.array([abs(z)]))[0]
+        return positions, half[columns] @ body.layers.functions(np.array([abs(z)]))[0]

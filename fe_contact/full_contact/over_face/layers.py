@@ -32,22 +32,22 @@ class Layers:
 
     @property
     def quadrature(self) -> tuple[FloatArray, FloatArray]:
-        """Places over half the face and their weights, three in each layer, m."""
+        """Positions over half the face and their weights, three in each layer, m."""
         middle, half = 0.5 * (self.planes[1:] + self.planes[:-1]), 0.5 * np.diff(self.planes)
-        places = middle[:, None] + half[:, None] * _GAUSS
-        return places.ravel(), (half[:, None] * _WEIGHTS).ravel()
+        positions = middle[:, None] + half[:, None] * _GAUSS
+        return positions.ravel(), (half[:, None] * _WEIGHTS).ravel()
 
     def hats(self, z: FloatArray) -> FloatArray:
-        """Return the linear hats (q, p) at places (q,)."""
+        """Return the linear hats (q, p) at positions (q,)."""
         return np.stack([np.interp(z, self.planes, hat) for hat in np.eye(len(self.planes))], axis=-1)
 
     def functions(self, z: FloatArray) -> FloatArray:
-        """Return hats and bubbles (q, 2 p - 1) at places (q,)."""
+        """Return hats and bubbles (q, 2 p - 1) at positions (q,)."""
         hats = self.hats(z)
         return np.concatenate([hats, 4.0 * hats[:, :-1] * hats[:, 1:]], axis=1)
 
     def slopes(self, z: FloatArray) -> FloatArray:
-        """Return their derivatives (q, 2 p - 1) at places (q,) inside layers, 1/m."""
+        """Return their derivatives (q, 2 p - 1) at positions (q,) inside layers, 1/m."""
         hats, layer = self.hats(z), np.searchsorted(self.planes, z) - 1
         rates = np.zeros_like(hats)
         rows, steep = np.arange(len(z)), 1.0 / np.diff(self.planes)[layer]

@@ -62,7 +62,7 @@ def schur_complement(matrix: ColumnMatrix, kept: int) -> FloatArray:
         The matrix is not positive definite.
     """
     left: dict[int, list[tuple[IntArray, FloatArray]]] = defaultdict(list)
-    place = np.zeros(matrix.starts[-1], dtype=np.int64)
+    row = np.zeros(matrix.starts[-1], dtype=np.int64)
     count = len(matrix.starts) - 1
     fronts = _fronts(matrix.graph, count - kept)
     owner = np.full(count, len(fronts))
@@ -70,7 +70,7 @@ def schur_complement(matrix: ColumnMatrix, kept: int) -> FloatArray:
         owner[front.nodes] = number
     fronts.append(_Front(np.arange(count - kept, count), np.empty(0, dtype=np.int64)))
     for number, front in enumerate(fronts):
-        dense, rows, pivots = _assembled(matrix, front, left.pop(number, []), place)
+        dense, rows, pivots = _assembled(matrix, front, left.pop(number, []), row)
         if number == len(fronts) - 1:
             break
         rest = _eliminated(dense, pivots)
@@ -80,18 +80,18 @@ def schur_complement(matrix: ColumnMatrix, kept: int) -> FloatArray:
 
 
 def _assembled(
-    matrix: ColumnMatrix, front: _Front, children: list[tuple[IntArray, FloatArray]], place: IntArray
+    matrix: ColumnMatrix, front: _Front, children: list[tuple[IntArray, FloatArray]], row: IntArray
 ) -> tuple[FloatArray, IntArray, int]:
     """Return the lower triangle of a front, its unknowns, and how many of them are eliminated."""
     own = matrix.unknowns(front.nodes)
     rows = np.concatenate([own, matrix.unknowns(front.beyond)]) if len(front.beyond) else own
-    place[rows] = np.arange(len(rows))
+    row[rows] = np.arange(len(rows))
     dense = np.zeros((len(rows), len(rows)), order="F")
     columns = matrix.lower[:, own]
     column = np.repeat(np.arange(len(own)), np.diff(columns.indptr))
-    dense[place[columns.indices], column] = columns.data
+    dense[row[columns.indices], column] = columns.data
     for theirs, block in children:
-        at = place[theirs]
+        at = row[theirs]
         dense[np.ix_(at, at)] += block
     return dense, rows, len(own)
 

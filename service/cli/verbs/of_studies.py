@@ -43,10 +43,10 @@ def _command(study: Study) -> Any:
 def _verb(study: Study) -> Callable[..., None]:
     """Return the function of a verb, with the signature that it is called by."""
 
-    def verb(**given: Any) -> None:
+    def verb(**options: Any) -> None:
         from service.cli.study import run_study  # noqa: PLC0415 (start-up time)
 
-        run_study(study, given)
+        run_study(study, options)
 
     verb.__doc__ = study.description
     verb.__signature__ = Signature(list(_parameters(study)))  # type: ignore[attr-defined]

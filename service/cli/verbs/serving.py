@@ -72,9 +72,9 @@ def submit(
     json: AsJson = False,
 ) -> None:
     """Submit a case or a scene to a service."""
-    from service.cli.remote import Wish, run_submit  # noqa: PLC0415 (start-up time)
+    from service.cli.remote import ProcessRequest, run_submit  # noqa: PLC0415 (start-up time)
 
-    run_submit(file, service, Wish(process, inputs), wait=wait, output=output, as_json=json)
+    run_submit(file, service, ProcessRequest(process, inputs), wait=wait, output=output, as_json=json)
 
 
 @verbs.command(epilog="Example: loa fetch 3f1c0e5a-6c3d-4c1e-9b1e-2f6f0a1b2c3d -o ste.nc")

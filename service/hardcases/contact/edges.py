@@ -107,14 +107,14 @@ def _largest(values: FloatArray) -> float:
     return float(np.abs(values).max())
 
 
-def _apart(one: FloatArray, other: FloatArray) -> float:
+def _apart(first: FloatArray, second: FloatArray) -> float:
     """Relative difference of the means."""
-    return abs(float(one.mean() / other.mean()) - 1.0)
+    return abs(float(first.mean() / second.mean()) - 1.0)
 
 
-def _ranges_apart(one: FloatArray, other: FloatArray) -> float:
+def _ranges_apart(first: FloatArray, second: FloatArray) -> float:
     """Relative difference of the peak-to-peak values."""
-    return abs(float(np.ptp(one) / np.ptp(other)) - 1.0)
+    return abs(float(np.ptp(first) / np.ptp(second)) - 1.0)
 
 
 TIP_EDGE = HardScene(

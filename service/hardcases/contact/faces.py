@@ -80,10 +80,10 @@ def single_slice() -> Sequence[Measured]:
 def duplicates() -> Sequence[Measured]:
     """Ask for the same position several times, in any order, alone and among others."""
     case = posed(nominal_pair())
-    asked = np.array([0.3, 0.3, 0.0, 0.97, 0.3, 0.0, 0.5, 0.5])
-    problem, together = case.solve(asked, case.plan.load)
-    apart = [case.solve(np.array([x]), case.plan.load)[1].deflection[0, 0] for x in asked]
-    groups = [together.deflection[asked == x, 0] for x in np.unique(asked)]
+    positions = np.array([0.3, 0.3, 0.0, 0.97, 0.3, 0.0, 0.5, 0.5])
+    problem, together = case.solve(positions, case.plan.load)
+    apart = [case.solve(np.array([x]), case.plan.load)[1].deflection[0, 0] for x in positions]
+    groups = [together.deflection[positions == x, 0] for x in np.unique(positions)]
     return (
         *soundness(problem, together),
         Measured("spread over equal positions, m", max(float(np.ptp(group)) for group in groups), most=0.0),

@@ -48,8 +48,8 @@ def pitch_error_beyond_deflection() -> Sequence[Measured]:
     _, alone = plain.solve(position, plain.plan.load)
     teeth = np.zeros(20)
     teeth[5] = _STEP
-    one = posed(_with_pitch(tuple(teeth)), pitches=20, bodies=plain.contact)
-    problem, solution = one.solve(position, one.plan.load, np.repeat(np.arange(20), 48))
+    case = posed(_with_pitch(tuple(teeth)), pitches=20, bodies=plain.contact)
+    problem, solution = case.solve(position, case.plan.load, np.repeat(np.arange(20), 48))
     every = posed(_with_pitch((_STEP,) * 20), pitches=1, bodies=plain.contact)
     shifted = every.solve(position, every.plan.load)[1].deflection
     shift = _STEP * np.cos(plain.pair.pinion.transverse_pressure_angle)

@@ -26,12 +26,12 @@ def module_of(module: float) -> Sequence[Measured]:
         plain, scaled = (_scaled(factor, model) for factor in (1.0, scale))
         position = even_positions(40)
         problem, solution = scaled.solve(position, scaled.plan.load)
-        wanted = scale * plain.solve(position, plain.plan.load)[1].deflection
+        expected = scale * plain.solve(position, plain.plan.load)[1].deflection
         figures += [
             *(replace(figure, name=f"{figure.name}, {model}") for figure in soundness(problem, solution)),
             Measured(
                 f"STE over the scaled one, off by, {model}",
-                float(np.abs(solution.deflection / wanted - 1.0).max()),
+                float(np.abs(solution.deflection / expected - 1.0).max()),
                 most=1e-7,
             ),
         ]
@@ -43,20 +43,20 @@ def faces() -> Sequence[Measured]:
     plane = posed(nominal_pair())
     position = even_positions(24)
     strain = plane.solve(position, plane.plan.load)[1].deflection[:, 0].mean()
-    found, figures = [], []
+    ratios, figures = [], []
     for width in (0.3 * _MODULE, 30.0 * _MODULE):
         case = posed(nominal_pair(face_width=width), [NOMINAL_TORQUE * width / _WIDTH], model="3d")
         problem, solution = case.solve(position, case.plan.load)
-        found.append(float(solution.deflection[:, 0].mean() / strain))
+        ratios.append(float(solution.deflection[:, 0].mean() / strain))
         figures += [
             replace(figure, name=f"{figure.name}, {width / _MODULE:g} modules")
             for figure in soundness(problem, solution, 6)
         ]
     return (
         *figures,
-        Measured("0.3 modules: mean STE over plane strain", found[0], 1.0 / (1.0 - 0.3**2), 1.0),
-        Measured("30 modules: mean STE over plane strain", found[1], 1.0 / (1.0 - 0.3**2), 1.0),
-        Measured("narrow over wide", found[0] / found[1], least=1.0),
+        Measured("0.3 modules: mean STE over plane strain", ratios[0], 1.0 / (1.0 - 0.3**2), 1.0),
+        Measured("30 modules: mean STE over plane strain", ratios[1], 1.0 / (1.0 - 0.3**2), 1.0),
+        Measured("narrow over wide", ratios[0] / ratios[1], least=1.0),
     )
 
 

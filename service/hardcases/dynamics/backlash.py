@@ -86,15 +86,15 @@ def reversal() -> Sequence[Measured]:
 def impacts() -> Sequence[Measured]:
     """Throw a gear between both flanks, without load or damping, twenty times to and fro."""
     coarse, fine = _TOLERANCE, 1e-2 * _TOLERANCE
-    found = {
+    runs = {
         (method, tolerance): _thrown(method, tolerance) for method in METHODS for tolerance in (coarse, fine)
     }
-    off = {key: rms(_place(run) - bounce(run.time, _BACKLASH, _SPEED, NATURAL)) for key, run in found.items()}
-    energy = {key: _lost(run) for key, run in found.items()}
+    off = {key: rms(_place(run) - bounce(run.time, _BACKLASH, _SPEED, NATURAL)) for key, run in runs.items()}
+    energy = {key: _lost(run) for key, run in runs.items()}
     depth = _SPEED / NATURAL
     # an error of one tolerance at an impact is one of speed, which every flight after it makes more of
     grown = _TOLERANCE * _BACKLASH / depth * _IMPACTS**2 / 2.0
-    apart = rms(_place(found[METHODS[0], fine]) - _place(found[METHODS[1], fine]))
+    apart = rms(_place(runs[METHODS[0], fine]) - _place(runs[METHODS[1], fine]))
     return (
         Measured(
             "two integrators apart, over a tolerance per impact and what flights make of it",

@@ -34,10 +34,10 @@ def taken_up_again() -> Sequence[Measured]:
             whole, parts = Path(folder, "whole.nc"), Path(folder, "parts.nc")
             simulate_to_file(own, whole)
             legs = _in_legs(own, parts)
-            one, other = (RunResult.from_netcdf(path) for path in (whole, parts))
-        extra = abs(one.statistics.accepted - other.statistics.accepted)
-        changed = [name for name in _arrays(one) if _bits(one, name) != _bits(other, name)]
-        impacts = int(np.count_nonzero(np.diff(one.contact[0] % 2.0) == 1.0))
+            unbroken, resumed = (RunResult.from_netcdf(path) for path in (whole, parts))
+        extra = abs(unbroken.statistics.accepted - resumed.statistics.accepted)
+        changed = [name for name in _arrays(unbroken) if _bits(unbroken, name) != _bits(resumed, name)]
+        impacts = int(np.count_nonzero(np.diff(unbroken.contact[0] % 2.0) == 1.0))
         figures += [
             Measured(f"{method}: times it was taken up again", float(legs - 1), least=5.0),
             Measured(f"{method}: impacts on the driving flank", float(impacts), least=10.0),

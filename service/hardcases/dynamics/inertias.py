@@ -40,13 +40,13 @@ def unlike_masses() -> Sequence[Measured]:
         gained = _STEP * (float(runs.implicit.time[-1]) - _BEGIN - _RISE / 2.0) / sum(inertia)
         pace = natural * scene.integration.tolerance / BASE_RADIUS
         off = max(abs(_mean_speed(run, inertia) - _SPEED - gained) for run in runs.both)
-        found = (
+        measured = (
             *common_figures(runs, scene),
             off_closed_form(runs, scene, exact),
             Measured("speed of the train off the impulse's, over a tolerance per radian", off / pace, 1.0),
             Measured("speed gained by impulse over that", gained / pace, least=100.0),
         )
-        figures += [replace(figure, name=f"{name}: {figure.name}") for figure in found]
+        figures += [replace(figure, name=f"{name}: {figure.name}") for figure in measured]
     return figures
 
 

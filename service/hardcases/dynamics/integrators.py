@@ -1,4 +1,4 @@
-"""What every scene in the time domain must obey: two integrators agree, and the energy balance closes."""
+"""Laws of every scene in the time domain: two integrators agree, and the energy balance closes."""
 
 from __future__ import annotations
 
@@ -53,8 +53,8 @@ def common_figures(runs: Runs, scene: Scene) -> tuple[Measured, ...]:
     They agree to their tolerances; where the scene has errors measured (`Integration.estimate_error`), since
     its motion makes more of an error than one tolerance, to these.
     """
-    one, other = (run.dynamic_transmission_error for run in runs.both)
-    apart, tolerance = rms(one - other), scene.integration.tolerance
+    first, second = (run.dynamic_transmission_error for run in runs.both)
+    apart, tolerance = rms(first - second), scene.integration.tolerance
     audits = [run.energy for run in runs.both if run.energy is not None]
     energy = Measured(
         "energy missing, over what was turned over", max(audit.relative for audit in audits), LARGEST_MISSING
@@ -79,7 +79,7 @@ def off_closed_form(runs: Runs, scene: Scene, exact: Callable[[FloatArray], Floa
         return Measured(
             "off the closed form, rms over the tolerance", max(off) / scene.integration.tolerance, 1.0
         )
-    honest = max(one / measured_error(run) for one, run in zip(off, runs.both, strict=True))
+    honest = max(distance / measured_error(run) for distance, run in zip(off, runs.both, strict=True))
     return Measured("off the closed form, rms over the measured error", honest, HONEST)
 
 

@@ -49,16 +49,16 @@ _JUMP_UP, _JUMP_DOWN = 0.8285, 0.7080
 
 def both_sweeps() -> Sequence[Measured]:
     """Sweep up and down through the jumps by shooting, and find where the branch turns back."""
-    found = {method: [_sweep(method, side) for side in (0, 1)] for method in METHODS}
+    by_method = {method: [_sweep(method, side) for side in (0, 1)] for method in METHODS}
     off = max(
         abs(values[w] / _CONVERGED[w][side] - 1.0)
-        for sweeps in found.values()
+        for sweeps in by_method.values()
         for side, values in enumerate(sweeps)
         for w in _CONVERGED
     )
     apart = max(
-        abs(one[w] / other[w] - 1.0)
-        for one, other in zip(found["implicit"], found["explicit"], strict=True)
+        abs(first[w] / second[w] - 1.0)
+        for first, second in zip(by_method["implicit"], by_method["explicit"], strict=True)
         for w in _CONVERGED
     )
     up, down = _fold(_JUMP_UP, 0.65, 0.9), _fold(_JUMP_DOWN, 0.9, 0.65)
@@ -73,14 +73,14 @@ def both_sweeps() -> Sequence[Measured]:
 def _sweep(method: str, side: int) -> dict[float, float]:
     """Return the rms at all frequencies, each settled from the motion at the one before."""
     state: FloatArray | None = None
-    found: dict[float, float] = {}
+    sizes: dict[float, float] = {}
     for frequency in sorted(_CONVERGED, reverse=side == 1):
         problem = periodic_problem(_oscillator(frequency, method), _SLOWEST / _TEETH)
         state = settled(problem, frequency / _TEETH, state)
         orbit = find_orbit(problem, frequency / _TEETH, state)
-        found[frequency] = _rms(problem, orbit, frequency) if orbit.status.usable and orbit.stable else np.nan
+        sizes[frequency] = _rms(problem, orbit, frequency) if orbit.status.usable and orbit.stable else np.nan
         state = orbit.state
-    return found
+    return sizes
 
 
 def _rms(problem: PeriodicProblem, orbit: Orbit, frequency: float) -> float:

@@ -41,12 +41,12 @@ def rest_to_rest() -> Sequence[Measured]:
     )
     runs = run_both(scene)
     result = runs.implicit
-    place = TEETH * turned / (2.0 * np.pi)
-    rest = DEFLECTION + _RIPPLE * np.cos(2.0 * np.pi * place)
+    phase = TEETH * turned / (2.0 * np.pi)
+    rest = DEFLECTION + _RIPPLE * np.cos(2.0 * np.pi * phase)
     return (
         *common_figures(runs, scene),
         Measured(
-            "off its place at the end, base pitches", abs(float(result.position[0, -1]) - place % 1.0), 1e-9
+            "off its place at the end, base pitches", abs(float(result.position[0, -1]) - phase % 1.0), 1e-9
         ),
         Measured(
             "at rest at the end, off the static deflection, m",

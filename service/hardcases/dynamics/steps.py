@@ -47,8 +47,8 @@ def extreme_speeds() -> Sequence[Measured]:
         )  # fmt: skip
         runs = run_both(scene)
         exact = _ringing(2.0 * np.pi * rate)
-        found = (*common_figures(runs, scene), off_closed_form(runs, scene, exact))
-        figures += [replace(figure, name=f"{speed:g} rpm: {figure.name}") for figure in found]
+        measured = (*common_figures(runs, scene), off_closed_form(runs, scene, exact))
+        figures += [replace(figure, name=f"{speed:g} rpm: {figure.name}") for figure in measured]
     return figures
 
 
@@ -110,8 +110,8 @@ def tolerances() -> Sequence[Measured]:
             integration=Integration(tolerance=share * DEFLECTION),
         )  # fmt: skip
         runs = run_both(scene)
-        found = (*common_figures(runs, scene), off_closed_form(runs, scene, exact))
-        figures += [replace(figure, name=f"{share:g}: {figure.name}") for figure in found]
+        measured = (*common_figures(runs, scene), off_closed_form(runs, scene, exact))
+        figures += [replace(figure, name=f"{share:g}: {figure.name}") for figure in measured]
         figures += [
             Measured(f"{share:g}: steps, {method}", float(run.statistics.accepted))
             for method, run in zip(METHODS, runs.both, strict=True)

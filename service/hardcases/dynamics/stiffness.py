@@ -31,14 +31,14 @@ def threefold() -> Sequence[Measured]:
             scene = torsional(changing_spring(_RATIO), speed=speed, integration=Integration(method))
             orbit = find_orbit(periodic_problem(assemble(scene), speed), speed)
             name = f"{frequency:g}, {method}"
-            found = orbit.monodromy if orbit.status.usable else np.full((2, 2), np.nan)
+            matrix = orbit.monodromy if orbit.status.usable else np.full((2, 2), np.nan)
             figures += [
                 Measured(
                     f"{name}: trace of the monodromy off Mathieu's",
-                    abs(float(np.trace(found) - np.trace(exact))),
+                    abs(float(np.trace(matrix) - np.trace(exact))),
                     1e-4,
                 ),
-                Measured(f"{name}: determinant off one", abs(float(np.linalg.det(found)) - 1.0), most=1e-6),
+                Measured(f"{name}: determinant off one", abs(float(np.linalg.det(matrix)) - 1.0), most=1e-6),
             ]
         figures.append(Measured(f"{frequency:g}: largest multiplier by Mathieu", float(sizes[0])))
     scene = torsional(

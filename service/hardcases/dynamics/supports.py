@@ -67,19 +67,19 @@ def unloaded_in_clearance() -> Sequence[Measured]:
     natural = math.sqrt(_WALL / _MASS)
     duration = 0.5 * _BOUNCES * cycle(2.0 * _CLEARANCE, _SPEED, natural)
     grown = _TOLERANCE * 2.0 * _CLEARANCE * natural / _SPEED * _BOUNCES**2 / 2.0
-    places, energies = [], []
+    paths, energies = [], []
     for method in METHODS:
         system = assemble(_disc(duration, Integration(method, _TOLERANCE)))
-        run, place = _thrown(system)
-        places.append(place)
+        run, path = _thrown(system)
+        paths.append(path)
         exact = _CLEARANCE + bounce(run.time, 2.0 * _CLEARANCE, _SPEED, natural)
-        energies.append((rms(place - exact), abs(float(np.diff(run.stored.sum(axis=1))[0] - run.work.sum()))))
+        energies.append((rms(path - exact), abs(float(np.diff(run.stored.sum(axis=1))[0] - run.work.sum()))))
     start = static_equilibrium(assemble(_disc(duration, Integration())))
     return (
         Measured("equilibrium of the unloaded disc found", float(start.status.usable), least=1.0),
         Measured(
             "two integrators apart, over a tolerance per impact and what flights make of it",
-            rms(places[0] - places[1]) / (2.0 * grown), most=1.0,
+            rms(paths[0] - paths[1]) / (2.0 * grown), most=1.0,
         ),
         Measured("off the closed form, likewise", max(off for off, _ in energies) / grown, most=1.0),
         Measured(

@@ -48,7 +48,7 @@ LONG = case_of("3d", "fine", tuple(float(torque) for torque in range(10, 40)), 1
 
 @dataclass(frozen=True)
 class Aftermath:
-    """What became of a disturbed job, and what it left behind.
+    """The end of a disturbed job, and what it left behind.
 
     Attributes
     ----------
@@ -74,11 +74,11 @@ def aftermath(
     disturb: Disturb | None = None,
     settle: Settle = lambda _seconds: {},
     *,
-    again: bool = False,
+    resubmit: bool = False,
 ) -> Aftermath:
     """Run a job that is disturbed, another that is dismissed behind it, and the small one after both.
 
-    With `again` the first is submitted once more at the end, undisturbed.
+    With `resubmit` the first is submitted once more at the end, undisturbed.
     """
     before = undisturbed()
     with fresh_service(**settle(before.seconds)) as service:
@@ -87,7 +87,7 @@ def aftermath(
         jobs.append(service.submit(SMALL))
         ended = [service.ended(job, disturb if job is jobs[0] else None) for job in jobs]
         figures = (*_left(service), *_others(service, ended, before.errors))
-        last = service.ended(service.submit(case)) if again else ended[0]
+        last = service.ended(service.submit(case)) if resubmit else ended[0]
         errors = service.errors(last) if last.status == "successful" else None
         service.end_processes()
         return Aftermath(ended[0], errors, figures)
@@ -125,7 +125,7 @@ def _left(service: JobService) -> tuple[Measured, ...]:
 
 
 def _workspaces_left(service: JobService) -> int:
-    """Count workspaces; a job is told as ended just before its own is removed."""
+    """Count workspaces; a job is reported as ended just before its own is removed."""
     end = time.monotonic() + _SETTLING_S
     while (left := len(list((service.directory / "work").iterdir()))) and time.monotonic() < end:
         time.sleep(0.05)
@@ -151,6 +151,6 @@ def _others(service: JobService, ended: list[Job], before: FloatArray) -> tuple[
     )
 
 
-def largest_difference(one: FloatArray, other: FloatArray) -> float:
+def largest_difference(first: FloatArray, second: FloatArray) -> float:
     """Return the largest difference of two tables, infinite if they differ in shape."""
-    return float(np.max(np.abs(one - other))) if one.shape == other.shape else np.inf
+    return float(np.max(np.abs(first - second))) if first.shape == second.shape else np.inf

@@ -59,39 +59,40 @@ def _reached(act: Callable[[int], None], processes: Sequence[int]) -> list[int]:
 def mesher_killed() -> Sequence[Measured]:
     """Kill the mesher."""
     killed: list[int] = []
-    found = aftermath(MEDIUM, kill_meshers(1, killed))
-    said = "gmsh worker: killed by SIGKILL" in found.job.message
+    outcome = aftermath(MEDIUM, kill_meshers(1, killed))
+    stated = "gmsh worker: killed by SIGKILL" in outcome.job.message
     return (
         Measured("meshers killed", float(len(killed)), 1.0, 1.0),
-        Measured("failed at the first attempt", float(found.ended_as("failed", 1)), least=1.0),
-        Measured("says that the mesh failed, and how", float(said), least=1.0),
-        *found.figures,
+        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), least=1.0),
+        Measured("says that the mesh failed, and how", float(stated), least=1.0),
+        *outcome.figures,
     )
 
 
 def worker_killed_once() -> Sequence[Measured]:
     """Kill the first worker in mid-mesh."""
     killed: list[int] = []
-    found = aftermath(MEDIUM, kill_workers(1, killed))
-    off = np.inf if found.errors is None else largest_difference(found.errors, of_python())
+    outcome = aftermath(MEDIUM, kill_workers(1, killed))
+    off = np.inf if outcome.errors is None else largest_difference(outcome.errors, of_python())
     return (
         Measured("workers killed", float(len(killed)), 1.0, 1.0),
-        Measured("done at the second attempt", float(found.ended_as("successful", 2)), least=1.0),
+        Measured("done at the second attempt", float(outcome.ended_as("successful", 2)), least=1.0),
         Measured("result off that of Python, m", off, most=0.0),
-        *found.figures,
+        *outcome.figures,
     )
 
 
 def worker_killed_always() -> Sequence[Measured]:
     """Kill every worker in mid-mesh."""
     killed: list[int] = []
-    found = aftermath(MEDIUM, kill_workers(2, killed))
-    said = "ended by SIGKILL" in found.job.message and found.job.message.endswith("That was attempt 2 of 2.")
+    outcome = aftermath(MEDIUM, kill_workers(2, killed))
+    message = outcome.job.message
+    stated = "ended by SIGKILL" in message and message.endswith("That was attempt 2 of 2.")
     return (
         Measured("workers killed", float(len(killed)), 2.0, 2.0),
-        Measured("failed at the last attempt", float(found.ended_as("failed", 2)), least=1.0),
-        Measured("says what ended it, and how often it was tried", float(said), least=1.0),
-        *found.figures,
+        Measured("failed at the last attempt", float(outcome.ended_as("failed", 2)), least=1.0),
+        Measured("says what ended it, and how often it was tried", float(stated), least=1.0),
+        *outcome.figures,
     )
 
 

@@ -13,13 +13,13 @@ MEMORY_MB = 384
 
 def out_of_memory() -> Sequence[Measured]:
     """Run the large job with little memory."""
-    found = aftermath(LARGE, settle=lambda _seconds: {"memory_limit_mb": MEMORY_MB})
-    job = found.job
-    said = f"{MEMORY_MB} MB (LOA_MEMORY_LIMIT_MB)" in job.message and "coarser level" in job.message
+    outcome = aftermath(LARGE, settle=lambda _seconds: {"memory_limit_mb": MEMORY_MB})
+    job = outcome.job
+    stated = f"{MEMORY_MB} MB (LOA_MEMORY_LIMIT_MB)" in job.message and "coarser level" in job.message
     return (
-        Measured("failed at the first attempt", float(found.ended_as("failed", 1)), least=1.0),
-        Measured("names the limit and what to try", float(said), least=1.0),
-        *found.figures,
+        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), least=1.0),
+        Measured("names the limit and what to try", float(stated), least=1.0),
+        *outcome.figures,
     )
 
 
@@ -31,14 +31,14 @@ def past_the_deadline() -> Sequence[Measured]:
         allowed.append(round(2.5 * seconds, 1))
         return {"deadline_s": allowed[0]}
 
-    found = aftermath(LONG, settle=settle)
-    job = found.job
-    said = f"The deadline of {allowed[0]:g} s (LOA_DEADLINE_S) passed" in job.message
+    outcome = aftermath(LONG, settle=settle)
+    job = outcome.job
+    stated = f"The deadline of {allowed[0]:g} s (LOA_DEADLINE_S) passed" in job.message
     return (
-        Measured("failed at the first attempt", float(found.ended_as("failed", 1)), least=1.0),
-        Measured("names the deadline and what to try", float(said and "coarser" in job.message), least=1.0),
+        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), least=1.0),
+        Measured("names the deadline and what to try", float(stated and "coarser" in job.message), least=1.0),
         Measured("deadline, s", allowed[0]),
-        *found.figures,
+        *outcome.figures,
     )
 
 

@@ -42,15 +42,15 @@ def no_room(held: list[int]) -> Disturb:
 def disk_full() -> Sequence[Measured]:
     """Let no write of the worker succeed, then submit the job again."""
     held: list[int] = []
-    found = aftermath(MEDIUM, no_room(held), again=True)
-    said = "no space left" in found.job.message and "Make room" in found.job.message
-    off = np.inf if found.errors is None else largest_difference(found.errors, of_python())
+    outcome = aftermath(MEDIUM, no_room(held), resubmit=True)
+    stated = "no space left" in outcome.job.message and "Make room" in outcome.job.message
+    off = np.inf if outcome.errors is None else largest_difference(outcome.errors, of_python())
     return (
         Measured("workers without room", float(len(held)), 1.0, 1.0),
-        Measured("failed at the first attempt", float(found.ended_as("failed", 1)), least=1.0),
-        Measured("names the cause and what to try", float(said), least=1.0),
+        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), least=1.0),
+        Measured("names the cause and what to try", float(stated), least=1.0),
         Measured("submitted again with room, off that of Python, m", off, most=0.0),
-        *found.figures,
+        *outcome.figures,
     )
 
 
@@ -86,13 +86,13 @@ def greedy_mesher() -> Sequence[Measured]:
             if most[0] > 0.0 and not service.processes(MESHER_COMMAND):
                 greed.unlink(missing_ok=True)
 
-        found = aftermath(MEDIUM, after, settle)
-    said = "ran out of memory" in found.job.message and "coarser level" in found.job.message
+        outcome = aftermath(MEDIUM, after, settle)
+    stated = "ran out of memory" in outcome.job.message and "coarser level" in outcome.job.message
     return (
         Measured("memory the mesher was seen with, MB", most[0], most=float(MEMORY_MB), least=64.0),
-        Measured("failed at the first attempt", float(found.ended_as("failed", 1)), least=1.0),
-        Measured("names the mesher's memory and what to try", float(said), least=1.0),
-        *found.figures,
+        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), least=1.0),
+        Measured("names the mesher's memory and what to try", float(stated), least=1.0),
+        *outcome.figures,
     )
 
 

@@ -1,4 +1,4 @@
-"""How a random case ended."""
+"""The outcome of a random case."""
 
 from __future__ import annotations
 

@@ -129,9 +129,9 @@ def _along_the_axis(table: SteDatabase, x: FloatArray) -> tuple[Measured, ...]:
     return (
         Measured(
             "STE at each misalignment off the one stored for it",
-            max(_relative(found, np.full(x.size, f)) for found, f in zip(at, factor, strict=True)), 1e-12,
+            max(_relative(values, np.full(x.size, f)) for values, f in zip(at, factor, strict=True)), 1e-12,
         ),
-        Measured("force likewise", max(_relative(found, np.full(x.size, 2500.0)) for found in force), 1e-9),
+        Measured("force likewise", max(_relative(values, np.full(x.size, 2500.0)) for values in force), 1e-9),
         Measured("STE between two misalignments over that at the lower one", float(between.min()), least=1.0),
         Measured("over that at the higher one", float(between.max() / 1.5), most=1.0),
         Measured("flags beyond the axis", float(np.count_nonzero(beyond.validity)), least=float(x.size)),
@@ -185,9 +185,9 @@ def _slope_error(table: SteDatabase) -> Measured:
     return Measured("stiffness off the difference of forces", float(off.max()), most=1e-3)
 
 
-def _relative(values: FloatArray, wanted: FloatArray) -> float:
+def _relative(values: FloatArray, expected: FloatArray) -> float:
     """Largest relative difference."""
-    return float(np.abs(values / wanted - 1.0).max())
+    return float(np.abs(values / expected - 1.0).max())
 
 
 def _above(table: SteDatabase, straight: FloatArray, force: FloatArray) -> float:

@@ -22,7 +22,7 @@ def broken_monotonicity() -> Sequence[Measured]:
     clean = COMPLIANCE * force * (1.0 + 0.2 * np.cos(2.0 * np.pi * position))[:, None]
     noise = np.random.default_rng(_SEED).uniform(-_AMPLITUDE, _AMPLITUDE, clean.shape)
     table = table_of(position, force, clean + noise, np.zeros(32))
-    said = _refusal(table)
+    refusal = _refusal(table)
     repaired, report = table.monotone_repaired()
     ste = repaired.static_transmission_error[:, :, 0, 0]
     errors = [float(np.sqrt(np.mean((values - clean) ** 2))) for values in (clean + noise, ste)]
@@ -37,7 +37,7 @@ def broken_monotonicity() -> Sequence[Measured]:
         ),
         Measured(
             "refused as it is, naming position and force",
-            float("position" in said and "force" in said),
+            float("position" in refusal and "force" in refusal),
             None,
             1,
         ),
@@ -57,7 +57,7 @@ def broken_monotonicity() -> Sequence[Measured]:
 
 
 def _refusal(table: SteDatabase) -> str:
-    """Return what the table says when asked for a force; empty if it answers."""
+    """Return the table's refusal of a query for a force; empty if it answers."""
     try:
         table.force_table()
     except FeContactError as error:

@@ -1,4 +1,4 @@
-"""How alembic runs the steps: in the transaction it is given."""
+"""Alembic's entry point: it runs the steps in the transaction it is given."""
 
 from __future__ import annotations
 

@@ -19,37 +19,37 @@ from service.studies.presentation import Presentation
 from service.units import UM
 
 
-def page(found: LoadDistribution, database: SteDatabase | None = None) -> Page:
+def page(flanks: LoadDistribution, database: SteDatabase | None = None) -> Page:
     """Return the page of flank results; beside their database, which has its own effects and case."""
-    pair = found.scene.facts
-    sections = (*_results(found), *_making(found, alone=database is None))
-    return Page(pair_title(pair), pair_lead(pair), _headlines(found), sections, _alarms(found, database))
+    pair = flanks.scene.facts
+    sections = (*_results(flanks), *_making(flanks, alone=database is None))
+    return Page(pair_title(pair), pair_lead(pair), _headlines(flanks), sections, _alarms(flanks, database))
 
 
-def _headlines(found: LoadDistribution) -> tuple[Headline, ...]:
+def _headlines(flanks: LoadDistribution) -> tuple[Headline, ...]:
     """Largest pressure and K_Hbeta."""
-    at = operating_point(found)
-    headlines = [Headline("largest flank pressure", f"{number(1e-6 * float(found.pressure.max()))} MPa", at)]
-    if found.face_position.size > 1:
-        factor = found.mean_face_load_factor
+    at = operating_point(flanks)
+    headlines = [Headline("largest flank pressure", f"{number(1e-6 * float(flanks.pressure.max()))} MPa", at)]
+    if flanks.face_position.size > 1:
+        factor = flanks.mean_face_load_factor
         headlines.append(Headline("K_Hbeta over the cycle", number(factor, 3), at))
     return tuple(headlines)
 
 
-def _results(found: LoadDistribution) -> tuple[Section, ...]:
+def _results(flanks: LoadDistribution) -> tuple[Section, ...]:
     """Show the flanks; one slice has nothing to show over the face."""
-    figures: tuple[Figure, ...] = (contact_pattern_figure(found),)
-    text = f"At {operating_point(found)}, {found.position.size} positions of the mesh cycle."
-    if found.face_position.size > 1:
-        figures += (contact_lines(found), line_load_figure(found), load_centroid_figure(found))
+    figures: tuple[Figure, ...] = (contact_pattern_figure(flanks),)
+    text = f"At {operating_point(flanks)}, {flanks.position.size} positions of the mesh cycle."
+    if flanks.face_position.size > 1:
+        figures += (contact_lines(flanks), line_load_figure(flanks), load_centroid_figure(flanks))
     else:
         text += " The model is plane: what is shown is the same over the whole face."
     return (Section("Flanks", text, figures=figures),)
 
 
-def _making(found: LoadDistribution, *, alone: bool) -> tuple[Section, ...]:
+def _making(flanks: LoadDistribution, *, alone: bool) -> tuple[Section, ...]:
     """Show what the flank results cost; `alone`, without their database, also effects and case."""
-    metadata = found.metadata
+    metadata = flanks.metadata
     if not metadata.receipt:
         return ()
     cost = {name: value for name, value in metadata.receipt.items() if name != "plan"}
@@ -63,11 +63,11 @@ def _making(found: LoadDistribution, *, alone: bool) -> tuple[Section, ...]:
     return section, effects, Section("Case", tables=case_tables(metadata.case))
 
 
-def _alarms(found: LoadDistribution, database: SteDatabase | None) -> tuple[str, ...]:
+def _alarms(flanks: LoadDistribution, database: SteDatabase | None) -> tuple[str, ...]:
     """Say loudly if database and flank results are of different pairs."""
     if database is None:
         return ()
-    mine, theirs = found.scene.facts, database.facts
+    mine, theirs = flanks.scene.facts, database.facts
     same = mine.teeth == theirs.teeth and all(
         abs(getattr(mine, name) - getattr(theirs, name)) <= 1e-9 * getattr(theirs, name)
         for name in ("base_pitch", "face_width")
@@ -75,9 +75,9 @@ def _alarms(found: LoadDistribution, database: SteDatabase | None) -> tuple[str,
     return () if same else ("The flank results and the STE database are of different gear pairs.",)
 
 
-def operating_point(found: LoadDistribution) -> str:
+def operating_point(flanks: LoadDistribution) -> str:
     """Say load and alignment."""
-    scene = found.scene
+    scene = flanks.scene
     parts = [f"{number(scene.torque, 4)} N m"]
     if scene.misalignment:
         parts.append(f"misalignment {number(1e6 * scene.misalignment, 3)} µm")
@@ -86,22 +86,22 @@ def operating_point(found: LoadDistribution) -> str:
     return ", ".join(parts)
 
 
-def text(found: LoadDistribution) -> Iterator[str]:
+def text(flanks: LoadDistribution) -> Iterator[str]:
     """Yield the figures for people."""
-    scene, receipt = found.scene, found.metadata.receipt
+    scene, receipt = flanks.scene, flanks.metadata.receipt
     yield (
         f"torque {scene.torque:.6g} N m, normal force {scene.normal_force:.6g} N, "
         f"misalignment {scene.misalignment / UM:.4g} um"
     )
     yield (
-        f"largest pressure {1e-6 * found.pressure.max():.4g} MPa, "
-        f"largest line load {1e-3 * found.line_load.max():.4g} N/mm"
+        f"largest pressure {1e-6 * flanks.pressure.max():.4g} MPa, "
+        f"largest line load {1e-3 * flanks.line_load.max():.4g} N/mm"
     )
-    if found.face_position.size > 1:
-        low, high = (1e3 * end for end in (found.load_centroid.min(), found.load_centroid.max()))
+    if flanks.face_position.size > 1:
+        low, high = (1e3 * end for end in (flanks.load_centroid.min(), flanks.load_centroid.max()))
         yield (
-            f"K_Hbeta {found.mean_face_load_factor:.3g} over the cycle, at most "
-            f"{found.face_load_factor.max():.3g} at one position; "
+            f"K_Hbeta {flanks.mean_face_load_factor:.3g} over the cycle, at most "
+            f"{flanks.face_load_factor.max():.3g} at one position; "
             f"load centroid {low:.3g} to {high:.3g} mm from mid-face"
         )
     yield from assumption_lines(receipt)

@@ -35,7 +35,7 @@ def flanks_of(case: Case, cache: Path | None, progress: Progress = silent) -> Lo
     Raises
     ------
     BadInput
-        No such pair, or a wish that no plan can meet.
+        No such pair, or a request that no plan can meet.
     JobFailed
         No mesh, or positions without a solution.
     """
@@ -48,24 +48,24 @@ def flanks_of(case: Case, cache: Path | None, progress: Progress = silent) -> Lo
     return replace(found, metadata=replace(found.metadata, warnings=warnings))
 
 
-def flank_json(found: LoadDistribution) -> Json:
+def flank_json(flanks: LoadDistribution) -> Json:
     """Return the figures of flank results."""
-    scene, centroid = found.scene, found.load_centroid
+    scene, centroid = flanks.scene, flanks.load_centroid
     return {
-        "content_hash": found.metadata.content_hash,
+        "content_hash": flanks.metadata.content_hash,
         "torque_n_m": scene.torque,
         "normal_force_n": scene.normal_force,
         "misalignment_um": scene.misalignment / UM,
         "center_distance_change_mm": scene.center_distance_change / MM,
-        "positions": int(found.position.size),
-        "slices": int(found.face_position.size),
-        "k_h_beta": found.mean_face_load_factor,
-        "largest_face_load_factor": float(found.face_load_factor.max()),
+        "positions": int(flanks.position.size),
+        "slices": int(flanks.face_position.size),
+        "k_h_beta": flanks.mean_face_load_factor,
+        "largest_face_load_factor": float(flanks.face_load_factor.max()),
         "load_centroid_mm": [float(centroid.min() / MM), float(centroid.max() / MM)],
-        "largest_line_load_n_per_mm": float(found.line_load.max() * MM),
-        "largest_pressure_mpa": float(found.pressure.max() * 1e-6),
-        "effect_ledger": found.metadata.effect_ledger,
-        "receipt": found.metadata.receipt,
+        "largest_line_load_n_per_mm": float(flanks.line_load.max() * MM),
+        "largest_pressure_mpa": float(flanks.pressure.max() * 1e-6),
+        "effect_ledger": flanks.metadata.effect_ledger,
+        "receipt": flanks.metadata.receipt,
     }
 
 

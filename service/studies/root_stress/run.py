@@ -28,7 +28,7 @@ def root_stress_of(case: Case, _inputs: Inputs, means: Means) -> Json:
     Raises
     ------
     BadInput
-        No such pair, or a wish that no plan can meet.
+        No such pair, or a request that no plan can meet.
     JobFailed
         No mesh, or positions without a solution.
     """

@@ -1,4 +1,4 @@
-"""What a sensitivity study varies."""
+"""The inputs of a sensitivity study."""
 
 from __future__ import annotations
 

@@ -111,7 +111,7 @@ def _arrays(studies: Sequence[PairStudy]) -> dict[str, Any]:
         "corner_contact": np.array([curves.corner_contact for curves in models], dtype=np.int8),
     }
     for axis in _AXES:
-        curves = [[getattr(one, axis) for one in study.curves] for study in studies]
+        curves = [[getattr(each, axis) for each in study.curves] for study in studies]
         arrays[axis] = np.stack([row[0].deviation for row in curves])
         for name in ("peak_to_peak", "error"):
             stacked = [np.stack([getattr(curve, name) for curve in row]) for row in curves]
@@ -131,5 +131,5 @@ def _study(name: str, content: dict[str, Any], pair: int) -> PairStudy:
 
 def _curve(content: dict[str, Any], axis: str, pair: int, model: int) -> RippleCurve:
     """Build one curve again."""
-    found = (content[f"{name}_over_{axis}"][pair, model] for name in ("peak_to_peak", "error"))
-    return RippleCurve(content[axis][pair], *found)
+    sizes = (content[f"{name}_over_{axis}"][pair, model] for name in ("peak_to_peak", "error"))
+    return RippleCurve(content[axis][pair], *sizes)

@@ -1,4 +1,4 @@
-"""Who runs a computation, under which lease, and until when."""
+"""The owner of a computation, its lease, and the end of that."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whose key a job was entered with."""
+"""The key that a job was entered with."""
 
 from __future__ import annotations
 

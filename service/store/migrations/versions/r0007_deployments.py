@@ -1,4 +1,4 @@
-"""Whose results the index names, and which of its lines were rebuilt from files."""
+"""The deployment of the results in the index, and the lines that were rebuilt from files."""
 
 from __future__ import annotations
 
