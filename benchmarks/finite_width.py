@@ -40,7 +40,7 @@ start = cpu()
 analyze(GearPair(crowned, wheel, 134.5e-3), normal_forces=[6000.0], **common)
 fresh = cpu() - start
 from fe_contact.analysis import check_request
-from fe_contact.analysis.pair_contact import pair_contact
+from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning import make_plan
 import numpy as np

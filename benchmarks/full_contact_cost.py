@@ -12,7 +12,7 @@ import sys
 from benchmarks.example_pair import TORQUES
 from benchmarks.figures import Figure
 from fe_contact import Gear, GearPair, frontier
-from fe_contact.analysis.measured_full_contact import MeasuredFullContact
+from fe_contact.analysis.studies.measured_full_contact import MeasuredFullContact
 from fe_contact.full_contact import find_calculix, solve_position
 from fe_contact.options import TableAxes
 from fe_contact.stage_clock import StageClock

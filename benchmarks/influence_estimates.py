@@ -26,8 +26,8 @@ from benchmarks.marked_section import replace_section
 from benchmarks.pair_cases import PairCase
 from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis import check_request
-from fe_contact.analysis.ablation import EffectAblation, ablate
-from fe_contact.analysis.model_choice import decide
+from fe_contact.analysis.request.model_choice import decide
+from fe_contact.analysis.studies.ablation import EffectAblation, ablate
 from fe_contact.effects import FaceLoadDistribution, FiniteWidth
 from fe_contact.effects.influence import EstimatedInfluence, estimate_influences
 from fe_contact.options import Run

@@ -18,7 +18,7 @@ from benchmarks.pair_cases import M, PairCase, face_cases, plane_cases
 from benchmarks.stored_runs import FILE, errors_by_source, quantities, together
 from fe_contact import FlankModification, analyze
 from fe_contact.analysis import CondensedPair, check_request, condensed_pair
-from fe_contact.analysis.pair_contact import PairContact, pair_contact
+from fe_contact.analysis.pairs.pair_contact import PairContact, pair_contact
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.types import FloatArray

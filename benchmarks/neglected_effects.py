@@ -20,7 +20,7 @@ from dynamics.effects import RotorEffect
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
 from fe_contact import Gear, GearPair, analyze
-from fe_contact.analysis import request
+from fe_contact.analysis.request import request
 from fe_contact.effects import EFFECTS
 from service.client.portable import scene_of
 from service.convert.scene import dynamic_scene

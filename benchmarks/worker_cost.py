@@ -23,7 +23,7 @@ _SPEEDS = [300.0 + 60.0 * n for n in range(20)]
 _WRITERS = """
 import sys
 from pathlib import Path
-from service.jobs.submissions import Submissions
+from service.queue.submissions import Submissions
 from service.store import open_database
 file, inputs = Path(sys.argv[1]), {inputs!r}
 engine = open_database(file)

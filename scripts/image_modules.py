@@ -7,7 +7,7 @@ import importlib
 import pkgutil
 from pathlib import Path
 
-import service.jobs
+import service.worker
 
 LOADED_AT_THE_START = ("service.cli", "service.app", "uvicorn.protocols.http.auto", "uvicorn.lifespan.on")
 OURS = ("host", "bounds", "model_studies", "fe_contact", "dynamics", "service")
@@ -21,7 +21,7 @@ def main() -> None:
         compileall.compile_dir(Path(path).parent, quiet=1)
     for name in LOADED_AT_THE_START:
         importlib.import_module(name)
-    for found in pkgutil.iter_modules(service.jobs.__path__, "service.jobs."):
+    for found in pkgutil.iter_modules(service.worker.__path__, "service.worker."):
         if found.name.endswith("_work"):
             importlib.import_module(found.name)
 

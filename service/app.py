@@ -10,11 +10,9 @@ from typing import Any
 from fastapi import FastAPI
 
 from service.access import open_keyring
-from service.jobs.catalogue import default_registry
-from service.jobs.live_pool import live_pool, reading_pool
-from service.jobs.machinery import job_machinery
-from service.jobs.process import Registry
-from service.jobs.workload import WorkloadReader
+from service.live.pool import live_pool, reading_pool
+from service.queue.machinery import job_machinery
+from service.queue.workload import WorkloadReader
 from service.routes import (
     cases,
     databases,
@@ -45,6 +43,8 @@ from service.store import DirectoryLock
 from service.store.deployment import Deployment
 from service.store.write_check import WriteCheck
 from service.version import solver_version
+from service.worker.catalogue import default_registry
+from service.worker.process import Registry
 
 _DESCRIPTION = (
     "Contact analysis of gear pairs and the dynamics it excites. Jobs follow OGC API - Processes 1.0; "

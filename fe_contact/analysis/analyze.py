@@ -7,9 +7,9 @@ from pathlib import Path
 
 from bounds import warn_of
 from fe_contact.allowed_error import AllowedError
-from fe_contact.analysis.compute_database import compute_database, solved_findings
-from fe_contact.analysis.kept_tolerance import OnDraft, kept_tolerance
-from fe_contact.analysis.request_check import check_request
+from fe_contact.analysis.database.compute_database import compute_database, solved_findings
+from fe_contact.analysis.database.kept_tolerance import OnDraft, kept_tolerance
+from fe_contact.analysis.request.request_check import check_request
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, Levels, Run, TableAxes
 from fe_contact.plausibility import unexpected

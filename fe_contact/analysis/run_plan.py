@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from fe_contact.analysis.decided import Decided, model_name
-from fe_contact.analysis.effect_ledger import effect_ledger
-from fe_contact.analysis.model_choice import decide
-from fe_contact.analysis.request import Checked
-from fe_contact.analysis.request_check import check_request
-from fe_contact.analysis.ripple import expected_curves
+from fe_contact.analysis.checks.effect_ledger import effect_ledger
+from fe_contact.analysis.request.decided import Decided, model_name
+from fe_contact.analysis.request.model_choice import decide
+from fe_contact.analysis.request.request import Checked
+from fe_contact.analysis.request.request_check import check_request
+from fe_contact.analysis.request.ripple import expected_curves
 from fe_contact.checks import positive
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import LEVELS, AnalysisOptions, TableAxes

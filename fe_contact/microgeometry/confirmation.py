@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_contact.analysis.compute_database import compute_database
-from fe_contact.analysis.decided import Decided
-from fe_contact.analysis.request_check import check_asked
+from fe_contact.analysis.database.compute_database import compute_database
+from fe_contact.analysis.request.decided import Decided
+from fe_contact.analysis.request.request_check import check_asked
 from fe_contact.microgeometry.design_problem import DesignProblem
 from fe_contact.microgeometry.design_study import DesignStudy
 from fe_contact.microgeometry.evaluator import Evaluation, Evaluator

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from fe_contact.analysis.condensed_pair import CondensedPair
-from fe_contact.analysis.request import Checked
+from fe_contact.analysis.live.condensed_pair import CondensedPair
+from fe_contact.analysis.request.request import Checked
 from fe_contact.contact import CarryingStrips, ContactSolution, adjoint
 from fe_contact.effects.misalignment import Misalignment, MisalignmentGap
 from fe_contact.effects.modification_gap import ModificationGap

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_contact.analysis.compute_database import SOLVER_VERSION
+from fe_contact.analysis.database.compute_database import SOLVER_VERSION
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.request import OptimizationRequest
 from fe_contact.ste.content_hash import content_hash

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 
 from bounds import SiNote
-from fe_contact.analysis.decided import Decided
-from fe_contact.analysis.model_choice import decide
-from fe_contact.analysis.pair_contact import pair_contact
-from fe_contact.analysis.request import Checked
-from fe_contact.analysis.request_check import check_asked, check_request
+from fe_contact.analysis.pairs.pair_contact import pair_contact
+from fe_contact.analysis.request.decided import Decided
+from fe_contact.analysis.request.model_choice import decide
+from fe_contact.analysis.request.request import Checked
+from fe_contact.analysis.request.request_check import check_asked, check_request
 from fe_contact.checks import increasing, integer, within
 from fe_contact.effects.misalignment import Misalignment
 from fe_contact.errors import InputError

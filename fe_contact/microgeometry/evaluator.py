@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_contact.analysis.pair_contact import PairContact
+from fe_contact.analysis.pairs.pair_contact import PairContact
 from fe_contact.contact import (
     ContactModel,
     ContactProblem,

@@ -17,7 +17,6 @@ from service.convert.stamp import stamped
 from service.directories import cache_home
 from service.problems import BadInput
 from service.registry import STUDIES
-from service.report.aligned import aligned, headline_load
 from service.report.content import nominal_force
 from service.report.inputs import Inputs, read_inputs
 from service.report.stored_study import page_beside
@@ -25,6 +24,7 @@ from service.report.write import write_page
 from service.schemas import Case
 from service.schemas.flank import FlankPoint
 from service.studies.flank.run import flanks_of
+from service.tables.aligned import aligned, headline_load
 
 
 def run_report(

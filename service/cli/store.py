@@ -11,10 +11,9 @@ import typer
 
 from service.cli.output import console, print_json, table
 from service.directories import keep_private
-from service.jobs.machinery import Machinery, job_machinery
-from service.jobs.process import Registry
-from service.jobs.retention import Retention
 from service.problems import EXIT_FAILED
+from service.queue.machinery import Machinery, job_machinery
+from service.queue.retention import Retention
 from service.settings import Settings, load_settings
 from service.store import DATABASE_FILE, ResultStore, open_database
 from service.store.deployment import Deployment
@@ -22,6 +21,7 @@ from service.store.maintenance import Leftover, verify_store
 from service.store.places import result_files
 from service.store.quarantine import Quarantine
 from service.store.reindex import reindex
+from service.worker.process import Registry
 
 
 def run_verify(*, as_json: bool, **options: object) -> None:

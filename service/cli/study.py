@@ -27,9 +27,9 @@ from service.convert.plausibility import case_warnings
 from service.convert.stamp import stamp
 from service.convert.task_workers import ExecutorChoice, open_executor
 from service.directories import cache_home
+from service.drawing.image import png
 from service.problems import BadInput, JobFailed
 from service.registry import Study
-from service.report.image import png
 from service.report.write import write_whole
 from service.schemas import Case, read_model, read_table, validated
 from service.schemas.scene import SceneInput

@@ -10,11 +10,11 @@ from types import FrameType
 from service.cli.interrupt import leave
 from service.cli.log import log_to_standard_error
 from service.directories import keep_private
-from service.jobs.catalogue import default_registry
-from service.jobs.machinery import job_machinery
+from service.queue.machinery import job_machinery
 from service.settings import Settings, load_settings
 from service.store import DirectoryLock
 from service.store.schema import shown
+from service.worker.catalogue import default_registry
 
 
 def run_work(**options: object) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fe_contact.analysis.deformed_pair import mesh_angles
+from fe_contact.analysis.flanks.deformed_pair import mesh_angles
 from fe_contact.geometry import ParallelAxes, Toothing, tooth_profile
 from fe_contact.types import FloatArray
 from service.convert.case import boundary_errors, gear_pair

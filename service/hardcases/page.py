@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from service.drawing import palette
+from service.drawing.figure import Axis, Figure, Line, Panel, Reference, Table, number
+from service.drawing.page import Headline, Page, Section
 from service.hardcases import Outcome
-from service.report import palette
-from service.report.figure import Axis, Figure, Line, Panel, Reference, Table, number
-from service.report.page import Headline, Page, Section
 
 _SMALLEST_USE = 1e-9
 

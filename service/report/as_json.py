@@ -9,11 +9,11 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+from service.drawing.figure import Figure, Table
+from service.drawing.interactive import plotly_figure
+from service.drawing.page import Page, Section
 from service.report.content import page_of
-from service.report.figure import Figure, Table
 from service.report.inputs import read_inputs
-from service.report.interactive import plotly_figure
-from service.report.page import Page, Section
 
 Json = dict[str, Any]
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from service.report.dynamic_part import dynamic_alarms, dynamic_headlines, dynamic_making, dynamic_results
+from service.drawing.page import Headline, Page, Section
 from service.report.inputs import Inputs
-from service.report.page import Headline, Page, Section
-from service.report.pair import pair_lead, pair_title
-from service.report.static_part import static_alarms, static_headlines, static_making, static_results
+from service.runs.dynamic_part import dynamic_alarms, dynamic_headlines, dynamic_making, dynamic_results
+from service.tables.pair import pair_lead, pair_title
+from service.tables.static_part import static_alarms, static_headlines, static_making, static_results
 
 
 def page_of(read: Inputs) -> Page:

@@ -14,9 +14,9 @@ from dynamics.results import RunResult
 from fe_contact.errors import FeContactError
 from fe_contact.ste import SteDatabase
 from service.convert.stamp import stamped
+from service.drawing.page import Page
 from service.problems import BadInput
 from service.registry import STUDIES, Study
-from service.report.page import Page
 from service.report.stored_study import marked_study, stored_study, study_page
 
 _BOUND = f"an STE database, a run, or the result of a study ({', '.join(STUDIES)})"

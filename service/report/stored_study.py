@@ -10,9 +10,9 @@ from typing import Any, cast
 from dynamics.errors import DynamicsError
 from fe_contact.errors import FeContactError
 from fe_contact.ste import SteDatabase
+from service.drawing.page import Page
 from service.problems import BadInput
 from service.registry import STUDIES, Study
-from service.report.page import Page
 
 
 def marked_study(content: Mapping[str, object]) -> Study | None:

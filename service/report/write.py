@@ -8,10 +8,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from service.drawing.image import png
+from service.drawing.page import Page, html
 from service.report.content import page_of
-from service.report.image import png
 from service.report.inputs import Inputs, read_inputs
-from service.report.page import Page, html
 
 
 def write_report(inputs: Path | Sequence[Path], output: Path, images: Path | None = None) -> list[Path]:

@@ -11,8 +11,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import JSONResponse, Response
 
 from service.convert.toml import toml_text
-from service.jobs.live_order import LiveOrder
-from service.jobs.process import on_demand
+from service.live.order import LiveOrder
 from service.page.examples import Example, examples
 from service.routes.context import Context, Ctx
 from service.routes.errors import documented
@@ -20,6 +19,7 @@ from service.routes.media_types import JSON
 from service.schemas import Case
 from service.schemas.model import BoundaryModel
 from service.schemas.reading import validated
+from service.worker.process import on_demand
 
 _LONGEST_READ_HERE = 65_536
 """Characters; so many take 0.1 s at most."""

@@ -9,17 +9,17 @@ from fastapi import Depends, Request
 from sqlalchemy import Engine
 
 from service.access import AccessKey
-from service.jobs.caller import ANYBODY, Caller
-from service.jobs.live_pool import LivePool
-from service.jobs.process import Registry
-from service.jobs.remote_work import RemoteWork
-from service.jobs.scheduler import Scheduler
-from service.jobs.submissions import Submissions
+from service.live.pool import LivePool
+from service.queue.caller import ANYBODY, Caller
+from service.queue.scheduler import Scheduler
+from service.queue.submissions import Submissions
 from service.routes.open_databases import OpenDatabases
 from service.routes.streams import Streams
 from service.settings import Settings
 from service.store import ResultStore
 from service.store.write_check import WriteCheck
+from service.worker.process import Registry
+from service.worker.remote_work import RemoteWork
 
 
 @dataclass(frozen=True)

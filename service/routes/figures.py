@@ -10,7 +10,7 @@ from pydantic import BaseModel, Field
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
-from service.jobs.live_order import LiveOrder
+from service.live.order import LiveOrder
 from service.routes.context import Ctx
 from service.routes.errors import documented
 from service.routes.results import Key, known_result

@@ -8,8 +8,8 @@ from typing import Annotated, Any, Literal
 from fastapi import Depends, Query
 from pydantic import Field
 
-from service.jobs.job_filter import JobFilter
 from service.problems import BadInput
+from service.queue.job_filter import JobFilter
 from service.schemas.ogc import JobStatus
 
 _DURATION: dict[str, Any] = {"ge": 0, "le": 1_000_000_000}

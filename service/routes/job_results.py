@@ -8,10 +8,10 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query, Request
 from starlette.responses import JSONResponse, Response
 
-from service.jobs.delivery import Delivery, Transmission, delivery
-from service.jobs.delivery import Response as Form
-from service.jobs.job import Job
 from service.problems import Fault, JobDismissed, JobFailed, ResultNotReady
+from service.queue.delivery import Delivery, Transmission, delivery
+from service.queue.delivery import Response as Form
+from service.queue.job import Job
 from service.registry import NETCDF
 from service.routes.context import Context, Ctx
 from service.routes.errors import documented

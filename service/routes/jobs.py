@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Request
 
-from service.jobs.job import Job
-from service.jobs.process import Registry, on_demand
+from service.queue.job import Job
 from service.routes.context import Ctx
 from service.routes.cursor import Cursor, Limit, mark_of, page_links
 from service.routes.errors import documented
 from service.routes.job_query import JobQuery
 from service.schemas.ogc import JobList, JobStatus, Link, StatusInfo
 from service.store import Mark
+from service.worker.process import Registry, on_demand
 
 router = APIRouter(prefix="/jobs", tags=["jobs"])
-input_warnings = on_demand("service.jobs.input_warnings:input_warnings")
+input_warnings = on_demand("service.worker.input_warnings:input_warnings")
 
 
 @router.get("", summary="Jobs", responses=documented(422))

@@ -9,7 +9,7 @@ from fastapi import APIRouter
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
-from service.jobs.live_order import LiveOrder
+from service.live.order import LiveOrder
 from service.routes.context import Context, Ctx
 from service.routes.errors import documented
 from service.routes.results import Key
@@ -17,7 +17,7 @@ from service.schemas.live import LiveInput, LiveOutput, PlanRequest
 
 router = APIRouter(tags=["live"])
 
-STE, PLAN = "service.jobs.live_work:live_ste", "service.jobs.live_work:live_plan"
+STE, PLAN = "service.live.work:live_ste", "service.live.work:live_plan"
 
 _REFUSED = documented(400, 409, 413, 415, 422, 429, 500, 503)
 

@@ -8,8 +8,8 @@ from prometheus_client import CollectorRegistry, Counter, Histogram, Metric, gen
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, HistogramMetricFamily
 from prometheus_client.registry import Collector
 
-from service.jobs.workload import Workload, WorkloadReader
 from service.problems import DatabaseUnavailable
+from service.queue.workload import Workload, WorkloadReader
 from service.store.write_check import WriteCheck
 
 _STATES = ("accepted", "running", "successful", "failed", "dismissed")

@@ -8,9 +8,8 @@ from typing import Annotated, Any, cast
 import structlog
 from fastapi import APIRouter, Header, Query, Response
 
-from service.jobs.caller import Caller
-from service.jobs.delivery import Delivery, delivery
-from service.jobs.process import Process, Registry
+from service.queue.caller import Caller
+from service.queue.delivery import Delivery, delivery
 from service.registry import JSON
 from service.routes.context import Context, Ctx, From
 from service.routes.cursor import Limit
@@ -29,6 +28,7 @@ from service.schemas.ogc import (
 )
 from service.schemas.result_kinds import RESULT_KINDS
 from service.store import now
+from service.worker.process import Process, Registry
 
 logger = structlog.get_logger(__name__)
 

@@ -9,11 +9,11 @@ from importlib import import_module
 from service.loading import LOADING
 
 HEAVY = (
-    "service.jobs.preparations",
+    "service.worker.preparations",
     "service.convert.answers",
     "service.convert.outline",
     "service.convert.result_figures",
-    "service.jobs.study_work",
+    "service.worker.study_work",
     "fe_contact.ste.compiled_force",
 )
 """The modules that handlers import when they are called: both libraries."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from fe_contact.ste import SteDatabase
-from service.report.figure import Figure, Table
-from service.report.page import Page, Section
+from service.drawing.figure import Figure, Table
+from service.drawing.page import Page, Section
 
 
 @dataclass(frozen=True)

@@ -16,9 +16,6 @@ from fe_contact.effects import EFFECTS
 from fe_contact.ste import SteDatabase
 from service.client import JobState
 from service.convert.scene import dynamic_scene
-from service.jobs import study_work
-from service.jobs.catalogue import default_registry
-from service.jobs.order import WorkOrder
 from service.problems import BadInput
 from service.schemas import Case, validated
 from service.schemas.scene import SceneInput
@@ -26,6 +23,9 @@ from service.store import stored_results
 from service.studies.ablate import Inputs
 from service.studies.ablate.run import ablation_of, facts
 from service.studies.computation import Means
+from service.worker import study_work
+from service.worker.catalogue import default_registry
+from service.worker.order import WorkOrder
 
 ABLATE = default_registry()["ablate"]
 ONLY = ["tooth_coupling", "misalignment"]

@@ -54,7 +54,7 @@ def workers() -> list[int]:
             command = (entry / "cmdline").read_bytes()
         except (FileNotFoundError, ProcessLookupError, PermissionError):
             continue
-        if parent == os.getpid() and b"service.jobs.child" in command:
+        if parent == os.getpid() and b"service.worker.child" in command:
             found.append(int(entry.name))
     return found
 

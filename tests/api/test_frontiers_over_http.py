@@ -12,20 +12,20 @@ import pytest
 from study_service import CASE, Served, prepared, scene_by_hash, study_service, without
 
 from dynamics.accuracy.registry import FIDELITIES as SCENE_FIDELITIES
-from fe_contact.analysis.accuracy_study import FIDELITIES
+from fe_contact.analysis.studies.accuracy_study import FIDELITIES
 from fe_contact.errors import SolveError
 from fe_contact.ste import SteDatabase
 from service.client import JobState
 from service.convert.scene import dynamic_scene
-from service.jobs import study_work
-from service.jobs.catalogue import default_registry
-from service.jobs.order import WorkOrder
 from service.schemas import Case, validated
 from service.schemas.scene import SceneInput
 from service.store import stored_results
 from service.studies.computation import Means
 from service.studies.frontier import Inputs
 from service.studies.frontier.run import frontier_of
+from service.worker import study_work
+from service.worker.catalogue import default_registry
+from service.worker.order import WorkOrder
 
 FRONTIER = default_registry()["frontier"]
 CLOSED = ["iso6336", "thin_slices"]
@@ -108,7 +108,7 @@ def test_a_rung_that_fails_is_named_and_the_others_survive(
             raise failure
 
     rungs = [rung for rung in FIDELITIES if rung.name in CLOSED]
-    module = importlib.import_module("fe_contact.analysis.frontier")
+    module = importlib.import_module("fe_contact.analysis.studies.frontier")
     monkeypatch.setattr(module, "FIDELITIES", (rungs[0], Failing(), rungs[1]))
     made, progress = worked(prepared(FRONTIER, case=CASE, rungs=[*CLOSED, "corrected"]), tmp_path, tmp_path)
     assert made["left_out"] == {"corrected": said}

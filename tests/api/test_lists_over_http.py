@@ -16,7 +16,7 @@ from small_table import small_table
 from sqlalchemy import delete, update
 
 from service.app import create_app
-from service.jobs.tables import computations, jobs
+from service.queue.tables import computations, jobs
 from service.settings import Settings
 from service.store import writing
 

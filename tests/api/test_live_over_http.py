@@ -14,7 +14,7 @@ from running_service import PATIENCE_S, REFERENCES, until
 
 from service.app import create_app
 from service.client import LineOfActionClient
-from service.jobs.live_order import LiveOrder
+from service.live.order import LiveOrder
 from service.problems import ServiceError
 from service.routes.live import STE
 from service.schemas.live import LiveOutput

@@ -16,8 +16,8 @@ from running_service import until
 from service_fakes import FAKE, REPORT
 
 from service.app import create_app
-from service.jobs.process import Registry
 from service.settings import Settings
+from service.worker.process import Registry
 
 BASE = "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/"
 REL = "http://www.opengis.net/def/rel/ogc/1.0/"

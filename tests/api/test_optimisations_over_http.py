@@ -13,12 +13,12 @@ from running_service import REFERENCES
 from study_service import empty_service
 
 from service.client import JobState, LineOfActionClient
-from service.jobs.catalogue import default_registry
 from service.problems import BadInput
 from service.schemas import Case, validated
 from service.studies.computation import Means
 from service.studies.optimise import Inputs
 from service.studies.optimise.run import optimisation_json, optimisation_of
+from service.worker.catalogue import default_registry
 
 OPTIMISE = default_registry()["optimise"]
 GEAR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0}

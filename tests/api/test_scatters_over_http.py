@@ -12,12 +12,12 @@ from fastapi.testclient import TestClient
 from study_service import empty_service
 
 from service.client import JobState, LineOfActionClient
-from service.jobs.catalogue import default_registry
 from service.problems import BadInput
 from service.schemas import Case, validated
 from service.studies.computation import Means
 from service.studies.scatter import Inputs
 from service.studies.scatter.run import draw, facts
+from service.worker.catalogue import default_registry
 
 SCATTER = default_registry()["scatter"]
 GEAR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0}

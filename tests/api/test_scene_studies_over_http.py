@@ -19,8 +19,6 @@ from fe_contact.ste import SteDatabase
 from service.app import create_app
 from service.client import JobState, LineOfActionClient
 from service.convert.scene import dynamic_scene
-from service.jobs.catalogue import default_registry
-from service.jobs.order import WorkOrder
 from service.problems import BadInput
 from service.registry import STUDIES
 from service.schemas import read_model
@@ -30,6 +28,8 @@ from service.store import stored_results
 from service.studies.computation import Means
 from service.studies.modes import Inputs
 from service.studies.modes.run import facts, modes_of
+from service.worker.catalogue import default_registry
+from service.worker.order import WorkOrder
 
 KEY = "ab" * 32
 

@@ -24,7 +24,7 @@ from sqlalchemy.exc import DBAPIError
 from structlog.testing import LogCapture
 
 from service.app import create_app
-from service.jobs.tables import jobs
+from service.queue.tables import jobs
 from service.settings import Settings
 from service.store import BRIEF_MS, reading, writing
 from service.store.database import database_engine

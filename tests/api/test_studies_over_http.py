@@ -16,7 +16,6 @@ from study_service import empty_service
 from fe_contact import LoadDistribution
 from service.client import JobState, LineOfActionClient
 from service.convert.case import case_at
-from service.jobs.catalogue import default_registry
 from service.problems import BadInput
 from service.schemas import Case, validated
 from service.schemas.flank import FlankPoint
@@ -25,6 +24,7 @@ from service.studies.flank.run import flank_json, flanks_of
 from service.studies.root_stress import Inputs
 from service.studies.root_stress.run import root_stress_of
 from service.studies.sensitivity.stored import read_studies
+from service.worker.catalogue import default_registry
 
 FLANK = default_registry()["flank"]
 

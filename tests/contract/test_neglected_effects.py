@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fe_contact import FlankModification, Gear, GearPair, PitchDeviation, Shaft, SteDatabase, analyze
-from fe_contact.analysis import request
+from fe_contact.analysis.request import request
 from fe_contact.effects import EFFECTS
 from fe_contact.types import Json
 

@@ -12,15 +12,15 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from fe_contact.analysis import ablation
-from fe_contact.analysis.ablation import Figures
+from fe_contact.analysis.studies import ablation
+from fe_contact.analysis.studies.ablation import Figures
 from fe_contact.ste import SteDatabase
 from service.cli.commands import app
-from service.jobs.live_work import live_plan
+from service.drawing.page import html
+from service.live.work import live_plan
 from service.report.as_json import stored_figures
 from service.report.content import page_of
 from service.report.inputs import read_inputs
-from service.report.page import html
 from service.schemas import Case
 from service.studies.ablate import Inputs
 from service.studies.ablate.page import ablation_table

@@ -16,8 +16,8 @@ from service_fakes import REGISTRY
 
 from service.app import create_app
 from service.cli.serve import http_server
-from service.jobs.machinery import job_machinery
 from service.problems import DatabaseUnavailable
+from service.queue.machinery import job_machinery
 from service.settings import load_settings
 from service.store import DirectoryLock
 

@@ -171,7 +171,7 @@ class KilledService:
         found = []
         for pid in self.marked():
             with suppress(OSError):
-                if b"service.jobs.child" in Path(f"/proc/{pid}/cmdline").read_bytes():
+                if b"service.worker.child" in Path(f"/proc/{pid}/cmdline").read_bytes():
                     found.append(pid)
         return found
 

@@ -10,13 +10,13 @@ from typing import Any
 
 from sqlalchemy import Engine
 
-from service.jobs.claims import Claims
-from service.jobs.job import Job
-from service.jobs.process import Registry
-from service.jobs.scheduler import Scheduler
-from service.jobs.submissions import Submissions
+from service.queue.claims import Claims
+from service.queue.job import Job
+from service.queue.scheduler import Scheduler
+from service.queue.submissions import Submissions
 from service.settings import Settings
 from service.store import ResultStore, identity_of, open_database, result_store
+from service.worker.process import Registry
 
 REFERENCES = {"response": "document", "transmissionMode": "reference"}
 """Parameters of a job's results: where they are, whatever form was requested."""

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from bounds import below
 from fe_contact.errors import InputError, MeshError
-from service.jobs.order import Product, Progress, WorkOrder
+from service.worker.order import Product, Progress, WorkOrder
 
 SECRET = "the text of a defect"
 _TEXT, _NONCE = 20, 20
@@ -88,7 +88,7 @@ def _misbehave(order: WorkOrder, mode: str) -> None:
     if mode == "full":
         resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
     if mode == "warn":
-        logging.getLogger("service.jobs").warning("the cluster is %s", "away")
+        logging.getLogger("service.queue").warning("the cluster is %s", "away")
     if mode == "mesh":
         raise MeshError("element 7 has a negative Jacobian")
     if mode == "input":

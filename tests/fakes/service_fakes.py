@@ -7,10 +7,10 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from service.jobs.process import Process, Registry, Stage
 from service.problems import BadInput
 from service.schemas.model import BoundaryModel
 from service.store import ResultStore
+from service.worker.process import Process, Registry, Stage
 
 
 class Wish(BoundaryModel):

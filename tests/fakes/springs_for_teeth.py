@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fe_contact.analysis.pair_contact import PairContact
+from fe_contact.analysis.pairs.pair_contact import PairContact
 from fe_contact.compliance import FlankCompliance
 from fe_contact.compliance.flank import ComplianceChecks
 from fe_contact.contact import teeth_in_reach

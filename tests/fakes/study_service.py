@@ -17,12 +17,12 @@ from scene_files import scene_file
 
 from service.app import create_app
 from service.client import LineOfActionClient
-from service.jobs.process import Process
 from service.problems import BadInput
 from service.schemas import read_model
 from service.schemas.scene import SceneInput
 from service.settings import Settings
 from service.store import stored_results
+from service.worker.process import Process
 
 KEY = "ab" * 32
 """Hash under which the service holds the table of `scene_file`."""

@@ -18,7 +18,7 @@ import pytest
 from analysis_requests import table_request
 
 from fe_contact import Gear, GearPair, SteDatabase, analyze, study_sensitivity
-from fe_contact.analysis import contact_lines, solved_operating_points
+from fe_contact.analysis.pairs import contact_lines, solved_operating_points
 from fe_contact.errors import WorkersLost
 from fe_contact.microgeometry import Sampling, Tolerances, scatter
 from fe_contact.options import AnalysisOptions, Run

@@ -14,8 +14,8 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from springs_for_teeth import on_springs
 
-from fe_contact.analysis.pair_contact import PairContact
-from fe_contact.analysis.request_check import check_request
+from fe_contact.analysis.pairs.pair_contact import PairContact
+from fe_contact.analysis.request.request_check import check_request
 from fe_contact.contact import ContactModel, ContactSolution
 from fe_contact.errors import InputError
 from fe_contact.geometry import FlankModification, Gear, GearPair, PitchDeviation

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import fe_contact.analysis.pair_contact as room
+import fe_contact.analysis.pairs.pair_contact as room
 from fe_contact import Gear, GearPair, SteDatabase, analyze, flank_results
 from fe_contact.contact import ContactProblem, ContactSolution, Start, solve_contact
 from fe_contact.errors import SolveError

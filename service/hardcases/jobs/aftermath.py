@@ -15,7 +15,7 @@ import numpy as np
 from fe_contact.types import FloatArray
 from service.hardcases.jobs.job_service import Disturb, JobService, fresh_service
 from service.hardcases.scene import Measured
-from service.jobs.job import Job
+from service.queue.job import Job
 from service.store import DATABASE_FILE
 
 Json = dict[str, Any]

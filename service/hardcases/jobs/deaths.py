@@ -16,10 +16,10 @@ from service.hardcases.jobs.aftermath import MEDIUM, aftermath, largest_differen
 from service.hardcases.jobs.job_service import Disturb, JobService
 from service.hardcases.jobs.limits import AFTER
 from service.hardcases.scene import HardScene, Measured
-from service.jobs.job import Job
+from service.queue.job import Job
 from service.schemas import Case, validated
 
-MESHER_COMMAND, WORKER_COMMAND = "gmsh_worker", "service.jobs.child"
+MESHER_COMMAND, WORKER_COMMAND = "gmsh_worker", "service.worker.child"
 """What their commands hold."""
 
 

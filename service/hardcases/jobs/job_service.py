@@ -16,16 +16,16 @@ from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
 from host import kill, processes_in
 from service.hardcases.scene import TIME_LIMIT
-from service.jobs.catalogue import ANALYZE, default_registry
-from service.jobs.job import Job
-from service.jobs.machinery import job_machinery
-from service.jobs.remote_work import RemoteWork
-from service.jobs.scheduler import Scheduler
-from service.jobs.submissions import Submissions
+from service.queue.job import Job
+from service.queue.machinery import job_machinery
+from service.queue.scheduler import Scheduler
+from service.queue.submissions import Submissions
 from service.schemas import Case, validated
 from service.schemas.process_inputs import AnalyzeInputs
 from service.settings import Settings
 from service.store import ResultStore
+from service.worker.catalogue import ANALYZE, default_registry
+from service.worker.remote_work import RemoteWork
 
 LOOK_S = 0.02
 """Between two looks at a job: a mesher needs several times as long to load."""

@@ -16,7 +16,7 @@ from service.hardcases.jobs.deaths import MESHER_COMMAND, WORKER_COMMAND, of_pyt
 from service.hardcases.jobs.job_service import Disturb, JobService
 from service.hardcases.jobs.limits import AFTER, MEMORY_MB
 from service.hardcases.scene import HardScene, Measured
-from service.jobs.job import Job
+from service.queue.job import Job
 
 _MB = 1 << 20
 _DEVOURER = """

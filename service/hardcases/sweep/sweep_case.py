@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from fe_contact.analysis import analyze
-from fe_contact.analysis.warm_up import warm_up
+from fe_contact.analysis.studies.warm_up import warm_up
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import SteDatabase
 from service.hardcases.scene import HardScene, Measured

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from service.report import palette
-from service.report.figure import Axis, FloatArray, Line, Panel, Table
+from service.drawing import palette
+from service.drawing.figure import Axis, FloatArray, Line, Panel, Table
 
 
 @dataclass(frozen=True)

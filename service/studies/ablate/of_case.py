@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from fe_contact.analysis.ablation import Ablation, EffectAblation
+from fe_contact.analysis.studies.ablation import Ablation, EffectAblation
 from fe_contact.effects.influence.influence import TRIFLE, Influence, signed
-from service.report import palette
-from service.report.figure import Axis, Dash, Line, Note, Panel, Table, number
-from service.report.note_places import placed
+from service.drawing import palette
+from service.drawing.figure import Axis, Dash, Line, Note, Panel, Table, number
+from service.drawing.note_places import placed
 from service.studies.ablate.look import Look, over_orders
 
 _HEAD = (

@@ -6,7 +6,7 @@ import numpy as np
 
 from dynamics.ablation import Ablation
 from dynamics.ablation.ablate import EffectAblation
-from service.report.figure import FloatArray, Panel, Table, number
+from service.drawing.figure import FloatArray, Panel, Table, number
 from service.studies.ablate.look import Look, over_orders
 
 _HEAD = (

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from dynamics.ablation import Ablation as SceneAblation
-from fe_contact.analysis.ablation import Ablation
-from service.report.figure import Figure, Table
-from service.report.page import Headline, Page, Section
+from fe_contact.analysis.studies.ablation import Ablation
+from service.drawing.figure import Figure, Table
+from service.drawing.page import Headline, Page, Section
 from service.studies.ablate import of_case, of_scene
 from service.studies.ablate.look import Look
 from service.studies.presentation import Presentation

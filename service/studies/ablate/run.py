@@ -11,7 +11,7 @@ from dynamics.ablation import Ablation as SceneAblation
 from dynamics.ablation import ablate as ablate_scene
 from dynamics.effects import EFFECTS as SCENE_EFFECTS
 from dynamics.scene import Scene
-from fe_contact.analysis.ablation import Ablation, ablate
+from fe_contact.analysis.studies.ablation import Ablation, ablate
 from fe_contact.checks import chosen
 from fe_contact.effects import EFFECTS
 from fe_contact.options import Run

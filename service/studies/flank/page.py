@@ -7,15 +7,15 @@ from collections.abc import Iterator
 from fe_contact.analysis import LoadDistribution
 from fe_contact.ste import SteDatabase
 from service.convert.effect_lines import assumption_lines
-from service.report.contact_lines import contact_lines
-from service.report.contact_pattern import contact_pattern_figure
-from service.report.face_distribution import line_load_figure, load_centroid_figure
-from service.report.facts import facts
-from service.report.figure import Figure, number
-from service.report.page import Headline, Page, Section
-from service.report.pair import pair_lead, pair_title
-from service.report.static_part import case_tables, effects_section
+from service.drawing.facts import facts
+from service.drawing.figure import Figure, number
+from service.drawing.page import Headline, Page, Section
 from service.studies.presentation import Presentation
+from service.tables.contact_lines import contact_lines
+from service.tables.contact_pattern import contact_pattern_figure
+from service.tables.face_distribution import line_load_figure, load_centroid_figure
+from service.tables.pair import pair_lead, pair_title
+from service.tables.static_part import case_tables, effects_section
 from service.units import UM
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from fe_contact.analysis import LoadDistribution, flank_results
-from fe_contact.analysis.flank_file import FORMAT
+from fe_contact.analysis.flanks.flank_file import FORMAT
 from fe_contact.options import Run
 from model_studies import Progress, silent
 from service.convert.case import (

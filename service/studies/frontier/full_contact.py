@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from fe_contact.analysis.accuracy_study.full_contact import ORIGIN
-from fe_contact.analysis.frontier import Frontier
-from fe_contact.analysis.measured_full_contact import PLANE, PROGRAM, MeasuredFullContact
-from service.report import palette
-from service.report.figure import number
+from fe_contact.analysis.studies.accuracy_study.full_contact import ORIGIN
+from fe_contact.analysis.studies.frontier import Frontier
+from fe_contact.analysis.studies.measured_full_contact import PLANE, PROGRAM, MeasuredFullContact
+from service.drawing import palette
+from service.drawing.figure import number
 from service.studies.frontier.peer import Peer
 
 LIVE = "full contact, run on this case"

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from dynamics.accuracy import Frontier as SceneFrontier
-from fe_contact.analysis.frontier import Frontier
-from service.report import palette
-from service.report.figure import number
+from fe_contact.analysis.studies.frontier import Frontier
+from service.drawing import palette
+from service.drawing.figure import number
 from service.studies.frontier import full_contact
 from service.studies.frontier.peer import Peer
 

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from service.report.figure import Axis, Figure, Line, Note, Panel, Table, number
-from service.report.note_places import placed
-from service.report.page import Headline, Page, Section
+from service.drawing.figure import Axis, Figure, Line, Note, Panel, Table, number
+from service.drawing.note_places import placed
+from service.drawing.page import Headline, Page, Section
 from service.studies.frontier.look import Look, Study, look_of
 from service.studies.frontier.peer import Peer
 from service.studies.presentation import Presentation

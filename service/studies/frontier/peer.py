@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from service.report.figure import FloatArray
+from service.drawing.figure import FloatArray
 
 
 @dataclass(frozen=True)

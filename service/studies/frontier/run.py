@@ -12,8 +12,8 @@ from dynamics.accuracy import Frontier as SceneFrontier
 from dynamics.accuracy import frontier as frontier_of_scene
 from dynamics.accuracy.registry import FIDELITIES as SCENE_FIDELITIES
 from dynamics.scene import Scene
-from fe_contact.analysis.accuracy_study import FIDELITIES
-from fe_contact.analysis.frontier import Frontier, frontier
+from fe_contact.analysis.studies.accuracy_study import FIDELITIES
+from fe_contact.analysis.studies.frontier import Frontier, frontier
 from fe_contact.checks import chosen
 from service.convert.case import boundary_errors, gear_pair, study_options, table_axes
 from service.convert.checks import check_case

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from service.convert.vocabulary import boundary_name
-from service.report import palette
-from service.report.figure import (
+from service.drawing import palette
+from service.drawing.figure import (
     Axis,
     Figure,
     FloatArray,
@@ -21,7 +21,7 @@ from service.report.figure import (
     number,
     thousands,
 )
-from service.report.page import Headline, Page, Section
+from service.drawing.page import Headline, Page, Section
 from service.studies.optimise.stored import ShownDesign, ShownOptimisation
 from service.studies.presentation import Presentation
 from service.units import UM, factor

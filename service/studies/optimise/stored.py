@@ -13,7 +13,7 @@ import numpy as np
 from fe_contact.microgeometry import DesignVariable, Ended, HarrisMap, Perturbation, ScatterNodes, SearchRun
 from fe_contact.microgeometry.design_problem import Assessed
 from fe_contact.types import Estimate
-from service.report.figure import FloatArray
+from service.drawing.figure import FloatArray
 from service.units import UM, factor
 
 Json = dict[str, Any]

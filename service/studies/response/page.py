@@ -8,8 +8,8 @@ import numpy as np
 
 from dynamics.linearize import ForcedResponse, peaks
 from service.convert.effect_lines import run_lines
-from service.report import palette
-from service.report.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Table, number
+from service.drawing import palette
+from service.drawing.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Table, number
 from service.studies.presentation import Presentation, dynamics_page
 
 RPM = np.pi / 30.0

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from service.convert.effect_lines import assumption_lines
-from service.report import palette
-from service.report.facts import facts
-from service.report.figure import Axis, Figure, Line, Panel, Reference, Table, number
-from service.report.page import Headline, Page, Section
+from service.drawing import palette
+from service.drawing.facts import facts
+from service.drawing.figure import Axis, Figure, Line, Panel, Reference, Table, number
+from service.drawing.page import Headline, Page, Section
 from service.studies.presentation import Presentation
 from service.studies.root_stress.run import GEARS
 

@@ -7,7 +7,7 @@ import math
 from typing import Any
 
 from fe_contact.analysis import RootStressHistory, root_stress
-from fe_contact.analysis.root_stress_history import ROOTS, RootPeak
+from fe_contact.analysis.flanks.root_stress_history import ROOTS, RootPeak
 from fe_contact.options import Run
 from service.convert.case import analysis_options, boundary_errors, case_at, gear_pair, operating_point
 from service.convert.checks import check_case

@@ -8,9 +8,9 @@ import numpy as np
 
 from fe_contact.microgeometry import ToleranceStudy
 from service.convert.vocabulary import boundary_name
-from service.report import palette
-from service.report.figure import Axis, Figure, Line, Panel, Table, number, thousands
-from service.report.page import Headline, Page, Section
+from service.drawing import palette
+from service.drawing.figure import Axis, Figure, Line, Panel, Table, number, thousands
+from service.drawing.page import Headline, Page, Section
 from service.studies.presentation import Presentation
 from service.units import UM
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from itertools import chain
 
-from fe_contact.analysis.sensitivity import RippleCurve, Sensitivity
-from service.report import palette
-from service.report.figure import Axis, Dash, Figure, FloatArray, Line, Panel, Table, number
-from service.report.page import Page, Section
+from fe_contact.analysis.studies.sensitivity import RippleCurve, Sensitivity
+from service.drawing import palette
+from service.drawing.figure import Axis, Dash, Figure, FloatArray, Line, Panel, Table, number
+from service.drawing.page import Page, Section
 from service.studies.presentation import Presentation
 from service.studies.sensitivity.stored import PairStudy
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from fe_contact.analysis import check_request
-from fe_contact.analysis.sensitivity import RippleCurve, Sensitivity, study_sensitivity
+from fe_contact.analysis.studies.sensitivity import RippleCurve, Sensitivity, study_sensitivity
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import Run, TableAxes
 from model_studies import Progress

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from fe_contact.analysis.sensitivity import RippleCurve, Sensitivity
+from fe_contact.analysis.studies.sensitivity import RippleCurve, Sensitivity
 from fe_contact.errors import DatabaseError
 from fe_contact.ste.netcdf_file import digest, read_variables, write_dataset
 

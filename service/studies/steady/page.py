@@ -9,8 +9,8 @@ import numpy as np
 from dynamics.periodic import SteadyStates
 from dynamics.periodic.steady_states import BRANCH, DOWN, UP
 from service.convert.effect_lines import run_lines
-from service.report import palette
-from service.report.figure import Axis, Dash, Figure, FloatArray, Line, Panel, Reference, Table, number
+from service.drawing import palette
+from service.drawing.figure import Axis, Dash, Figure, FloatArray, Line, Panel, Reference, Table, number
 from service.studies.presentation import Presentation, dynamics_page
 from service.studies.steady.run import KINDS, facts, status_name
 

@@ -6,9 +6,9 @@ from contextlib import closing
 from pathlib import Path
 
 from benchmarks.worker_cost import orders
-from service.jobs.catalogue import default_registry
-from service.jobs.machinery import job_machinery
+from service.queue.machinery import job_machinery
 from service.settings import Settings
+from service.worker.catalogue import default_registry
 
 
 def test_every_process_has_an_order_that_its_checks_pass(tmp_path: Path) -> None:

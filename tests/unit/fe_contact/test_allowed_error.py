@@ -9,8 +9,8 @@ import pytest
 
 from fe_contact import AllowedError, FlankModification, Gear, GearPair, analyze
 from fe_contact.analysis import check_request
-from fe_contact.analysis.model_choice import decide
-from fe_contact.analysis.position_nodes import adaptive_nodes
+from fe_contact.analysis.request.model_choice import decide
+from fe_contact.analysis.tables.position_nodes import adaptive_nodes
 from fe_contact.errors import InputError
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning import NodeRule

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair, PitchDeviation, analyze
-from fe_contact.analysis import contact_lines, solved_operating_points
+from fe_contact.analysis.pairs import contact_lines, solved_operating_points
 from fe_contact.geometry import FlankModification, Shaft
 from fe_contact.workers import Remembering, RunCost
 from fe_contact.workers.content import content_digest

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from dynamics.ablation import ablate
 from service.cli.commands import app
-from service.report.image import png
+from service.drawing.image import png
 from service.studies.ablate.page import ablation_figure, ablation_table
 from service.studies.ablate.run import facts
 

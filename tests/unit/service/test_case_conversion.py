@@ -15,11 +15,11 @@ from bad_inputs import GOOD
 from fe_contact import AllowedError, FlankModification
 from service.convert.case import analysis_options, case_json, gear_pair, table_axes
 from service.convert.checks import check_case
-from service.jobs.key import content_key
 from service.problems import BadInput
 from service.schemas import Case, read_model, validated
 from service.schemas.request_examples import CASE
 from service.units import factor
+from service.worker.key import content_key
 
 ROOT = Path(__file__).parents[3]
 

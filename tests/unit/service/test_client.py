@@ -231,7 +231,7 @@ def _digest(content: bytes) -> dict[str, str]:
 def test_the_import_is_light() -> None:
     heavy = {"gmsh", "skfem", "fastapi", "starlette", "sqlalchemy", "uvicorn"}
     heavy |= {"scipy", "numba", "xarray", "h5py", "matplotlib", "plotly"}
-    own = {"service.app", "service.convert", "service.jobs", "service.settings"}
+    own = {"service.app", "service.convert", "service.queue", "service.worker", "service.settings"}
     code = "import json, sys, service.client; print(json.dumps(list(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     loaded = set(json.loads(done.stdout))

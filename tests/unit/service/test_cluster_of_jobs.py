@@ -15,16 +15,16 @@ from running_service import bench
 from service_fakes import REGISTRY
 from structlog.testing import capture_logs
 
-from fe_contact.analysis import contact_lines, solved_operating_points
+from fe_contact.analysis.pairs import contact_lines, solved_operating_points
 from fe_contact.ste import SteDatabase
 from fe_contact.workers import RunCost, dask_cluster
-from service.jobs import cluster
-from service.jobs.catalogue import ANALYZE, default_registry
-from service.jobs.claims import Claim
-from service.jobs.order import WorkOrder
-from service.jobs.process import Process
 from service.problems import BadInput
+from service.queue.claims import Claim
 from service.settings import Settings, load_settings
+from service.worker import cluster
+from service.worker.catalogue import ANALYZE, default_registry
+from service.worker.order import WorkOrder
+from service.worker.process import Process
 
 ADDRESS = "tcp://127.0.0.1:1"  # nobody may listen there
 GEAR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0, "thickness_allowance_um": 60.0}
@@ -180,7 +180,7 @@ def test_what_a_worker_warns_of_is_in_the_log_of_the_service(tmp_path: Path) -> 
 def test_the_address_goes_from_the_environment_to_the_worker(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from service.jobs.attempt import _order  # noqa: PLC0415
+    from service.queue.attempt import _order  # noqa: PLC0415
 
     monkeypatch.setattr("service.settings.find_spec", lambda _: object())
     monkeypatch.setenv("LOA_DASK_SCHEDULER", "tcp://gears.example:8786")

@@ -18,9 +18,9 @@ from service_fakes import REGISTRY
 from sqlalchemy import Connection, event, false
 
 from service.app import create_app
-from service.jobs.caller import ANYBODY
-from service.jobs.delivery import AS_IT_IS
 from service.problems import BadInput, DatabaseUnavailable
+from service.queue.caller import ANYBODY
+from service.queue.delivery import AS_IT_IS
 from service.settings import Settings, load_settings
 from service.store import open_database
 from service.store.database import database_engine

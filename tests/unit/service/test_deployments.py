@@ -20,8 +20,8 @@ from typer.testing import CliRunner
 
 from service.app import create_app
 from service.cli.commands import app
-from service.jobs.retention import Retention
 from service.problems import BadInput
+from service.queue.retention import Retention
 from service.settings import Settings
 from service.store import ResultStore, open_database, writing
 from service.store.deployment import NOTE, Deployment, deployments

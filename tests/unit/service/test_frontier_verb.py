@@ -8,17 +8,21 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from fe_contact.analysis.accuracy_study.full_contact import FULL_CONTACT, MEASURED_GEAR, known_full_contact
-from fe_contact.analysis.fidelity_result import FidelityResult
-from fe_contact.analysis.frontier import Frontier
-from fe_contact.analysis.measured_full_contact import PLANE, MeasuredFullContact
+from fe_contact.analysis.studies.accuracy_study.full_contact import (
+    FULL_CONTACT,
+    MEASURED_GEAR,
+    known_full_contact,
+)
+from fe_contact.analysis.studies.fidelity_result import FidelityResult
+from fe_contact.analysis.studies.frontier import Frontier
+from fe_contact.analysis.studies.measured_full_contact import PLANE, MeasuredFullContact
 from fe_contact.full_contact import FullContactPoint, FullContactTable
 from fe_contact.geometry import FlankModification, GearPair
 from fe_contact.types import Status
 from service.cli.commands import app
-from service.report.image import png
-from service.report.interactive import plotly_figure
-from service.report.page import html
+from service.drawing.image import png
+from service.drawing.interactive import plotly_figure
+from service.drawing.page import html
 from service.studies.frontier.page import frontier_figure, frontier_page, frontier_table
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "palermo_spur_20_20.toml"

@@ -14,10 +14,10 @@ from service_fake_work import SECRET
 from service_fakes import REGISTRY
 
 from service.directories import cache_home, data_home
-from service.jobs.memory import machine_memory_mb
 from service.settings import LEAST_MEMORY_MB, Settings
 from service.store import ResultStore
 from service.store.results import StoredResult
+from service.worker.memory import machine_memory_mb
 
 
 @pytest.fixture

@@ -21,8 +21,8 @@ from service_fakes import REGISTRY
 from sqlalchemy import select, update
 
 from service.app import create_app
-from service.jobs.job import Job
-from service.jobs.tables import computations
+from service.queue.job import Job
+from service.queue.tables import computations
 from service.settings import Settings
 from service.store import reading, writing
 

@@ -19,8 +19,8 @@ import pytest
 from running_service import PATIENCE_S, lives, until
 from structlog.testing import capture_logs
 
-from service.jobs.live_order import LiveOrder
-from service.jobs.live_pool import LiveLimits, LivePool
+from service.live.order import LiveOrder
+from service.live.pool import LiveLimits, LivePool
 from service.problems import LiveUnavailable, QueueFull, ServiceError, Superseded, Unexpected
 
 WORK = "live_fake_work"
@@ -189,7 +189,7 @@ def test_one_that_dies_unseen_after_an_answer_is_replaced_once(
     first = answer(pool.ask(order("echo", word="a")))["pid"]
     os.kill(first, signal.SIGKILL)
     until(lambda: not lives(first))
-    monkeypatch.setattr("service.jobs.live_worker.LiveWorker.alive", True)
+    monkeypatch.setattr("service.live.worker.LiveWorker.alive", True)
     assert answer(pool.ask(order("echo", word="b")))["pid"] != first
 
 
@@ -235,8 +235,8 @@ def test_a_refusal_passes_as_it_was_told_and_a_defect_by_number(pool: LivePool, 
 SERVICE = """
 import sys
 from pathlib import Path
-from service.jobs.live_pool import LivePool
-from service.jobs.live_order import LiveOrder
+from service.live.pool import LivePool
+from service.live.order import LiveOrder
 pool = LivePool(Path(sys.argv[1]), 512)
 pool.ask(LiveOrder("live_fake_work:echo", {"word": "a"})).result()
 print("worker", pool.worker_pid, flush=True)

@@ -11,8 +11,8 @@ from typer.testing import CliRunner
 
 from dynamics.accuracy import FidelityResult, Frontier
 from service.cli.commands import app
-from service.report.image import png
-from service.report.page import html
+from service.drawing.image import png
+from service.drawing.page import html
 from service.studies.frontier.page import frontier_figure, frontier_page, frontier_table
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "palermo_scene.toml"

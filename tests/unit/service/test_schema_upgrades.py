@@ -16,7 +16,7 @@ from running_service import bench
 from service_fakes import REGISTRY
 from sqlalchemy import Engine, inspect, text
 
-import service.jobs.tables
+import service.queue.tables
 import service.store.results
 from service.problems import BadInput
 from service.store import open_database, writing

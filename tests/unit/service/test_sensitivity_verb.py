@@ -18,9 +18,9 @@ from fe_contact.errors import DatabaseError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import TableAxes
 from service.cli.commands import app
+from service.drawing.figure import Panel
 from service.problems import BadInput
 from service.report import write_report
-from service.report.figure import Panel
 from service.schemas import Case, read_model
 from service.studies.computation import Means
 from service.studies.sensitivity import Inputs

@@ -8,9 +8,9 @@ from importlib import import_module
 
 import pytest
 
-from service.jobs.catalogue import default_registry
-from service.jobs.process import on_demand
 from service.routes.warm_up import HEAVY, warm_up
+from service.worker.catalogue import default_registry
+from service.worker.process import on_demand
 
 HEAVY_PACKAGES = {"gmsh", "skfem", "numba", "scipy", "xarray", "h5py", "matplotlib", "plotly"}
 

@@ -16,10 +16,10 @@ from sqlalchemy import update
 from typer.testing import CliRunner
 
 from service.cli.commands import app
-from service.jobs.job import Job
-from service.jobs.retention import Retention
-from service.jobs.tables import computations, jobs
 from service.problems import NoSuchJob, NotFound
+from service.queue.job import Job
+from service.queue.retention import Retention
+from service.queue.tables import computations, jobs
 from service.store import writing
 from service.store.deployment import NOTE
 from service.store.maintenance import verify_store
@@ -83,7 +83,7 @@ def let_time_pass(machine: Bench, *kept: str) -> None:
 def age(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let every file be older than what is spared."""
     monkeypatch.setattr("service.store.maintenance.GRACE_S", -60.0)
-    monkeypatch.setattr("service.jobs.retention.GRACE_S", -60.0)
+    monkeypatch.setattr("service.queue.retention.GRACE_S", -60.0)
 
 
 def test_every_file_is_compared_and_what_differs_is_set_aside(machine: Bench) -> None:

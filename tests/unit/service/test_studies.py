@@ -11,7 +11,6 @@ from typer.main import get_command
 
 from service.cli.commands import app
 from service.client import LineOfActionClient
-from service.jobs.catalogue import default_registry
 from service.registry import JSON, STUDIES, Study, study_of
 from service.report.stored_study import marked_study
 from service.schemas.model import BoundaryModel
@@ -19,6 +18,7 @@ from service.schemas.request_examples import INPUTS
 from service.schemas.result_kinds import RESULT_KINDS
 from service.studies.computation import Computation
 from service.studies.presentation import Presentation
+from service.worker.catalogue import default_registry
 
 LOA = get_command(app)
 EVERY = pytest.mark.parametrize("study", STUDIES.values(), ids=list(STUDIES))

@@ -13,9 +13,9 @@ from fe_contact import AllowedError, Gear, GearPair, SteDatabase, analyze
 from service.cli.commands import app
 from service.cli.tolerance_lines import tolerance_lines, tolerance_warnings
 from service.convert.drafts import draft_line
-from service.jobs.catalogue import ANALYZE
-from service.jobs.drafted_progress import DraftedProgress
 from service.problems import EXIT_WARNINGS
+from service.worker.catalogue import ANALYZE
+from service.worker.drafted_progress import DraftedProgress
 
 CASE = """
 [pair]

@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 from running_service import PATIENCE_S, lives, until
 
-from service.jobs.order import WorkOrder
-from service.jobs.worker import Worker
+from service.worker.order import WorkOrder
+from service.worker.worker import Worker
 
 SERVICE = """
 import sys

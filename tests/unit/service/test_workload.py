@@ -13,11 +13,11 @@ from running_service import Bench, bench
 from service_fakes import REGISTRY
 from sqlalchemy import update
 
-from service.jobs.claims import Claim
-from service.jobs.durations import BOUNDS_S, bound_of
-from service.jobs.retention import Retention
-from service.jobs.tables import computations, jobs
-from service.jobs.workload import Durations, WorkloadReader
+from service.queue.claims import Claim
+from service.queue.durations import BOUNDS_S, bound_of
+from service.queue.retention import Retention
+from service.queue.tables import computations, jobs
+from service.queue.workload import Durations, WorkloadReader
 from service.store import writing
 from service.store.database import instant
 

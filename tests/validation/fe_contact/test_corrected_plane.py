@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair, SteDatabase, analyze
-from fe_contact.analysis import check_request, error_estimate
-from fe_contact.analysis.error_estimate import CORRECTION_ERROR
-from fe_contact.analysis.pair_contact import PairContact, pair_contact
+from fe_contact.analysis import check_request
+from fe_contact.analysis.estimates import error_estimate
+from fe_contact.analysis.estimates.error_estimate import CORRECTION_ERROR
+from fe_contact.analysis.pairs.pair_contact import PairContact, pair_contact
 from fe_contact.compliance import FlankCompliance3D, flank_compliances_3d
 from fe_contact.geometry import InternalGearPair, ParallelAxes, RingGear
 from fe_contact.material import Material

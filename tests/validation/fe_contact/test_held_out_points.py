@@ -7,7 +7,7 @@ import pytest
 
 from fe_contact import Gear, GearPair, analyze
 from fe_contact.analysis import check_request
-from fe_contact.analysis.pair_contact import pair_contact
+from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.options import TableAxes
 from fe_contact.planning import make_plan
 

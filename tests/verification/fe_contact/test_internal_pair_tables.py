@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from fe_contact.analysis import analyze, flank_results
-from fe_contact.analysis.pair_contact import pair_contact
+from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.contact import ContactModel
 from fe_contact.effects.misalignment import MisalignmentGap
 from fe_contact.geometry import (

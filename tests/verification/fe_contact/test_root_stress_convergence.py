@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fe_contact import GearPair, root_stress
-from fe_contact.analysis.root_stress_history import crests
+from fe_contact.analysis.flanks.root_stress_history import crests
 from fe_contact.compliance import UnitRootStress, unit_root_stress, unit_root_stress_3d
 from fe_contact.contact.face_patch import FaceGrid, face_loads
 from fe_contact.contact.patch import load_vector

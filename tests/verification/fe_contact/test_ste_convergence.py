@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair
-from fe_contact.analysis.pair_contact import pair_contact
+from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.options import AnalysisOptions
 from fe_contact.planning import make_plan

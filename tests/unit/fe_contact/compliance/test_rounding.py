@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair
-from fe_contact.analysis.request_check import check_request
+from fe_contact.analysis.request.request_check import check_request
 from fe_contact.compliance import flank_compliance_3d
 from fe_contact.compliance.rounding import (
     EPSILON,

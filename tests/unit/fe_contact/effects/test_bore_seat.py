@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fe_contact import BoreSeat, Gear, GearPair
-from fe_contact.analysis.request_check import check_request
+from fe_contact.analysis.request.request_check import check_request
 from fe_contact.contact import ContactModel
 from fe_contact.effects import EFFECTS, ContactScene
 from fe_contact.effects.bore_seat import BoreSeatElasticity

@@ -11,7 +11,7 @@ from analysis_requests import table_request
 
 from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.analysis import check_request
-from fe_contact.analysis.pair_contact import pair_contact
+from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.compliance import flank_compliance
 from fe_contact.contact import ContactModel, PatchRule, Slices, contact_candidates, contact_problem
 from fe_contact.effects.influence import EstimatedInfluence, estimate_influence

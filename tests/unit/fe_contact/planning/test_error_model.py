@@ -11,7 +11,7 @@ from analysis_requests import table_request
 
 from fe_contact import AllowedError, FlankModification, Gear, GearPair, Material, SteDatabase, analyze
 from fe_contact.analysis import check_request
-from fe_contact.analysis.model_choice import TRIED, decide
+from fe_contact.analysis.request.model_choice import TRIED, decide
 from fe_contact.analysis.run_plan import plan_run
 from fe_contact.geometry import InternalGearPair
 from fe_contact.geometry.ring_gear import RingGear

@@ -10,7 +10,7 @@ from analysis_requests import table_request
 
 from fe_contact import AllowedError, FlankModification, Gear, GearPair, analyze
 from fe_contact.analysis import check_request
-from fe_contact.analysis.model_choice import decide
+from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.run_plan import plan_run
 from fe_contact.compliance.cache import kept_size
 from fe_contact.errors import InputError
@@ -154,7 +154,7 @@ def test_a_plan_computes_nothing(monkeypatch):
     """Neither a mesh nor a compliance nor a contact is requested."""
     for place in (
         "fe_contact.mesh.gmsh_child.subprocess.run",
-        "fe_contact.analysis.pair_contact.solve_contact",
+        "fe_contact.analysis.pairs.pair_contact.solve_contact",
         "fe_contact.compliance.flank_compliance_2d.compute_flank_compliance",
         "fe_contact.compliance.cyclic_compliance.compute_flank_compliance_3d",
     ):

@@ -10,11 +10,11 @@ import pytest
 
 from fe_contact.analysis import LoadDistribution
 from fe_contact.ste import SteDatabase
-from service.report.database_surface import database_surface
-from service.report.face_distribution import line_load_figure
-from service.report.figure import Panel
-from service.report.load_sharing import load_sharing
-from service.report.ste_curves import ste_curves
+from service.drawing.figure import Panel
+from service.tables.database_surface import database_surface
+from service.tables.face_distribution import line_load_figure
+from service.tables.load_sharing import load_sharing
+from service.tables.ste_curves import ste_curves
 
 
 def of_high_contact_ratio(database: SteDatabase, more: int = 1, helix: float = 0.0) -> SteDatabase:

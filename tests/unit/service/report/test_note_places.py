@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from service.report.figure import Axis, Line, Note, Panel
-from service.report.image import _panel_sheet
-from service.report.note_places import placed
+from service.drawing.figure import Axis, Line, Note, Panel
+from service.drawing.image import _panel_sheet
+from service.drawing.note_places import placed
 
 X, Y = Axis("time, s", "log", (1e-3, 1e5)), Axis("error, %", "log")
 RANGE = (0.01, 100.0)

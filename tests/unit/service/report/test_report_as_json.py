@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from fe_contact.analysis import Frontier
-from fe_contact.analysis.fidelity_result import FidelityResult
+from fe_contact.analysis.studies.fidelity_result import FidelityResult
 from fe_contact.ste import SteDatabase
 from service.report.as_json import page_json, stored_figures
 from service.report.content import page_of

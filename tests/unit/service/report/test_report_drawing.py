@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from service.report import palette
-from service.report.figure import (
+from service.drawing import palette
+from service.drawing.figure import (
     Axis,
     Figure,
     HeatMap,
@@ -22,8 +22,8 @@ from service.report.figure import (
     legend_names,
     number,
 )
-from service.report.image import _panel_sheet, png
-from service.report.interactive import plotly_figure
+from service.drawing.image import _panel_sheet, png
+from service.drawing.interactive import plotly_figure
 
 X = np.linspace(0.0, 2.0, 9)
 

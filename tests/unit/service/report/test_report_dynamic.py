@@ -7,16 +7,16 @@ import pytest
 
 from dynamics.results import RunResult
 from dynamics.types import RunStatus
-from service.report.bearing_force import bearing_force
-from service.report.bearing_spectrum import (
+from service.runs.bearing_force import bearing_force
+from service.runs.bearing_spectrum import (
     amplitude_spectrum,
     bearing_spectrum,
     order_amplitudes,
     spectrum_window,
 )
-from service.report.dynamic_error import dynamic_error
-from service.report.dynamic_part import dynamic_alarms, dynamic_headlines, dynamic_making, dynamic_results
-from service.report.run_series import run_series
+from service.runs.dynamic_error import dynamic_error
+from service.runs.dynamic_part import dynamic_alarms, dynamic_headlines, dynamic_making, dynamic_results
+from service.runs.run_series import run_series
 
 
 def test_position_is_unwrapped_and_speed_is_the_driver_s(run: RunResult) -> None:

@@ -9,14 +9,14 @@ import pytest
 
 from fe_contact.analysis import LoadDistribution, contact_pattern
 from fe_contact.ste import SteDatabase
+from service.drawing.figure import HeatMap, Panel, Strokes
+from service.drawing.image import png
+from service.drawing.interactive import plotly_figure
 from service.report import write_report
-from service.report.contact_lines import contact_lines
-from service.report.contact_pattern import contact_pattern_figure
-from service.report.face_distribution import line_load_figure, load_centroid_figure
-from service.report.figure import HeatMap, Panel, Strokes
-from service.report.image import png
-from service.report.interactive import plotly_figure
 from service.studies.flank.page import operating_point, page
+from service.tables.contact_lines import contact_lines
+from service.tables.contact_pattern import contact_pattern_figure
+from service.tables.face_distribution import line_load_figure, load_centroid_figure
 
 
 def panels(figure: object) -> tuple[Panel, ...]:

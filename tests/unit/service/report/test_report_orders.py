@@ -11,13 +11,13 @@ from dynamics.bodies import TimeLaw
 from dynamics.linearize import whirl_modes
 from dynamics.results import RunResult
 from dynamics.simulation import simulate
-from service.report.campbell import DEPTH, campbell
-from service.report.dynamic_factor import dynamic_factor_figure
-from service.report.dynamic_part import dynamic_results
-from service.report.figure import HeatMap, Panel
-from service.report.order_cuts import order_cuts
-from service.report.planet_sharing import planet_sharing
-from service.report.sideband_table import sideband_tables
+from service.drawing.figure import HeatMap, Panel
+from service.runs.campbell import DEPTH, campbell
+from service.runs.dynamic_factor import dynamic_factor_figure
+from service.runs.dynamic_part import dynamic_results
+from service.runs.order_cuts import order_cuts
+from service.runs.planet_sharing import planet_sharing
+from service.runs.sideband_table import sideband_tables
 
 MODES = {
     "frequency": [0.0, 300.0, 301.0, 900.0],

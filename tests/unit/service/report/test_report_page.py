@@ -7,10 +7,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from service.report import palette
-from service.report.facts import facts, records
-from service.report.figure import Axis, Figure, Line, Panel, Table
-from service.report.page import Headline, Page, Section, html
+from service.drawing import palette
+from service.drawing.facts import facts, records
+from service.drawing.figure import Axis, Figure, Line, Panel, Table
+from service.drawing.page import Headline, Page, Section, html
 
 PNG = b"\x89PNG\r\n\x1a\n"
 HOSTILE = '</script><script src="http://example.org/x.js"></script>'

@@ -9,11 +9,11 @@ import pytest
 
 from fe_contact.ste import SteDatabase
 from service.convert.answers import curve_json, metadata_json
-from service.report.aligned import pitches_shown, position_axis, shown_rows, ste_shown
-from service.report.face_load import face_load
-from service.report.load_sharing import load_sharing, pair_shares
-from service.report.static_part import static_results
-from service.report.ste_curves import ste_curves
+from service.tables.aligned import pitches_shown, position_axis, shown_rows, ste_shown
+from service.tables.face_load import face_load
+from service.tables.load_sharing import load_sharing, pair_shares
+from service.tables.static_part import static_results
+from service.tables.ste_curves import ste_curves
 
 Tables = Callable[..., SteDatabase]
 

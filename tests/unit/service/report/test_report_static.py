@@ -9,15 +9,15 @@ import pytest
 from fe_contact.geometry import Gear, GearPair
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.fields import DIMENSIONS
-from service.report.aligned import shown_loads, ste_shown
-from service.report.database_surface import database_surface
-from service.report.figure import Panel, Surface, number
-from service.report.load_sharing import load_sharing, pair_shares
-from service.report.mesh_stiffness import mesh_stiffness, secant_stiffness
-from service.report.pair import iso_mesh_stiffness
-from service.report.ripple_over_torque import ripple_over_torque
-from service.report.static_part import static_results
-from service.report.ste_curves import ste_curves
+from service.drawing.figure import Panel, Surface, number
+from service.tables.aligned import shown_loads, ste_shown
+from service.tables.database_surface import database_surface
+from service.tables.load_sharing import load_sharing, pair_shares
+from service.tables.mesh_stiffness import mesh_stiffness, secant_stiffness
+from service.tables.pair import iso_mesh_stiffness
+from service.tables.ripple_over_torque import ripple_over_torque
+from service.tables.static_part import static_results
+from service.tables.ste_curves import ste_curves
 
 
 def test_two_pitches_repeat_the_period(database: SteDatabase) -> None:

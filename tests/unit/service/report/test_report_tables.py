@@ -3,9 +3,9 @@
 import pytest
 
 from fe_contact.ste import SteDatabase
-from service.report.facts import facts, side_by_side
-from service.report.page import _is_number
-from service.report.static_part import (
+from service.drawing.facts import facts, side_by_side
+from service.drawing.page import _is_number
+from service.tables.static_part import (
     case_tables,
     effects_section,
     static_alarms,

@@ -28,11 +28,11 @@ from fe_contact.microgeometry import (
 )
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.ste import SteDatabase
+from service.drawing.page import Page
 from service.problems import BadInput
 from service.report.as_json import page_json, stored_figures
 from service.report.content import page_of
 from service.report.inputs import read_inputs
-from service.report.page import Page
 from service.studies.ablate.page import ablation_page
 from service.studies.ablate.run import facts as ablation_json
 from service.studies.frontier.page import frontier_page

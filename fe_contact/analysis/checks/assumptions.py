@@ -1,0 +1,240 @@
+"""What a run took for granted, checked on its solution: neglected effects, ranges of its models."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from fe_contact.allowed_error import AllowedError
+from fe_contact.analysis.checks.tip_edges import assemble_edges, deepest_edge
+from fe_contact.analysis.pairs.operating_points import OperatingPoint, OperatingPoints
+from fe_contact.analysis.request.request import Checked
+from fe_contact.analysis.tables.solved_table import SolvedTable
+from fe_contact.contact import ContactProblem, ContactSolution
+from fe_contact.effects import FaceLoadDistribution, FiniteWidth
+from fe_contact.effects.across_face import across_face
+from fe_contact.effects.corner_contact import CornerContact
+from fe_contact.effects.influence import EstimatedInfluence, estimate_influence
+from fe_contact.effects.misalignment import MisalignmentGap
+from fe_contact.geometry.printed_data import backlash_rounding
+from fe_contact.planning import Plan, left_out
+from fe_contact.types import FloatArray, Json
+
+LEAST_BACKLASH = 1e-9
+"""m; teeth without a thickness allowance have none but rounding."""
+
+
+@dataclass(frozen=True)
+class Assumption:
+    """One thing that a run took for granted.
+
+    Attributes
+    ----------
+    effect : str
+        The effect that would not need it; empty if there is none.
+    what : str
+        The assumption.
+    holds : bool or None
+        None: it could not be assessed.
+    change : float
+        Largest change of mean or peak-to-peak that it can make, in parts of the size that the tolerance
+        counts by (`AllowedError.scale`), as far as that is known; NaN else.
+    reason : str
+        What was found.
+    """
+
+    effect: str
+    what: str
+    holds: bool | None
+    change: float
+    reason: str
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        known = {"change": self.change} if np.isfinite(self.change) else {}
+        return {
+            "effect": self.effect,
+            "assumption": self.what,
+            "holds": self.holds,
+            "reason": self.reason,
+            **known,
+        }
+
+
+class SolvedRun(Protocol):
+    """What assumptions are checked on: a request, its plan, and the contact solved at its places."""
+
+    @property
+    def checked(self) -> Checked:
+        """The request."""
+
+    @property
+    def plan(self) -> Plan:
+        """Discretization."""
+
+    @property
+    def places(self) -> OperatingPoints:
+        """Misalignments and center distances."""
+
+    @property
+    def solved(self) -> Sequence[tuple[ContactProblem, ContactSolution]]:
+        """Problem and solution of every place."""
+
+
+def check_assumptions(run: SolvedTable) -> tuple[Assumption, ...]:
+    """Check everything that a table took for granted on what it computed."""
+    return (
+        *_tip_edges(run, _ripples(run)),
+        *_neglected(run),
+        *_plane(run),
+        *_coast_flanks(run),
+        *_printed_data(run),
+        _load_patches(run),
+        _support_loads(run),
+    )
+
+
+def check_one_place(run: SolvedRun) -> tuple[Assumption, ...]:
+    """Check what flank results and root stress took for granted: edges in parts of the deflection itself."""
+    return (*_tip_edges(run, np.abs(_means(run))), *check_cheaply(run))
+
+
+def check_cheaply(run: SolvedRun) -> tuple[Assumption, ...]:
+    """Check what needs nothing but the solution."""
+    return (*_plane(run), *_coast_flanks(run), *_printed_data(run), _load_patches(run))
+
+
+def allowed(run: SolvedRun) -> AllowedError:
+    """Return what an assumption may change mean or peak-to-peak by."""
+    return run.checked.request.options.allowed
+
+
+def _tip_edges(run: SolvedRun, size: FloatArray) -> Iterator[Assumption]:
+    """Without corner contact: no tip edge comes to the mating flank before A and after E.
+
+    A contact that is left out can carry at most until the deflection has fallen to its gap: the change of STE
+    is at most how far the deflection exceeds the gap, over `size` (L, places) in m.
+    """
+    request = run.checked.request
+    if run.checked.model.corner_contact or CornerContact.name in request.neglected:
+        return
+    assemble_edges(run.places, run.solved)
+    pairs = zip(run.places.places, run.solved, strict=True)
+    depth = np.stack([deepest_edge(place, run.plan.load, *solved) for place, solved in pairs], axis=1)
+    change = float(np.max(depth / np.maximum(allowed(run).scale(size), 1e-12 * np.abs(_means(run)))))
+    deepest = 1e6 * float(depth.max())
+    reason = "the gaps at the tip edges stay open"
+    if deepest > 0.0:
+        reason = f"teeth bend {deepest:.2g} um beyond the gap at a tip edge"
+    yield Assumption(
+        CornerContact.name, "tip edges stay clear", change <= allowed(run).relative, change, reason
+    )
+
+
+def _neglected(run: SolvedTable) -> Iterator[Assumption]:
+    """Effects neglected for the tolerance: their influence beside what was computed."""
+    request = run.checked.request
+    for name in request.neglected:
+        influence = estimate_influence(*run.checked.assessing(name), name)
+        if influence is not None:
+            change = _relative(influence, run)
+            reason = f"estimated at {100 * change:.2g} % of the computed mean or peak-to-peak"
+            holds = change <= allowed(run).relative
+            yield Assumption(name, "too small to be seen", holds, change, reason)
+
+
+def _relative(influence: EstimatedInfluence, run: SolvedTable) -> float:
+    """Return the larger of both estimated changes over the computed values, at the worst load and place."""
+    mean = np.abs(influence.mean)[:, None] / allowed(run).scale(_means(run))
+    ripple = np.abs(influence.peak_to_peak)[:, None] / allowed(run).scale(_ripples(run))
+    return float(np.max(np.maximum(mean, ripple)))
+
+
+def _plane(run: SolvedRun) -> Iterator[Assumption]:
+    """In the plane: loads even over the face, and the finite width in the correction."""
+    request, model = run.checked.request, run.checked.model
+    if model.across_face:
+        return
+    reasons = across_face(request.scene)
+    found = "; ".join(reasons) if reasons else "nothing in the scene acts across it"
+    name = FaceLoadDistribution.name
+    yield Assumption(name, "load even over the face", not reasons, float("nan"), found)
+    missing = left_out(run.places.places[0].contact.pair, run.plan.discretization)
+    if missing:
+        reason = f"the finite width changes about {100 * missing:.2g} % of the mean"
+        holds = missing <= allowed(run).relative
+        yield Assumption(FiniteWidth.name, "plane strain stands for the whole face", holds, missing, reason)
+
+
+def _coast_flanks(run: SolvedRun) -> Iterator[Assumption]:
+    """Between the coast flanks there is room: the contact analysis has the driving flanks alone."""
+    room = []
+    for place, (_, solution) in zip(run.places.places, run.solved, strict=True):
+        pair = place.contact.pair
+        if pair.transverse_base_backlash <= LEAST_BACKLASH:
+            reason = "the teeth as given have no backlash: coast flanks were not assessed"
+            yield Assumption("", "coast flanks stay apart", None, float("nan"), reason)
+            return
+        room.append(pair.transverse_base_backlash + float(np.min(solution.no_load)) - _closing(place))
+    least = 1e6 * min(room)
+    reason = f"the least room is {least:.3g} um" if least > 0 else f"the teeth jam by {-least:.3g} um"
+    yield Assumption("", "coast flanks stay apart", least > 0, float("nan"), reason)
+
+
+def _printed_data(run: SolvedRun) -> Iterator[Assumption]:
+    """Nominal teeth that jam by no more than rounding of printed data have no backlash."""
+    pair = run.places.places[0].contact.pair
+    if pair.rounding_jam > LEAST_BACKLASH:
+        rounding = backlash_rounding(pair.pinion, pair.wheel, pair.center_distance)
+        reason = (
+            f"jam of {1e6 * pair.rounding_jam:.2g} um is rounding of the printed data, which makes up to "
+            f"{1e6 * rounding:.2g} um; computed as zero backlash"
+        )
+        yield Assumption("", "nominal teeth do not jam", True, float("nan"), reason)
+
+
+def _closing(place: OperatingPoint) -> float:
+    """How much deviations and misalignment close the coast side beside what the driving side opens, m."""
+    skew = sum(abs(term.growth) for term in place.model.gaps if isinstance(term, MisalignmentGap))
+    meeting = np.arange(place.model.period)
+    teeth = sum(float(np.max(term(meeting))) for term in place.model.tooth_gaps)
+    return 0.5 * skew + teeth
+
+
+def _load_patches(run: SolvedRun) -> Assumption:
+    """Contact strips stay within the load patches of the finite elements."""
+    grown = sum(int(solution.beyond.sum()) for _, solution in run.solved)
+    reason = f"strips outgrew them at {grown} points" if grown else "all strips are narrower"
+    return Assumption("", "contact strips within the load patches", grown == 0, float("nan"), reason)
+
+
+def _support_loads(run: SolvedTable) -> Assumption:
+    """From lift-off to twice the largest load the forces for dynamics are solved."""
+    failed = sum(int(np.count_nonzero(solution.status)) for _, solution in run.support)
+    reason = f"{failed} points have no solution" if failed else "all points beyond the asked loads are solved"
+    return Assumption("", "forces solved from lift-off to overload", failed == 0, float("nan"), reason)
+
+
+def _means(run: SolvedRun) -> FloatArray:
+    """Mean STE (L, places), m, over the nodes that have a solution; infinite where none has."""
+    return _over_nodes(run, np.mean)
+
+
+def _ripples(run: SolvedRun) -> FloatArray:
+    """Peak-to-peak STE (L, places), m; as `_means`."""
+    return _over_nodes(run, np.ptp)
+
+
+def _over_nodes(run: SolvedRun, figure: Callable[..., Any]) -> FloatArray:
+    """Take a figure of every curve, its failed points left out: failures are told by themselves."""
+    curves = [[column[np.isfinite(column)] for column in one.deflection.T] for _, one in run.solved]
+    found = [[float(figure(curve)) if curve.size else np.inf for curve in place] for place in curves]
+    return np.array(found).T
+
+
+def violated(found: Sequence[Assumption]) -> tuple[Assumption, ...]:
+    """Return those that do not hold."""
+    return tuple(one for one in found if one.holds is False)

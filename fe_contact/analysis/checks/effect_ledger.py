@@ -1,0 +1,128 @@
+"""The effect ledger of a run: what is on, why, its influence, what it costs, and what was checked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from fe_contact.analysis.checks.assumptions import Assumption
+from fe_contact.analysis.request.influences import estimated_influences
+from fe_contact.analysis.request.request import Checked
+from fe_contact.analysis.request.request_check import check_asked
+from fe_contact.effects import LedgerEntry
+from fe_contact.effects.flipping import flipped
+from fe_contact.effects.influence import Influence
+from fe_contact.errors import InputError
+from fe_contact.planning import Plan, make_plan, planned, predict_run
+from fe_contact.types import Json
+
+NOT_CHECKED = "no; toggling it measures it (ablation)"
+
+
+def effect_ledger(
+    checked: Checked,
+    cache: Path | None,
+    assumptions: Sequence[Assumption] = (),
+    *,
+    plan: Plan | None = None,
+    planned_request: Checked | None = None,
+    estimates: bool = True,
+) -> list[Json]:
+    """Return one entry per effect as plain JSON.
+
+    Parameters
+    ----------
+    checked : Checked
+    cache : Path, optional
+        Directory of compliances and of what is known of the host, for predicted times.
+    assumptions : sequence of Assumption
+        What was checked after the run.
+    plan : Plan, optional
+        Of the run: costs are those of its mesh and slices; default: those that the accuracy asks for.
+    planned_request : Checked, optional
+        The request before the run was repeated with further effects, if it was: influences are those of the
+        plan, whatever the run found; default: `checked`.
+    estimates : bool
+        Whether influence and cost are estimated, in milliseconds; without it they are None.
+    """
+    influences = estimated_influences(planned_request or checked) if estimates else {}
+    costs = _costs(checked, cache, plan) if estimates else {}
+    return [
+        _entry(entry, influences.get(entry.name), costs.get(entry.name), assumptions)
+        for entry in checked.ledger
+    ]
+
+
+def _entry(
+    entry: LedgerEntry, influence: Influence | None, seconds: float | None, assumptions: Sequence[Assumption]
+) -> Json:
+    """One effect."""
+    found = [one for one in assumptions if one.effect == entry.name]
+    return entry.to_json() | {
+        "influence": None if influence is None else influence.to_json(),
+        "cost_cpu_seconds": seconds,
+        "price": _price(entry, influence, seconds),
+        "checked": "; ".join(f"{one.what}: {one.reason}" for one in found) or NOT_CHECKED,
+        "holds": all(one.holds is not False for one in found) if found else None,
+    }
+
+
+def _costs(checked: Checked, cache: Path | None, plan: Plan | None) -> dict[str, float | None]:
+    """Predict the CPU seconds that each effect adds to the run.
+
+    None if it cannot be toggled, and where it is off without having been called for: nothing was saved.
+    """
+    here = _predicted(checked, cache, plan)
+    acting = [entry for entry in checked.ledger if entry.on or entry.verdict.on]
+    return {entry.name: _cost(checked, entry, here, (cache, plan)) for entry in acting}
+
+
+def _cost(
+    checked: Checked, entry: LedgerEntry, here: float, known: tuple[Path | None, Plan | None]
+) -> float | None:
+    """CPU seconds of one effect, of which the run itself is predicted to take `here`."""
+    try:
+        other = toggled(checked, entry.name, "off" if entry.on else "on")
+    except InputError:
+        return None
+    there = _predicted(other, *known)
+    return here - there if entry.on else there - here
+
+
+def _predicted(checked: Checked, cache: Path | None, run: Plan | None) -> float:
+    """CPU seconds of a request, on the mesh and in the slices of the run if that is over the face as well."""
+    request = checked.request
+    wanted = request.pair, request.load, request.options, checked.model
+    if run is None:
+        plan = planned(*wanted, request.alignments, cache)
+    else:
+        slices = run.discretization.slices
+        plan = make_plan(*wanted, run.level, slices if slices > 1 else None)
+    return predict_run(request.pair, plan, checked.model, request.alignments, cache).cpu_seconds
+
+
+def _price(entry: LedgerEntry, influence: Influence | None, seconds: float | None) -> str:
+    """Say what a choice against the scene costs; empty where it does not."""
+    if entry.on == entry.verdict.on:
+        return ""
+    if entry.on:
+        return f"about {seconds:.2g} CPU s" if seconds is not None else "time"
+    return "not estimated" if influence is None else influence.words
+
+
+def toggled(checked: Checked, name: str, choice: str) -> Checked:
+    """Return the request with one effect on or off and all others as they were decided.
+
+    Raises
+    ------
+    InputError
+        The model cannot be had, as a plane with what acts across the face.
+    """
+    request = checked.request
+    asked = flipped(checked.decided, name, choice)
+    # choices of every effect are explicit now, so that an explicit model has no say about them any more
+    plane_stress = request.options.model == "plane_stress" and asked["face_load_distribution"] == "off"
+    options = replace(request.options, model="plane_stress" if plane_stress else "auto", effects=asked)
+    neglected = {one: reason for one, reason in request.neglected.items() if one != name}
+    return check_asked(replace(request, options=options, neglected=neglected, turned_on={}), spare=False)

@@ -1,0 +1,68 @@
+"""What to do where a run shows that something it took for granted is wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import TypeVar
+
+from fe_contact.analysis.checks.assumptions import Assumption, SolvedRun, violated
+from fe_contact.analysis.request.request import Checked
+from fe_contact.analysis.request.request_check import check_asked
+from fe_contact.errors import SolveError
+from fe_contact.stage_clock import StageClock
+from fe_contact.types import Json
+
+Run = TypeVar("Run", bound=SolvedRun)
+
+
+def settled(
+    run: Run,
+    check: Callable[[Run], tuple[Assumption, ...]],
+    again: Callable[[Run, Mapping[str, str]], Run],
+    clock: StageClock,
+) -> tuple[Run, tuple[Assumption, ...], list[Json]]:
+    """Check what a run took for granted; where that is wrong, do as the caller chose.
+
+    An automatic effect that turns out to be needed is switched on and the run made `again` with the effects
+    and reasons given. What was requested by name is only reported.
+
+    Returns
+    -------
+    run
+        The last one.
+    found : tuple of Assumption
+        Of the last one.
+    repeated : list of dict
+        What was turned on each time, and the CPU seconds it took.
+
+    Raises
+    ------
+    SolveError
+        An assumption does not hold and `on_violation` is "fail".
+    """
+    repeated: list[Json] = []
+    while True:
+        with clock.stage("assumptions"):
+            found = check(run)
+        wrong = violated(found)
+        request = run.checked.request
+        if wrong and request.options.on_violation == "fail":
+            said = "; ".join(f"{one.what}: {one.reason}" for one in wrong)
+            raise SolveError(f"assumptions that do not hold: {said}")
+        automatic = {entry.name for entry in run.checked.ledger if entry.choice == "auto" and not entry.on}
+        needed = {one.effect: f"{one.what}: {one.reason}" for one in wrong if one.effect in automatic}
+        if not needed or request.options.on_violation != "repeat":
+            return run, found, repeated
+        before = sum(clock.seconds.values())
+        run = again(run, needed)
+        repeated.append({"turned_on": needed, "cpu_seconds": sum(clock.seconds.values()) - before})
+
+
+def with_effects(checked: Checked, needed: Mapping[str, str], *, whole_table: bool = True) -> Checked:
+    """Return the request with effects switched on that a run showed to be needed."""
+    request = checked.request
+    reasons = {name: f"on after a run without it: {reason}" for name, reason in needed.items()}
+    neglected = {name: reason for name, reason in request.neglected.items() if name not in needed}
+    turned_on = {**request.turned_on, **reasons}
+    return check_asked(replace(request, neglected=neglected, turned_on=turned_on), whole_table=whole_table)

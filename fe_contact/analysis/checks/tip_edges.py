@@ -1,0 +1,75 @@
+"""How far tip edges would be inside the mating flanks in a contact that was solved without them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from fe_contact.analysis.pairs.operating_points import OperatingPoint, OperatingPoints
+from fe_contact.analysis.pairs.solved_operating_points import assemble_remotely
+from fe_contact.contact import Candidates, ContactProblem, ContactSolution
+from fe_contact.geometry import ParallelAxes
+from fe_contact.types import FloatArray
+
+OUTSIDE = 1e-3
+"""Base pitches before A and after E at which the gap of an edge is assessed: it grows from there on."""
+
+
+def assemble_edges(places: OperatingPoints, solved: Sequence[tuple[ContactProblem, ContactSolution]]) -> None:
+    """Let workers assemble the compliance at the tip edges of all places, as `edge_depth` needs it."""
+    models = [replace(place.model, corner_contact=True) for place in places.places]
+    assemble_remotely(places, models, _phase(solved[0][0]))
+
+
+def deepest_edge(
+    place: OperatingPoint, load: FloatArray, problem: ContactProblem, solution: ContactSolution
+) -> FloatArray:
+    """Return how far tip edges would be inside the mating flanks (L,), m; 0 where they stay clear.
+
+    At the positions solved, and where pairs come into contact and leave it: there the gap of an edge is
+    least, and solved positions may pass it by. The contact is solved for these too.
+    """
+    position = handovers(place.contact.pair)
+    meant = place.solve_pitches(position, load, np.arange(place.model.period))
+    return np.maximum(edge_depth(place, problem, solution), edge_depth(place, *meant))
+
+
+def handovers(pair: ParallelAxes) -> FloatArray:
+    """Return the positions (2,) in [0, 1), rising, just before a pair meets at A and after it leaves at E."""
+    path = pair.path_of_contact
+    start, end = (float(pair.position(roll)) for roll in (path.start, path.end))
+    return np.sort(np.array([start - OUTSIDE, end + OUTSIDE]) % 1.0)
+
+
+def edge_depth(place: OperatingPoint, problem: ContactProblem, solution: ContactSolution) -> FloatArray:
+    """Return how far tip edges would be inside the mating flanks (L,), m; 0 where they stay clear.
+
+    Under the forces as solved: what the loaded teeth move at the unloaded edges is in.
+    """
+    where = problem.candidates.position
+    phase, pitch = _phase(problem), np.floor(where).astype(np.int64)
+    model = replace(place.model, corner_contact=True)
+    edges = place.contact.problem(model, phase, pitch if model.tooth_gaps else None)
+    touch = edges.candidates.touch
+    off_line = (touch.lever_1 != 1.0) | (touch.lever_2 != 1.0)
+    force = _carried(problem.candidates, edges.candidates, np.nan_to_num(solution.force))
+    moved = edges.moved(force)
+    closing = edges.candidates.motion_arm[:, None, :] * np.nan_to_num(solution.deflection)[:, :, None]
+    gap = np.where(off_line, touch.gap, np.inf) * edges.candidates.motion_arm
+    return np.asarray(np.max(closing - moved - gap[:, None, :], axis=(0, 2), initial=0.0))
+
+
+def _phase(problem: ContactProblem) -> FloatArray:
+    """Return the positions of a problem in one base pitch."""
+    return problem.candidates.position[: len(problem.compliance)] % 1.0
+
+
+def _carried(these: Candidates, those: Candidates, force: FloatArray) -> FloatArray:
+    """Return forces (P, L, n) of some candidates on others, of which they are a part."""
+    place = {key: i for i, key in enumerate(zip(those.pair.tolist(), those.face_position, strict=True))}
+    found = np.zeros((*force.shape[:2], those.pair.size))
+    keys = zip(these.pair.tolist(), these.face_position, strict=True)
+    found[:, :, [place[key] for key in keys]] = force
+    return found

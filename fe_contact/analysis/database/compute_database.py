@@ -1,0 +1,170 @@
+"""The main flow: from a checked request to the STE database, in one pass."""
+
+from __future__ import annotations
+
+import platform
+from dataclasses import asdict, dataclass, replace
+from functools import lru_cache
+from importlib.metadata import version
+
+from bounds import Finding
+from fe_contact.analysis.checks.assumptions import check_assumptions
+from fe_contact.analysis.checks.effect_ledger import effect_ledger
+from fe_contact.analysis.checks.repetition import settled, with_effects
+from fe_contact.analysis.database.contact_receipt import contact_receipt
+from fe_contact.analysis.database.tolerance_receipt import tolerance_receipt
+from fe_contact.analysis.estimates.assessed_table import AssessedTable, assessed_table, unassessed_table
+from fe_contact.analysis.request.decided import Decided
+from fe_contact.analysis.request.request import Checked, Request
+from fe_contact.analysis.tables.solved_table import SolvedTable, condensed_bodies, solve_table
+from fe_contact.options import Run
+from fe_contact.planning.cost_model import log_name
+from fe_contact.planning.run_log import record
+from fe_contact.plausibility import merged, table_findings
+from fe_contact.stage_clock import StageClock
+from fe_contact.ste import Metadata, SteDatabase
+from fe_contact.ste.content_hash import content_hash
+from fe_contact.ste.facts import SCHEMA_VERSION
+from fe_contact.types import Json
+
+SOLVER_VERSION = "11"
+PACKAGES = ("lineofaction", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
+
+
+@dataclass(frozen=True)
+class Computed:
+    """A table, and what it was computed with: effects that turned out to be needed included."""
+
+    table: SteDatabase
+    decided: Decided
+
+
+def compute_database(checked: Checked, case: Json, run: Run, decided: Decided | None = None) -> SteDatabase:
+    """Compute the table of a checked request; parameters of `compute_pass`."""
+    return compute_pass(checked, case, run, decided).table
+
+
+def compute_pass(
+    checked: Checked,
+    case: Json,
+    run: Run,
+    decided: Decided | None = None,
+    clock: StageClock | None = None,
+) -> Computed:
+    """Compute the table of a checked request once.
+
+    Parameters
+    ----------
+    checked : Checked
+    case : dict
+        Echoed into the result and hashed.
+    run : Run
+    decided : Decided, optional
+        Model and discretization; default: those that the accuracy asks for.
+    clock : StageClock, optional
+        That of the workers' cost, with what was spent on this pass before it began; default: a new one.
+
+    Raises
+    ------
+    SolveError
+        An assumption of the run does not hold and `on_violation` is "fail".
+    """
+    clock, before = clock or StageClock(run.workers.cost), replace(run.workers.cost)
+    planned = solve_table(checked, clock, run, decided=decided)
+    made, assumptions, repeated = settled(
+        planned,
+        check_assumptions,
+        lambda made, needed: solve_table(with_effects(made.checked, needed), clock, run, made),
+        clock,
+    )
+    assessed, contact = _assessed(made, clock, run)
+    remote = run.workers.cost.since(before)
+    if not repeated and not remote.tasks:
+        cost = {log_name(made.prediction.kind, name): time for name, time in clock.seconds.items()}
+        record(run.cache, made.prediction.logged, cost)
+    with clock.stage("effect ledger"):
+        ledger = effect_ledger(
+            made.checked,
+            run.cache,
+            assumptions,
+            plan=made.plan,
+            planned_request=planned.checked,
+            estimates=_full(made),
+        )
+    receipt = clock.to_json() | assessed.to_json() | contact | _planned(made)
+    receipt |= {"assumptions": [one.to_json() for one in assumptions], "repeated": repeated}
+    if remote.tasks or remote.lost:
+        receipt["elsewhere"] = asdict(remote)
+    metadata = _metadata(case, made, receipt, ledger)
+    table = replace(
+        made.table, error_estimate=assessed.band, curve_error=assessed.curve_error, metadata=metadata
+    )
+    tolerance = made.checked.request.options.tolerance
+    if tolerance is not None:
+        kept = tolerance_receipt(table, tolerance)
+        metadata.receipt["tolerance"] = kept
+        metadata.receipt["choice"]["met"] = kept["met"]
+    return Computed(table, made.decided)
+
+
+def _full(made: SolvedTable) -> bool:
+    """Whether the receipt measures the errors."""
+    return made.checked.request.options.receipt == "full"
+
+
+def _assessed(made: SolvedTable, clock: StageClock, run: Run) -> tuple[AssessedTable, Json]:
+    """Return the table's errors, and what its receipt says of the contact."""
+    full = _full(made)
+    with clock.stage("contact"):
+        contact = contact_receipt(made.solved, made.support, condition=full, known=made.condition)
+    if not full:
+        return unassessed_table(made.table, made.places, made.plan), contact
+    bodies = condensed_bodies(made.checked, made.plan, clock, run, coarse=True)
+    with clock.stage("error estimate"):
+        coarse = made.places.on_bodies(bodies)
+        return assessed_table(
+            made.table, made.places, coarse, made.solved, made.nodes, made.checked, made.plan
+        ), contact
+
+
+def solved_findings(request: Request, table: SteDatabase) -> tuple[Finding, ...]:
+    """Return what is implausible about the results."""
+    module = request.pair.pinion.normal_module
+    return table_findings(table.static_transmission_error, table.max_pressure, module)
+
+
+def _planned(made: SolvedTable) -> Json:
+    """Return what was chosen and expected of the run before it began, to stand beside what happened."""
+    error = made.decided.mesh.option.error.to_json()
+    planned = {
+        "plan": made.plan.to_json(),
+        "prediction": made.prediction.to_json() | {"error": error},
+        "choice": made.decided.to_json(),
+    }
+    cycle = made.checked.cycle
+    return planned if cycle is None else planned | {"predicted": cycle.to_json()}
+
+
+def _metadata(case: Json, made: SolvedTable, receipt: Json, ledger: list[Json]) -> Metadata:
+    """Everything about the making of the table."""
+    request = made.checked.request
+    findings = merged(request.findings, solved_findings(request, made.table))
+    return Metadata(
+        case=case,
+        effect_ledger=ledger,
+        receipt=receipt,
+        content_hash=content_hash(case, SOLVER_VERSION, SCHEMA_VERSION),
+        software_versions=software_versions(),
+        warnings=[finding.to_json() for finding in findings],
+    )
+
+
+def software_versions() -> dict[str, str]:
+    """Return what a result was made with."""
+    return dict(_software_versions())
+
+
+@lru_cache(maxsize=1)
+def _software_versions() -> tuple[tuple[str, str], ...]:
+    """Read them once: the files of the packages are long."""
+    return ("python", platform.python_version()), *((name, version(name)) for name in PACKAGES)

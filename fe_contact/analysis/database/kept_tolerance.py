@@ -1,0 +1,134 @@
+"""Plan, run, measure, refine what dominates: until the tolerance is met, or nothing brings it nearer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from fe_contact.analysis.database.compute_database import compute_pass
+from fe_contact.analysis.database.passes import Pass, of_all_passes
+from fe_contact.analysis.database.refinement import Refinement, next_pass
+from fe_contact.analysis.database.tolerance_receipt import error_shares
+from fe_contact.analysis.request.model_choice import decide
+from fe_contact.analysis.request.request import Checked
+from fe_contact.errors import FeContactError
+from fe_contact.options import Run
+from fe_contact.stage_clock import StageClock
+from fe_contact.ste import SteDatabase
+from fe_contact.types import Json
+
+MOST_PASSES = 4
+
+OnDraft = Callable[[SteDatabase, str], None]
+"""Called with the table of a pass that is refined, and what is refined in words."""
+
+
+@dataclass(frozen=True)
+class _Passes:
+    """What all passes share; the run has a cache."""
+
+    case: Json
+    run: Run
+    on_draft: OnDraft
+
+    def first(self, checked: Checked) -> Pass:
+        """Run what the accuracy is expected to ask for."""
+        clock = StageClock(self.run.workers.cost)
+        with clock.stage("planning"):
+            decided = decide(checked, self.run.cache, tried=True)
+        done = compute_pass(decided.checked, self.case, self.run, decided, clock)
+        return Pass(done.decided, done.table.metadata.receipt, done.table)
+
+    def refined(self, made: Refinement, clock: StageClock) -> Pass:
+        """Run a refinement; one that fails or is interrupted says so."""
+        decided = made.decided
+        try:
+            done = compute_pass(decided.checked, self.case, self.run, decided, clock)
+        except KeyboardInterrupt:
+            return Pass(decided, clock.to_json(), None, made, "interrupted")
+        except (FeContactError, MemoryError) as error:
+            return Pass(decided, clock.to_json(), None, made, str(error) or "out of memory")
+        return Pass(done.decided, done.table.metadata.receipt, done.table, made)
+
+
+def kept_tolerance(checked: Checked, case: Json, run: Run, on_draft: OnDraft) -> SteDatabase:
+    """Compute the table of a request with a tolerance, in at most `MOST_PASSES` passes.
+
+    Parameters
+    ----------
+    checked : Checked
+        With a tolerance and a full receipt.
+    case : dict
+        Echoed into the result and hashed.
+    run : Run
+        Its cache is what passes share; None: one for this run. Progress begins anew with every pass.
+    on_draft : callable
+        Called with every table that is refined, and what is refined.
+
+    Returns
+    -------
+    SteDatabase
+        That of the pass that uses least of the tolerance, the last one if all goes well. `passes` of its
+        receipt lists all of them, its cost is theirs, and `tolerance` says why there are no more.
+
+    Raises
+    ------
+    MeshError, SolveError, WorkersLost
+        Of the first pass; a later one that fails keeps the table before it.
+    """
+    if run.cache is not None:
+        return _refined(checked, _Passes(case, run, on_draft))
+    with TemporaryDirectory() as folder:
+        return _refined(checked, _Passes(case, replace(run, cache=Path(folder)), on_draft))
+
+
+def _refined(checked: Checked, shared: _Passes) -> SteDatabase:
+    """Refine until there is a reason not to."""
+    best = shared.first(checked)
+    passes = [best]
+    assert best.table is not None
+    table = best.table
+    while True:
+        clock = StageClock(shared.run.workers.cost)
+        with clock.stage("planning"):
+            made = _following(table, best)
+            reason = made if isinstance(made, str) else _ended(made, passes, shared.run.cache)
+        if isinstance(made, str) or reason:
+            return of_all_passes(passes, table, reason)
+        shared.on_draft(table, made.words)
+        last = shared.refined(made, clock)
+        passes.append(last)
+        if last.table is None:
+            return of_all_passes(passes, table, f"pass {len(passes)} ({last.name}) failed: {last.failure}")
+        if last.used >= best.used:
+            said = f"pass {len(passes)} ({made.words}) did not lower the measured errors"
+            return of_all_passes(passes, table, said)
+        best, table = last, last.table
+
+
+def _following(table: SteDatabase, last: Pass) -> Refinement | str:
+    """Return what to refine after a pass, or why nothing."""
+    tolerance = last.decided.checked.request.options.allowed
+    if table.metadata.receipt["tolerance"]["met"]:
+        return "met"
+    if table.n_failed:
+        return f"{table.n_failed} points failed"
+    return next_pass(last.decided, error_shares(table, tolerance))
+
+
+def _ended(made: Refinement, passes: Sequence[Pass], cache: Path | None) -> str:
+    """Say why a refinement does not begin, of passes or of time; empty if it may."""
+    if len(passes) == MOST_PASSES:
+        return f"{MOST_PASSES} passes are the most"
+    budget = made.decided.checked.request.options.time_budget
+    if budget is None:
+        return ""
+    left = budget - sum(one.cost["cpu_seconds"] for one in passes)
+    needed = made.decided.predicted(cache).cpu_seconds
+    if needed <= left:
+        return ""
+    return (
+        f"{made.words} is predicted to take {needed:.2g} CPU s; {max(left, 0.0):.2g} of {budget:.3g} are left"
+    )

@@ -1,0 +1,1 @@
+"""Error estimates of tables: meshes, slices, positions, axes."""

@@ -1,0 +1,189 @@
+"""What a table misses between its positions, at every point and in its curves.
+
+An adaptive search has solved the middles of all intervals. Of fixed positions only those intervals are
+solved in which the curve bends: every position is predicted from the others first, and where that hardly
+fails a quarter of the failure stands for the interval, as of an error of second order at half the spacing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.analysis.pairs.operating_points import OperatingPoints
+from fe_contact.analysis.pairs.solved_operating_points import deflected_operating_points
+from fe_contact.analysis.tables.position_nodes import PositionNodes
+from fe_contact.contact import ContactSolution
+from fe_contact.planning import NodeRule, Plan
+from fe_contact.sampled import LOADS, sample_of, spread
+from fe_contact.ste.curve_quantities import (
+    PEAK_TO_PEAK,
+    QUANTITIES,
+    error_bound,
+    missed_peaks,
+    quantity_changes,
+)
+from fe_contact.ste.interpolation import Axis, interpolate
+from fe_contact.types import FloatArray, IntArray
+
+LEFT_BY_MIDDLES = 1.5
+"""Error of the positions over what their middles change: 4/3 for second order, and more for kinks, which may
+stand anywhere in an interval. Peaks at handovers, which would fall with the first power of the spacing, are
+looked for by themselves (`missed_peaks`); what is found of them holds with the same part."""
+SOLVED_PART = 4
+"""Of the intervals between fixed positions one in so many is solved, if so many bend."""
+NEXT_SPACING = 0.25
+"""Error at half the spacing over that at the spacing: second order."""
+
+
+@dataclass(frozen=True)
+class PositionErrors:
+    """Errors for lack of positions, the largest of the assessed operating points at each load.
+
+    Attributes
+    ----------
+    band : ndarray, shape (T P, F)
+        Largest error beside each position of all base pitches, m.
+    curves : ndarray, shape (22, F)
+        Of mean, peak-to-peak and harmonics, m.
+    """
+
+    band: FloatArray
+    curves: FloatArray
+
+
+def position_errors(
+    nodes: PositionNodes, places: OperatingPoints, solutions: list[ContactSolution], plan: Plan
+) -> PositionErrors:
+    """Assess the positions of a table.
+
+    Parameters
+    ----------
+    nodes : PositionNodes
+        As the search left them; those of fixed positions, and of several pitches, are measured here.
+    places : OperatingPoints
+    solutions : list of ContactSolution
+        Of all places.
+    plan : Plan
+        For its loads and the error that a search would allow.
+    """
+    load, period = plan.load, places.period
+    if np.isfinite(nodes.interval_error).any() and period == 1:
+        return _told(nodes, _by_middles(nodes, 1), load.size)
+    some = sample_of(load.size, LOADS)
+    found, left = _measured(nodes.position, places, solutions, plan, some)
+    curves = _by_middles(found, period) + _by_bands(found, left, period)
+    told = _told(found, curves, some.size)
+    return PositionErrors(spread(load, some, told.band, 1), spread(load, some, told.curves, 1))
+
+
+def _measured(
+    position: FloatArray,
+    places: OperatingPoints,
+    solutions: list[ContactSolution],
+    plan: Plan,
+    some: IntArray,
+) -> tuple[PositionNodes, FloatArray]:
+    """Solve the middles of intervals at some loads, in all base pitches; see `measured_nodes`."""
+    assessed, pitches = places.assessed_indices, np.arange(places.period)
+    value = np.concatenate([solutions[k].deflection[:, some] for k in assessed], axis=1)
+
+    def solve(middles: FloatArray) -> FloatArray:
+        curves = deflected_operating_points(
+            places.assessed, [middles] * len(assessed), plan.load[some], pitches, places.workers
+        )
+        return np.concatenate(curves, axis=1)
+
+    return measured_nodes(position, value, solve, places.period, plan.nodes)
+
+
+def measured_nodes(
+    position: FloatArray,
+    value: FloatArray,
+    solve: Callable[[FloatArray], FloatArray],
+    period: int,
+    rule: NodeRule,
+) -> tuple[PositionNodes, FloatArray]:
+    """Measure the error between positions where it is largest, and bound it at the others.
+
+    Parameters
+    ----------
+    position : ndarray, shape (P,)
+        Increasing in [0, 1).
+    value : ndarray, shape (T P, C)
+        STE in m at them in each of T base pitches.
+    solve : callable
+        Positions (Q,) to STE (T Q, C) in m.
+    period : int
+        Base pitches T.
+    rule : NodeRule
+        Intervals that are predicted to miss less than a search would allow are not solved.
+
+    Returns
+    -------
+    PositionNodes
+        Middles that were not solved are those of the interpolant.
+    ndarray, shape (T P, C)
+        Predicted error in m of the intervals that were not solved, 0 for the others.
+    """
+    count = position.size
+    axis = Axis((np.arange(period)[:, None] + position).ravel(), float(period))
+    middle = axis.knots + 0.5 * axis.spacing
+    between = interpolate(axis, value, middle)
+    failed = NEXT_SPACING * predicted_failure(axis, value)
+    error = np.maximum(failed, np.roll(failed, -1, axis=0))
+    left = error.copy()
+    worst = np.nan_to_num(error / rule.ripple(value)).max(axis=1).reshape(period, count).max(axis=0)
+    solved = np.argsort(worst, kind="stable")[-max(count // SOLVED_PART, 1) :]
+    solved = np.sort(solved[worst[solved] > rule.tolerance])
+    if solved.size:
+        rows = (np.arange(period)[:, None] * count + solved).ravel()
+        found = solve(middle[solved])
+        error[rows], left[rows] = np.abs(between[rows] - found), 0.0
+        between[rows] = found
+    return PositionNodes(position, error, value, between), left
+
+
+def predicted_failure(axis: Axis, value: FloatArray) -> FloatArray:
+    """Return by how much values (K, C) at the knots of a closed axis differ from what the others predict, m.
+
+    Every second knot is predicted from the rest, then the rest from those.
+    """
+    failed = np.zeros_like(value)
+    for first in (0, 1):
+        kept, left = np.arange(first, axis.knots.size, 2), np.arange(1 - first, axis.knots.size, 2)
+        found = interpolate(Axis(axis.knots[kept], axis.period), value[kept], axis.knots[left])
+        failed[left] = np.abs(found - value[left])
+    return failed
+
+
+def _by_middles(nodes: PositionNodes, period: int) -> FloatArray:
+    """Carry the middles on to errors of the curves, (22, C) in m."""
+    knots = _knots(nodes, period)
+    axis = np.append(knots, period)
+    everywhere = np.sort(np.concatenate([knots, 0.5 * (axis[1:] + axis[:-1])]))
+    both = np.stack([nodes.value, nodes.middle], axis=1).reshape(everywhere.size, -1)
+    change = quantity_changes(knots, nodes.value, both, period, everywhere)
+    missed = np.ptp(both, axis=0) - np.ptp(nodes.value, axis=0) + missed_peaks(everywhere, both, period)
+    change[PEAK_TO_PEAK] = np.maximum(change[PEAK_TO_PEAK], missed)
+    return LEFT_BY_MIDDLES * change
+
+
+def _by_bands(nodes: PositionNodes, left: FloatArray, period: int) -> FloatArray:
+    """Bound what intervals that were not solved can do to the curves, (22, C) in m."""
+    band = np.maximum(left, np.roll(left, 1, axis=0))
+    return error_bound(_knots(nodes, period), band, nodes.value, period)
+
+
+def _told(nodes: PositionNodes, curves: FloatArray, loads: int) -> PositionErrors:
+    """Take the largest of the assessed operating points at each load."""
+    band: FloatArray = nodes.error.reshape(len(nodes.error), -1, loads).max(axis=1)
+    worst: FloatArray = curves.reshape(QUANTITIES, -1, loads).max(axis=1)
+    return PositionErrors(band, worst)
+
+
+def _knots(nodes: PositionNodes, period: int) -> FloatArray:
+    """Return the positions of all base pitches."""
+    return (np.arange(period)[:, None] + nodes.position).ravel()

@@ -1,0 +1,204 @@
+"""Both gears of a pair as they bend in mesh, for viewers."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fe_contact.analysis.flanks.solved_operating_point import (
+    SolvedOperatingPoint,
+    checked_positions,
+    solve_operating_point,
+)
+from fe_contact.analysis.request.request_check import check_point
+from fe_contact.checks import integer
+from fe_contact.compliance.deformation_2d import deformed_sections
+from fe_contact.compliance.deformation_3d import deformed_solids
+from fe_contact.compliance.deformed_gear import DeformedGear
+from fe_contact.contact import face_flank_forces, plane_flank_forces
+from fe_contact.geometry import ParallelAxes, tooth_profile
+from fe_contact.mesh.export import write_cells
+from fe_contact.options import AnalysisOptions, OperatingPoint, Run
+from fe_contact.planning import FaceDiscretization
+from fe_contact.stage_clock import StageClock
+from fe_contact.types import FloatArray
+
+Both = tuple[DeformedGear, DeformedGear]
+
+
+@dataclass(frozen=True)
+class DeformedPair:
+    """Both gears at one position, placed as they mesh.
+
+    The pinion's center is the origin, the wheel's is on +y, a ring gear's on -y; the pinion drives clockwise
+    seen from +z.
+
+    Attributes
+    ----------
+    position : float
+        Base pitches.
+    deflection : float
+        Static transmission error, m.
+    pinion, wheel : DeformedGear
+    wheel_base_radius : float
+        m; negative for a ring gear.
+    wheel_center : (float, float, float)
+        m.
+    """
+
+    position: float
+    deflection: float
+    pinion: DeformedGear
+    wheel: DeformedGear
+    wheel_base_radius: float
+    wheel_center: tuple[float, float, float]
+
+    @property
+    def wheel_lag(self) -> FloatArray:
+        """Displacement (n, 3) of the wheel's nodes by the transmission error as a small rotation, m.
+
+        Added to the elastic displacements it closes the gap that bending opens: warped by any factor, the
+        loaded flanks stay together.
+        """
+        arm = self.wheel.points - np.asarray(self.wheel_center)
+        # it turns counter-clockwise, a ring clockwise, and lags
+        angle = -self.deflection / self.wheel_base_radius
+        return angle * np.column_stack([-arm[:, 1], arm[:, 0], np.zeros(len(arm))])
+
+    def write(self, pinion: Path, wheel: Path) -> None:
+        """Write both gears as VTU files: see `docs/deformed-gears.md` for the fields."""
+        _write(pinion, self.pinion, self.pinion.displacement)
+        _write(wheel, self.wheel, self.wheel.displacement + self.wheel_lag)
+
+
+def deformed_pairs(
+    pair: ParallelAxes,
+    point: OperatingPoint,
+    options: AnalysisOptions = AnalysisOptions(),  # noqa: B008 (frozen)
+    run: Run = Run(),  # noqa: B008 (frozen)
+    *,
+    at: ArrayLike = 0.0,
+    beside: int = 1,
+) -> tuple[DeformedPair, ...]:
+    """Solve the contact at some positions and expand it to the finite elements of both gears.
+
+    A plane model gives the whole transverse section, three dimensions give the loaded teeth and their
+    neighbors. What shafts bend is not in the fields.
+
+    Parameters
+    ----------
+    pair : GearPair or InternalGearPair
+    point : OperatingPoint
+    options : AnalysisOptions
+        `positions`, `receipt` and `on_violation` do not count.
+    run : Run
+        Only this process works. The fields are not in the cache: in three dimensions they cost once more what
+        the compliances of both gears cost.
+    at : array_like
+        Positions in base pitches.
+    beside : int
+        Unloaded teeth to show on either side of the loaded ones, in three dimensions.
+
+    Returns
+    -------
+    tuple of DeformedPair
+        One per position.
+
+    Raises
+    ------
+    InputError
+        A value that cannot be used, by field name.
+    MeshError, SolveError
+        No acceptable mesh, or positions without a solution.
+    """
+    checked = check_point(pair, point, options)
+    integer("beside", beside, 0, 100)
+    solved = solve_operating_point(checked, checked_positions(at), StageClock(), run)
+    gears = deformed_gears(solved, beside)
+    run.progress("deformation", 1.0)
+    position, deflection = solved.problem.candidates.position, solved.solution.deflection[:, 0]
+    here = solved.contact.pair
+    return tuple(
+        placed_pair(here, float(x), float(ste), both)
+        for x, ste, both in zip(position, deflection, gears, strict=True)
+    )
+
+
+def deformed_gears(solved: SolvedOperatingPoint, beside: int = 1) -> tuple[Both, ...]:
+    """Expand a solution at all its positions; each gear in its own frame."""
+    contact, candidates = solved.contact, solved.problem.candidates
+    force, made = solved.solution.force[:, 0], contact.plan.discretization
+    gears, positions = contact.plan.bodies(contact.pair), range(candidates.position.size)
+    if isinstance(made, FaceDiscretization):
+        face, offset = contact.face, contact.pair.axial_offset
+        assert face is not None
+        solid = [face_flank_forces(candidates, force, p, face, offset) for p in positions]
+        first, second = (
+            deformed_solids(
+                gear, made.recipes[i], [both[i] for both in solid], beside, seen_from_behind=gear.sign < 0
+            )
+            for i, gear in enumerate(gears)
+        )
+        return tuple(zip(first, second, strict=True))
+    plane = contact.plane
+    assert plane is not None
+    flat = [plane_flank_forces(candidates, force, p, plane) for p in positions]
+    first, second = (
+        deformed_sections(gear, made.recipes[i], made.hypothesis, [both[i] for both in flat])
+        for i, gear in enumerate(gears)
+    )
+    return tuple(zip(first, second, strict=True))
+
+
+def placed_pair(pair: ParallelAxes, position: float, deflection: float, gears: Both) -> DeformedPair:
+    """Turn both gears so that their flanks touch on the line of action, at mid-face of the pinion."""
+    sign = pair.wheel.sign
+    center = (0.0, sign * pair.center_distance, pair.axial_offset)
+    angle_1, angle_2 = mesh_angles(pair, position)
+    wheel = gears[1].turned_over() if pair.internal else gears[1]
+    pinion, wheel = gears[0].placed(angle_1, (0.0, 0.0, 0.0)), wheel.placed(angle_2, center)
+    return DeformedPair(position, deflection, pinion, wheel, sign * pair.wheel.base_radius, center)
+
+
+def mesh_angles(pair: ParallelAxes, position: float) -> tuple[float, float]:
+    """Return the angles in rad that turn both tooth frames into the mesh, counter-clockwise.
+
+    Whole base pitches are left out: tooth 0 is the one that is then at the place of pair 0.
+    The base tangent leaves the pinion at pi/2 + alpha_wt from +x; from there the path of contact runs along
+    (cos alpha_wt, sin alpha_wt). A ring gear's frame has been turned over before, see `DeformedGear`.
+    """
+    alpha = pair.working_pressure_angle
+    roll_1, roll_2 = (float(roll) for roll in pair.roll_lengths(position - math.floor(position)))
+    start = pair.pinion.base_radius * np.array([-math.sin(alpha), math.cos(alpha)])
+    touch = start + roll_1 * np.array([math.cos(alpha), math.sin(alpha)])
+    arms = (touch, touch - np.array([0.0, pair.wheel.sign * pair.center_distance]))
+    angles = []
+    for gear, roll, arm in zip((pair.pinion, pair.wheel), (roll_1, roll_2), arms, strict=True):
+        point = tooth_profile(gear).involute(np.array([roll]))[0]
+        # at a wheel of another mid-face the section is turned by the helix of what lies between
+        angles.append(math.atan2(arm[1], arm[0]) - math.atan2(point[1], gear.sign * point[0]))
+    offset = pair.axial_offset * math.tan(pair.wheel.helix_angle) / pair.wheel.reference_radius
+    return angles[0], angles[1] + offset
+
+
+def _write(path: Path, gear: DeformedGear, in_mesh: FloatArray) -> None:
+    """Write one gear with its fields."""
+    stress, principal = gear.stress, gear.principal_stress
+    write_cells(
+        path,
+        gear.points,
+        gear.cells,
+        {
+            "displacement": gear.displacement,
+            "displacement_in_mesh": in_mesh,
+            "von_mises_stress": gear.von_mises,
+            "largest_principal_stress": principal[:, 2],
+            "least_principal_stress": principal[:, 0],
+            "stress": stress[:, [0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]],
+        },
+        {"tooth": gear.tooth, **gear.quality},
+    )

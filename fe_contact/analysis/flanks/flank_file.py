@@ -1,0 +1,139 @@
+"""Flank results as netCDF-4 files, with the contact patterns for other readers."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from fe_contact.analysis.flanks.contact_pattern import contact_pattern
+from fe_contact.analysis.flanks.flank_scene import FlankScene
+from fe_contact.errors import DatabaseError
+from fe_contact.ste import Metadata
+from fe_contact.ste.netcdf_file import digest, read_variables, write_dataset
+from fe_contact.types import Json
+
+if TYPE_CHECKING:
+    import xarray
+
+    from fe_contact.analysis.flanks.load_distribution import LoadDistribution
+
+FORMAT = "lineofaction flank results"
+SCHEMA_VERSION = 1
+_GRID = ("position", "pair", "face_position")
+_GEARS: tuple[Literal["pinion"], Literal["wheel"]] = ("pinion", "wheel")
+_SCALARS = ("slice_width", "base_helix_angle")
+
+# dimensions, units and long name of what is read back
+STORED: dict[str, tuple[tuple[str, ...], str, str]] = {
+    "position": (("position",), "1", "phase of the driving gear in transverse base pitches, 0 = pitch point"),
+    "pair": (("pair",), "1", "index of the tooth pair, +1 is ahead"),
+    "face_position": (("face_position",), "m", "middle of the stretch, distance from the pinion's mid-face"),
+    "deflection": (("position",), "m", "static transmission error"),
+    "roll_length_1": (_GRID, "m", "roll length on the driving gear"),
+    "roll_length_2": (_GRID, "m", "roll length on the driven gear"),
+    "on_path": (_GRID, "1", "1 where any of it is between A and E"),
+    "force": (_GRID, "N", "normal force of the stretch"),
+    "lever": (_GRID, "1", "lever arm about the driving gear over its base radius"),
+    "pressure": (_GRID, "Pa", "peak Hertz pressure"),
+    "gap": (_GRID, "m", "gap between the loaded flanks, infinite where they cannot touch"),
+}
+
+
+def to_dataset(found: LoadDistribution) -> xarray.Dataset:
+    """Return flank results as an xarray Dataset, with line load, centroid, factors and contact patterns."""
+    import xarray  # noqa: PLC0415 - half a second, and needed for files only
+
+    arrays = _arrays(found)
+    variables: dict[str, Any] = {
+        name: (dimensions, arrays[name], {"units": units, "long_name": text})
+        for name, (dimensions, units, text) in STORED.items()
+    }
+    coordinates = {name: variables.pop(name) for name in _GRID}
+    for gear in _GEARS:
+        pattern = contact_pattern(found, gear)
+        along = f"pattern_roll_length_{gear}"
+        text = {"units": "m", "long_name": f"roll length on the {gear}, middles of cells"}
+        coordinates[along] = ((along,), pattern.roll_length, text)
+        text = {"units": "Pa", "long_name": f"largest pressure on the {gear}'s flank over the positions"}
+        variables[f"contact_pattern_{gear}"] = ((along, "face_position"), pattern.pressure, text)
+    variables |= _derived(found)
+    return xarray.Dataset(variables, coordinates, _attributes(found, arrays))
+
+
+def write(found: LoadDistribution, path: Path) -> None:
+    """Write flank results: into a temporary file beside `path`, then renamed over it."""
+    write_dataset(to_dataset(found), path)
+
+
+def read(path: Path) -> dict[str, Any]:
+    """Read what makes a `LoadDistribution`, by its fields.
+
+    Raises
+    ------
+    DatabaseError
+        The file is missing, no netCDF-4, of another kind, of a newer schema, or damaged.
+    """
+    arrays, attributes = read_variables(path)
+    if attributes.get("format") != FORMAT:
+        raise DatabaseError(f"{path}: a netCDF file, but no flank results")
+    version = attributes.get("schema_version")
+    if not isinstance(version, int | np.integer) or not 1 <= version <= SCHEMA_VERSION:
+        raise DatabaseError(f"{path}: schema version {version}, but this release reads 1: update it")
+    missing = sorted((set(STORED) - set(arrays)) | ({*_SCALARS, "scene", "metadata"} - set(attributes)))
+    if missing:
+        raise DatabaseError(f"{path}: damaged, without {', '.join(missing)}")
+    content = {name: arrays[name] for name in STORED}
+    if attributes.get("data_sha256") != digest(content):
+        raise DatabaseError(f"{path}: damaged, its arrays do not match their checksum")
+    try:
+        scene, metadata = json.loads(attributes["scene"]), json.loads(attributes["metadata"])
+    except (TypeError, ValueError) as error:
+        raise DatabaseError(f"{path}: damaged, a document in it is no JSON ({error})") from error
+    return content | {
+        "on_path": content["on_path"].astype(bool),
+        "scene": FlankScene.from_json(scene),
+        "metadata": Metadata(**metadata),
+        **{name: float(attributes[name]) for name in _SCALARS},
+    }
+
+
+def _arrays(found: LoadDistribution) -> dict[str, Any]:
+    """Return what is read back, in its order; netCDF has no booleans."""
+    arrays = {name: getattr(found, name) for name in STORED}
+    return arrays | {"on_path": found.on_path.astype(np.int8)}
+
+
+def _derived(found: LoadDistribution) -> dict[str, Any]:
+    """Return what follows from the rest, for readers without this library."""
+    along = ("position",)
+    return {
+        "line_load": (_GRID, found.line_load, {"units": "N m-1", "long_name": "force per contact line"}),
+        "face_load": (
+            ("position", "face_position"),
+            found.face_load,
+            {"units": "N m-1", "long_name": "force of all pairs per face width"},
+        ),
+        "load_centroid": (along, found.load_centroid, {"units": "m", "long_name": "along the face"}),
+        "face_load_factor": (along, found.face_load_factor, {"units": "1", "long_name": "K_Hbeta"}),
+    }
+
+
+def _attributes(found: LoadDistribution, arrays: dict[str, Any]) -> Json:
+    """Format, schema, the JSON documents, and a checksum of the arrays."""
+    return {
+        "Conventions": "CF-1.11",
+        "title": "Load and pressure on the flanks of a gear pair",
+        "format": FORMAT,
+        "schema_version": np.int64(SCHEMA_VERSION),
+        "content_hash": found.metadata.content_hash,
+        "mean_face_load_factor": found.mean_face_load_factor,
+        "scene": json.dumps(found.scene.to_json()),
+        "metadata": json.dumps(asdict(found.metadata)),
+        "warnings": json.dumps(found.metadata.warnings),
+        **{name: getattr(found, name) for name in _SCALARS},
+        "data_sha256": digest(arrays),
+    }

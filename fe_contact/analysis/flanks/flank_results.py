@@ -1,0 +1,94 @@
+"""Flank results: what happens on the flanks of a gear pair at one load and one alignment."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bounds import Finding, warn_of
+from fe_contact.analysis.database.compute_database import SOLVER_VERSION, software_versions
+from fe_contact.analysis.flanks.flank_file import SCHEMA_VERSION
+from fe_contact.analysis.flanks.load_distribution import LoadDistribution, load_distribution
+from fe_contact.analysis.flanks.solved_operating_point import solved_point
+from fe_contact.analysis.request.request import Checked
+from fe_contact.geometry import ParallelAxes
+from fe_contact.options import AnalysisOptions, OperatingPoint, Run
+from fe_contact.plausibility import flank_findings, merged, unexpected
+from fe_contact.stage_clock import StageClock
+from fe_contact.ste import Metadata
+from fe_contact.ste.content_hash import content_hash
+from fe_contact.types import Json
+
+
+def flank_results(
+    pair: ParallelAxes,
+    point: OperatingPoint,
+    options: AnalysisOptions = AnalysisOptions(),  # noqa: B008 (frozen)
+    run: Run = Run(),  # noqa: B008 (frozen)
+    *,
+    at: ArrayLike | None = None,
+    case: Json | None = None,
+) -> LoadDistribution:
+    """Solve the contact of one load and alignment, and keep what happens on the flanks.
+
+    Parameters
+    ----------
+    pair : GearPair or InternalGearPair
+    point : OperatingPoint
+    options : AnalysisOptions
+        `positions` and `receipt` are for tables and do not count.
+    run : Run
+        Only this process works.
+    at : array_like, optional
+        Positions in base pitches; default: 64 over one mesh cycle, as `contact_pattern` needs them. Teeth
+        with pitch deviations are those that mesh there: the first ones of the lists in 0 to 1.
+    case : dict, optional
+        The case as the caller phrased it, echoed and hashed; default: the request in SI units.
+
+    Raises
+    ------
+    InputError
+        A value that cannot be used, by field name.
+    MeshError, SolveError
+        No acceptable mesh, positions without a solution, or an assumption that does not hold where
+        `on_violation` is "fail".
+    """
+    solved, receipt = solved_point(pair, point, options, at, StageClock(), run)
+    checked, request = solved.checked, solved.checked.request
+    found = load_distribution(
+        solved.contact.pair,
+        solved.problem,
+        solved.solution,
+        misalignment=float(request.misalignment[0]),
+        center_distance_change=float(request.center_distance_change[0]),
+        metadata=Metadata(receipt=receipt),
+    )
+    warn_of(unexpected(request.findings, _findings(found)))
+    return replace(found, metadata=_metadata(checked, found, case))
+
+
+def _findings(found: LoadDistribution) -> tuple[Finding, ...]:
+    """Return what is implausible about the pressures."""
+    return flank_findings(float(np.max(found.pressure, initial=0.0)))
+
+
+def _metadata(checked: Checked, found: LoadDistribution, case: Json | None) -> Metadata:
+    """Everything about the making; the hash is of all that decides the result."""
+    scene = found.scene
+    asked: Json = {
+        "case": case or checked.request.to_json(),
+        "normal_force": scene.normal_force,
+        "misalignment": scene.misalignment,
+        "center_distance_change": scene.center_distance_change,
+        "position": found.position.tolist(),
+    }
+    return replace(
+        found.metadata,
+        case=asked["case"],
+        effect_ledger=[entry.to_json() for entry in checked.ledger],
+        content_hash=content_hash({"flank_results": asked}, SOLVER_VERSION, SCHEMA_VERSION),
+        software_versions=software_versions(),
+        warnings=[finding.to_json() for finding in merged(checked.request.findings, _findings(found))],
+    )

@@ -1,0 +1,222 @@
+"""Line load, pressure and gap along the contact lines at an operating point, and how even the load is."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fe_contact.analysis.flanks.flank_scene import FlankScene, flank_scene
+from fe_contact.contact import ContactProblem, ContactSolution, contact_pressure
+from fe_contact.contact.touch import rolls_at
+from fe_contact.geometry import ParallelAxes
+from fe_contact.ste import Metadata
+from fe_contact.types import BoolArray, FloatArray, IntArray
+
+if TYPE_CHECKING:
+    import xarray
+
+
+@dataclass(frozen=True)
+class LoadDistribution:
+    """One load on P positions, N tooth pairs and K stretches of the common face, several a slice.
+
+    Attributes
+    ----------
+    position : ndarray, shape (P,)
+        Base pitches, by the driving gear's angle.
+    pair : ndarray of int, shape (N,)
+        Pair indices; +1 is ahead.
+    face_position : ndarray, shape (K,)
+        Middles of the stretches, as distances from the pinion's mid-face, m.
+    deflection : ndarray, shape (P,)
+        Static transmission error, m.
+    roll_length_1, roll_length_2 : ndarray, shape (P, N, K)
+        Where the flanks touch or come closest, on either gear, m.
+    on_path : ndarray of bool, shape (P, N, K)
+        Whether any part of the stretch lies between A and E, where plain involutes touch.
+    force : ndarray, shape (P, N, K)
+        Normal force of each stretch, N.
+    lever : ndarray, shape (P, N, K)
+        Lever arm of that force about gear 1 over the base radius: 1, and about 1 at a tip edge.
+    pressure : ndarray, shape (P, N, K)
+        Hertz's peak pressure of the line load in Pa; at a tip edge the true pressure is singular.
+    gap : ndarray, shape (P, N, K)
+        What is left between the loaded flanks, along their normal, m: 0 in contact, infinite where they
+        cannot touch.
+    slice_width : float
+        Of a stretch along the face, m.
+    base_helix_angle : float
+        beta_b of gear 1, rad.
+    scene : FlankScene
+        The load, the alignment, and the marks on both flanks.
+    metadata : Metadata
+        Case, effects, cost and versions.
+    """
+
+    position: FloatArray
+    pair: IntArray
+    face_position: FloatArray
+    deflection: FloatArray
+    roll_length_1: FloatArray
+    roll_length_2: FloatArray
+    on_path: BoolArray
+    force: FloatArray
+    lever: FloatArray
+    pressure: FloatArray
+    gap: FloatArray
+    slice_width: float
+    base_helix_angle: float
+    scene: FlankScene
+    metadata: Metadata = field(default_factory=Metadata)
+
+    @property
+    def line_load(self) -> FloatArray:
+        """Force per length of contact line (P, N, K), N/m: of the whole stretch, where it ends there too."""
+        return self.force * (math.cos(self.base_helix_angle) / self.slice_width)
+
+    @property
+    def face_load(self) -> FloatArray:
+        """Force of all pairs per unit of face width (P, K), N/m."""
+        return np.asarray(self.force.sum(axis=1) / self.slice_width)
+
+    @property
+    def load_centroid(self) -> FloatArray:
+        """Where along the face the load of all pairs acts (P,), m; `face_centroid` of the STE database."""
+        loaded = (self.force * self.lever).sum(axis=1)
+        return np.asarray((loaded @ self.face_position) / loaded.sum(axis=1))
+
+    @property
+    def face_load_factor(self) -> FloatArray:
+        """K_Hbeta of the mesh (P,): largest over mean load per unit of face width (ISO 6336-1, clause 7).
+
+        On helical gears single positions exceed 1 even if aligned, because at some places along the face
+        more pairs touch than at others; `mean_face_load_factor` has the cycle's.
+        """
+        return _largest_over_mean(self.face_load)
+
+    @property
+    def mean_face_load_factor(self) -> float:
+        """K_Hbeta of the face load averaged over all positions: what it is over a mesh cycle."""
+        return float(_largest_over_mean(self.face_load.mean(axis=0)))
+
+    @property
+    def line_load_factor(self) -> FloatArray:
+        """Largest over mean line load of all contact lines (P,); ends that carry nothing count as zeros."""
+        positions = self.position.size
+        return _over_mean_of(self.line_load.reshape(positions, -1), self._meshing.reshape(positions, -1))
+
+    @property
+    def pair_line_load_factor(self) -> FloatArray:
+        """The same for each pair's own contact line (P, N); NaN for a pair that carries nothing."""
+        return _over_mean_of(self.line_load, self._meshing)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Return all fields with units, and what follows from them: line load, factors, contact patterns."""
+        from fe_contact.analysis.flanks.flank_file import to_dataset  # noqa: PLC0415 - xarray takes half a second
+
+        return to_dataset(self)
+
+    def to_netcdf(self, path: Path) -> None:
+        """Write a netCDF-4 file, whole or not at all."""
+        from fe_contact.analysis.flanks.flank_file import write  # noqa: PLC0415
+
+        write(self, Path(path))
+
+    @classmethod
+    def from_netcdf(cls, path: Path) -> LoadDistribution:
+        """Read back what `to_netcdf` wrote, every bit as it was.
+
+        Raises
+        ------
+        DatabaseError
+            The file is missing, damaged, newer than this release, or of another kind.
+        """
+        from fe_contact.analysis.flanks.flank_file import read  # noqa: PLC0415
+
+        return cls(**read(Path(path)))
+
+    @property
+    def _meshing(self) -> BoolArray:
+        """Stretches that belong to a contact line: on the path of contact, or loaded at a tip edge."""
+        return np.asarray(self.on_path | (self.force > 0.0))
+
+
+def load_distribution(
+    pair: ParallelAxes,
+    problem: ContactProblem,
+    solution: ContactSolution,
+    load: int = 0,
+    *,
+    misalignment: float = 0.0,
+    center_distance_change: float = 0.0,
+    metadata: Metadata | None = None,
+) -> LoadDistribution:
+    """Lay out a contact solution by pair and place along the face.
+
+    Parameters
+    ----------
+    pair : GearPair or InternalGearPair
+        At its center distance.
+    problem : ContactProblem
+    solution : ContactSolution
+        Converged at all positions.
+    load : int
+        Index of the load.
+    misalignment, center_distance_change : float
+        What the solution was made for, m; kept in the scene.
+    metadata : Metadata, optional
+        Kept as it is.
+    """
+    candidates = problem.candidates
+    face = candidates.face_position[candidates.pair == candidates.pair[0]]
+    shape = (candidates.position.size, -1, face.size)
+    force = solution.force[:, load]
+    pressure = contact_pressure(problem, force[:, None])[:, 0]
+    gap = _loaded_gap(problem, force, solution.deflection[:, load])
+    phase = candidates.position - np.floor(candidates.position)
+    nominal, _ = pair.roll_lengths(phase[:, None], candidates.pair)
+    nominal = nominal - candidates.face_position * math.tan(candidates.base_helix_angle)
+    path = pair.path_of_contact
+    reach = 0.5 * candidates.point_width * abs(math.tan(candidates.base_helix_angle))
+    roll_1, roll_2 = rolls_at(pair, candidates.touch.s_1, candidates.touch.s_2)
+    return LoadDistribution(
+        position=candidates.position,
+        pair=candidates.pair[:: face.size],
+        face_position=face,
+        deflection=solution.deflection[:, load],
+        roll_length_1=roll_1.reshape(shape),
+        roll_length_2=roll_2.reshape(shape),
+        on_path=((nominal + reach >= path.start) & (nominal - reach <= path.end)).reshape(shape),
+        force=force.reshape(shape),
+        lever=candidates.torque_share.reshape(shape),
+        pressure=pressure.reshape(shape),
+        gap=gap.reshape(shape),
+        slice_width=candidates.point_width,
+        base_helix_angle=candidates.base_helix_angle,
+        scene=flank_scene(pair, solution.load[load], misalignment, center_distance_change),
+        metadata=metadata or Metadata(),
+    )
+
+
+def _loaded_gap(problem: ContactProblem, force: FloatArray, deflection: FloatArray) -> FloatArray:
+    """Gap (P, n) left along the normal: bending apart, less the approach of the rigid flanks."""
+    candidates = problem.candidates
+    bent = problem.moved(force[:, None])[:, 0]
+    approach = candidates.motion_arm * (deflection[:, None] - candidates.gap)
+    return np.where(force > 0.0, 0.0, bent - approach)
+
+
+def _largest_over_mean(values: FloatArray) -> FloatArray:
+    """Largest over mean of the last axis."""
+    return np.asarray(values.max(axis=-1) / values.mean(axis=-1))
+
+
+def _over_mean_of(values: FloatArray, among: BoolArray) -> FloatArray:
+    """Largest over mean of the last axis, the mean taken among some; NaN where all are zero."""
+    total = values.sum(axis=-1)
+    scale = np.where(total > 0.0, total, np.nan)
+    return np.asarray(values.max(axis=-1) * among.sum(axis=-1) / scale)

@@ -1,0 +1,218 @@
+"""Tooth-root stress of a gear pair: unit-load stress of both gears times the forces of the solved contact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bounds import Finding, warn_of
+from fe_contact.analysis.flanks.root_stress_history import ROOTS, RootStressHistory
+from fe_contact.analysis.flanks.solved_operating_point import SolvedOperatingPoint, solved_point
+from fe_contact.compliance import UnitRootStress, unit_root_stresses, unit_root_stresses_3d
+from fe_contact.contact import face_flank_forces, plane_flank_forces
+from fe_contact.contact.patch import Patches
+from fe_contact.geometry import ParallelAxes, tooth_profile
+from fe_contact.geometry.root_tangent import critical_section
+from fe_contact.options import AnalysisOptions, OperatingPoint, Run
+from fe_contact.planning import FaceRootMeshes, PlaneRootMeshes, root_meshes
+from fe_contact.plausibility import root_findings, unexpected
+from fe_contact.stage_clock import StageClock
+from fe_contact.types import BoolArray, FloatArray, IntArray, Json
+
+UnitStresses = tuple[UnitRootStress, UnitRootStress]
+
+
+@dataclass(frozen=True)
+class RootStress:
+    """Tooth-root stress of both gears at one load and one alignment.
+
+    Attributes
+    ----------
+    pinion, wheel : RootStressHistory
+    torque, normal_force : float
+        On the driving gear, N m; F_bn, N.
+    misalignment, center_distance_change : float
+        m.
+    receipt : dict
+        CPU seconds by stage, memory, the plan, assumptions and what was repeated: plain JSON.
+    warnings : list of dict
+        What is implausible about the case or the stresses.
+    """
+
+    pinion: RootStressHistory
+    wheel: RootStressHistory
+    torque: float
+    normal_force: float
+    misalignment: float
+    center_distance_change: float
+    receipt: Json
+    warnings: list[Json] = field(default_factory=list)
+
+
+def root_stress(
+    pair: ParallelAxes,
+    point: OperatingPoint,
+    options: AnalysisOptions = AnalysisOptions(),  # noqa: B008 (frozen)
+    run: Run = Run(),  # noqa: B008 (frozen)
+    *,
+    at: ArrayLike | None = None,
+) -> RootStress:
+    """Solve the contact of one load and alignment, and return the stress of the tooth roots.
+
+    Parameters and errors are those of `flank_results`.
+    """
+    clock = StageClock()
+    solved, receipt = solved_point(pair, point, options, at, clock, run)
+    with clock.stage("root stress"):
+        pinion, wheel = _histories(solved, root_meshes(solved.contact.plan.discretization), run.cache)
+    run.progress("root stress", 1.0)
+    request = solved.checked.request
+    findings = [
+        finding
+        for name, history in (("pinion", pinion), ("wheel", wheel))
+        for finding in root_findings(name, history.peak("tension").stress.value)
+    ]
+    warn_of(unexpected(request.findings, tuple(findings)))
+    return RootStress(
+        pinion,
+        wheel,
+        torque=float(request.torque[0]),
+        normal_force=float(request.load[0]),
+        misalignment=point.misalignment,
+        center_distance_change=point.center_distance_change,
+        receipt=receipt | clock.to_json(),
+        warnings=[finding.to_json() for finding in (*_not_root(request.findings), *findings)],
+    )
+
+
+def _not_root(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
+    """Return findings without the estimated root stress, which is solved here."""
+    return tuple(finding for finding in findings if finding.check != "root_stress")
+
+
+def _histories(
+    found: SolvedOperatingPoint, meshes: PlaneRootMeshes | FaceRootMeshes, cache: Path | None
+) -> list[RootStressHistory]:
+    """Return the histories of both gears, with the error that coarser meshes tell."""
+    fine, rough = (
+        pair_histories(found, _unit_stresses(found, meshes, coarse, cache)) for coarse in (False, True)
+    )
+    histories = []
+    for history, other in zip(fine, rough, strict=True):
+        peaks = [[h.peak(root).stress.value for h in (history, other)] for root in ROOTS]
+        # the greater of both roots: one difference of two meshes may vanish by chance
+        difference = max(abs(rougher / value - 1.0) for value, rougher in peaks)
+        histories.append(replace(history, relative_error=meshes.remaining * difference))
+    return histories
+
+
+def _unit_stresses(
+    found: SolvedOperatingPoint, meshes: PlaneRootMeshes | FaceRootMeshes, coarse: bool, cache: Path | None
+) -> UnitStresses:
+    """Compute or fetch the unit-load stress of both gears; identical gears are computed once."""
+    pair = found.contact.pair
+    gears = found.contact.plan.bodies(pair)
+    if isinstance(meshes, FaceRootMeshes):
+        sectors = meshes.coarse_recipes if coarse else meshes.recipes
+        first, second = unit_root_stresses_3d(gears, sectors, cache=cache)
+        # a ring's right flank is the loaded one as seen from the other side: its z runs against the pinion's
+        return first, second.mirrored() if pair.internal else second
+    sections = meshes.coarse_recipes if coarse else meshes.recipes
+    first, second = unit_root_stresses(gears, sections, meshes.hypothesis, cache=cache)
+    return first, second
+
+
+def pair_histories(
+    found: SolvedOperatingPoint, units: UnitStresses
+) -> tuple[RootStressHistory, RootStressHistory]:
+    """Return the stress of both gears under the solved contact.
+
+    Parameters
+    ----------
+    found : SolvedOperatingPoint
+    units : (UnitRootStress, UnitRootStress)
+        Of the driving and the driven gear, on any mesh.
+    """
+    pair, candidates = found.contact.pair, found.problem.candidates
+    carrying = np.unique(candidates.pair)
+    stressed = np.arange(carrying[0] - 1, carrying[-1] + 2)
+    forces = _forces(found, units, carrying)
+    first, second = (
+        RootStressHistory(
+            position=candidates.position,
+            pair=stressed,
+            flank_coordinate=unit.station_s,
+            tangent_angle=unit.tangent_angle,
+            face_position=unit.station_z + offset,
+            # pair j is on tooth -j of the driving gear and on tooth j of the driven one
+            stress=_superposed(unit, loads, direction * (stressed[:, None] - carrying)),
+            near_load=_near_load(found, unit, patches, stressed, unit.station_z + offset),
+            relative_error=np.nan,
+            critical_coordinate=critical_section(tooth_profile(gear)),
+        )
+        for unit, loads, direction, gear, offset, patches in zip(
+            units,
+            forces,
+            (-1, 1),
+            (pair.pinion, pair.wheel),
+            (0.0, pair.axial_offset),
+            (candidates.slices.patch_1, candidates.slices.patch_2),
+            strict=True,
+        )
+    )
+    return first, second
+
+
+def _forces(
+    found: SolvedOperatingPoint, units: UnitStresses, pairs: IntArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the inward nodal forces on the teeth of `pairs` (K,) of both gears, (P, K, n)."""
+    candidates, force = found.problem.candidates, found.solution.force[:, 0]
+    out = [np.zeros((len(force), pairs.size, unit.stress.shape[-1])) for unit in units]
+    for p in range(len(force)):
+        if units[0].across_face:
+            offset = found.contact.pair.axial_offset
+            both, inward = face_flank_forces(candidates, force, p, units, offset), -1.0
+        else:
+            both, inward = plane_flank_forces(candidates, force, p, units), 1.0
+        for loads, by_tooth, direction in zip(out, both, (-1, 1), strict=True):
+            for tooth, forces in by_tooth.items():
+                loads[p, np.searchsorted(pairs, direction * tooth)] = inward * forces
+    return out[0], out[1]
+
+
+def _near_load(
+    found: SolvedOperatingPoint, unit: UnitRootStress, patches: Patches, stressed: IntArray, face: FloatArray
+) -> BoolArray:
+    """Return which stations, at `face` (q,), are within half a patch of a loaded patch, (P, N, p, q)."""
+    candidates, force = found.problem.candidates, found.solution.force[:, 0]
+    near = np.zeros((len(force), stressed.size, unit.station_s.size, face.size), dtype=bool)
+    tooth = np.searchsorted(stressed, candidates.pair)
+    for p, i in np.argwhere(force > 0.0):
+        row = p % len(patches.center)
+        half = patches.half_width[row, i]
+        along = np.abs(unit.station_s - patches.center[row, i]) < 2.0 * half
+        if along.any():
+            across = np.abs(face - candidates.face_position[i]) < 0.5 * candidates.point_width + half
+            near[p, tooth[i]] |= along[:, None] & (across | (not unit.across_face))
+    return near
+
+
+def _superposed(unit: UnitRootStress, forces: FloatArray, ahead: IntArray) -> FloatArray:
+    """Add up what the loads of all pairs do to each tooth, (P, N, 2, 3, p, q).
+
+    `ahead` (N, K) says how many teeth the stressed one is ahead of the loaded one; further than `unit` knows
+    nothing arrives.
+    """
+    by_distance = unit.stress.reshape(len(unit.distance), -1, forces.shape[2])
+    stress = np.zeros((len(forces), len(ahead), by_distance.shape[1]))
+    for k in range(forces.shape[1]):
+        loaded = np.flatnonzero(forces[:, k].any(axis=1))
+        for j in range(len(ahead)):
+            row = int(ahead[j, k] - unit.distance[0])
+            if 0 <= row < len(by_distance):
+                stress[loaded, j] += forces[loaded, k] @ by_distance[row].T
+    return stress.reshape(*stress.shape[:2], *unit.stress.shape[1:-1])

@@ -1,0 +1,152 @@
+"""Contact of one load and one alignment: what flank results and deformed gears start from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fe_contact.analysis.checks.assumptions import check_one_place
+from fe_contact.analysis.checks.repetition import settled, with_effects
+from fe_contact.analysis.pairs.operating_points import OperatingPoints, operating_points
+from fe_contact.analysis.pairs.pair_contact import PairContact, pair_contact
+from fe_contact.analysis.request.request import Checked
+from fe_contact.analysis.request.request_check import check_point
+from fe_contact.checks import finite
+from fe_contact.contact import ContactProblem, ContactSolution
+from fe_contact.errors import InputError, SolveError
+from fe_contact.geometry import ParallelAxes
+from fe_contact.options import AnalysisOptions, OperatingPoint, Run
+from fe_contact.planning import Plan, planned
+from fe_contact.stage_clock import StageClock
+from fe_contact.types import FloatArray, Json, Status
+
+POSITIONS = 64
+"""Over one mesh cycle, where none are requested."""
+
+
+@dataclass(frozen=True)
+class SolvedOperatingPoint:
+    """A converged solution with the pair it was made for, which stands at its center distance."""
+
+    checked: Checked
+    places: OperatingPoints
+    problem: ContactProblem
+    solution: ContactSolution
+
+    @property
+    def contact(self) -> PairContact:
+        """The pair with its compliances."""
+        return self.places.places[0].contact
+
+    @property
+    def plan(self) -> Plan:
+        """Discretization."""
+        return self.contact.plan
+
+    @property
+    def solved(self) -> tuple[tuple[ContactProblem, ContactSolution], ...]:
+        """Problem and solution of the one place."""
+        return ((self.problem, self.solution),)
+
+
+def solved_point(
+    pair: ParallelAxes,
+    point: OperatingPoint,
+    options: AnalysisOptions,
+    at: ArrayLike | None,
+    clock: StageClock,
+    run: Run,
+) -> tuple[SolvedOperatingPoint, Json]:
+    """Solve an operating point at positions, check what that took for granted, and repeat it as asked.
+
+    Parameters
+    ----------
+    pair, point, options, run
+        As `flank_results` takes them.
+    at : array_like, optional
+        Positions in base pitches; default: 64 over one mesh cycle.
+    clock : StageClock
+
+    Returns
+    -------
+    SolvedOperatingPoint
+        Its request is that of the last run, with the effects that the first showed to be needed.
+    dict
+        Receipt: times, the plan, `assumptions`, `repeated`.
+
+    Raises
+    ------
+    InputError
+        A value that cannot be used, by field name.
+    MeshError, SolveError
+        As `solve_operating_point`, or an assumption does not hold and `on_violation` is "fail".
+    """
+    checked = check_point(pair, point, options)
+    position = np.arange(POSITIONS) / POSITIONS if at is None else checked_positions(at)
+
+    def repeat(made: SolvedOperatingPoint, needed: Mapping[str, str]) -> SolvedOperatingPoint:
+        return solve_operating_point(
+            with_effects(made.checked, needed, whole_table=False), position, clock, run
+        )
+
+    first = solve_operating_point(checked, position, clock, run)
+    made, found, repeated = settled(first, check_one_place, repeat, clock)
+    plan, assumptions = made.plan.to_json(), [one.to_json() for one in found]
+    return made, clock.to_json() | {"plan": plan, "assumptions": assumptions, "repeated": repeated}
+
+
+def solve_operating_point(
+    checked: Checked, position: FloatArray, clock: StageClock, run: Run
+) -> SolvedOperatingPoint:
+    """Solve the one load and the one alignment of a request at positions (P,).
+
+    Beyond the first base pitch pairs are counted from the one that is then at the place of pair 0.
+
+    Raises
+    ------
+    MeshError, SolveError
+        No acceptable mesh, or positions without a solution.
+    """
+    request = checked.request
+    plan = planned(request.pair, request.load, request.options, checked.model, cache=run.cache)
+    run.progress("compliance", 0.0)
+    with clock.stage("compliance"):
+        nominal = pair_contact(request.pair, plan, run.cache, distance_changes=request.center_distance_change)
+    run.progress("compliance", 1.0)
+    with clock.stage("contact"):
+        places = operating_points(request.scene, request.choices, nominal)
+        (place,) = places.places
+        pitch = np.floor(position).astype(np.int64)
+        problem, solution = place.solve(position - pitch, plan.load, pitch if pitch.any() else None)
+    run.progress("contact", 1.0)
+    if not solution.converged:
+        raise SolveError(_failure(position, solution), partial=solution)
+    return SolvedOperatingPoint(checked, places, problem, solution)
+
+
+def _failure(position: FloatArray, solution: ContactSolution, shown: int = 5) -> str:
+    """Say how many positions failed, which (the first `shown`) and why."""
+    codes = solution.status[:, 0]
+    failed = np.flatnonzero(codes)
+    listed = "; ".join(f"position {position[i]:.6g}: {Status(int(codes[i])).name}" for i in failed[:shown])
+    more = f"; and {failed.size - shown} more" if failed.size > shown else ""
+    return f"{failed.size} of {position.size} positions have no solution ({listed}{more})"
+
+
+def checked_positions(at: ArrayLike) -> FloatArray:
+    """Return the positions requested.
+
+    Raises
+    ------
+    InputError
+        They are no numbers, or none.
+    """
+    position = np.atleast_1d(np.asarray(at, dtype=float))
+    if position.ndim != 1 or position.size == 0:
+        raise InputError("at", at, "a list of positions in base pitches")
+    for i, value in enumerate(position):
+        finite(f"at[{i}]", float(value), "In base pitches: 0 to 1 is one mesh cycle.")
+    return position

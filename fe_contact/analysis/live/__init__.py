@@ -1,0 +1,1 @@
+"""Tables of other flanks on condensed bodies."""

@@ -1,0 +1,250 @@
+"""A pair whose bodies are condensed: other flanks, loads and alignments are a matter of contact alone.
+
+The compliance of a gear depends on its macro geometry, not on its flank modifications, the load, the
+alignment or the center distance. With it in memory a new curve costs the gaps and the contact, no finite
+elements; and its errors about as much again.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from bounds import at_most
+from fe_contact.analysis.estimates.solved_again import TableSample
+from fe_contact.analysis.live.condensed_assumptions import CondensedRun, check_condensed
+from fe_contact.analysis.live.condensed_contacts import CondensedContacts
+from fe_contact.analysis.live.condensed_errors import condensed_errors
+from fe_contact.analysis.live.condensed_receipt import condensed_receipt
+from fe_contact.analysis.pairs.operating_points import OperatingPoints, operating_points
+from fe_contact.analysis.pairs.pair_contact import PairContact
+from fe_contact.analysis.request.request import Checked
+from fe_contact.analysis.request.request_check import check_asked
+from fe_contact.analysis.tables.position_nodes import PositionNodes, unmeasured_nodes
+from fe_contact.analysis.tables.solved_table import assembled_table
+from fe_contact.contact import ContactProblem, ContactSolution
+from fe_contact.effects.corner_contact import CornerContact
+from fe_contact.errors import InputError
+from fe_contact.geometry import FlankModification, ParallelAxes
+from fe_contact.options import TableAxes
+from fe_contact.planning import Plan
+from fe_contact.planning.cost_model import condensed_teeth
+from fe_contact.planning.plan import LARGEST_SUPPORT
+from fe_contact.stage_clock import StageClock
+from fe_contact.ste import Metadata, SteDatabase
+from fe_contact.types import FloatArray
+
+PLANE_POSITIONS, FACE_POSITIONS = 192, 64
+"""Of a base pitch, equally spaced: the compliance at them is assembled once for all flanks. In the plane
+handovers are steep, and positions cost little."""
+MOST_ROWS, FEWEST_POSITIONS = 4096, 16
+"""Of longer periods, which repeat the positions in every base pitch."""
+KEPT_DISTANCES = 2
+"""Changes of the center distance at which the compliance stays assembled."""
+
+
+@dataclass(frozen=True)
+class CondensedPair:
+    """Gears with their compliance, as a table had them.
+
+    Attributes
+    ----------
+    checked : Checked
+        What the table was asked, its model bound to the bodies it had.
+    contacts : CondensedContacts
+        At the nominal center distance; they keep what was assembled for the positions.
+    neglected : mapping of str to str
+        Effects of the bodies that the tolerance of the table neglected, and why.
+    """
+
+    checked: Checked
+    contacts: CondensedContacts
+    neglected: Mapping[str, str] = field(default_factory=dict)
+    _apart: OrderedDict[float, CondensedContacts] = field(default_factory=OrderedDict, repr=False)
+
+    @property
+    def contact(self) -> PairContact:
+        """The pair at its nominal center distance."""
+        return self.contacts.own
+
+    @property
+    def largest_load(self) -> float:
+        """Highest normal force in N for which the load patches were laid out."""
+        return LARGEST_SUPPORT * float(self.checked.request.load[-1])
+
+    def table(
+        self,
+        pair: ParallelAxes,
+        torques: FloatArray,
+        misalignment: float = 0.0,
+        center_distance_change: float = 0.0,
+    ) -> SteDatabase:
+        """Solve the contact of the same bodies with other flanks.
+
+        Parameters
+        ----------
+        pair : GearPair or InternalGearPair
+            The same macro geometry with any flank modification.
+        torques : ndarray, shape (F,)
+            On the driving gear in N m, increasing, > 0.
+        misalignment : float
+            Growth of the gap over the common face width in the plane of action, m.
+        center_distance_change : float
+            In m. The compliance between the teeth is assembled anew at another one, and the last few kept.
+
+        Returns
+        -------
+        SteDatabase
+            At equally spaced positions; corner contact is on unless the table's case switched it off. It has
+            no support loads, so no forces for dynamics, and between its loads no errors. The receipt has the
+            errors by source, CPU time by stage, what was taken for granted, and the number of points at
+            which a contact strip outgrew its load patch.
+
+        Raises
+        ------
+        InputError
+            Other bodies, loads beyond those of the table, flanks that its model cannot hold, or a center
+            distance at which more teeth meet than are condensed.
+        """
+        clock = StageClock()
+        checked = self._asked(pair, torques, misalignment, center_distance_change)
+        nodes, plan = self._laid_out(checked)
+        load, alignment = plan.load, (checked.request.misalignment, checked.request.center_distance_change)
+        sample = TableSample.of(nodes.position, checked.model.period, (load, *alignment))
+        with clock.stage("compliance"):
+            contacts, places = self._placed(checked)
+            contacts.assemble(places.places[0].model, sample)
+        with clock.stage("contact"):
+            solved = places.places[0].solve_pitches(nodes.position, load, np.arange(places.period))
+            table = assembled_table(checked.request, places, nodes, [solved], [])
+        with clock.stage("error estimate"):
+            assessed = condensed_errors(table, places, solved[1], contacts, sample, plan)
+        found = check_condensed(CondensedRun(checked, plan, places, [solved]), self.neglected)
+        receipt = condensed_receipt(plan, solved[1], assessed, found, clock)
+        receipt["discretisation_error"] = "expected" if contacts.coarse is None else "measured"
+        ledger = [{"name": entry.name, "on": entry.on} for entry in checked.ledger]
+        metadata = Metadata(effect_ledger=ledger, receipt=receipt)
+        return replace(
+            table, error_estimate=assessed.band, curve_error=assessed.curve_error, metadata=metadata
+        )
+
+    def solve(
+        self,
+        pair: ParallelAxes,
+        torques: FloatArray,
+        misalignment: float = 0.0,
+        center_distance_change: float = 0.0,
+    ) -> tuple[ParallelAxes, Checked, ContactProblem, ContactSolution]:
+        """Solve the contact alone: no table, no errors.
+
+        Parameters and errors are those of `table`.
+
+        Returns
+        -------
+        pair : GearPair or InternalGearPair
+            At its center distance.
+        checked : Checked
+        problem, solution
+            At the positions of `table`.
+        """
+        checked = self._asked(pair, torques, misalignment, center_distance_change)
+        nodes, plan = self._laid_out(checked)
+        _, places = self._placed(checked)
+        place = places.places[0]
+        solved = place.solve_pitches(nodes.position, plan.load, np.arange(places.period))
+        return place.contact.pair, checked, *solved
+
+    def _asked(self, pair: ParallelAxes, torques: FloatArray, misalignment: float, change: float) -> Checked:
+        """Check a question, and compose its model."""
+        self._refuse_other_bodies(pair)
+        axes = TableAxes(torques=torques, misalignments=[misalignment], center_distance_changes=[change])
+        self._refuse_beyond_patches(pair, torques, axes.load(pair))
+        return self._checked(pair, axes)
+
+    def _refuse_other_bodies(self, pair: ParallelAxes) -> None:
+        """Refuse gears or a center distance that this compliance is not of."""
+        known = self.checked.request.pair
+        if _plain(pair) != _plain(known):
+            bound = "of the gears and the center distance of the table, but for flank modifications"
+            raise InputError("pair", "another", bound, "Analyze the other pair first.")
+
+    def _refuse_beyond_patches(self, pair: ParallelAxes, torques: FloatArray, load: FloatArray) -> None:
+        """Refuse loads that outgrow the load patches."""
+        if load[-1] > self.largest_load * (1.0 + 1e-9):
+            most = float(pair.torque(np.array([self.largest_load]))[0])
+            bound = at_most(most, note=f": {LARGEST_SUPPORT:g} times the highest load of the table")
+            advice = "Analyze the case with a higher load."
+            raise InputError(f"torques[{load.size - 1}]", float(torques[-1]), bound, advice)
+
+    def _checked(self, pair: ParallelAxes, axes: TableAxes) -> Checked:
+        """Compose the model of other flanks on the bodies there are."""
+        request = self.checked.request
+        asked = request.options.effects.get(CornerContact.name, "auto")
+        # always on: what a tip edge does is then in every curve, and one compliance serves them all
+        corners = "on" if asked == "auto" else asked
+        effects = {**request.options.effects, CornerContact.name: corners}
+        return check_asked(
+            replace(
+                request,
+                pair=pair,
+                load=axes.load(pair),
+                misalignment=axes.misalignment,
+                center_distance_change=axes.center_distance_change,
+                options=replace(request.options, effects=effects),
+            ),
+            whole_table=False,
+            spare=False,
+        )
+
+    def _laid_out(self, checked: Checked) -> tuple[PositionNodes, Plan]:
+        """Return the positions, and the plan with them and the loads."""
+        most = FACE_POSITIONS if checked.model.across_face else PLANE_POSITIONS
+        count = int(np.clip(MOST_ROWS // checked.model.period, FEWEST_POSITIONS, most))
+        load = checked.request.load
+        return unmeasured_nodes(count, load.size), replace(self.contact.plan, load=load, positions=count)
+
+    def _placed(self, checked: Checked) -> tuple[CondensedContacts, OperatingPoints]:
+        """Return the contacts of the asked flanks at the asked distance, and the place they make."""
+        request = checked.request
+        contacts = self._at(float(request.center_distance_change[0]))
+        distance = contacts.own.pair.center_distance
+        nominal = distance == request.pair.center_distance
+        pair = request.pair if nominal else request.pair.at_center_distance(distance)
+        here = contacts.with_flanks(pair)
+        scene = replace(request.scene, center_distance_change=np.zeros(1))  # the contacts stand there
+        return here, operating_points(scene, request.choices, here.own)
+
+    def _at(self, change: float) -> CondensedContacts:
+        """Return the contacts at a change of the center distance in m; those requested last are kept."""
+        if change == 0.0:
+            return self.contacts
+        if change not in self._apart:
+            apart = self.contacts.apart(change)
+            _refuse_more_teeth(apart.own, change)
+            self._apart[change] = apart
+        self._apart.move_to_end(change)
+        while len(self._apart) > KEPT_DISTANCES:
+            self._apart.popitem(last=False)
+        return self._apart[change]
+
+
+def _refuse_more_teeth(contact: PairContact, change: float) -> None:
+    """Refuse a distance at which more teeth may touch than the compliance in the plane has."""
+    if contact.plane is None:
+        return
+    teeth, needed = int(contact.plane[0].teeth.size), condensed_teeth(contact.pair)
+    if needed > teeth:
+        bound = f"a change at which at most {teeth} teeth can touch: so many are condensed, {needed} can"
+        advice = "Put it on the axis of the case and analyze that."
+        raise InputError("center_distance_changes[0]", change, bound, advice)
+
+
+def _plain(pair: Any) -> Any:
+    """Return a pair, external or internal, without its flank modifications."""
+    none = FlankModification()
+    pinion, wheel = (replace(gear, modification=none) for gear in (pair.pinion, pair.wheel))
+    return replace(pair, pinion=pinion, wheel=wheel)

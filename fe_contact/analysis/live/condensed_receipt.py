@@ -1,0 +1,41 @@
+"""What a table of a condensed pair says of its making: errors by source, cost by stage, assumptions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from fe_contact.analysis.checks.assumptions import Assumption
+from fe_contact.analysis.database.contact_receipt import failed_points
+from fe_contact.analysis.estimates.assessed_table import AssessedTable
+from fe_contact.analysis.estimates.error_estimate import worst_residual
+from fe_contact.contact import ContactSolution
+from fe_contact.planning import Plan
+from fe_contact.stage_clock import StageClock
+from fe_contact.ste.curve_errors import BETWEEN_NODES
+from fe_contact.types import Json
+
+
+def condensed_receipt(
+    plan: Plan,
+    solution: ContactSolution,
+    assessed: AssessedTable,
+    assumptions: Sequence[Assumption],
+    clock: StageClock,
+) -> Json:
+    """Return the receipt of a table at the loads that were asked, between which nothing is told."""
+    errors = assessed.to_json()
+    missing = [name for name in errors["not_estimated"] if name not in BETWEEN_NODES]
+    known = {name: value for name, value in errors["curve_error"].items() if name not in BETWEEN_NODES}
+    return (
+        clock.to_json()
+        | errors
+        | {
+            "curve_error": known,
+            "not_estimated": missing,
+            "plan": plan.to_json(),
+            "beyond_load_patches": int(solution.beyond.sum()),
+            "residuals_max": worst_residual(solution),
+            "failed_points": failed_points([solution]),
+            "assumptions": [one.to_json() for one in assumptions],
+        }
+    )

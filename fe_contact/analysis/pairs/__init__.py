@@ -1,0 +1,1 @@
+"""The contact of a pair at operating points."""

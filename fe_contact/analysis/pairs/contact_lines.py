@@ -1,0 +1,202 @@
+"""Lines of a table, cut into blocks for workers and put together again.
+
+A line is one center distance at some misalignments: they share the compliance between the candidates, which
+costs most. It is cut between positions (see `contact_block`), by what its blocks are predicted to cost: by
+the case alone, not by who works.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, fields, is_dataclass, replace
+from itertools import groupby
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fe_contact.analysis.pairs.contact_block import ContactBlock, SolvedBlock, deflect_block, solve_block
+from fe_contact.analysis.pairs.pair_contact import Bodies, PairContact
+from fe_contact.contact import (
+    Candidates,
+    ContactModel,
+    ContactProblem,
+    ContactSolution,
+)
+from fe_contact.planning.contact_cost import unit_work
+from fe_contact.types import FloatArray, IntArray
+from fe_contact.workers import Workers
+
+TASK_SECONDS = 0.2
+"""CPU seconds that a block is predicted to take: ten times what it costs to hand it out."""
+
+FEWEST_ROWS = 2
+"""Of a block: a single row is contiguous either way, and cannot be laid out as many are."""
+
+R = TypeVar("R")
+Arrays = TypeVar("Arrays", bound=Any)
+
+
+@dataclass(frozen=True)
+class Line:
+    """Places of one compliance.
+
+    Attributes
+    ----------
+    contact : PairContact
+    models : tuple of ContactModel
+        Of the misalignments; the same but for their gaps.
+    candidates : Candidates
+        Of plain involutes at all positions of the line.
+    pitches : ndarray of int, shape (T,), or None
+    loads : tuple of ndarray
+        Sets of normal forces in N.
+    """
+
+    contact: PairContact
+    models: tuple[ContactModel, ...]
+    candidates: Candidates
+    pitches: IntArray | None
+    loads: tuple[FloatArray, ...]
+
+    @property
+    def seconds_a_position(self) -> float:
+        """CPU seconds that one position is predicted to take."""
+        work = unit_work(self.contact.pair, self.contact.plan, self.contact.plan.discretization.slices)
+        pitches = 1 if self.pitches is None else self.pitches.size
+        return work.of(1, len(self.models) * pitches * sum(load.size for load in self.loads))
+
+    def blocks(self, *, conditioned: bool) -> Iterator[ContactBlock]:
+        """Cut it."""
+        pair, everything = self.contact.pair, self.candidates
+        whole = ContactBlock(
+            pair, self.contact.plan, everything, self.models, self.pitches, self.loads, conditioned
+        )
+        count = everything.position.size
+        parts = min(math.ceil(count * self.seconds_a_position / TASK_SECONDS), count // FEWEST_ROWS)
+        for rows in np.array_split(np.arange(count), max(parts, 1)):
+            yield replace(whole, candidates=_laid_out_alike(everything.rows(rows), everything))
+
+
+@dataclass(frozen=True)
+class SolvedLine:
+    """A line put together; attributes as those of `SolvedBlock`."""
+
+    problems: tuple[ContactProblem, ...]
+    solutions: tuple[tuple[ContactSolution, ...], ...]
+    condition: FloatArray | None
+
+
+def solved_lines(lines: Sequence[Line], workers: Workers, *, conditioned: bool = False) -> list[SolvedLine]:
+    """Solve lines; their contacts keep what was assembled for them."""
+    found = []
+    for line, blocks in zip(lines, _by_line(lines, workers, solve_block, conditioned), strict=True):
+        whole = _joined(line, blocks)
+        plain = replace(whole.problems[0], candidates=line.candidates)
+        line.contact.take(line.models[0], plain)
+        found.append(whole)
+    return found
+
+
+def deflections(lines: Sequence[Line], workers: Workers) -> list[list[FloatArray]]:
+    """Solve lines of one set of loads; of each line the STE (T P, L) in m of every model."""
+    return [
+        [_rows([block[k][0] for block in blocks], line) for k in range(len(line.models))]
+        for line, blocks in zip(lines, _by_line(lines, workers, deflect_block, False), strict=True)
+    ]
+
+
+def _by_line(
+    lines: Sequence[Line],
+    workers: Workers,
+    function: Callable[[Bodies, ContactBlock], R],
+    conditioned: bool,
+) -> Iterator[list[R]]:
+    """Yield the results of the blocks of every line; lines of the same bodies go out together."""
+    for _, group in groupby(lines, key=lambda line: id(line.contact.bodies)):
+        together = list(group)
+        cut = [list(line.blocks(conditioned=conditioned)) for line in together]
+        results = workers.run(
+            function, together[0].contact.bodies, [block for blocks in cut for block in blocks]
+        )
+        for blocks in cut:
+            yield [next(results) for _ in blocks]
+
+
+def _laid_out_alike(part: Arrays, whole: Arrays) -> Arrays:
+    """Return a dataclass of arrays and of such, its arrays in memory as those they are rows of.
+
+    Compiled sums along a row round otherwise where its numbers stand apart.
+    """
+    alike: Arrays = replace(
+        part,
+        **{
+            field.name: _alike(getattr(part, field.name), getattr(whole, field.name))
+            for field in fields(part)
+        },
+    )
+    return alike
+
+
+def _alike(part: Any, whole: Any) -> Any:
+    """Lay out one value as another."""
+    if is_dataclass(part):
+        return _laid_out_alike(part, whole)
+    if not isinstance(part, np.ndarray):
+        return part
+    return np.ascontiguousarray(part) if whole.flags.c_contiguous else np.asfortranarray(part)
+
+
+def _joined(line: Line, blocks: list[SolvedBlock]) -> SolvedLine:
+    """Put the blocks of a line together; all models share one compliance."""
+    compliance = np.concatenate([block.problems[0].compliance for block in blocks])
+    problems, solutions = [], []
+    for k in range(len(line.models)):
+        parts = [block.problems[k] for block in blocks]
+        candidates = _joined_candidates([part.candidates for part in parts], line)
+        problems.append(replace(parts[0], candidates=candidates, compliance=compliance))
+        sets = zip(*(block.solutions[k] for block in blocks), strict=True)
+        solutions.append(tuple(_joined_arrays(list(each), line, ("load",)) for each in sets))
+    known = [block.condition for block in blocks if block.condition is not None]
+    return SolvedLine(tuple(problems), tuple(solutions), np.concatenate(known) if known else None)
+
+
+def _joined_candidates(parts: list[Candidates], line: Line) -> Candidates:
+    """Put candidates together; their slices do not go through pitches."""
+    slices = [part.slices for part in parts]
+    once = replace(line, pitches=None)
+    return replace(
+        parts[0],
+        position=_rows([part.position for part in parts], line),
+        touch=_joined_arrays([part.touch for part in parts], line),
+        width=_rows([part.width for part in parts], line),
+        slices=replace(
+            slices[0],
+            present=_rows([part.present for part in slices], once),
+            touch=_joined_arrays([part.touch for part in slices], once),
+            patch_1=_joined_arrays([part.patch_1 for part in slices], once),
+            patch_2=_joined_arrays([part.patch_2 for part in slices], once),
+        ),
+    )
+
+
+def _joined_arrays(parts: list[Arrays], line: Line, same: tuple[str, ...] = ()) -> Arrays:
+    """Put dataclasses of arrays over the rows together; those that are the `same` in all stay."""
+    joined: Arrays = replace(
+        parts[0],
+        **{
+            field.name: _rows([getattr(part, field.name) for part in parts], line)
+            for field in fields(parts[0])
+            if field.name not in same and isinstance(getattr(parts[0], field.name), np.ndarray)
+        },
+    )
+    return joined
+
+
+def _rows(parts: list[NDArray[Any]], line: Line) -> NDArray[Any]:
+    """Put rows together that go through the positions of a block pitch by pitch."""
+    pitches = 1 if line.pitches is None else line.pitches.size
+    by_pitch = [part.reshape(pitches, len(part) // pitches, *part.shape[1:]) for part in parts]
+    joined = np.concatenate(by_pitch, axis=1)
+    return joined.reshape(len(joined) * joined.shape[1], *joined.shape[2:])

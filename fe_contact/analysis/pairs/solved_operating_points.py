@@ -1,0 +1,152 @@
+"""Contact at many places at once: here, or line by line by workers, to the same bits."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from fe_contact.analysis.pairs.contact_lines import TASK_SECONDS, Line, SolvedLine, deflections, solved_lines
+from fe_contact.analysis.pairs.operating_points import OperatingPoint, OperatingPoints
+from fe_contact.contact import Candidates, ContactModel, ContactProblem, ContactSolution
+from fe_contact.types import FloatArray, IntArray
+from fe_contact.workers import InProcess, Workers
+
+Solved = list[tuple[ContactProblem, ContactSolution]]
+Lines = dict[tuple[object, ...], tuple[Line, list[int]]]
+
+
+def solve_operating_points(
+    places: OperatingPoints, position: FloatArray, loads: tuple[FloatArray, ...], *, conditioned: bool
+) -> tuple[list[Solved], FloatArray | None]:
+    """Solve all places at the positions of all base pitches.
+
+    Parameters
+    ----------
+    places : OperatingPoints
+    position : ndarray, shape (P,)
+        In [0, 1).
+    loads : tuple of ndarray
+        Sets of normal forces in N.
+    conditioned : bool
+        Whether workers also find condition numbers.
+
+    Returns
+    -------
+    list of list of (ContactProblem, ContactSolution)
+        For each set of loads, of every place.
+    ndarray or None
+        Condition numbers of all compliances, if workers found them.
+    """
+    pitches = np.arange(places.period)
+    everywhere = [position] * len(places.places)
+    lines = _sent_lines(places.workers, places.places, everywhere, loads, pitches)
+    if not lines:
+        here = [[place.solve_pitches(position, load, pitches) for place in places.places] for load in loads]
+        return here, None
+    found = solved_lines([line for line, _ in lines.values()], places.workers, conditioned=conditioned)
+    each = _each_place(lines, found)
+    solved = [[(problem, solutions[k]) for problem, solutions in each] for k in range(len(loads))]
+    known = [line.condition for line in found if line.condition is not None]
+    return solved, np.concatenate(known) if known else None
+
+
+def deflected_operating_points(
+    places: Sequence[OperatingPoint],
+    position: Sequence[FloatArray],
+    load: FloatArray,
+    pitches: IntArray | None,
+    workers: Workers,
+    known: Sequence[Candidates] | None = None,
+) -> list[FloatArray]:
+    """Return the STE (T P, L) in m of places.
+
+    Parameters
+    ----------
+    places : sequence of OperatingPoint
+    position : sequence of ndarray, shape (P,)
+        Of each place, in [0, 1).
+    load : ndarray, shape (L,)
+        Normal forces, N.
+    pitches : ndarray of int, shape (T,), or None
+        Base pitches; None: as `OperatingPoint.solve` takes it.
+    workers : Workers
+    known : sequence of Candidates, optional
+        Of plain involutes at the positions, for each place.
+    """
+    lines = _sent_lines(workers, places, position, (load,), pitches, known)
+    if not lines:
+        return [
+            _deflected(place, position[k], load, pitches, None if known is None else known[k])
+            for k, place in enumerate(places)
+        ]
+    found = deflections([line for line, _ in lines.values()], workers)
+    by_place = {
+        k: curve
+        for (_, members), curves in zip(lines.values(), found, strict=True)
+        for k, curve in zip(members, curves, strict=True)
+    }
+    return [by_place[k] for k in range(len(places))]
+
+
+def assemble_remotely(places: OperatingPoints, models: Sequence[ContactModel], position: FloatArray) -> None:
+    """Let workers assemble what places are about to be asked with other models; nothing without workers."""
+    asked = [OperatingPoint(place.contact, model) for place, model in zip(places.places, models, strict=True)]
+    lines = _sent_lines(places.workers, asked, [position] * len(asked), (), None)
+    solved_lines([line for line, _ in lines.values()], places.workers)
+
+
+def _deflected(
+    place: OperatingPoint,
+    position: FloatArray,
+    load: FloatArray,
+    pitches: IntArray | None,
+    known: Candidates | None,
+) -> FloatArray:
+    """Return the STE of one place, solved here."""
+    if known is not None:
+        place.contact.assemble(place.model, known)
+    if pitches is None:
+        return place.solve(position, load)[1].deflection
+    return place.solve_pitches(position, load, pitches)[1].deflection
+
+
+def _sent_lines(
+    workers: Workers,
+    places: Sequence[OperatingPoint],
+    position: Sequence[FloatArray],
+    loads: tuple[FloatArray, ...],
+    pitches: IntArray | None,
+    known: Sequence[Candidates] | None = None,
+) -> Lines:
+    """Gather the places that share a compliance into lines, each with the numbers of its places.
+
+    Empty where there is nobody else to solve them, or too little for others to do: that is decided by the
+    case alone.
+    """
+    if isinstance(workers, InProcess):
+        return {}
+    members: dict[tuple[object, ...], list[int]] = {}
+    for k, place in enumerate(places):
+        members.setdefault((id(place.contact), *place.contact.key(place.model, position[k])), []).append(k)
+    lines = {}
+    for key, numbers in members.items():
+        contact, first = places[numbers[0]].contact, places[numbers[0]].model
+        candidates = contact.candidates(first, position[numbers[0]]) if known is None else known[numbers[0]]
+        models = tuple(places[k].model for k in numbers)
+        line = Line(contact, models, candidates, pitches if first.period > 1 else None, loads)
+        lines[key] = (line, numbers)
+    seconds = sum(line.seconds_a_position * line.candidates.position.size for line, _ in lines.values())
+    return lines if seconds > TASK_SECONDS else {}
+
+
+def _each_place(
+    lines: Lines, found: Sequence[SolvedLine]
+) -> list[tuple[ContactProblem, tuple[ContactSolution, ...]]]:
+    """Return problem and solutions of every place, in the order of the places."""
+    by_place = {
+        k: (problem, solutions)
+        for (_, members), line in zip(lines.values(), found, strict=True)
+        for k, problem, solutions in zip(members, line.problems, line.solutions, strict=True)
+    }
+    return [by_place[k] for k in sorted(by_place)]

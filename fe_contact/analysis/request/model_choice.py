@@ -1,0 +1,207 @@
+"""Which model a tolerance or a time asks for, among those that hold what is in the scene.
+
+A spur pair with nothing acting across its face may be computed in the plane, in the plane corrected for its
+finite width, or in three dimensions: the cheapest that is expected to meet the wish is taken. An explicit
+model, or an explicit choice of one of the two effects that tell the models apart, is obeyed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from fe_contact.analysis.request.decided import FACE, WIDTH, Decided, model_name
+from fe_contact.analysis.request.request import Checked, Request
+from fe_contact.analysis.request.request_check import check_asked
+from fe_contact.analysis.request.ripple import expected_curves
+from fe_contact.effects.influence import estimate_influence
+from fe_contact.options import LEVELS, AnalysisOptions
+from fe_contact.planning import ExpectedCurves, MeshChoice, chosen_mesh, make_plan
+
+_TELL = (FACE, WIDTH)
+WIDTH_SHARE = 0.8
+"""Part of the tolerance up to which the finite width may be estimated: estimates of its change of
+peak-to-peak read 0.8 of what is measured in the median (docs/effects/influence.md)."""
+
+
+TRIED = ((2.0, 0.1), (1.25, 0.5))
+"""Expected error over the tolerance up to which a mesh is tried, and its work over that of what is expected
+to meet it: a pass in vain costs less than what is saved where it is enough."""
+
+
+def decide(
+    checked: Checked, cache: Path | None = None, *, keep_model: bool = False, tried: bool = False
+) -> Decided:
+    """Choose model, mesh and slices by the accuracy of a request.
+
+    Parameters
+    ----------
+    checked : Checked
+    cache : Path, optional
+        Directory of compliances and of what is known of the host: a time depends on them.
+    keep_model : bool
+        Choose mesh and slices only: what is requested is more than the transmission error.
+    tried : bool
+        The run measures its errors and is refined where they are too large: what is expected to err by
+        somewhat more than the tolerance is tried first where it costs much less (`TRIED`).
+    """
+    options = checked.request.options
+    if options.tolerance is not None and options.time_budget is not None:
+        return _within_time(checked, cache, keep_model=keep_model, tried=tried)
+    models = [checked] if keep_model else alternatives(checked)
+    curves = expected_curves(checked) if _wishes(checked) or checked.model.across_face else None
+    chosen = _best(_meshes(models, curves, cache, 1.0))
+    if tried and options.tolerance is not None:
+        for stretch, share in TRIED:
+            first = _best(_meshes(models, curves, cache, stretch))
+            if first[1].met and first[1].option.effort <= share * chosen[1].option.effort:
+                return _planned(first[0], _said_tried(*chosen, first[1]))
+    return _planned(*chosen)
+
+
+def _within_time(checked: Checked, cache: Path | None, *, keep_model: bool, tried: bool) -> Decided:
+    """Choose by the tolerance what fits into the time budget; else the most exact that fits."""
+    options = checked.request.options
+    budget = options.time_budget or 0.0
+
+    def chosen(wish: AnalysisOptions) -> Decided:
+        request = replace(checked.request, options=wish)
+        made = decide(replace(checked, request=request), cache, keep_model=keep_model, tried=tried)
+        request = replace(made.checked.request, options=options)
+        return replace(made, checked=replace(made.checked, request=request))
+
+    wished = chosen(replace(options, time_budget=None))
+    seconds = wished.predicted(cache).cpu_seconds
+    if seconds <= budget:
+        return wished
+    fits = chosen(replace(options, tolerance=None))
+    needs = f"{wished.mesh.option.name} is predicted to take {seconds:.2g} CPU s of {budget:.3g}"
+    error = f"expected error {100.0 * fits.mesh.option.error.total:.2g} %"
+    return replace(fits, mesh=MeshChoice(fits.mesh.option, False, f"{needs}; {fits.mesh.reason}, {error}"))
+
+
+def _meshes(
+    models: Sequence[Checked], curves: ExpectedCurves | None, cache: Path | None, stretch: float
+) -> list[tuple[Checked, MeshChoice]]:
+    """Choose a mesh for every model, by `stretch` times the tolerance."""
+    found: list[tuple[Checked, MeshChoice]] = []
+    for one in models:
+        # what the coarsest mesh in the plane meets, three dimensions meet no cheaper
+        if not (one.model.across_face and any(mesh.met and mesh.level == LEVELS[0] for _, mesh in found)):
+            found.append((one, _mesh(one, curves, cache, stretch)))
+    return found
+
+
+def _said_tried(checked: Checked, chosen: MeshChoice, first: MeshChoice) -> MeshChoice:
+    """Say why something cheaper is tried first than what is expected to meet the tolerance."""
+    said = f"{model_name(checked)}, {chosen.option.name}"
+    error = f"{100.0 * first.option.error.total:.2g} %"
+    part = f"{100.0 * first.option.effort / chosen.option.effort:.2g} %"
+    reason = f"expected error {error}, tried first: it costs {part} of {said}"
+    return MeshChoice(first.option, chosen.met, reason)
+
+
+def _wishes(checked: Checked) -> bool:
+    """Whether an error or a time is requested."""
+    options = checked.request.options
+    return options.tolerance is not None or options.time_budget is not None
+
+
+def alternatives(checked: Checked) -> list[Checked]:
+    """Return the request with every model that may stand in for its own; itself where it is bound."""
+    request = checked.request
+    chosen = {name for name in _TELL if request.asked_choices.get(name, "auto") != "auto"}
+    decided = set(_TELL) & {*request.neglected, *request.turned_on}
+    if not _wishes(checked) or chosen or decided or checked.model.across_face:
+        return [checked]
+    plain = replace(request, neglected={**request.neglected, WIDTH: "left out"})
+    solid = replace(request, turned_on={**request.turned_on, FACE: "taken"})
+    flat = [_again(plain)] if _width_is_small(checked) else []
+    return [*flat, checked, _again(solid)]
+
+
+def next_model(checked: Checked) -> Decided | None:
+    """Return the request in the next more exact model that is expected to meet its tolerance.
+
+    None where there is none, or where the caller chose the model or one of the effects that tell it.
+    """
+    request = checked.request
+    if checked.model.across_face or any(request.asked_choices.get(name, "auto") != "auto" for name in _TELL):
+        return None
+    neglected = {name: reason for name, reason in request.neglected.items() if name not in _TELL}
+    kept = {name: reason for name, reason in request.turned_on.items() if name not in _TELL}
+    effects = (WIDTH, FACE) if WIDTH in request.neglected else (FACE,)
+    models = [
+        _again(replace(request, neglected=neglected, turned_on={**kept, name: "taken"})) for name in effects
+    ]
+    curves = expected_curves(checked)
+    found = [(one, _mesh(one, curves, None)) for one in models]
+    return next((_planned(*_said(one)) for one in found if one[1].met), None)
+
+
+def _width_is_small(checked: Checked) -> bool:
+    """Whether the finite width is estimated to stay within the tolerance on this very case.
+
+    A ripple that a modification has made small changes by more than the mean: the expected error of plane
+    strain, which is that of usual cases, does not see that.
+    """
+    tolerance = checked.request.options.tolerance
+    if tolerance is None:
+        return True
+    influence = estimate_influence(*checked.assessing(WIDTH), WIDTH, tolerance.least_scale)
+    return influence is not None and influence.largest <= WIDTH_SHARE * tolerance.relative
+
+
+def _again(request: Request) -> Checked:
+    """Compose a request anew; nothing more is neglected."""
+    return check_asked(request, spare=False)
+
+
+def _mesh(
+    checked: Checked, curves: ExpectedCurves | None, cache: Path | None, stretch: float = 1.0
+) -> MeshChoice:
+    """Choose the mesh of one model."""
+    asked, options = checked.request, checked.request.options
+    if options.tolerance is not None:
+        options = replace(options, tolerance=options.tolerance.stretched(stretch))
+    wanted = asked.pair, asked.load, options, checked.model
+    return chosen_mesh(*wanted, asked.alignments, cache, curves)
+
+
+def _best(found: Sequence[tuple[Checked, MeshChoice]]) -> tuple[Checked, MeshChoice]:
+    """Return the cheapest that meets a tolerance, the most exact that meets a time, else the most exact."""
+    if len(found) == 1:
+        return found[0]
+    good = [one for one in found if one[1].met]
+    by_time = found[0][0].request.options.time_budget is not None
+    if good and not by_time:
+        return _said(min(good, key=lambda one: one[1].option.effort))
+    return _said(min(good or found, key=lambda one: one[1].option.error.total))
+
+
+def _said(found: tuple[Checked, MeshChoice]) -> tuple[Checked, MeshChoice]:
+    """Write into the ledger why an effect is off that the scene calls for, or the other way round."""
+    checked, mesh = found
+    request, error = checked.request, mesh.option.error
+    parts = f"{100.0 * error.total:.2g} %, of which the model {100.0 * error.model:.2g} %"
+    neglected, turned_on = (
+        {name: _reason(name, text, parts) for name, text in overrides.items()}
+        for overrides in (request.neglected, request.turned_on)
+    )
+    if (neglected, turned_on) == (dict(request.neglected), dict(request.turned_on)):
+        return found
+    return _again(replace(request, neglected=neglected, turned_on=turned_on)), mesh
+
+
+def _reason(name: str, text: str, parts: str) -> str:
+    """Say why one of the two effects was turned here; reasons of others stay."""
+    mine = name in _TELL and text in ("taken", "left out")
+    return f"{text} for the asked accuracy: expected error {parts}" if mine else text
+
+
+def _planned(checked: Checked, mesh: MeshChoice) -> Decided:
+    """Make the plan."""
+    asked = checked.request
+    plan = make_plan(asked.pair, asked.load, asked.options, checked.model, mesh.level, mesh.slices)
+    return Decided(checked, mesh, plan)

@@ -1,0 +1,1 @@
+"""Studies of a case: accuracy, effects, sensitivity."""

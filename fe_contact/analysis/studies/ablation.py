@@ -1,0 +1,205 @@
+"""Ablation of a case: every effect toggled by itself, the change beside what it was estimated at."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Self
+
+import numpy as np
+
+import model_studies
+from fe_contact.analysis.checks.effect_ledger import toggled
+from fe_contact.analysis.database.compute_database import compute_database
+from fe_contact.analysis.request.influences import estimated_influences
+from fe_contact.analysis.request.model_choice import decide
+from fe_contact.analysis.request.request import Checked
+from fe_contact.analysis.request.request_check import check_asked, check_request
+from fe_contact.checks import chosen
+from fe_contact.effects import EFFECTS, LedgerEntry
+from fe_contact.effects.influence import Influence
+from fe_contact.errors import InputError, MeshError, SolveError
+from fe_contact.geometry import ParallelAxes
+from fe_contact.options import AnalysisOptions, Run, TableAxes
+from fe_contact.planning import planned, predict_run
+from fe_contact.types import FloatArray, Json
+from model_studies import LeftOut, in_unit, run_variants
+
+HARMONICS = 5
+"""Mesh harmonics that are compared."""
+FAILURES = (InputError, MeshError, SolveError)
+"""Errors of a case with an effect toggled that leave the effect out."""
+
+
+@dataclass(frozen=True)
+class Figures(model_studies.Figures):
+    """What a table says of its curves at each load (L,), at the largest of its misalignments in size.
+
+    Attributes
+    ----------
+    mean, peak_to_peak : ndarray, shape (L,)
+        m.
+    cpu_seconds : float
+        Of the contact, measured.
+    harmonics : ndarray, shape (L, 5)
+        Amplitudes of the mesh harmonics, the first one first, m.
+    predicted_cpu_seconds : float
+        Of the whole run with nothing in the cache.
+    """
+
+    harmonics: FloatArray = field(metadata=in_unit("m"))
+    predicted_cpu_seconds: float
+
+    @property
+    def cost(self) -> float:
+        """The predicted CPU seconds: those that were measured depend on the cache."""
+        return self.predicted_cpu_seconds
+
+
+@dataclass(frozen=True)
+class EffectAblation(model_studies.EffectAblation[Figures, Influence]):
+    """One effect toggled; its estimate is that of the ledger, at the nominal load."""
+
+    FIGURES = Figures
+
+    @property
+    def harmonic_change(self) -> FloatArray:
+        """Change (L, 5) of the amplitudes by leaving the effect out, m."""
+        return self.change("harmonics")
+
+    def to_json(self) -> Json:
+        """Return plain JSON: changes in m and in parts of the value with the effect."""
+        relative = {
+            f"relative_{name}_change": (self.change(name) / getattr(self.with_effect, name)).tolist()
+            for name in ("mean", "peak_to_peak")
+        }
+        return super().to_json() | relative
+
+    @classmethod
+    def from_json(cls, content: Json) -> Self:
+        """Return the effect that `to_json` wrote; estimates of older versions are of another kind."""
+        stored, estimate = content["estimate"], None
+        if stored is not None and "whole_mean_m" in stored:
+            names = ("misalignment", "mean", "peak_to_peak", "whole_mean", "whole_peak_to_peak")
+            estimate = Influence(stored["torque_n_m"], *(stored[f"{name}_m"] for name in names))
+        return super().from_json(content | {"estimate": estimate})
+
+
+@dataclass(frozen=True)
+class Ablation(model_studies.Ablation[Figures, EffectAblation]):
+    """All effects of a case, each toggled by itself.
+
+    Attributes
+    ----------
+    nominal, effects, left_out
+        Of every ablation.
+    torque : ndarray, shape (L,)
+        On the driving gear, N m.
+    normal_force : ndarray, shape (L,)
+        N.
+    misalignment : float
+        At which the figures are, m.
+    """
+
+    EFFECT = EffectAblation
+
+    torque: FloatArray = field(metadata=in_unit("n_m"))
+    normal_force: FloatArray = field(metadata=in_unit("n"))
+    misalignment: float = field(metadata=in_unit("m"))
+
+    def measured(self, entry: EffectAblation) -> Influence:
+        """Return what leaving an effect out changes at the nominal load, as the two tables have it."""
+        whole = entry.with_effect
+        changes = (entry.mean_change, entry.peak_to_peak_change, whole.mean, whole.peak_to_peak)
+        return Influence(
+            float(self.torque[-1]), self.misalignment, *(float(values[-1]) for values in changes)
+        )
+
+
+def ablate(
+    pair: ParallelAxes,
+    axes: TableAxes,
+    options: AnalysisOptions = AnalysisOptions(),  # noqa: B008 (frozen)
+    run: Run = Run(),  # noqa: B008 (frozen)
+    *,
+    only: Sequence[str] | None = None,
+) -> Ablation:
+    """Toggle each effect of a case and report the change.
+
+    Parameters
+    ----------
+    pair : GearPair or InternalGearPair
+    axes : TableAxes
+        The tables are at the nominal center distance.
+    options : AnalysisOptions
+        All tables are made on the level of mesh that the accuracy asks for, with a minimal receipt;
+        assumptions that do not hold are reported.
+    run : Run
+        With a cache the gears are condensed once for each body and model.
+    only : sequence of str, optional
+        Effects to toggle; default all.
+
+    Returns
+    -------
+    Ablation
+        Of every effect that the scene holds and that can be toggled.
+
+    Raises
+    ------
+    InputError
+        A value that cannot be used, by field name.
+    MeshError, SolveError
+        The case itself cannot be computed.
+    """
+    checked = check_request(
+        pair,
+        replace(axes, center_distance_changes=(0.0,)),
+        replace(options, receipt="minimal", on_violation="report"),
+    )
+    return ablate_checked(checked, chosen("only", only, [effect.name for effect in EFFECTS]), run)
+
+
+def ablate_checked(checked: Checked, names: Sequence[str], run: Run) -> Ablation:
+    """Toggle the named effects of a checked request; parameters of `ablate`."""
+    checked = _on_one_mesh(checked, run.cache)
+    nominal = _figures(checked, run)
+    estimates = estimated_influences(checked, names)
+
+    def toggle(entry: LedgerEntry) -> EffectAblation:
+        if entry.verdict.neutral:
+            raise LeftOut(entry.verdict.reason)
+        other = _figures(toggled(checked, entry.name, "off" if entry.on else "on"), run)
+        states = (nominal, other) if entry.on else (other, nominal)
+        return EffectAblation(entry.name, entry.on, entry.verdict.reason, *states, estimates[entry.name])
+
+    ledger = {entry.name: entry for entry in checked.ledger if entry.name in names}
+    effects, left_out = run_variants("ablation", ledger, toggle, FAILURES, run.progress)
+    request = checked.request
+    misalignment = request.whole_scene.largest_misalignment
+    return Ablation(nominal, tuple(effects.values()), left_out, request.torque, request.load, misalignment)
+
+
+def _on_one_mesh(checked: Checked, cache: Path | None) -> Checked:
+    """Return the request with the model and the level that its accuracy asks for: all tables compare."""
+    decided = decide(checked, cache)
+    request = decided.checked.request
+    return check_asked(replace(request, options=request.options.at_level(decided.mesh.level)), spare=False)
+
+
+def _figures(checked: Checked, run: Run) -> Figures:
+    """Compute the table of a request, without its errors, and read its curves."""
+    request = checked.request
+    table = compute_database(checked, request.to_json(), run.silent)
+    table.require_complete()
+    skew = checked.request.whole_scene.largest_misalignment
+    curves = [table.curve(force=float(force), misalignment=skew) for force in table.force]
+    plan = planned(request.pair, request.load, request.options, checked.model, request.alignments, run.cache)
+    predicted = predict_run(request.pair, plan, checked.model, request.alignments, None)
+    return Figures(
+        np.array([curve.mean.value for curve in curves]),
+        np.array([curve.peak_to_peak.value for curve in curves]),
+        float(table.metadata.receipt["stages"]["contact"]["cpu_seconds"]),
+        np.array([[harmonic.value for harmonic in curve.harmonics[:HARMONICS]] for curve in curves]),
+        predicted.cpu_seconds,
+    )

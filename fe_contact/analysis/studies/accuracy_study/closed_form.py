@@ -1,0 +1,123 @@
+"""The fidelities without finite elements: tooth stiffness of ISO 6336-1 over contact lines, thin slices.
+
+Both take the stiffness of the series of ISO 6336-1, method B, which was fitted to external steel pairs.
+
+- **ISO 6336**: the mesh stiffness follows the length of the contact lines and has the standard's mean value,
+  k(x) = c_gamma_alpha b l(x)/mean(l). Nothing but the macro geometry enters.
+- **Thin slices**: uncoupled slices of the face between the true gaps, so that modifications, misalignment and
+  corner contact act. Measured gears are softer than the theory by C_M = 0.8; finite elements are not, so
+  c'/C_M is taken. Along the path of contact the stiffness falls from the middle by a parabola to both ends,
+  as deep as the standard's mean asks: c_gamma_alpha = c'(0.75 eps_alpha + 0.25) for eps_alpha pairs.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fe_contact.analysis.database.compute_database import SOLVER_VERSION, software_versions
+from fe_contact.analysis.pairs.operating_points import OperatingPoints, operating_points
+from fe_contact.analysis.pairs.slice_laws import mean_stiffness, parabolic_stiffness
+from fe_contact.analysis.pairs.slice_springs import SliceLaw, SpringContact
+from fe_contact.analysis.pairs.tabulate import pair_facts, table_fields, table_support
+from fe_contact.analysis.request.request import Checked
+from fe_contact.contact import ContactSolution
+from fe_contact.planning import Plan, make_plan
+from fe_contact.stage_clock import StageClock
+from fe_contact.ste import Metadata, SteDatabase
+from fe_contact.ste.content_hash import content_hash
+from fe_contact.ste.facts import SCHEMA_VERSION
+from fe_contact.types import FloatArray
+
+POSITIONS = 64
+
+ISO_ERROR, SLICE_ERROR = 0.45, 0.6
+"""Relative error of the mean stated for the fidelities: above the worst of docs/frontier.md."""
+
+
+@dataclass(frozen=True)
+class ClosedFormFidelity:
+    """A fidelity of uncoupled slices.
+
+    Attributes
+    ----------
+    name, title : str
+    law : SliceLaw
+    relative_error : float
+        Of the transmission error, stated with every point of its table.
+    """
+
+    name: str
+    title: str
+    law: SliceLaw
+    relative_error: float
+
+    element_size = 0.0
+
+    @property
+    def family(self) -> str:
+        """A family of its own."""
+        return self.name
+
+    def refusal(self, checked: Checked) -> str | None:
+        """Say why it is not valid: the series is for external pairs, and shafts couple the slices."""
+        pair = checked.request.pair
+        if pair.internal:
+            return "the stiffness of ISO 6336-1 is for external pairs"
+        if checked.model.compliances:
+            return "shafts that bend couple the slices"
+        return None
+
+    def as_computed(self, checked: Checked) -> Checked:
+        """Return the request as it is: there is no mesh to choose."""
+        return checked
+
+    def run(self, checked: Checked) -> SteDatabase:
+        """Compute the table."""
+        clock = StageClock()
+        request = checked.request
+        plan = make_plan(request.pair, request.load, request.options, checked.model)
+        with clock.stage("contact"):
+            nominal = SpringContact(request.pair, plan, law=self.law)
+            places = operating_points(request.scene, request.choices, nominal)
+            table = self._table(checked, plan, places)
+        case = request.to_json() | {"rung": self.name}
+        ledger = [entry.to_json() for entry in checked.ledger]
+        receipt = clock.to_json() | {"plan": {"model": self.name, "positions": table.position.size}}
+        name = content_hash(case, SOLVER_VERSION, SCHEMA_VERSION)
+        return replace(table, metadata=Metadata(case, ledger, receipt, name, software_versions()))
+
+    def _table(self, checked: Checked, plan: Plan, places: OperatingPoints) -> SteDatabase:
+        """Solve all places at equally spaced positions."""
+        request = checked.request
+        count = plan.positions or POSITIONS
+        position, pitches = np.arange(count) / count, np.arange(places.period)
+        solved = [place.solve_pitches(position, plan.load, pitches) for place in places.places]
+        support = [place.solve_pitches(position, plan.support, pitches) for place in places.places]
+        error = [self._error(solution) for _, solution in solved]
+        return SteDatabase(
+            position=(pitches[:, None] + position).ravel(),
+            force=plan.load,
+            torque=request.torque,
+            misalignment=request.misalignment,
+            center_distance_change=request.center_distance_change,
+            facts=pair_facts(request.pair),
+            period=places.period,
+            error_estimate=places.gathered(error),
+            metadata=Metadata(),
+            **table_fields(places, solved),
+            **table_support(places, support),
+        )
+
+    def _error(self, solution: ContactSolution) -> FloatArray:
+        """State the error (P, L) as a part of the elastic deflection, m."""
+        return self.relative_error * np.abs(solution.deflection - solution.no_load[:, None])
+
+
+ISO6336 = ClosedFormFidelity(
+    "iso6336", "ISO 6336 stiffness over contact lines", SliceLaw(mean_stiffness, with_gaps=False), ISO_ERROR
+)
+THIN_SLICES = ClosedFormFidelity(
+    "thin_slices", "thin slices", SliceLaw(parabolic_stiffness, with_gaps=True), SLICE_ERROR
+)

@@ -1,0 +1,1 @@
+"""Positions of a table, and what is solved at them."""

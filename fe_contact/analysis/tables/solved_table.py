@@ -1,0 +1,162 @@
+"""A table as solved, before its errors are known: plan, places, positions, solutions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from fe_contact.analysis.pairs.operating_points import OperatingPoints, operating_points
+from fe_contact.analysis.pairs.pair_contact import PairContact, pair_contact
+from fe_contact.analysis.pairs.solved_operating_points import Solved, solve_operating_points
+from fe_contact.analysis.pairs.tabulate import pair_facts, table_fields, table_support
+from fe_contact.analysis.request.decided import Decided
+from fe_contact.analysis.request.model_choice import decide
+from fe_contact.analysis.request.request import Checked, Request
+from fe_contact.analysis.tables.position_nodes import PositionNodes
+from fe_contact.analysis.tables.table_nodes import table_nodes
+from fe_contact.compliance.remote_condensation import condense_remotely
+from fe_contact.geometry import ParallelAxes
+from fe_contact.options import Run
+from fe_contact.planning import FaceDiscretization, Plan, Prediction, predict_run
+from fe_contact.stage_clock import StageClock
+from fe_contact.ste import Metadata, SteDatabase
+from fe_contact.types import FloatArray
+from fe_contact.workers import InProcess
+
+
+@dataclass(frozen=True)
+class SolvedTable:
+    """One run up to its table.
+
+    Attributes
+    ----------
+    decided : Decided
+        Model and discretization.
+    prediction : Prediction
+        What it was expected to cost.
+    places : OperatingPoints
+    nodes : PositionNodes
+    solved, support : list of (ContactProblem, ContactSolution)
+        Of every place, at the requested and at the support loads.
+    table : SteDatabase
+        Its errors not yet estimated.
+    condition : ndarray or None
+        Condition numbers of the compliances, where workers found them.
+    """
+
+    decided: Decided
+    prediction: Prediction
+    places: OperatingPoints
+    nodes: PositionNodes
+    solved: Solved
+    support: Solved
+    table: SteDatabase
+    condition: FloatArray | None = None
+
+    @property
+    def checked(self) -> Checked:
+        """The request with the model that was chosen."""
+        return self.decided.checked
+
+    @property
+    def plan(self) -> Plan:
+        """Discretization."""
+        return self.decided.plan
+
+
+def solve_table(
+    checked: Checked,
+    clock: StageClock,
+    run: Run,
+    before: SolvedTable | None = None,
+    decided: Decided | None = None,
+) -> SolvedTable:
+    """Plan and solve a request.
+
+    Parameters
+    ----------
+    checked : Checked
+    clock : StageClock
+    run : Run
+    before : SolvedTable, optional
+        The same pair with other effects: its compliance is taken if the bodies are the same.
+    decided : Decided, optional
+        Model and discretization; default: those that the accuracy asks for.
+    """
+    full = checked.request.options.receipt == "full"
+    with clock.stage("planning"):
+        decided = decided or decide(checked, run.cache)
+        checked, plan, request = decided.checked, decided.plan, decided.checked.request
+        wanted = request.pair, plan, checked.model, request.alignments
+        prediction = predict_run(*wanted, run.cache, with_errors=full)
+    known = before.places.nominal if before is not None and _same_bodies(before.plan, plan) else None
+    nominal = condensed_bodies(checked, plan, clock, run, known=known)
+    places = operating_points(request.scene, request.choices, nominal, run.workers)
+    with clock.stage("contact"):
+        nodes = table_nodes(places, plan)
+        run.progress("contact", 0.3)
+        loads = plan.load, plan.support
+        (solved, support), condition = solve_operating_points(places, nodes.position, loads, conditioned=full)
+        table = assembled_table(request, places, nodes, solved, support)
+        run.progress("contact", 1.0)
+    return SolvedTable(decided, prediction, places, nodes, solved, support, table, condition)
+
+
+def condensed_bodies(
+    checked: Checked,
+    plan: Plan,
+    clock: StageClock,
+    run: Run,
+    *,
+    coarse: bool = False,
+    known: PairContact | None = None,
+) -> PairContact:
+    """Compute or fetch the compliances of both gears, fine or coarse, as a stage of the run."""
+    request, stage = checked.request, "error estimate" if coarse else "compliance"
+    run.progress(stage, 0.0)
+    with clock.stage(stage):
+        changes = request.center_distance_change
+        nominal = known or _condensed(request.pair, plan, coarse, changes, run)
+    run.progress(stage, 1.0)
+    return nominal
+
+
+def _condensed(pair: ParallelAxes, plan: Plan, coarse: bool, changes: FloatArray, run: Run) -> PairContact:
+    """Condense the gears, those of three dimensions by the workers if there are any."""
+    made = plan.discretization
+    if isinstance(run.workers, InProcess) or not isinstance(made, FaceDiscretization):
+        return pair_contact(pair, plan, run.cache, coarse, changes)
+    with TemporaryDirectory() as folder:
+        kept = run.cache or Path(folder)
+        recipes = made.coarse_recipes if coarse else made.recipes
+        condense_remotely(plan.bodies(pair), recipes, kept, run.workers)
+        return pair_contact(pair, plan, kept, coarse, changes)
+
+
+def _same_bodies(one: Plan, other: Plan) -> bool:
+    """Whether two plans of one pair have the same finite elements."""
+    first, second = ((plan.discretization, plan.parts) for plan in (one, other))
+    return first == second
+
+
+def assembled_table(
+    request: Request, places: OperatingPoints, nodes: PositionNodes, solved: Solved, support: Solved
+) -> SteDatabase:
+    """Assemble the table, its errors not yet estimated; `support` may be empty."""
+    position = (np.arange(places.period)[:, None] + nodes.position).ravel()
+    return SteDatabase(
+        position=position,
+        force=request.load,
+        torque=request.torque,
+        misalignment=request.misalignment,
+        center_distance_change=request.center_distance_change,
+        facts=pair_facts(request.pair),
+        period=places.period,
+        error_estimate=np.full((position.size, request.load.size, *places.shape), np.nan),
+        metadata=Metadata(),
+        **table_fields(places, solved),
+        **(table_support(places, support) if support else {}),
+    )

@@ -1,0 +1,1 @@
+"""Figures of a report, and the page and images that hold them."""

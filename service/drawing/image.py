@@ -1,0 +1,163 @@
+"""Figure descriptions as images, by matplotlib without a display."""
+
+from __future__ import annotations
+
+import math
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure as Sheet
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, ScalarFormatter
+
+from service.drawing import palette
+from service.drawing.figure import Axis, Figure, Line, Panel, Reference, Surface, legend_names, repeats_below
+from service.drawing.image_shade import color_map, draw_shade
+
+_WIDTH, _PANEL_HEIGHT, _SURFACE_HEIGHT, _DPI = 9.0, 2.7, 6.4, 150
+_LEGEND_CHARACTERS, _HANDLE_CHARACTERS = 120, 9  # of the legend's type: across the sheet, beside a name
+_NOTE_ROW = 10  # points
+_NARROW = 100.0  # largest over smallest value of a logarithmic axis with plain numbers
+_MOST_WHOLE = 30  # an axis of whole numbers up to here has no ticks between them
+_DASH = {"solid": "-", "dash": "--", "dot": ":"}
+
+
+def png(figure: Figure) -> bytes:
+    """Draw `figure` and return the PNG file's bytes."""
+    sheet = (
+        _surface_sheet(figure.content)
+        if isinstance(figure.content, Surface)
+        else _panel_sheet(figure.content)
+    )
+    sheet.suptitle(figure.title, x=0.01, ha="left", fontsize=12, fontweight="bold", color=palette.INK)
+    FigureCanvasAgg(sheet)
+    buffer = BytesIO()
+    sheet.savefig(
+        buffer, format="png", dpi=_DPI, metadata={"Title": figure.title, "Description": figure.alternative}
+    )
+    return buffer.getvalue()
+
+
+def _panel_sheet(panels: tuple[Panel, ...]) -> Sheet:
+    """Stack panels; curves of one name share one entry in the legend on top."""
+    sheet = Sheet(figsize=(_WIDTH, _PANEL_HEIGHT * len(panels) + 1.2), layout="constrained")
+    axes: list[Axes] = list(sheet.subplots(len(panels), 1, squeeze=False)[:, 0])
+    handles: dict[str, Any] = {}
+    names = legend_names(panels)
+    for index, (panel, ax) in enumerate(zip(panels, axes, strict=True)):
+        if panel.shade is not None:
+            draw_shade(ax, panel.shade)
+        for line in panel.lines:
+            handle = _draw(ax, line)
+            if line.name in names:
+                handles.setdefault(line.name, handle)
+        _finish(ax, panel)
+        if repeats_below(panels, index):
+            ax.set_xlabel("")
+    if len(handles) > 1:
+        sheet.legend(
+            handles.values(),
+            handles.keys(),
+            loc="outside lower left",
+            ncols=_legend_columns(list(handles)),
+            frameon=False,
+            fontsize=9,
+        )
+    return sheet
+
+
+def _legend_columns(names: list[str]) -> int:
+    """As many columns as the width holds, at most six, in rows of equal length."""
+    fit = max(_LEGEND_CHARACTERS // (max(map(len, names)) + _HANDLE_CHARACTERS), 1)
+    rows = math.ceil(len(names) / min(fit, 6))
+    return math.ceil(len(names) / rows)
+
+
+def _draw(ax: Axes, line: Line) -> Any:
+    """Draw one curve and return its handle."""
+    stroke: dict[str, Any] = {"color": line.color, "ls": _DASH[line.dash], "lw": line.width * 0.8}
+    if line.markers:
+        stroke |= {"marker": "o", "ms": 6}
+    (handle,) = ax.plot(line.x, line.y, **stroke)
+    if line.has_band:
+        ax.fill_between(line.x, line.y - line.band, line.y + line.band, color=line.color, alpha=0.2, lw=0)
+    return handle
+
+
+def _finish(ax: Axes, panel: Panel) -> None:
+    """Label, scale and dress one panel."""
+    for axis, name in ((panel.x, "x"), (panel.y, "y")):
+        _scale(ax, axis, name)
+    if panel.lines and _is_whole(np.concatenate([line.x for line in panel.lines])):
+        ax.xaxis.set_major_locator(MaxNLocator(integer=True))
+    for reference in panel.references:
+        _refer(ax, reference, boxed=panel.shade is not None)
+    for note in panel.notes:
+        offset = (-5 if note.left else 5, 4 + _NOTE_ROW * note.row - (8 if note.row < 0 else 0))
+        side = "right" if note.left else "left"
+        ax.annotate(note.text, (note.x, note.y), offset, textcoords="offset points", ha=side, fontsize=8)
+    if panel.title:
+        ax.set_title(panel.title, loc="left", fontsize=10, fontweight="bold")
+    ax.grid(color=palette.GRID, lw=0.6)
+    ax.spines[["top", "right"]].set_visible(False)
+    ax.set_axisbelow(True)
+
+
+def _is_whole(values: Any) -> bool:
+    """Whether all values are whole numbers and few, as orders are."""
+    return bool(np.all(values == np.round(values)) and np.ptp(values) <= _MOST_WHOLE)
+
+
+def _scale(ax: Axes, axis: Axis, name: str) -> None:
+    """Give one axis its label, scale and limits."""
+    ax.set(**{f"{name}label": axis.label, f"{name}scale": axis.scale})
+    if axis.limits:
+        ax.set(**{f"{name}lim": axis.limits})
+    drawn = getattr(ax, f"{name}axis")
+    if axis.scale == "linear":
+        drawn.set_major_formatter(ScalarFormatter(useOffset=False))
+        return
+    low, high = getattr(ax, f"get_{name}lim")()
+    if high <= _NARROW * low:  # powers of ten would stand alone, or not at all
+        drawn.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        drawn.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        drawn.set_minor_formatter(NullFormatter())
+
+
+def _refer(ax: Axes, reference: Reference, *, boxed: bool) -> None:
+    """Draw a reference line with its label, in a white box where colors lie under it."""
+    text = f" {reference.label}"
+    stroke: dict[str, Any] = {"color": palette.MUTED, "ls": "--", "lw": 0.8, "zorder": 2.5 if boxed else 0.5}
+    if reference.direction == "vertical":
+        ax.axvline(reference.value, **stroke)
+        written = ax.text(
+            reference.value, 0.98, text, ha="left", va="top", transform=ax.get_xaxis_transform()
+        )
+    else:
+        ax.axhline(reference.value, **stroke)
+        anchor = "center" if reference.at == 0.5 else "right"
+        written = ax.text(
+            reference.at, reference.value, text, ha=anchor, va="bottom", transform=ax.get_yaxis_transform()
+        )
+    written.set(fontsize=8, color=palette.MUTED)
+    if boxed:
+        written.set(color=palette.INK, bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.0})
+
+
+def _surface_sheet(surface: Surface) -> Sheet:
+    """Draw a surface in three dimensions."""
+    sheet = Sheet(figsize=(_WIDTH, _SURFACE_HEIGHT), layout="constrained")
+    ax: Any = sheet.add_subplot(projection="3d")
+    ax.set_box_aspect((1.4, 1.2, 0.8), zoom=1.05)
+    colors = color_map()
+    x, y = np.meshgrid(surface.x, surface.y)
+    drawn = ax.plot_surface(
+        x, y, surface.z, cmap=colors, rcount=40, ccount=100, linewidth=0, antialiased=True
+    )
+    for axis, name in zip(surface.axes, "xyz", strict=True):
+        getattr(ax, f"set_{name}label")(axis.label, labelpad=8)
+    ax.view_init(elev=24, azim=-133)
+    sheet.colorbar(drawn, ax=ax, shrink=0.5, pad=0.04, label=surface.axes[2].label)
+    return sheet

@@ -1,0 +1,61 @@
+"""Heat maps and strokes as images."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.colors import LinearSegmentedColormap
+
+from service.drawing import palette
+from service.drawing.figure import HeatMap, Strokes
+
+THIN, THICK = 0.7, 4.0  # points
+
+
+def color_map() -> LinearSegmentedColormap:
+    """Return the ordered palette."""
+    return LinearSegmentedColormap.from_list("cividis_steps", palette.CIVIDIS)
+
+
+def draw_shade(ax: Axes, shade: HeatMap | Strokes) -> None:
+    """Draw values as colors, with their scale beside the panel."""
+    drawn = _cells(ax, shade) if isinstance(shade, HeatMap) else _strokes(ax, shade)
+    figure: Any = ax.get_figure()
+    figure.colorbar(drawn, ax=ax, label=shade.label, pad=0.015, fraction=0.06, aspect=14)
+
+
+def _cells(ax: Axes, shade: HeatMap) -> Any:
+    """Draw a heat map."""
+    z = np.ma.masked_invalid(shade.z)
+    return ax.pcolormesh(
+        _edges(shade.x), _edges(shade.y), z, cmap=color_map(), vmin=0.0, vmax=shade.largest, rasterized=True
+    )
+
+
+def _edges(middles: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """Return the ends of equal cells around their middles; a single one is a unit wide."""
+    step = middles[1] - middles[0] if middles.size > 1 else 1.0
+    return np.concatenate([middles - 0.5 * step, [middles[-1] + 0.5 * step]])
+
+
+def _strokes(ax: Axes, shade: Strokes) -> Any:
+    """Draw strokes, those without a value below the others; the heaviest on top."""
+    order = np.argsort(shade.value, kind="stable")
+    ends = np.stack([shade.x[order], shade.y[order]], axis=-1)
+    value = shade.value[order]
+    bare = value <= 0.0
+    ax.add_collection(LineCollection(list(ends[bare]), colors=palette.MUTED, linewidths=THIN, alpha=0.6))
+    loaded = LineCollection(
+        list(ends[~bare]),
+        cmap=color_map(),
+        linewidths=THIN + (THICK - THIN) * value[~bare] / shade.largest,
+        array=value[~bare],
+        capstyle="butt",
+    )
+    loaded.set_clim(0.0, shade.largest)
+    ax.add_collection(loaded)
+    ax.autoscale_view()
+    return loaded

@@ -1,0 +1,214 @@
+"""Figure descriptions as plotly.js data and layout: plain JSON, made without the plotly package."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from service.drawing import palette
+from service.drawing.figure import (
+    Axis,
+    Figure,
+    Line,
+    Panel,
+    Reference,
+    Surface,
+    legend_names,
+    numbers,
+    repeats_below,
+    unit_of,
+)
+from service.drawing.interactive_shade import color_scale, shade_traces
+
+Json = dict[str, Any]
+
+_PANEL_HEIGHT, _SURFACE_HEIGHT, _BELOW, _BETWEEN = 280, 520, 60, 62  # pixels
+_LABEL = 26  # pixels of an axis label between panels
+_LEGEND_ROW = 22  # pixels
+_NOTE_ROW = 15  # pixels
+_BAND_ALPHA = "33"  # of an error band, after the six digits of its color
+_ROW_CHARACTERS, _HANDLE_CHARACTERS = 120, 7  # of the legend's type: across the page, beside a name
+_FONT = {"family": "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', sans-serif", "size": 14}
+
+
+def plotly_figure(figure: Figure) -> Json:
+    """Return ``{"data": [...], "layout": {...}}`` for ``Plotly.newPlot``."""
+    if isinstance(figure.content, Surface):
+        return {
+            "data": [_surface(figure.content)],
+            "layout": _layout(_SURFACE_HEIGHT) | _scene(figure.content),
+        }
+    return _panels(figure.content)
+
+
+def _panels(panels: tuple[Panel, ...]) -> Json:
+    """Stack panels, each with its own axes, the first on top."""
+    names = legend_names(panels)
+    above = (62 if panels[0].title else 44) + _LEGEND_ROW * (_legend_rows(names) - 1)
+    gaps = [_BETWEEN if repeats_below(panels, i) else _BETWEEN + _LABEL for i in range(len(panels) - 1)]
+    inner = _PANEL_HEIGHT * len(panels) + sum(gaps)
+    layout: Json = _layout(inner + above + _BELOW)
+    layout |= {"shapes": [], "annotations": [], "showlegend": len(names) > 1}
+    layout["margin"] = layout["margin"] | {"t": above}
+    data: list[Json] = []
+    unnamed = set(names)
+    for index, panel in enumerate(panels):
+        suffix = str(index + 1) if index else ""
+        domain = _domain(_PANEL_HEIGHT * index + sum(gaps[:index]), inner)
+        frame = {"domain": domain, "anchor": "x" + suffix}
+        layout["xaxis" + suffix] = _axis(panel.x) | {"anchor": "y" + suffix}
+        if repeats_below(panels, index):
+            layout["xaxis" + suffix] |= {"title": {"text": ""}}
+        layout["yaxis" + suffix] = _axis(panel.y) | frame
+        layout["annotations"] += _panel_title(panel, suffix) + _notes(panel, suffix)
+        if panel.shade is not None:
+            data += shade_traces(panel.shade, suffix, domain)
+        for line in panel.lines:
+            data += _band(line, suffix)
+            data.append(_line(line, suffix, show=line.name in unnamed))
+            unnamed.discard(line.name)
+        for reference in panel.references:
+            _add_reference(layout, reference, panel, suffix)
+    return {"data": data, "layout": layout}
+
+
+def _legend_rows(names: list[str]) -> int:
+    """Rows that the legend takes on a page of full width."""
+    return max(math.ceil(sum(len(name) + _HANDLE_CHARACTERS for name in names) / _ROW_CHARACTERS), 1)
+
+
+def _domain(above: int, inner: int) -> list[float]:
+    """Vertical extent of a panel as a fraction of the plot, with `above` pixels of it over the panel."""
+    top = inner - above
+    return [round((top - _PANEL_HEIGHT) / inner, 6), round(top / inner, 6)]
+
+
+def _layout(height: int) -> Json:
+    """Return what all figures share."""
+    return {
+        "height": height,
+        "font": _FONT | {"color": palette.INK},
+        "margin": {"l": 76, "r": 24, "t": 16, "b": _BELOW},
+        "paper_bgcolor": "#FFFFFF",
+        "plot_bgcolor": "#FFFFFF",
+        "hovermode": "closest",
+        "legend": {"orientation": "h", "x": 0, "y": 1, "yref": "container", "yanchor": "top"},
+    }
+
+
+def _axis(axis: Axis) -> Json:
+    """One axis of a panel."""
+    made: Json = {
+        "title": {"text": axis.label, "standoff": 10, "font": {"size": 14}},
+        "type": axis.scale,
+        "gridcolor": palette.GRID,
+        "linecolor": palette.MUTED,
+        "zeroline": False,
+        "ticks": "outside",
+        "tickcolor": palette.MUTED,
+        "automargin": True,
+    }
+    if axis.scale == "log":
+        made |= {"exponentformat": "power", "dtick": 1}
+    if axis.limits:
+        made["range"] = [float(v) for v in (np.log10(axis.limits) if axis.scale == "log" else axis.limits)]
+    return made
+
+
+def _line(line: Line, suffix: str, show: bool) -> Json:
+    """One curve; curves of one name share a legend entry."""
+    return {
+        "type": "scatter",
+        "mode": "lines" if not line.markers else "lines+markers" if line.width else "markers",
+        "name": line.name,
+        "x": numbers(line.x),
+        "y": numbers(line.y),
+        "xaxis": "x" + suffix,
+        "yaxis": "y" + suffix,
+        "line": {"color": line.color, "dash": line.dash, "width": line.width},
+        "legendgroup": line.name,
+        "showlegend": show,
+    }
+
+
+def _band(line: Line, suffix: str) -> list[Json]:
+    """Shade the error band of a curve, without its own entry in the legend."""
+    if not line.has_band:
+        return []
+    edge: Json = {"type": "scatter", "mode": "lines", "line": {"width": 0}, "hoverinfo": "skip"}
+    edge |= {"x": numbers(line.x), "xaxis": "x" + suffix, "yaxis": "y" + suffix}
+    edge |= {"legendgroup": line.name, "showlegend": False}
+    filled = {"fill": "tonexty", "fillcolor": line.color + _BAND_ALPHA}
+    return [edge | {"y": numbers(line.y - line.band)}, edge | filled | {"y": numbers(line.y + line.band)}]
+
+
+def _panel_title(panel: Panel, suffix: str) -> list[Json]:
+    """Put the panel's title at its upper left, inside the plot's frame of reference."""
+    if not panel.title:
+        return []
+    frame = {"xref": f"x{suffix} domain", "yref": f"y{suffix} domain", "x": 0, "y": 1}
+    anchor = {"xanchor": "left", "yanchor": "bottom", "showarrow": False}
+    return [frame | anchor | {"text": f"<b>{panel.title}</b>"}]
+
+
+def _notes(panel: Panel, suffix: str) -> list[Json]:
+    """Put short texts beside their points; annotations count decades on a logarithmic axis."""
+    notes = []
+    for note in panel.notes:
+        annotation = {"xref": "x" + suffix, "yref": "y" + suffix, "showarrow": False, "text": note.text}
+        for name, axis, value in (("x", panel.x, note.x), ("y", panel.y, note.y)):
+            annotation[name] = float(np.log10(value)) if axis.scale == "log" else value
+        shifts = {"xshift": -4 if note.left else 4, "yshift": _NOTE_ROW * note.row}
+        side = {"xanchor": "right" if note.left else "left", "yanchor": "bottom"}
+        notes.append(annotation | shifts | side | {"font": {"size": 12}})
+    return notes
+
+
+def _add_reference(layout: Json, reference: Reference, panel: Panel, suffix: str) -> None:
+    """Draw a reference line and its label."""
+    upright = reference.direction == "vertical"
+    x, y = "x" + suffix, "y" + suffix
+    along = {"xref": x, "yref": f"{y} domain"} if upright else {"xref": f"{x} domain", "yref": y}
+    ends = ("x0", "x1", "y0", "y1") if upright else ("y0", "y1", "x0", "x1")
+    extent = dict(zip(ends, (reference.value, reference.value, 0, 1), strict=True))
+    stroke = {"line": {"color": palette.MUTED, "dash": "dash", "width": 1}}
+    layer = "below" if panel.shade is None else "above"
+    layout["shapes"].append({"type": "line", "layer": layer} | along | extent | stroke)
+    scale = panel.x.scale if upright else panel.y.scale
+    value = float(np.log10(reference.value)) if scale == "log" else reference.value
+    position = {"x": value, "y": 1} if upright else {"x": reference.at, "y": value}
+    across = "left" if upright else "center" if reference.at == 0.5 else "right"
+    anchor = {"xanchor": across, "yanchor": "top" if upright else "bottom"}
+    text: Json = {"text": reference.label, "showarrow": False, "font": {"size": 12, "color": palette.MUTED}}
+    if panel.shade is not None:
+        text |= {"bgcolor": "rgba(255,255,255,0.8)", "font": {"size": 12, "color": palette.INK}}
+    layout["annotations"].append(along | position | anchor | text)
+
+
+def _surface(surface: Surface) -> Json:
+    """Draw a surface in the ordered palette."""
+    return {
+        "type": "surface",
+        "x": numbers(surface.x),
+        "y": numbers(surface.y),
+        "z": [numbers(row) for row in surface.z],
+        "colorscale": color_scale(),
+        "colorbar": {"title": {"text": unit_of(surface.axes[2].label)}, "thickness": 14, "len": 0.7},
+    }
+
+
+def _scene(surface: Surface) -> Json:
+    """Axes and point of view of a surface."""
+    names = ("xaxis", "yaxis", "zaxis")
+    axes = {
+        name: {
+            "title": {"text": axis.label, "font": {"size": 13}},
+            "type": axis.scale,
+            "gridcolor": palette.GRID,
+        }
+        for name, axis in zip(names, surface.axes, strict=True)
+    }
+    camera = {"eye": {"x": -1.15, "y": -1.4, "z": 0.7}, "center": {"x": 0, "y": 0, "z": -0.12}}
+    return {"scene": axes | {"camera": camera, "aspectratio": {"x": 1.3, "y": 1.1, "z": 0.75}}}

@@ -1,0 +1,98 @@
+"""Heat maps and strokes as plotly.js traces."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from service.drawing import palette
+from service.drawing.figure import HeatMap, Strokes, number, numbers, unit_of
+
+Json = dict[str, Any]
+
+STEPS = 12  # colors of strokes: a curve of plotly has one color
+THIN, THICK = 1.0, 6.0  # pixels
+
+
+def color_scale() -> list[list[Any]]:
+    """Return the ordered palette."""
+    return [[i / (len(palette.CIVIDIS) - 1), color] for i, color in enumerate(palette.CIVIDIS)]
+
+
+def shade_traces(shade: HeatMap | Strokes, suffix: str, domain: list[float]) -> list[Json]:
+    """Return the traces of one panel whose axes carry `suffix` and which spans `domain` of the height."""
+    axes = {"xaxis": "x" + suffix, "yaxis": "y" + suffix, "showlegend": False}
+    traces = [_cells(shade, domain)] if isinstance(shade, HeatMap) else _strokes(shade, domain)
+    return [axes | trace for trace in traces]
+
+
+def _color_bar(label: str, domain: list[float]) -> Json:
+    """Place the scale beside its panel."""
+    middle, length = 0.5 * (domain[0] + domain[1]), domain[1] - domain[0]
+    return {
+        "title": {"text": label, "side": "right", "font": {"size": 14}},
+        "thickness": 14,
+        "len": length,
+        "y": middle,
+        "yanchor": "middle",
+        "x": 1.01,
+    }
+
+
+def _cells(shade: HeatMap, domain: list[float]) -> Json:
+    """Draw a heat map."""
+    return {
+        "type": "heatmap",
+        "x": numbers(shade.x),
+        "y": numbers(shade.y),
+        "z": [numbers(row) for row in shade.z],
+        "zmin": 0.0,
+        "zmax": shade.largest,
+        "hoverongaps": False,
+        "colorscale": color_scale(),
+        "colorbar": _color_bar(shade.label, domain),
+        "hovertemplate": f"x %{{x:.4g}}<br>y %{{y:.4g}}<br>%{{z:.4g}} {unit_of(shade.label)}<extra></extra>",
+    }
+
+
+def _strokes(shade: Strokes, domain: list[float]) -> list[Json]:
+    """Draw strokes in steps of color and width, and a scale for them."""
+    step = np.ceil(STEPS * np.clip(shade.value / shade.largest, 0.0, 1.0)).astype(int)
+    unit = unit_of(shade.label)
+    traces = [_step(shade, step == k, k, unit) for k in range(STEPS + 1) if np.any(step == k)]
+    scale: Json = {
+        "type": "scatter",
+        "mode": "markers",
+        "x": [None],
+        "y": [None],
+        "hoverinfo": "skip",
+        "marker": {
+            "color": [0.0],
+            "cmin": 0.0,
+            "cmax": shade.largest,
+            "colorscale": color_scale(),
+            "showscale": True,
+            "colorbar": _color_bar(shade.label, domain),
+        },
+    }
+    return [*traces, scale]
+
+
+def _step(shade: Strokes, chosen: Any, k: int, unit: str) -> Json:
+    """Draw the strokes of one step, with breaks between them; step 0 carries nothing."""
+    gap = np.full((int(chosen.sum()), 1), np.nan)
+    words = [[f"{number(v, 4)} {unit}"] * 2 + [""] for v in shade.value[chosen]]
+    fraction = (k - 0.5) / STEPS
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "x": numbers(np.hstack([shade.x[chosen], gap]).ravel()),
+        "y": numbers(np.hstack([shade.y[chosen], gap]).ravel()),
+        "text": [word for group in words for word in group],
+        "hoverinfo": "text",
+        "line": {
+            "color": palette.MUTED if k == 0 else palette.cividis(fraction),
+            "width": THIN + (THICK - THIN) * max(fraction, 0.0),
+        },
+    }

@@ -1,0 +1,138 @@
+"""The modes of a run over its speed: whirl modes where gyroscopic terms are on, else those at rest."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from dynamics.results import RunResult
+from service.drawing import palette
+from service.drawing.figure import FloatArray, Table, number
+
+SHOWN_MODES, LEAST_DISTANCE, CIRCULAR = 8, 0.01, 0.1
+CAPTION = {
+    False: "Dashed: natural frequencies about the static equilibrium",
+    True: "Dashed: whirl modes about the static equilibrium, at the speeds of the run",
+}
+_COLOURS = {
+    "natural modes": palette.ORANGE,
+    "forward whirl": palette.SKY,
+    "backward whirl": palette.VERMILLION,
+    "whirl in a plane": palette.ORANGE,
+}
+
+
+@dataclass(frozen=True)
+class ModeLine:
+    """A mode over the blocks of a diagram: its name in the legend, color, and frequency (B,) in Hz."""
+
+    name: str
+    color: str
+    frequency: FloatArray
+
+
+def whirling(run: RunResult) -> bool:
+    """Whether the run has modes over speed."""
+    return "over_speed" in run.modes
+
+
+def mode_lines(run: RunResult, mesh_frequency: FloatArray, top: float) -> list[ModeLine]:
+    """Return the lowest modes below `top` (Hz) that lie apart, over mesh frequencies (B,), Hz."""
+    frequencies, whirls = _frequencies(run, mesh_frequency)
+    kept: list[ModeLine] = []
+    for index in np.argsort(frequencies[:, 0]) if frequencies.size else ():
+        values = frequencies[index]
+        apart = all(np.max(np.abs(line.frequency - values)) > LEAST_DISTANCE * top for line in kept)
+        if 0.0 < values[0] < top and apart:
+            name = _name(whirls[index]) if whirling(run) else "natural modes"
+            kept.append(ModeLine(name, _COLOURS[name], values))
+    return kept[:SHOWN_MODES]
+
+
+def _frequencies(run: RunResult, mesh_frequency: FloatArray) -> tuple[FloatArray, list[float]]:
+    """Frequencies (a, B), and each mode's whirl at the highest speed."""
+    if not whirling(run):
+        rest = np.array(run.modes.get("frequency", ()), dtype=float)
+        return np.repeat(rest[:, None], mesh_frequency.size, axis=1), [0.0] * rest.size
+    over = run.modes["over_speed"]
+    knots = np.array(over["mesh_frequency"][0])
+    lines = [np.interp(mesh_frequency, knots, np.array(row)) for row in over["frequency"]]
+    return np.array(lines).reshape(-1, mesh_frequency.size), [row[-1] for row in over["whirl"]]
+
+
+def _name(whirl: float) -> str:
+    """Name the sense of whirl."""
+    if abs(whirl) < CIRCULAR:
+        return "whirl in a plane"
+    return "forward whirl" if whirl > 0.0 else "backward whirl"
+
+
+def mode_table(run: RunResult, top: float, orders: int) -> Table | None:
+    """List the modes below `top` (Hz) and the mesh orders that meet them within the speeds of the run."""
+    modes = run.modes
+    if not modes:
+        return None
+    low, high = float(run.mesh_frequency[0].min()), float(run.mesh_frequency[0].max())
+    if whirling(run):
+        return _whirl_table(modes["over_speed"], top, orders, (low, high))
+    rows = []
+    facts = zip(modes["frequency"], modes["damping_ratio"], modes["freedom"], strict=True)
+    for frequency, ratio, freedom in facts:
+        if not 0.0 < frequency < top:
+            continue
+        met = [(k, frequency / k) for k in range(1, orders + 1) if low <= frequency / k <= high]
+        rows.append((number(frequency, 4), number(100.0 * ratio, 2), freedom, _met(met)))
+    head = ("natural frequency, Hz", "damping ratio, %", "moves most", "met by mesh order at mesh frequency")
+    return Table("Natural modes in the range of the diagram", head, tuple(rows))
+
+
+def _whirl_table(over: dict[str, Any], top: float, orders: int, ends: tuple[float, float]) -> Table:
+    """List whirl modes at rest and at the highest speed."""
+    mesh = np.array(over["mesh_frequency"][0])
+    rows = []
+    for values, ratio, whirl, freedom in zip(
+        over["frequency"], over["damping_ratio"], over["whirl"], over["freedom"], strict=True
+    ):
+        line = np.array(values)
+        if not 0.0 < line[0] < top:
+            continue
+        met = [
+            (k, where)
+            for k in range(1, orders + 1)
+            if (where := _meeting(mesh, line - k * mesh)) is not None and ends[0] <= where <= ends[1]
+        ]
+        rows.append(
+            (
+                number(float(line[0]), 4),
+                number(float(line[-1]), 4),
+                number(100.0 * ratio[-1], 2),
+                _name(whirl[-1]),
+                freedom,
+                _met(met),
+            )
+        )
+    head = (
+        "at rest, Hz",
+        "at the highest speed, Hz",
+        "damping ratio there, %",
+        "whirl",
+        "moves most",
+        "met by mesh order at mesh frequency",
+    )
+    return Table("Whirl modes in the range of the diagram", head, tuple(rows))
+
+
+def _meeting(mesh: FloatArray, gap: FloatArray) -> float | None:
+    """Mesh frequency at which a mode less an order changes its sign, linear between the speeds."""
+    crossed = np.flatnonzero((gap[:-1] > 0.0) & (gap[1:] <= 0.0))
+    if not crossed.size:
+        return None
+    i = int(crossed[0])
+    return float(mesh[i] + (mesh[i + 1] - mesh[i]) * gap[i] / (gap[i] - gap[i + 1]))
+
+
+def _met(met: list[tuple[int, float]]) -> str:
+    """Write orders and mesh frequencies."""
+    return ", ".join(f"{k} at {number(where, 3)} Hz" for k, where in met) or "none"

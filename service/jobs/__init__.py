@@ -1,1 +1,0 @@
-"""Durable jobs: a table, a scheduler, and one child process per computation."""

@@ -1,0 +1,1 @@
+"""Live answers: workers that keep condensed pairs, and their requests."""

@@ -1,0 +1,86 @@
+"""The live worker process: many short questions, one after the other, with what they share kept in memory.
+
+Started as ``python -m service.live.child DESCRIPTOR MEMORY_MB`` in a session of its own. Orders are
+lines on standard input; when that closes the service is gone, and the whole process group is killed. Answers
+go to DESCRIPTOR. Standard error is the log.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import queue
+import signal
+import sys
+import threading
+import traceback
+import warnings
+from typing import BinaryIO
+
+from host import kill_own_group, lower_priority
+from service.live.order import AnswerHead, LiveOrder, LiveWork
+from service.problems import ServiceError
+from service.worker.memory import hold_to
+
+_NICENESS = 5
+"""Less than that of jobs: somebody waits for the answer."""
+
+
+def main() -> None:
+    """Answer until the service is gone or memory is out."""
+    warnings.filterwarnings(
+        "ignore", message="implausible"
+    )  # answers say it in the caller's fields and units
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # a Ctrl-C in the terminal is the service's to handle
+    lower_priority(_NICENESS)
+    orders: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+    threading.Thread(target=_listen, args=(orders,), daemon=True).start()
+    hold_to(int(sys.argv[2]))
+    with os.fdopen(int(sys.argv[1]), "wb") as channel:
+        while _answer(LiveOrder.from_line(orders.get()), channel):
+            pass
+
+
+def _listen(orders: queue.SimpleQueue[bytes]) -> None:
+    """Take orders from standard input; kill the process group when the service is gone."""
+    with os.fdopen(0, "rb") as stream:
+        for line in stream:
+            orders.put(line)
+    kill_own_group()
+
+
+def _answer(order: LiveOrder, channel: BinaryIO) -> bool:
+    """Answer one order; say whether there is memory for another."""
+    head, body = _worked(order)
+    channel.write(head.line() + body)
+    channel.flush()
+    return head.kind != "memory"
+
+
+def _worked(order: LiveOrder) -> tuple[AnswerHead, bytes]:
+    """Do the work; the text of an exception leaves only if it was raised on purpose."""
+    try:
+        module, _, name = order.entry.partition(":")
+        work: LiveWork = getattr(importlib.import_module(module), name)
+        kind, body = "answer", json.dumps(work(order.inputs), allow_nan=False, separators=(",", ":")).encode()
+    except MemoryError:
+        return AnswerHead("memory"), b""
+    except Exception as error:  # noqa: BLE001 (a defect is logged by its traceback and reported by number)
+        known = error if isinstance(error, ServiceError) else _translated(error)
+        if known is None:
+            traceback.print_exc(file=sys.stderr)
+            return AnswerHead("defect"), b""
+        kind, body = "problem", json.dumps(known.as_json()).encode()
+    return AnswerHead(kind, len(body)), body
+
+
+def _translated(error: Exception) -> ServiceError | None:
+    """Return an error of the libraries as the boundary's."""
+    from service.convert.errors import translated  # noqa: PLC0415 (start-up time; failures are rare)
+
+    return translated(error)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,219 @@
+"""The pool of the live worker: questions that are answered while their caller waits, one at a time.
+
+A question under the name of a caller makes the caller's earlier one obsolete if that has not begun: a slider
+that moves on asks for where it is now. The worker starts with the first question, is replaced when it dies or
+takes too long, and ends when nothing was requested for a while.
+"""
+
+from __future__ import annotations
+
+import threading
+import uuid
+from collections import OrderedDict
+from concurrent.futures import Future
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import structlog
+
+from service.live.order import LiveOrder
+from service.live.worker import LiveWorker, WorkerGone
+from service.problems import LiveUnavailable, QueueFull, Superseded, Unexpected
+from service.settings import LEAST_MEMORY_MB, Settings
+from service.worker.memory import machine_memory_mb
+from service.worker.propagated import propagated
+
+logger = structlog.get_logger(__name__)
+
+
+@dataclass(frozen=True)
+class LiveLimits:
+    """Bounds of the pool.
+
+    Attributes
+    ----------
+    waiting : int
+        Questions that may wait; beyond it they are refused.
+    answer_s : float
+        Longest time for one answer, with the start of the worker.
+    idle_s : float
+        Time without a question after which the worker ends.
+    """
+
+    waiting: int = 16
+    answer_s: float = 60.0
+    idle_s: float = 600.0
+
+
+@dataclass(frozen=True)
+class _Question:
+    """The live request that one caller waits for."""
+
+    order: LiveOrder
+    future: Future[bytes] = field(default_factory=Future)
+
+
+class LivePool:
+    """Passes questions to the one live worker, which it starts, watches and ends."""
+
+    def __init__(
+        self,
+        data_directory: Path,
+        memory_limit_mb: int,
+        limits: LiveLimits | None = None,
+        name: str = "live",
+    ) -> None:
+        self._name, self._log = name, data_directory / "log" / f"{name}.log"
+        self._memory_limit_mb, self._limits = memory_limit_mb, limits or LiveLimits()
+        self._waiting: OrderedDict[str, _Question] = OrderedDict()
+        self._changed = threading.Condition()
+        self._thread: threading.Thread | None = None
+        self._worker: LiveWorker | None = None
+        self._stopping = False
+
+    @property
+    def worker_pid(self) -> int | None:
+        """Process id of the worker, None while there is none."""
+        worker = self._worker
+        return None if worker is None else worker.pid
+
+    def ask(self, order: LiveOrder, caller: str | None = None) -> Future[bytes]:
+        """Enter a question; the future holds the bytes of its JSON answer, or the error.
+
+        Raises
+        ------
+        QueueFull
+            Too many wait.
+        """
+        name = caller or uuid.uuid4().hex
+        question = _Question(order)
+        with self._changed:
+            older = self._waiting.pop(name, None)
+            if older is None and len(self._waiting) >= self._limits.waiting:
+                text = f"{self._limits.waiting} live questions wait already. Ask again soon."
+                raise QueueFull.after(1, text)
+            if older is not None:
+                _refuse(older, Superseded("A later question of the same caller took its place."))
+            self._waiting[name] = question
+            if self._thread is None:
+                self._stopping = False
+                self._thread = threading.Thread(target=self._loop, name=f"{self._name} pool", daemon=True)
+                self._thread.start()
+            self._changed.notify()
+        return question.future
+
+    def stop(self) -> None:
+        """Refuse what waits, end the worker and the thread."""
+        with self._changed:
+            thread, self._stopping = self._thread, True
+            for question in self._waiting.values():
+                _refuse(question, LiveUnavailable("The service stops."))
+            self._waiting.clear()
+            if self._worker is not None:
+                self._worker.end_group()
+            self._changed.notify()
+        if thread is not None:
+            thread.join()
+
+    def _loop(self) -> None:
+        """Answer one question after the other until stopped or idle."""
+        while (question := self._next()) is not None:
+            if question.future.set_running_or_notify_cancel():
+                self._settle(question)
+
+    def _next(self) -> _Question | None:
+        """Return the question that has waited longest; None, the worker ended, when stopped or idle."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._waiting or self._stopping, self._limits.idle_s)
+            if self._waiting:
+                return self._waiting.popitem(last=False)[1]
+            self._end_worker()
+            self._thread = None
+            return None
+
+    def _settle(self, question: _Question) -> None:
+        """Give a question its answer or its error."""
+        try:
+            question.future.set_result(self._answer(question.order))
+        except WorkerGone as gone:
+            logger.warning(f"{self._name} worker gone", late=gone.late, entry=question.order.entry)
+            self._end_worker()
+            question.future.set_exception(LiveUnavailable(self._told(gone)))
+        except Exception as error:  # noqa: BLE001 (whoever asked is told)
+            question.future.set_exception(error)
+
+    def _told(self, gone: WorkerGone) -> str:
+        """Say why there is no answer."""
+        if self._stopping:
+            return "The service stops."
+        if gone.late:
+            late = f"It took longer than {self._limits.answer_s:g} s and was ended. Submit a job instead"
+            return f"{late}; a compliance that was being computed goes on when asked again."
+        return "The live worker ended. Ask again."
+
+    def _answer(self, order: LiveOrder) -> bytes:
+        """Ask the worker, starting it if there is none."""
+        kind, body = self._asked(order)
+        if kind == "problem":
+            raise propagated(body)
+        if kind == "memory":
+            self._end_worker()
+            may_have = f"it may have {self._memory_limit_mb} MB"
+            raise LiveUnavailable(f"The live worker ran out of memory: {may_have}. Submit a job instead.")
+        if kind == "defect":
+            reference = uuid.uuid4().hex[:12]
+            logger.error("live question failed", entry=order.entry, reference=reference, log=str(self._log))
+            raise Unexpected(reference)
+        return body
+
+    def _asked(self, order: LiveOrder) -> tuple[str, bytes]:
+        """Return kind and bytes of the answer; a worker that ended since its last answer is replaced once."""
+        worker = self._ready()
+        try:
+            return worker.ask(order, self._limits.answer_s)
+        except WorkerGone as gone:
+            if gone.late or not worker.has_answered:
+                raise
+        self._end_worker()
+        return self._ready().ask(order, self._limits.answer_s)
+
+    def _ready(self) -> LiveWorker:
+        """Return a worker that runs."""
+        with self._changed:
+            if self._stopping:
+                raise LiveUnavailable("The service stops.")
+            if self._worker is not None and not self._worker.alive:
+                self._end_worker()
+            if self._worker is None:
+                self._log.parent.mkdir(parents=True, exist_ok=True)
+                self._worker = LiveWorker(self._log, self._memory_limit_mb)
+                logger.info(f"{self._name} worker started", pid=self._worker.pid)
+            return self._worker
+
+    def _end_worker(self) -> None:
+        """End the worker, if there is one."""
+        with self._changed:
+            worker, self._worker = self._worker, None
+            if worker is not None:
+                worker.close()
+
+
+def _refuse(question: _Question, error: Exception) -> None:
+    """Tell whoever waits that there will be no answer."""
+    if question.future.set_running_or_notify_cancel():
+        question.future.set_exception(error)
+
+
+def live_pool(settings: Settings) -> LivePool:
+    """Return the pool of a service; its worker may have as much memory as one computation."""
+    return LivePool(settings.data_directory, _share(settings))
+
+
+def reading_pool(settings: Settings) -> LivePool:
+    """Return the pool whose worker reads large texts, so that the service does not."""
+    return LivePool(settings.data_directory, _share(settings), LiveLimits(idle_s=60.0), "reading")
+
+
+def _share(settings: Settings) -> int:
+    """Return the memory of one computation, MB."""
+    return max(settings.memory_limit_mb or machine_memory_mb() // settings.workers, LEAST_MEMORY_MB)

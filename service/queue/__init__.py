@@ -1,0 +1,1 @@
+"""Durable jobs: their table, who claims them, and how they end."""

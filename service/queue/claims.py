@@ -1,0 +1,201 @@
+"""The scheduler's side of the job table: claim, renew, progress, end, put back, take up.
+
+Every step names the lease it works under, so that a computation dismissed or taken up by another scheduler
+meanwhile stays as it is. Leases end by the clock of the database, which all schedulers share.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+import uuid
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from sqlalchemy import ColumnElement, Connection, Engine, Row, select, update
+
+from service.queue.durations import end_computations
+from service.queue.tables import computations
+from service.store import dialect_of, now, reading, retried, writing
+
+DEFAULT_LEASE_S = 60.0
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A computation that is someone's to run.
+
+    Attributes
+    ----------
+    id, process, key : str
+        Of the computation.
+    inputs : dict
+    attempts : int
+        With this one.
+    lease : str
+        Name of the lease it is held under: another for every claim.
+    asked : float
+        When it was claimed, on the holder's monotonic clock, s.
+    """
+
+    id: str
+    process: str
+    key: str
+    inputs: dict[str, Any]
+    attempts: int
+    lease: str
+    asked: float = field(default_factory=time.monotonic, compare=False)
+
+
+class Claims:
+    """Computations as one scheduler sees them.
+
+    Parameters
+    ----------
+    engine : Engine
+    owner : str
+        Name of the scheduler, the same after a restart.
+    lease_s : float
+        How long a claim holds without being renewed.
+    """
+
+    def __init__(self, engine: Engine, owner: str = "", lease_s: float = DEFAULT_LEASE_S) -> None:
+        self._engine, self._owner, self._lease_s = engine, owner, lease_s
+
+    def claim(self) -> Claim | None:
+        """Take the oldest computation that waits."""
+        return self._claim(uuid.uuid4().hex, time.monotonic())
+
+    @retried
+    def _claim(self, lease: str, requested: float) -> Claim | None:
+        """Take a computation under a lease of this name, unless that was done already."""
+        mine = select(computations).where(computations.c.lease == lease)
+        waiting = select(computations).where(computations.c.state == "accepted")
+        oldest = waiting.order_by(computations.c.created).limit(1).with_for_update(skip_locked=True)
+        with writing(self._engine) as connection:
+            row = connection.execute(mine).one_or_none()
+            if row is not None:
+                return _claimed(row, requested)
+            row = connection.execute(oldest).one_or_none()
+            if row is None:
+                return None
+            values = {"attempts": row.attempts + 1, "started": row.started or now(), "state": "running"}
+            values |= {"owner": self._owner, "lease": lease, "leased_until": self._end(connection)}
+            values |= {"message": "Starts.", "updated": now()}
+            connection.execute(update(computations).where(computations.c.id == row.id).values(**values))
+            return _claimed(connection.execute(mine).one(), requested)
+
+    def _end(self, connection: Connection) -> float:
+        """Return when a lease that begins now ends, by the database's clock."""
+        return dialect_of(connection).clock(connection) + self._lease_s
+
+    @retried
+    def renew(self, claims: Collection[Claim]) -> set[str]:
+        """Let leases begin anew; return the computations that are still ours."""
+        ours = _under(claims)
+        with writing(self._engine) as connection:
+            connection.execute(update(computations).where(ours).values(leased_until=self._end(connection)))
+            return set(connection.execute(select(computations.c.id).where(ours)).scalars())
+
+    @retried
+    def held(self, claims: Collection[Claim]) -> set[str]:
+        """Return the computations that are still ours: neither dismissed nor taken up by another."""
+        if not claims:
+            return set()
+        with reading(self._engine) as connection:
+            return set(connection.execute(select(computations.c.id).where(_under(claims))).scalars())
+
+    def progress(self, claim: Claim, stage: str, stage_fraction: float, fraction: float | None) -> None:
+        """Note how far the work is; the fraction of the whole never falls."""
+        values: dict[str, Any] = {
+            "stage": stage,
+            "stage_fraction": stage_fraction,
+            "message": f"Runs: {stage}.",
+        }
+        if fraction is not None:
+            values["fraction"] = fraction
+        self._change(claim, values)
+
+    def succeed(self, claim: Claim) -> None:
+        """End with the result stored."""
+        done = {"state": "successful", "message": "Done.", "fraction": 1.0, "stage_fraction": 1.0}
+        self._end_with(claim, done)
+
+    def fail(
+        self, claim: Claim, message: str, faults: Sequence[dict[str, Any]] = (), reference: str = ""
+    ) -> None:
+        """End without a result."""
+        facts = {"faults": json.dumps(list(faults)), "reference": reference}
+        self._end_with(claim, {"state": "failed", "message": message.replace("\0", "")} | facts)
+
+    def put_back(self, claim: Claim, message: str, *, counted: bool) -> None:
+        """Let it wait again; an attempt that ended through no fault of its own is not counted."""
+        attempts = claim.attempts if counted else claim.attempts - 1
+        values = {"state": "accepted", "message": message, "stage": "", "stage_fraction": 0.0}
+        self._change(claim, values | {"fraction": 0.0, "attempts": attempts})
+
+    @retried
+    def _end_with(self, claim: Claim, values: dict[str, Any]) -> None:
+        """End a computation that runs under the lease of `claim`, and count it."""
+        with writing(self._engine) as connection:
+            end_computations(connection, _under([claim]), values)
+
+    @retried
+    def _change(self, claim: Claim, values: dict[str, Any]) -> None:
+        """Change a computation that runs under the lease of `claim`."""
+        with writing(self._engine) as connection:
+            changed = update(computations).where(_under([claim])).values(updated=now(), **values)
+            connection.execute(changed)
+
+    @retried
+    def left(self) -> list[Claim]:
+        """Return what runs in our name: after a start, what we left behind when we died."""
+        mine = computations.c.owner == self._owner
+        with reading(self._engine) as connection:
+            return _running(connection, mine)
+
+    @retried
+    def take_up(self) -> list[Claim]:
+        """Take over what runs under leases that have ended; it is ours to put back or to fail."""
+        with writing(self._engine) as connection:
+            instant = dialect_of(connection).clock(connection)
+            ended = (computations.c.state == "running", computations.c.leased_until < instant)
+            rows = connection.execute(
+                select(computations.c.id).where(*ended).with_for_update(skip_locked=True)
+            )
+            orphans = list(rows.scalars())
+            lease = {"lease": uuid.uuid4().hex, "owner": self._owner, "leased_until": self._end(connection)}
+            if not orphans:
+                return []
+            chosen = computations.c.id.in_(orphans)
+            connection.execute(update(computations).where(chosen).values(**lease))
+            return _running(connection, chosen)
+
+    @retried
+    def waiting(self) -> set[str]:
+        """Return the computations that wait."""
+        statement = select(computations.c.id).where(computations.c.state == "accepted")
+        with reading(self._engine) as connection:
+            return set(connection.execute(statement).scalars())
+
+
+def _under(claims: Collection[Claim]) -> ColumnElement[bool]:
+    """Condition of the computations that run under the leases of `claims`."""
+    pairs = [(claim.id, claim.lease) for claim in claims]
+    named = computations.c.id.in_([identifier for identifier, _ in pairs])
+    leased = computations.c.lease.in_({lease for _, lease in pairs})
+    return named & leased & (computations.c.state == "running")
+
+
+def _running(connection: Connection, which: ColumnElement[bool]) -> list[Claim]:
+    """Return those that run, as claims under the leases they have."""
+    requested = time.monotonic()
+    rows = connection.execute(select(computations).where(which, computations.c.state == "running")).all()
+    return [_claimed(row, requested) for row in rows]
+
+
+def _claimed(row: Row[Any], requested: float) -> Claim:
+    """Return a row as a claim."""
+    inputs = json.loads(row.inputs)
+    return Claim(row.id, row.process, row.key, inputs, row.attempts, row.lease, requested)

@@ -1,0 +1,81 @@
+"""A job as its caller sees it: a row of the job table with that of the computation it shares."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import Any
+
+from sqlalchemy import select
+
+from service.queue.delivery import Delivery
+from service.queue.tables import computations, jobs
+
+ENDED = ("successful", "failed", "dismissed")
+"""States in which nothing more happens."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """A job with the state of its computation; times are RFC 3339 in UTC, normalized inputs JSON."""
+
+    id: str
+    computation: str
+    process: str
+    key: str
+    status: str
+    message: str
+    stage: str
+    stage_fraction: float
+    fraction: float
+    attempts: int
+    created: str
+    started: str | None
+    finished: str | None
+    updated: str
+    faults: tuple[dict[str, Any], ...]
+    reference: str
+    delivery: Delivery
+    inputs: str
+
+    @property
+    def ended(self) -> bool:
+        """Whether nothing more will happen to it."""
+        return self.status in ENDED
+
+
+def select_jobs() -> Any:
+    """Select jobs with their computations."""
+    return select(
+        jobs.c.id.label("job_id"),
+        jobs.c.created.label("job_created"),
+        jobs.c.dismissed,
+        jobs.c.asked,
+        jobs.c.delivery,
+        computations,
+    ).join(computations, jobs.c.computation_id == computations.c.id)
+
+
+def job_of(row: Any) -> Job:
+    """Return a row as a job: a caller who dismissed sees that, whatever became of the shared work."""
+    dismissed = row.dismissed is not None
+    return Job(
+        id=row.job_id,
+        computation=row.id,
+        process=row.process,
+        key=row.key,
+        status="dismissed" if dismissed else row.state,
+        message="Cancelled." if dismissed else row.message,
+        stage=row.stage,
+        stage_fraction=row.stage_fraction,
+        fraction=row.fraction,
+        attempts=row.attempts,
+        created=row.job_created,
+        started=row.started,
+        finished=row.dismissed or row.finished,
+        updated=row.dismissed or row.updated,
+        faults=tuple(json.loads(row.faults)),
+        reference=row.reference,
+        delivery=Delivery.of(row.delivery),
+        inputs=row.inputs,
+    )

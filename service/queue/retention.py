@@ -1,0 +1,126 @@
+"""Ended jobs that nobody asks for, and what computations leave on disk."""
+
+from __future__ import annotations
+
+import shutil
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+from sqlalchemy import Engine, delete, exists, func, select
+
+from service.queue.tables import computations, jobs
+from service.store import reading, retried, writing
+from service.store.deployment import Deployment
+from service.store.maintenance import (
+    GRACE_S,
+    Leftover,
+    collect_orphans,
+    days_ago,
+    expire_results,
+    purge_quarantine,
+)
+from service.store.quarantine import Quarantine
+from service.store.results import ResultStore
+
+_ENDED = ("successful", "failed", "dismissed")
+_AT_ONCE = 500
+
+
+class Retention:
+    """Removes what a service needs no more; safe beside running ones.
+
+    Parameters
+    ----------
+    engine : Engine
+    store : ResultStore
+    data_directory : Path
+        Whose workspaces and logs are looked at.
+    quarantine_days : float
+        How long a file that is removed from the store can be had back.
+    """
+
+    def __init__(
+        self, engine: Engine, store: ResultStore, data_directory: Path, quarantine_days: float
+    ) -> None:
+        self._engine, self._store, self._data_directory = engine, store, data_directory
+        self._quarantine = Quarantine(store.files, Deployment(engine, store), quarantine_days)
+
+    def collect(self, older_than_days: float | None = None, *, dry_run: bool = False) -> Iterator[Leftover]:
+        """Remove, or only tell, what is left over: files and lines without each other, and what expired."""
+        yield from collect_orphans(self._store, self._quarantine, dry_run=dry_run)
+        yield from self.expire(older_than_days, dry_run=dry_run)
+
+    def expire(self, older_than_days: float | None = None, *, dry_run: bool = False) -> Iterator[Leftover]:
+        """Remove what is dated and old: results, jobs, workspaces, logs, and what was in quarantine.
+
+        Raises
+        ------
+        BadInput
+            The files of the store are another deployment's by now.
+        """
+        self._quarantine.confirm()
+        if older_than_days is not None:
+            yield from expire_results(self._store, self._quarantine, older_than_days, dry_run=dry_run)
+            yield from self._jobs(days_ago(older_than_days), dry_run=dry_run)
+        yield from self._workspaces(dry_run=dry_run)
+        yield from self._logs(dry_run=dry_run)
+        yield from purge_quarantine(self._quarantine, dry_run=dry_run)
+
+    def _jobs(self, since: str, *, dry_run: bool) -> Iterator[Leftover]:
+        """Remove ended jobs that nobody requested since an instant, and the computations of no job."""
+        while names := self._forgotten(since, dry_run=dry_run):
+            yield from (Leftover("not asked for", f"job {name}", 0) for name in names)
+            if dry_run:
+                return
+
+    @retried
+    def _forgotten(self, since: str, *, dry_run: bool) -> list[str]:
+        """Return some of the jobs to remove; remove them unless it is a trial."""
+        ended = computations.c.state.in_(_ENDED) & (computations.c.updated < since)
+        unasked = func.coalesce(jobs.c.asked, jobs.c.created) < since
+        old = select(jobs.c.id).join(computations, jobs.c.computation_id == computations.c.id)
+        with writing(self._engine, in_turn=True) as connection:
+            chosen = old.where(ended, unasked)
+            names = list(connection.execute(chosen if dry_run else chosen.limit(_AT_ONCE)).scalars())
+            if not dry_run:
+                connection.execute(delete(jobs).where(jobs.c.id.in_(names)))
+                needed = exists().where(jobs.c.computation_id == computations.c.id)
+                connection.execute(delete(computations).where(ended, ~needed))
+        return names
+
+    def _workspaces(self, *, dry_run: bool) -> Iterator[Leftover]:
+        """Remove workspaces of computations that neither wait nor run."""
+        live = self._states("accepted", "running")
+        for path in self._old("work"):
+            if path.name not in live:
+                size = sum(file.stat().st_size for file in path.rglob("*") if file.is_file())
+                if not dry_run:
+                    shutil.rmtree(path, ignore_errors=True)
+                yield Leftover("workspace", f"work/{path.name}", size)
+
+    def _logs(self, *, dry_run: bool) -> Iterator[Leftover]:
+        """Remove logs of computations, except of those that live or failed: these are referred to."""
+        kept = self._states("accepted", "running", "failed")
+        for path in self._old("log"):
+            if path.suffix == ".log" and len(path.stem) == _IDENTIFIER and path.stem not in kept:
+                size = path.stat().st_size
+                if not dry_run:
+                    path.unlink(missing_ok=True)
+                yield Leftover("log", f"log/{path.name}", size)
+
+    def _old(self, folder: str) -> list[Path]:
+        """Return what is in a folder of the data directory and not quite new."""
+        directory = self._data_directory / folder
+        paths = sorted(directory.iterdir()) if directory.is_dir() else []
+        return [path for path in paths if time.time() - path.stat().st_mtime > GRACE_S]
+
+    @retried
+    def _states(self, *states: str) -> set[str]:
+        """Return the computations in these states."""
+        with reading(self._engine) as connection:
+            which = select(computations.c.id).where(computations.c.state.in_(states))
+            return set(connection.execute(which).scalars())
+
+
+_IDENTIFIER = 36  # of a computation: other logs are not ours to remove

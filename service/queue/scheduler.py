@@ -1,0 +1,251 @@
+"""The scheduler: one thread that claims computations, minds their workers and settles how they end."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import selectors
+import shutil
+import threading
+import time
+import uuid
+
+import structlog
+
+from host import never_wait_at
+from service.problems import DatabaseUnavailable, ServiceError, StoreUnavailable
+from service.queue.attempt import Attempt, begun
+from service.queue.claims import Claim, Claims
+from service.queue.housekeeper import Housekeeper
+from service.queue.leases import RENEWALS, Leases
+from service.queue.settlement import Ended, Settlement
+from service.settings import Settings
+from service.store import ResultStore
+from service.worker.order import Outcome
+from service.worker.process import Registry
+from service.worker.worker import Worker
+
+_HEARTBEAT_S = 0.5
+_STOPPING_S = 1.0
+"""How long a stop waits for killed workers to be dead."""
+_OUTAGES = (DatabaseUnavailable, StoreUnavailable)
+"""After which what has to be noted is noted later."""
+logger = structlog.get_logger(__name__)
+
+
+class Scheduler:
+    """Runs what waits, at most `settings.workers` at a time; others may run on the same database."""
+
+    def __init__(
+        self,
+        settings: Settings,
+        registry: Registry,
+        claims: Claims,
+        store: ResultStore,
+        housekeeper: Housekeeper | None = None,
+    ) -> None:
+        self._settings, self._registry, self._claims = settings, registry, claims
+        self._housekeeper = housekeeper
+        self._settlement = Settlement(claims, store, settings.attempts)
+        self._leases = Leases(claims, settings.lease_s)
+        self._running: dict[int, Attempt] = {}
+        self._unsettled: list[Ended] = []
+        self._stopping = threading.Event()
+        self._thread: threading.Thread | None = None
+        self._wake_in: int | None = None
+        self._looked_at = 0.0
+
+    def start(self) -> None:
+        """Take up what a dead service left behind, then begin; may be started again after a stop."""
+        for name in ("work", "log"):
+            (self._settings.data_directory / name).mkdir(parents=True, exist_ok=True)
+        for claim in self._claims.left():
+            self._settlement.again_or_fail(claim, "The service ended while it ran.")
+        self._clear(self._claims.waiting())
+        self._selector = selectors.DefaultSelector()
+        self._wake_out, self._wake_in = os.pipe()
+        for end in (self._wake_out, self._wake_in):
+            never_wait_at(end)
+        self._selector.register(self._wake_out, selectors.EVENT_READ)
+        self._stopping.clear()
+        self._leases.start()
+        if self._housekeeper is not None:
+            self._housekeeper.start()
+        self._thread = threading.Thread(target=self._loop, name="scheduler", daemon=True)
+        self._thread.start()
+        self.wake()
+
+    def stop(self) -> None:
+        """Kill the workers, let their computations wait for the next start, and end the thread."""
+        if self._thread is None or self._wake_in is None:
+            return
+        self._stopping.set()
+        self.wake()
+        self._thread.join()
+        if self._housekeeper is not None:
+            self._housekeeper.stop()
+        wake_in, self._wake_in, self._thread = self._wake_in, None, None
+        self._selector.close()
+        os.close(self._wake_out)
+        os.close(wake_in)
+
+    @property
+    def alive(self) -> bool:
+        """Whether the thread runs."""
+        return self._thread is not None and self._thread.is_alive()
+
+    def wake(self) -> None:
+        """Look at the table now: something was submitted or dismissed."""
+        if self._wake_in is not None:
+            with contextlib.suppress(BlockingIOError):  # the pipe is full of wake-ups already
+                os.write(self._wake_in, b".")
+
+    def _loop(self) -> None:
+        """Until stopped: claim, listen, enforce. A turn that fails is logged and the next one tries again."""
+        while not self._stopping.is_set():
+            try:
+                self._turn()
+            except Exception as error:
+                if isinstance(error, _OUTAGES):
+                    logger.warning("scheduler turn failed", error=str(error))
+                else:
+                    logger.exception("scheduler turn failed")
+                self._stopping.wait(_HEARTBEAT_S)
+        self._put_all_back()
+        self._leases.stop()
+
+    def _put_all_back(self) -> None:
+        """End all workers; without a database the leases end by themselves."""
+        running = list(self._running.values())
+        for run in running:
+            run.worker.end_group()
+        deadline = time.monotonic() + _STOPPING_S
+        for run in running:
+            self._kill(run, "stopped", patience_s=max(deadline - time.monotonic(), 0.0))
+        with contextlib.suppress(ServiceError):
+            self._settle_all()
+            for run in running:
+                self._claims.put_back(run.claim, "Waits: the service was stopped.", counted=False)
+
+    def _turn(self) -> None:
+        """Do one round; what needs no database comes first."""
+        self._listen_to_all()
+        self._enforce_deadline()
+        self._settle_all()
+        self._enforce_dismissals()
+        self._take_up()
+        while len(self._running) < self._settings.workers and (claim := self._claims.claim()) is not None:
+            self._begin(claim)
+
+    def _listen_to_all(self) -> None:
+        """Hear workers and wake-ups; wait for one if there is none."""
+        heard = self._selector.select(_HEARTBEAT_S)
+        self._enforce_leases()  # a worker may have ended because its lease did
+        for key, _ in heard:
+            if key.fd == self._wake_out:
+                os.read(self._wake_out, 65536)
+            elif key.fd in self._running:
+                self._listen(self._running[key.fd])
+
+    def _begin(self, claim: Claim) -> None:
+        """Start a worker for a claim."""
+        try:
+            attempt = begun(self._settings, self._registry[claim.process].entry, claim)
+        except Exception:
+            reference = uuid.uuid4().hex[:12]
+            logger.exception("no worker could be started", computation=claim.id, reference=reference)
+            text = f"No worker could be started. The log has the details under {reference}."
+            self._claims.fail(claim, text, reference=reference)
+            return
+        self._leases.hold(claim, attempt.worker.beat)
+        self._running[attempt.worker.channel] = attempt
+        self._selector.register(attempt.worker.channel, selectors.EVENT_READ)
+
+    def _listen(self, running: Attempt) -> None:
+        """Note progress; take the outcome when the channel ends."""
+        steps, ended = running.worker.listen()
+        process = self._registry[running.claim.process]
+        if ended:
+            self._end(running, self._forget(running, keep_lease=True).finish())
+            running.note_end(self._unsettled[-1].outcome.name)
+        elif steps:
+            stage, fraction = steps[-1]
+            self._claims.progress(running.claim, stage, fraction, process.overall(stage, fraction))
+
+    def _end(self, running: Attempt, outcome: Outcome) -> None:
+        """Let an attempt be settled; its lease is held until then."""
+        self._unsettled.append(Ended(running.claim, outcome, running.workspace, running.log))
+
+    def _forget(self, running: Attempt, *, keep_lease: bool = False) -> Worker:
+        """Stop listening to a worker."""
+        self._selector.unregister(running.worker.channel)
+        del self._running[running.worker.channel]
+        if not keep_lease:
+            self._leases.drop(running.claim)
+        return running.worker
+
+    def _kill(
+        self, running: Attempt, why: str, *, keep_lease: bool = False, patience_s: float | None = None
+    ) -> None:
+        """End a worker that has not ended."""
+        self._forget(running, keep_lease=keep_lease).kill(patience_s)
+        running.note_end(why)
+
+    def _settle_all(self) -> None:
+        """Settle what has ended, in its turn; what the database or the store do not take waits for them."""
+        while self._unsettled:
+            ended = self._unsettled[0]
+            try:
+                self._settlement.settle(ended)
+            except _OUTAGES:
+                raise
+            except ServiceError:
+                logger.exception("outcome could not be settled", computation=ended.claim.id)
+            self._unsettled.pop(0)
+            self._leases.drop(ended.claim)
+
+    def _clear(self, waiting: set[str]) -> None:
+        """Remove the workspaces of all but those that wait: they may go on from what is there."""
+        for workspace in (self._settings.data_directory / "work").iterdir():
+            if workspace.name not in waiting:
+                shutil.rmtree(workspace, ignore_errors=True)
+
+    def _take_up(self) -> None:
+        """Take up what dead schedulers hold, now and then."""
+        if time.monotonic() - self._looked_at < self._settings.lease_s / RENEWALS:
+            return
+        for claim in self._claims.take_up():
+            self._settlement.again_or_fail(claim, "The scheduler that ran it was lost.")
+        self._looked_at = time.monotonic()
+
+    def _enforce_leases(self) -> None:
+        """End workers whose lease lapsed: by now another scheduler may run their computations."""
+        for running in list(self._running.values()):
+            if self._leases.lapsed(running.claim):
+                self._kill(running, "lease lost")
+                logger.warning("lease lost", computation=running.claim.id)
+                with contextlib.suppress(ServiceError):
+                    self._claims.put_back(running.claim, "Waits: the database was lost.", counted=False)
+
+    def _enforce_deadline(self) -> None:
+        """End workers that are past the deadline."""
+        for running in list(self._running.values()):
+            if running.worker.age > self._settings.deadline_s:
+                self._kill(running, "too late", keep_lease=True)
+                self._end(running, Outcome(failure=_too_late(self._settings.deadline_s)))
+
+    def _enforce_dismissals(self) -> None:
+        """End workers of computations that nobody wants, or that another scheduler has."""
+        held = self._claims.held([running.claim for running in self._running.values()])
+        for running in list(self._running.values()):
+            if running.claim.id not in held:
+                self._kill(running, "not wanted")
+                shutil.rmtree(running.workspace, ignore_errors=True)
+
+
+def _too_late(deadline_s: float) -> str:
+    """Return the message of a job that took too long."""
+    return (
+        f"The deadline of {deadline_s:g} s (LOA_DEADLINE_S) passed. Ask for a coarser level or fewer "
+        "positions, of a run for a shorter one, or start the service with a later deadline."
+    )

@@ -1,0 +1,235 @@
+"""The callers' side of the job table: submit, look, list, dismiss."""
+
+from __future__ import annotations
+
+import json
+import uuid
+from datetime import UTC, datetime, timedelta
+from typing import Any
+
+from sqlalchemy import ColumnElement, Connection, Engine, func, insert, select, update
+
+from service.problems import NoSuchJob, QueueFull
+from service.queue.caller import ANYBODY, Caller
+from service.queue.delivery import AS_IT_IS, Delivery
+from service.queue.durations import end_computations
+from service.queue.job import ENDED, Job, job_of, select_jobs
+from service.queue.job_filter import EVERY_JOB, JobFilter
+from service.queue.tables import computations, jobs
+from service.store import BRIEF_MS, Mark, behind, instant, now, optional, reading, retried, writing
+from service.store.results import USE_NOTED_EVERY_S
+
+_LOOKED_AT = 500  # at a time, where durations are requested
+
+
+class Submissions:
+    """Jobs as their callers see them."""
+
+    def __init__(self, engine: Engine, queue_limit: int) -> None:
+        self._engine = engine
+        self._queue_limit = queue_limit
+
+    def submit(
+        self,
+        process: str,
+        key: str,
+        inputs: dict[str, Any],
+        *,
+        stored: bool,
+        looked: str | None = None,
+        caller: Caller = ANYBODY,
+        delivery: Delivery = AS_IT_IS,
+    ) -> Job:
+        """Enter a job; equal work that waits, runs or is `stored` already is shared.
+
+        Parameters
+        ----------
+        process, key, inputs
+            What to do; its name.
+        stored : bool
+            Whether the store was seen to have the result.
+        looked : str, optional
+            When that was requested: work that has ended since is shared too, its result being there by now.
+        caller : Caller
+        delivery : Delivery
+            The form in which this job shows its result.
+
+        Raises
+        ------
+        QueueFull
+            New work, and as many computations wait as the limit allows; or the caller has as many
+            unfinished jobs as it may.
+        """
+        identifier = str(uuid.uuid4())
+        ended = _ended_since(key, looked or now(), stored)
+        self._submit(identifier, process, key, inputs, stored, ended, caller, delivery)
+        return self.find(identifier)
+
+    @retried
+    def _submit(
+        self,
+        identifier: str,
+        process: str,
+        key: str,
+        inputs: dict[str, Any],
+        stored: bool,
+        ended: ColumnElement[bool],
+        caller: Caller,
+        delivery: Delivery,
+    ) -> None:
+        """Enter a job of this identifier, unless it is in already."""
+        with writing(self._engine, in_turn=True) as connection:
+            if connection.execute(select(jobs.c.id).where(jobs.c.id == identifier)).first() is not None:
+                return
+            if not stored:
+                _refuse_if_busy(connection, caller)
+            computation = _shared(connection, key, ended)
+            if computation is None:
+                if not stored:
+                    self._refuse_if_full(connection)
+                computation = _enter(connection, process, key, inputs, stored)
+            row = {"id": identifier, "computation_id": computation, "created": now(), "dismissed": None}
+            connection.execute(insert(jobs).values(**row, caller=caller.name, delivery=str(delivery)))
+
+    def _refuse_if_full(self, connection: Connection) -> None:
+        """Raise if the queue is at its limit."""
+        count = select(func.count()).select_from(computations).where(computations.c.state == "accepted")
+        if connection.execute(count).scalar_one() >= self._queue_limit:
+            raise QueueFull(f"{self._queue_limit} computations wait already. Try again in a while.")
+
+    @retried
+    def find(self, identifier: str) -> Job:
+        """Return a job.
+
+        Raises
+        ------
+        NoSuchJob
+            There is none of this identifier.
+        """
+        row = None
+        if _is_identifier(identifier):
+            with reading(self._engine) as connection:
+                row = connection.execute(select_jobs().where(jobs.c.id == identifier)).one_or_none()
+        if row is None:
+            raise NoSuchJob(f"There is no job {identifier!r}.")
+        self._note_use(row)
+        return job_of(row)
+
+    @optional
+    def _note_use(self, row: Any) -> None:
+        """Note, once an hour, that an ended job was requested; nobody waits for that."""
+        before = instant(datetime.now(UTC) - timedelta(seconds=USE_NOTED_EVERY_S))
+        if row.state in ENDED and (row.asked or row.job_created) < before:
+            with writing(self._engine, patience_ms=BRIEF_MS) as connection:
+                connection.execute(update(jobs).where(jobs.c.id == row.job_id).values(asked=now()))
+
+    def page(self, limit: int, job_filter: JobFilter = EVERY_JOB, after: Mark | None = None) -> list[Job]:
+        """Return up to `limit` jobs that are wanted, the newest first, those behind the mark `after`."""
+        matching: list[Job] = []
+        size = _LOOKED_AT if job_filter.asks_duration else limit
+        while True:
+            looked_at = self._newest(size, job_filter, after)
+            matching += [job for job in looked_at if job_filter.lasted(job)]
+            if len(looked_at) < size or len(matching) >= limit:
+                return matching[:limit]
+            after = Mark(looked_at[-1].created, looked_at[-1].id)
+
+    @retried
+    def _newest(self, limit: int, job_filter: JobFilter, after: Mark | None) -> list[Job]:
+        """Return jobs that meet what the database decides."""
+        statement = select_jobs().where(*job_filter.conditions())
+        if after is not None:
+            statement = statement.where(behind(after, jobs.c.created, jobs.c.id))
+        with reading(self._engine) as connection:
+            rows = connection.execute(
+                statement.order_by(jobs.c.created.desc(), jobs.c.id.desc()).limit(limit)
+            )
+            return [job_of(row) for row in rows]
+
+    def dismiss(self, identifier: str) -> Job:
+        """Dismiss one caller's job, unless it ended; the work goes on while other jobs share it."""
+        job = self.find(identifier)
+        if not job.ended:
+            self._dismiss(identifier)
+        return self.find(identifier)
+
+    @retried
+    def _dismiss(self, identifier: str) -> None:
+        """Dismiss a job, and its computation if no other wants that."""
+        with writing(self._engine, in_turn=True) as connection:
+            mine = jobs.c.id == identifier
+            undismissed = jobs.c.dismissed.is_(None)
+            connection.execute(update(jobs).where(mine, undismissed).values(dismissed=now()))
+            owner = select(jobs.c.computation_id).where(mine).scalar_subquery()
+            others = select(jobs.c.id).where(jobs.c.computation_id == owner, jobs.c.dismissed.is_(None))
+            if connection.execute(others.limit(1)).first() is None:
+                _abandon(connection, owner)
+
+    @retried
+    def counts(self) -> dict[str, int]:
+        """Return how many computations are in each state."""
+        statement = select(computations.c.state, func.count()).group_by(computations.c.state)
+        with reading(self._engine) as connection:
+            return {row[0]: row[1] for row in connection.execute(statement)}
+
+
+def _is_identifier(text: str) -> bool:
+    """Whether `text` can be the identifier of a job; a database need not take all others."""
+    try:
+        return str(uuid.UUID(text)) == text
+    except ValueError:
+        return False
+
+
+def _refuse_if_busy(connection: Connection, caller: Caller) -> None:
+    """Raise if a caller has as many unfinished jobs as it may."""
+    if caller.unfinished_jobs is None:
+        return
+    mine = (jobs.c.caller == caller.name, jobs.c.dismissed.is_(None))
+    live = computations.c.state.in_(("accepted", "running"))
+    count = select(func.count()).select_from(jobs.join(computations)).where(*mine, live)
+    if connection.execute(count).scalar_one() >= caller.unfinished_jobs:
+        raise QueueFull(
+            f"Key {caller.name!r} has {caller.unfinished_jobs} unfinished jobs, as many as it may. "
+            "Wait for one of them or dismiss it."
+        )
+
+
+def _ended_since(key: str, looked: str, stored: bool) -> ColumnElement[bool]:
+    """Condition of computations that succeeded and whose result is there: all, or those of late."""
+    succeeded = (computations.c.key == key) & (computations.c.state == "successful")
+    return succeeded if stored else succeeded & (computations.c.finished >= looked)
+
+
+def _shared(connection: Connection, key: str, ended: ColumnElement[bool]) -> str | None:
+    """Return the computation of `key` that waits, runs or has `ended` with a result."""
+    live = (computations.c.key == key) & computations.c.state.in_(("accepted", "running"))
+    statement = select(computations.c.id).where(live | ended)
+    return connection.execute(statement.order_by(computations.c.created.desc()).limit(1)).scalar()
+
+
+def _enter(connection: Connection, process: str, key: str, inputs: dict[str, Any], stored: bool) -> str:
+    """Enter a computation, ended at once if its result is stored."""
+    identifier, instant = str(uuid.uuid4()), now()
+    row: dict[str, Any] = {
+        "id": identifier,
+        "process": process,
+        "key": key,
+        "inputs": json.dumps(inputs),
+        "state": "successful" if stored else "accepted",
+        "message": "Taken from the store." if stored else "Waits for a worker.",
+        "fraction": 1.0 if stored else 0.0,
+        "created": instant,
+        "updated": instant,
+    }
+    if stored:
+        row |= {"started": instant, "finished": instant}
+    connection.execute(insert(computations).values(**row))
+    return identifier
+
+
+def _abandon(connection: Connection, owner: Any) -> None:
+    """End a computation that nobody wants; the scheduler kills its worker."""
+    live = computations.c.state.in_(("accepted", "running"))
+    values = {"state": "dismissed", "message": "Cancelled."}
+    end_computations(connection, (computations.c.id == owner) & live, values)

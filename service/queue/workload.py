@@ -1,0 +1,117 @@
+"""The load as the database knows it: equal for all services on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import UTC, datetime
+
+from sqlalchemy import Connection, Engine, func, select
+
+from service.queue.durations import BOUNDS_S, bound_of
+from service.queue.tables import computations, durations
+from service.store import reading, retried
+from service.store.results import results
+
+
+@dataclass(frozen=True)
+class Durations:
+    """Computations of one process that ended in one way.
+
+    Attributes
+    ----------
+    process, outcome : str
+    buckets : tuple of (str, int)
+        How many took at most so many seconds (the last bound is ``+Inf``): numbers never fall.
+    seconds : float
+        Sum of their durations, from their first start to their end.
+    attempts : int
+        Sum of their attempts.
+    """
+
+    process: str
+    outcome: str
+    buckets: tuple[tuple[str, int], ...]
+    seconds: float
+    attempts: int
+
+
+@dataclass(frozen=True)
+class Workload:
+    """The load at an instant.
+
+    Attributes
+    ----------
+    states : dict
+        Computations by state.
+    oldest_waiting_s : float
+        Age of the oldest computation that waits; 0 if none does.
+    durations : tuple of Durations
+    results : tuple of (str, int, int)
+        Kind, number and bytes.
+    """
+
+    states: dict[str, int]
+    oldest_waiting_s: float
+    durations: tuple[Durations, ...]
+    results: tuple[tuple[str, int, int], ...]
+
+
+class WorkloadReader:
+    """Reads the load.
+
+    Parameters
+    ----------
+    engine : Engine
+    """
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
+
+    @retried
+    def read(self) -> Workload:
+        """Return the load now; raises `DatabaseUnavailable`."""
+        with reading(self._engine) as connection:
+            return Workload(
+                _states(connection),
+                _oldest_waiting_s(connection),
+                _durations(connection),
+                _results(connection),
+            )
+
+
+def _states(connection: Connection) -> dict[str, int]:
+    """Count computations by state."""
+    statement = select(computations.c.state, func.count()).group_by(computations.c.state)
+    return {row[0]: row[1] for row in connection.execute(statement)}
+
+
+def _oldest_waiting_s(connection: Connection) -> float:
+    """Return the age of the oldest computation that waits."""
+    waiting = select(func.min(computations.c.created)).where(computations.c.state == "accepted")
+    oldest = connection.execute(waiting).scalar()
+    if oldest is None:
+        return 0.0
+    return max((datetime.now(UTC) - datetime.fromisoformat(oldest)).total_seconds(), 0.0)
+
+
+def _durations(connection: Connection) -> tuple[Durations, ...]:
+    """Add classes up to histograms."""
+    rows = connection.execute(select(durations).order_by(durations.c.process, durations.c.outcome)).all()
+    names = dict.fromkeys((row.process, row.outcome) for row in rows)
+    histograms = []
+    for process, outcome in names:
+        mine = [row for row in rows if (row.process, row.outcome) == (process, outcome)]
+        bounds = sorted({bound_of(b) for b in BOUNDS_S} | {row.le for row in mine}, key=float)
+        buckets = tuple(
+            (bound, sum(row.number for row in mine if float(row.le) <= float(bound))) for bound in bounds
+        )
+        seconds, attempts = sum(row.seconds for row in mine), sum(row.attempts for row in mine)
+        histograms.append(Durations(process, outcome, buckets, seconds, attempts))
+    return tuple(histograms)
+
+
+def _results(connection: Connection) -> tuple[tuple[str, int, int], ...]:
+    """Add up the results of each kind."""
+    statement = select(results.c.kind, func.count(), func.sum(results.c.size)).group_by(results.c.kind)
+    rows = connection.execute(statement.order_by(results.c.kind))
+    return tuple((row[0], row[1], int(row[2])) for row in rows)

@@ -1,0 +1,171 @@
+"""A run on the page: main results, figures, accuracy, cost, effects and scene."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from dynamics.results import RunResult
+from dynamics.results.contact_state import contact_shares
+from service.drawing.facts import facts, records
+from service.drawing.figure import Figure, Table, number
+from service.drawing.page import Headline, Section
+from service.drawing.sampling import peak_table, sampling_table
+from service.runs.bearing_force import bearing_force
+from service.runs.bearing_spectrum import bearing_spectrum
+from service.runs.campbell import campbell
+from service.runs.dynamic_error import dynamic_error
+from service.runs.dynamic_factor import dynamic_factor_figure
+from service.runs.order_cuts import order_cuts
+from service.runs.planet_sharing import planet_sharing
+from service.runs.run_series import RunSeries, run_series
+from service.runs.sideband_table import sideband_tables
+
+LEAST_PITCHES = 64  # of a run whose orders are shown
+_LEDGER = {"effect": "effect", "part": "part", "on": "simulated", "reason": "because"}
+_ERRORS = {
+    "time_step": ("step error", "nm rms"),
+    "table_interpolation": ("table error", "nm rms"),
+    "left_out_effects": ("neglected effects", "nm at rest"),
+}
+"""Sources of error, and the unit of what they do to transmission errors."""
+
+
+def dynamic_headlines(run: RunResult) -> tuple[Headline, ...]:
+    """Mean mesh force, and the balance of energy."""
+    force = float(np.mean(run.mesh_force[0]))
+    headlines = [
+        Headline("mean mesh force", f"{number(force)} N", f"nominal {number(float(run.nominal_force[0]))} N")
+    ]
+    if run.energy is not None:
+        headlines.append(
+            Headline("energy balance", f"{number(100 * run.energy.relative, 2)} %", "unaccounted for")
+        )
+    return tuple(headlines)
+
+
+def dynamic_alarms(run: RunResult) -> tuple[str, ...]:
+    """Say loudly that a run ended early, or what makes its result wrong."""
+    wrong = [check for check in run.effect_ledger.get("checks", ()) if check.get("valid") is False]
+    alarms = [f"Not valid: {check['assumption']} ({check['part']}); {check['reason']}." for check in wrong]
+    if not run.status.usable:
+        ended = run.status.name.lower().replace("_", " ")
+        alarms.insert(0, f"The run ended early at {run.time[-1]:g} s: {ended}.")
+    return tuple(alarms)
+
+
+def dynamic_results(run: RunResult) -> tuple[Section, ...]:
+    """Show the motion and the forces of one run."""
+    series = run_series(run)
+    text = "" if len(run.mesh) == 1 else f"Of {len(run.mesh)} meshes, {run.mesh[0]} is shown."
+    motion = Section("Dynamic transmission error", text, figures=(dynamic_error(series),))
+    return motion, *_bearings(series), *_orders(run), *_forces(run)
+
+
+def dynamic_making(run: RunResult) -> tuple[Section, ...]:
+    """Show how exact the run is, what it cost, and what it was made from."""
+    accuracy = Section(
+        "Accuracy and cost of the run",
+        tables=(_accuracy(run), sampling_table(run), peak_table(run), _seconds(run)),
+        folded=(facts("Step statistics", run.statistics.to_json()), _energy(run)),
+    )
+    scene = Section("Scene", "As it was resolved, in SI.", folded=(facts("Scene", run.case),))
+    return accuracy, _effects(run), scene
+
+
+def _bearings(series: RunSeries) -> tuple[Section, ...]:
+    """Show the forces on the bearings, where the run kept them."""
+    if not series.bearings:
+        return ()
+    figures: tuple[Figure, ...] = (bearing_force(series), bearing_spectrum(series))
+    return (Section("Bearing forces", figures=figures),)
+
+
+def _orders(run: RunResult) -> tuple[Section, ...]:
+    """Show the mesh orders over the run, for runs long enough to have them."""
+    if np.ptp(np.unwrap(run.position[0], period=1.0)) < LEAST_PITCHES:
+        return ()
+    figures = (campbell(run), order_cuts(run))
+    return (Section("Orders", figures=figures, tables=sideband_tables(run)),)
+
+
+def _forces(run: RunResult) -> tuple[Section, ...]:
+    """Show how dynamic the mesh force is, and how planets share it."""
+    figures = [] if planet_sharing(run) is None else [planet_sharing(run)]
+    if run.nominal_force[0] > 0.0 and np.ptp(np.unwrap(run.position[0], period=1.0)) >= LEAST_PITCHES:
+        figures.insert(0, dynamic_factor_figure(run))
+    shown = tuple(figure for figure in figures if figure is not None)
+    return (Section("Mesh forces", figures=shown, tables=(_contact(run),)),)
+
+
+def _contact(run: RunResult) -> Table:
+    """Tabulate how long which flanks carry."""
+    shares = contact_shares(run)
+    states = tuple(shares[0])
+    rows = tuple(
+        (mesh, *(number(100.0 * share[state], 3) for state in states))
+        for mesh, share in zip(run.mesh, shares, strict=True)
+    )
+    head = (
+        "mesh",
+        *(
+            f"{state} flank{'s' if state == 'both' else ''}, %" if state != "off" else "apart, %"
+            for state in states
+        ),
+    )
+    return Table("Contact state, share of the samples", head, rows)
+
+
+def _effects(run: RunResult) -> Section:
+    """Tabulate what was simulated and what the model leaves out."""
+    entries = run.effect_ledger.get("entries", ())
+    rows = [
+        {title: entry.get(name) for name, title in _LEDGER.items()} | _influence(entry) for entry in entries
+    ]
+    left_out = run.effect_ledger.get("left_out", {})
+    tables = (records("Effect ledger of the run", rows), facts("Not in this model", left_out))
+    return Section("Effects in the run", tables=tables)
+
+
+def _influence(entry: dict[str, Any]) -> dict[str, str]:
+    """Write what an effect moves the mesh by."""
+    return {"influence at the line of action": f"{number(1e6 * float(entry['worth']), 3)} µm"}
+
+
+def _accuracy(run: RunResult) -> Table:
+    """Tabulate status, errors by source and balance."""
+    rows = [("status", run.status.name.lower().replace("_", " "))]
+    for name, (title, unit) in _ERRORS.items():
+        rows += _errors(title, unit, run.receipt.get("error", {}).get(name, {}))
+    if run.energy is not None:
+        rows.append(
+            ("energy unaccounted for, % of what vibration turns over", number(100 * run.energy.relative, 2))
+        )
+        through = run.energy.relative_to_throughput
+        rows.append(("energy unaccounted for, % of the drive's work", number(100 * through, 2)))
+    return Table("Accuracy of the run", ("quantity", "value"), tuple(rows))
+
+
+def _errors(title: str, unit: str, error: dict[str, Any]) -> list[tuple[str, str]]:
+    """Write the error of one source: of transmission errors, and of the worst order of a bearing force."""
+    rows = []
+    if "rms" in error:
+        rows.append((f"{title}, {unit} ({error.get('source', '')})", number(1e9 * float(error["rms"]), 3)))
+    if error.get("bearing_force_orders"):
+        worst = max(float(value) for value in error["bearing_force_orders"])
+        rows.append((f"{title}, N at the worst mesh order of a bearing force", number(worst, 2)))
+    return rows
+
+
+def _seconds(run: RunResult) -> Table:
+    """Tabulate wall time by stage."""
+    stages = run.receipt.get("seconds", {})
+    rows = tuple((name.replace("_", " "), number(float(value), 3)) for name, value in stages.items())
+    return Table("Time of the run by stage", ("stage", "wall s"), rows)
+
+
+def _energy(run: RunResult) -> Table:
+    """Tabulate the energy audit."""
+    audit = {} if run.energy is None else run.energy.to_json()
+    return facts("Energy audit, J", {name: value for name, value in audit.items() if "relative" not in name})

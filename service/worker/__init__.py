@@ -1,0 +1,1 @@
+"""One child process per computation: its order, its limits, its work."""

@@ -1,0 +1,151 @@
+"""The worker process: one order in, progress and one outcome out, then the end.
+
+Started as ``python -m service.worker.child DESCRIPTOR`` in a session of its own. The order is the first line of
+standard input, which then stays open; on it comes a line whenever the lease of the computation was renewed:
+the instant until which. When it closes, the service is gone; when that instant passes, another scheduler may
+take the computation up: then the whole process group (gmsh's process included) is killed. Progress and
+outcome are lines of JSON on DESCRIPTOR. Standard error is the log.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import logging
+import os
+import select
+import signal
+import sys
+import threading
+import time
+import traceback
+import warnings
+from pathlib import Path
+from typing import Any, TextIO
+
+from host import kill_own_group, lock, lower_priority
+from service.problems import ServiceError
+from service.worker.disk import no_space
+from service.worker.memory import hold_to, machine_memory_mb, out_of_memory
+from service.worker.order import Product, WorkOrder
+from service.worker.usage import own_peak_mb
+
+_NICENESS = 10
+_SHORTEST_INTERVAL_S = 0.1
+
+
+def main() -> None:
+    """Run one order."""
+    warnings.filterwarnings(
+        "ignore", message="implausible"
+    )  # results say it in the caller's fields and units
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # a Ctrl-C in the terminal is the service's to handle
+    line, renewals = _first_line()
+    order = WorkOrder.from_line(line)
+    threading.Thread(target=_watch_parent, args=(order.lease_until, renewals), daemon=True).start()
+    _alone_in(order.workspace)
+    lower_priority(_NICENESS)
+    if order.memory_limit_mb is not None:
+        hold_to(order.memory_limit_mb)
+    with os.fdopen(int(sys.argv[1]), "w", buffering=1) as channel:
+        logging.getLogger("service").addHandler(_Telling(channel))
+        _send(channel, _outcome(order, _Reporter(channel)) | {"peak_mb": own_peak_mb()})
+
+
+def _first_line() -> tuple[bytes, bytes]:
+    """Read the order, and what has come behind it of renewed leases."""
+    line = b""
+    while b"\n" not in line:
+        piece = os.read(0, 65536)
+        if not piece:
+            sys.exit("The service closed the channel before it gave an order.")
+        line += piece
+    order, _, rest = line.partition(b"\n")
+    return order, rest
+
+
+def _watch_parent(until: float | None, rest: bytes) -> None:
+    """Kill the process group when the service is gone, or the lease was not renewed in time."""
+    while True:
+        *renewed, rest = rest.split(b"\n")
+        until = float(renewed[-1]) if renewed else until
+        left = None if until is None else max(until - time.monotonic(), 0.0)
+        if not select.select([0], [], [], left)[0] or not (piece := os.read(0, 4096)):
+            kill_own_group()
+        rest += piece
+
+
+def _alone_in(workspace: Path) -> None:
+    """Wait until an earlier worker in the workspace, killed a moment ago, is gone."""
+    lock(os.open(workspace, os.O_RDONLY), wait=True)  # open, and so locked, until we end
+
+
+class _Telling(logging.Handler):
+    """Passes warnings on to the log of the service."""
+
+    def __init__(self, channel: TextIO) -> None:
+        super().__init__(logging.WARNING)
+        self._channel = channel
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Send one."""
+        _send(self._channel, {"warning": record.getMessage()})
+
+
+class _Reporter:
+    """Progress of the work, decimated in time; stages' starts and ends always pass."""
+
+    def __init__(self, channel: TextIO) -> None:
+        self._channel, self._stage, self._sent = channel, "", 0.0
+
+    def __call__(self, stage: str, fraction: float) -> None:
+        """Report the fraction done of a stage."""
+        instant = time.monotonic()
+        recent = instant - self._sent < _SHORTEST_INTERVAL_S
+        if stage == self._stage and recent and fraction < 1.0:
+            return
+        self._stage, self._sent = stage, instant
+        _send(self._channel, {"stage": stage, "fraction": min(max(float(fraction), 0.0), 1.0)})
+
+
+def _send(channel: TextIO, message: dict[str, Any]) -> None:
+    """Write one line."""
+    channel.write(json.dumps(message) + "\n")
+
+
+def _outcome(order: WorkOrder, progress: _Reporter) -> dict[str, Any]:
+    """Do the work; every exception becomes an outcome, its text withheld unless it was raised on purpose."""
+    try:
+        module, _, name = order.entry.partition(":")
+        products: tuple[Product, ...] = getattr(importlib.import_module(module), name)(order, progress)
+        _stamp(order, products)
+    except MemoryError:
+        limit = order.memory_limit_mb
+        return {"failure": out_of_memory(machine_memory_mb() if limit is None else limit)}
+    except Exception as error:  # noqa: BLE001 (a defect is logged by its traceback and reported by number)
+        if isinstance(error, OSError) and (full := no_space(error)):
+            return {"failure": full}
+        known = error if isinstance(error, ServiceError) else _translated(error)
+        if known is None:
+            traceback.print_exc(file=sys.stderr)
+            return {"failure": "unexpected", "unexpected": True}
+        return {"failure": str(known), "faults": [fault.as_json() for fault in known.faults]}
+    return {"products": [{"key": p.key, "kind": p.kind, "file": str(p.file)} for p in products]}
+
+
+def _stamp(order: WorkOrder, products: tuple[Product, ...]) -> None:
+    """Write into the files what is implausible about what they were made from."""
+    from service.worker.product_warnings import stamp_products  # noqa: PLC0415 (start-up time)
+
+    stamp_products(order, products)
+
+
+def _translated(error: Exception) -> ServiceError | None:
+    """Return an error of the libraries as the boundary's."""
+    from service.convert.errors import translated  # noqa: PLC0415 (start-up time; failures are rare)
+
+    return translated(error)
+
+
+if __name__ == "__main__":
+    main()

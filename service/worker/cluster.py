@@ -1,0 +1,88 @@
+"""The Dask cluster of the service: who does the tasks of a job, and who if it is away."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from typing import TypeVar
+
+from fe_contact.analysis.database.compute_database import SOLVER_VERSION
+from fe_contact.compliance.remote_condensation import condense
+from fe_contact.errors import InputError, WorkersLost
+from fe_contact.workers import ByDask, InProcess, OrHere, Remembering, RunCost, Workers, dask_workers
+from service.version import solver_version
+from service.worker.order import WorkOrder
+
+logger = logging.getLogger(__name__)
+
+S = TypeVar("S")
+T = TypeVar("T")
+R = TypeVar("R")
+
+
+@contextmanager
+def table_workers(order: WorkOrder) -> Iterator[Workers]:
+    """Provide the workers of tables: as `cluster_of`, and what they did is kept until the job ends.
+
+    An attempt after one that died finds it in the workspace. Gears are kept in the cache of the service.
+    """
+    with cluster_of(order) as workers:
+        version = f"{solver_version()} {SOLVER_VERSION}"
+        yield Remembering(workers, order.workspace / "tasks", version, passed_on=(condense,))
+
+
+@contextmanager
+def cluster_of(order: WorkOrder) -> Iterator[Workers]:
+    """Provide the workers of a job: those of the cluster, if the service has one, as long as they are there.
+
+    A job does not fail because a cluster is away: it takes longer, and gives the same bits. What the cluster
+    leaves is done in this process; the log says so, with the reason, and the receipt of a table.
+    """
+    if order.dask_scheduler is None:
+        yield InProcess()
+        return
+    cluster = _WhenNeeded(order.dask_scheduler)
+    try:
+        yield OrHere(cluster, _told)
+    finally:
+        for connected in cluster.connected:
+            connected.client.close()  # type: ignore[no-untyped-call]
+
+
+def _told(reason: WorkersLost) -> None:
+    """Say that the rest is done here, in the log of the service."""
+    logger.warning("cluster away, the job goes on here: %s", reason)
+
+
+@dataclass(frozen=True)
+class _WhenNeeded:
+    """A cluster that is connected to by the first run: small jobs have none, and connecting costs a second.
+
+    Attributes
+    ----------
+    scheduler : str
+        Its address.
+    cost : RunCost
+    connected : list of ByDask
+        The cluster, once it is.
+    """
+
+    scheduler: str
+    cost: RunCost = field(default_factory=RunCost, compare=False)
+    connected: list[ByDask] = field(default_factory=list, compare=False)
+
+    def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
+        """Connect if that was not done, and run there."""
+        if not self.connected:
+            self.connected.append(_connected(self.scheduler, self.cost))
+        return self.connected[0].run(function, shared, items)
+
+
+def _connected(scheduler: str, cost: RunCost) -> ByDask:
+    """Connect."""
+    try:
+        return replace(dask_workers(scheduler), cost=cost)
+    except InputError as error:
+        raise WorkersLost(str(error)) from None

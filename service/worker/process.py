@@ -1,0 +1,108 @@
+"""A process that can be run, and the registry of all."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from service.loading import LOADING
+from service.problems import NoSuchProcess
+from service.schemas.model import BoundaryModel
+from service.stages import Stage, overall
+from service.worker.key import content_key
+
+if TYPE_CHECKING:
+    from service.store import ResultStore
+
+Json = dict[str, Any]
+Prepare = Callable[[BoundaryModel, "ResultStore"], Json]
+
+
+@dataclass(frozen=True)
+class Process:
+    """A kind of job.
+
+    Attributes
+    ----------
+    id, title, description, version : str
+        As in OGC API - Processes.
+    inputs : type[BoundaryModel]
+        Model of the execute request's ``inputs``.
+    output : str
+        Name of the one output.
+    kind : str
+        Kind of the result in the store; the client takes the output's name for it, so both are the same.
+    prepare : callable
+        ``prepare(inputs, store)`` checks what a schema cannot (raises `BadInput`) and returns the normalized
+        inputs: what is hashed, stored and handed to the worker. Cheap: it runs in the request.
+    entry : str
+        ``"module:function"`` of the work, called as ``function(order, progress)`` in a process of its own.
+    stages : tuple[Stage, ...]
+        What the work reports, in order.
+    action : str
+        What a button for it says; empty: it is no study.
+    name_result : callable, optional
+        Normalized inputs to the result's content hash, where the work itself defines one; default: the hash
+        of the inputs with the process and the version of the program.
+    """
+
+    id: str
+    title: str
+    description: str
+    version: str
+    inputs: type[BoundaryModel]
+    output: str
+    kind: str
+    prepare: Prepare
+    entry: str
+    stages: tuple[Stage, ...]
+    action: str = ""
+    name_result: Callable[[Json], str] | None = None
+
+    def key(self, inputs: Json) -> str:
+        """Return the content hash of the result of normalized inputs."""
+        if self.name_result is not None:
+            return self.name_result(inputs)
+        return content_key(self.id, self.version, inputs)
+
+    def overall(self, stage: str, fraction: float) -> float | None:
+        """Return the fraction of the whole job, None for a stage that was not declared."""
+        return overall(self.stages, stage, fraction)
+
+
+def on_demand(entry: str) -> Callable[..., Any]:
+    """Return a function that calls ``"module:function"``, imported when it is called first."""
+
+    def call(*arguments: object) -> Any:
+        """Import, then call."""
+        module, _, name = entry.partition(":")
+        with LOADING:
+            function = getattr(import_module(module), name)
+        return function(*arguments)
+
+    return call
+
+
+class Registry(Mapping[str, Process]):
+    """The processes of a service, by id."""
+
+    def __init__(self, *processes: Process) -> None:
+        self._processes = {process.id: process for process in processes}
+
+    def __getitem__(self, name: str) -> Process:
+        try:
+            return self._processes[name]
+        except KeyError:
+            known = ", ".join(self._processes)
+            raise NoSuchProcess(f"There is no process {name!r}. Known: {known}.") from None
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._processes
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._processes)
+
+    def __len__(self) -> int:
+        return len(self._processes)

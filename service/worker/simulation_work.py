@@ -1,0 +1,92 @@
+"""The work of the process simulate, done in a child process of its own."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from dynamics.errors import ResultError
+from dynamics.scene import Scene
+from dynamics.simulation import simulate_to_file
+from fe_contact.ste import SteDatabase
+from service.convert.case import case_json
+from service.convert.plausibility import scene_warnings
+from service.convert.runs import staged
+from service.convert.scene import dynamic_scene
+from service.problems import BadInput, JobFailed
+from service.schemas.scene import MeshInput, SceneInput
+from service.store import stored_results
+from service.worker.analysis_work import database_of
+from service.worker.catalogue import ANALYZE
+from service.worker.order import Product, Progress, WorkOrder
+
+
+def simulate_scene(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
+    """Run a scene; tables come from the store, those missing are computed and kept."""
+    ordered = ordered_scene(order, progress)
+    file = order.workspace / "run.nc"
+    _run(ordered.scene, file, progress)
+    return (*ordered.products, Product(order.key, "run", file, ordered.warnings))
+
+
+@dataclass(frozen=True)
+class OrderedScene:
+    """The scene of an order with its tables, those of them that had to be computed, and its warnings."""
+
+    scene: Scene
+    products: tuple[Product, ...]
+    warnings: list[dict[str, Any]]
+
+
+def ordered_scene(order: WorkOrder, progress: Progress) -> OrderedScene:
+    """Gather or compute the tables of the scene of an order."""
+    inputs = SceneInput.model_validate_json(json.dumps(order.inputs["scene"]))
+    products: list[Product] = []
+    databases: dict[str, SteDatabase] = {}
+    for index, mesh in enumerate(inputs.meshes):
+        databases[mesh.name] = _table(order, index, mesh, products, progress)
+    scene = dynamic_scene(inputs, databases)
+    tables = {name: database.metadata.warnings for name, database in databases.items()}
+    return OrderedScene(scene, tuple(products), scene_warnings(inputs, scene, tables))
+
+
+def _run(scene: Scene, file: Path, progress: Progress) -> None:
+    """Run into the file; go on from where a worker before us died."""
+    try:
+        status = simulate_to_file(scene, file, resume=True, progress=staged(progress))
+    except ResultError:
+        status = simulate_to_file(scene, file, progress=staged(progress))
+    if not status.usable:
+        raise JobFailed(f"The run ended early: {status.name.lower().replace('_', ' ')}.")
+
+
+def _table(
+    order: WorkOrder, index: int, mesh: MeshInput, products: list[Product], progress: Progress
+) -> SteDatabase:
+    """Return the database of a mesh, from the store or computed now; what is computed joins `products`."""
+    store = stored_results(order.data_directory, order.database_url, order.results_url)
+    if mesh.case is None:
+        return SteDatabase.from_netcdf(store.verified(str(mesh.database_hash), "database").path)
+    key = ANALYZE.key({"case": case_json(mesh.case)})
+    if store.find(key, "database") is not None:
+        return SteDatabase.from_netcdf(store.verified(key, "database").path)
+
+    file = order.workspace / f"database_{index}.nc"
+    if file.is_file():  # of a worker that died after it
+        products.append(Product(key, "database", file))
+        return SteDatabase.from_netcdf(file)
+
+    def part(stage: str, fraction: float) -> None:
+        overall = ANALYZE.overall(stage, fraction)
+        if overall is not None:  # a refined pass begins anew, the work does not
+            progress("analysis", overall)
+
+    try:
+        database = database_of(mesh.case, order, part)
+    except BadInput as error:
+        raise error.within(f"meshes[{index}].case") from None
+    database.to_netcdf(file)
+    products.append(Product(key, "database", file))
+    return database

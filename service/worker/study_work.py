@@ -1,0 +1,61 @@
+"""The work of studies, done in a child process of its own."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from service.registry import STUDIES, Study
+from service.schemas import Case
+from service.schemas.result_kinds import suffix_of
+from service.store import ResultStore
+from service.studies.computation import Means
+from service.worker.cluster import cluster_of, table_workers
+from service.worker.order import Product, Progress, WorkOrder
+from service.worker.scene_inputs import check_scene_inputs
+from service.worker.simulation_work import ordered_scene
+
+Json = dict[str, Any]
+Work = Callable[[WorkOrder, Progress], tuple[Product, ...]]
+
+
+def __getattr__(name: str) -> Work:
+    """Return the work of a study by its name: so does the entry of its process."""
+    if name in STUDIES:
+        return partial(_work, STUDIES[name])
+    raise AttributeError(name)
+
+
+def prepare(study: Study, inputs: Any, store: ResultStore) -> Json:
+    """Check the inputs of a study's process; return them as they are hashed and worked on."""
+    name = "case" if getattr(inputs, "case", None) is not None else "scene"
+    fields = study.inputs.model_fields
+    varied = study.inputs.model_construct(**{field: getattr(inputs, field) for field in fields})
+    subject = study.run.narrowed(getattr(inputs, name), varied)
+    if name == "scene":
+        check_scene_inputs(subject, store)
+    study.run.check(subject, varied)
+    return {name: subject.model_dump(mode="json"), **study.run.normalized(subject, varied)}
+
+
+def _work(study: Study, order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
+    """Do a study, into a file."""
+    subject, products, warnings = _subject(order, progress)
+    varied = {name: value for name, value in order.inputs.items() if name not in ("case", "scene")}
+    inputs = study.inputs.model_validate_json(json.dumps(varied))
+    with (table_workers if study.run.resumed else cluster_of)(order) as workers:
+        found = study.run.compute(subject, inputs, Means(order.data_directory, progress, workers))
+    file = order.workspace / f"{study.kind}{suffix_of(study.kind)}"
+    study.run.save(found, file)
+    own = study.run.warnings(found) if warnings is None else warnings
+    return (*products, Product(order.key, study.kind, file, own))
+
+
+def _subject(order: WorkOrder, progress: Progress) -> tuple[Any, tuple[Product, ...], Any]:
+    """Return what is studied, the tables that were computed for it, and its warnings if they are known."""
+    if "scene" in order.inputs:
+        ordered = ordered_scene(order, progress)
+        return ordered.scene, ordered.products, ordered.warnings
+    return Case.model_validate_json(json.dumps(order.inputs["case"])), (), None

@@ -1,0 +1,160 @@
+"""What a run took for granted is checked on its solution, and set right, refused or reported."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from analysis_requests import table_request
+
+from fe_contact import FlankModification, Gear, GearPair, Shaft, analyze
+from fe_contact.analysis import check_request
+from fe_contact.analysis.request import neglected_effects
+from fe_contact.errors import InputError, SolveError
+from fe_contact.options import AnalysisOptions, TableAxes
+from fe_contact.ste import SteDatabase
+from fe_contact.types import Json
+
+GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
+PAIR = GearPair(GEAR, GEAR)
+# tips relieved by more than twice the even deflection, but not by that of a misaligned face
+RELIEVED = replace(GEAR, modification=FlankModification(tip_relief=12e-6, tip_relief_length=0.3e-3))
+CLEAR = GearPair(RELIEVED, RELIEVED)
+SKEWED = {"normal_forces": [1500.0], "misalignments": [150e-6], "level": "draft", "positions": 16}
+TINY = {"torques": [100.0], "misalignments": [0.1e-6], "positions": 16, "tolerance": 0.02}
+
+
+@pytest.fixture(scope="module")
+def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("compliance")
+
+
+def table(pair: GearPair, cache: Path, **asked: object) -> SteDatabase:
+    return analyze(pair, cache=cache, **asked)  # type: ignore[arg-type]
+
+
+def assumption(found: SteDatabase, effect: str) -> Json:
+    """The one entry of an effect."""
+    (entry,) = [one for one in found.metadata.receipt["assumptions"] if one["effect"] == effect]
+    return dict(entry)
+
+
+def same(one: SteDatabase, other: SteDatabase) -> None:
+    """Bit by bit the same numbers."""
+    for name in (
+        "static_transmission_error",
+        "tangent_compliance",
+        "load_share",
+        "support_transmission_error",
+    ):
+        if hasattr(one, name):
+            np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
+
+
+def test_an_automatic_effect_that_is_needed_is_switched_on_and_the_table_repeated(cache: Path) -> None:
+    assert not check_request(CLEAR, *table_request(**SKEWED)).model.corner_contact  # type: ignore[arg-type]
+    repeated, explicit = (
+        table(CLEAR, cache, **SKEWED, effects=effects) for effects in ({}, {"corner_contact": "on"})
+    )
+    same(repeated, explicit)
+    (again,) = repeated.metadata.receipt["repeated"]
+    assert set(again["turned_on"]) == {"corner_contact"}
+    assert again["cpu_seconds"] > 0.0
+    entry = next(one for one in repeated.metadata.effect_ledger if one["name"] == "corner_contact")
+    assert entry["on"]
+    assert entry["choice"] == "auto"
+    assert entry["decision"].startswith("on after a run without it")
+    assert explicit.metadata.receipt["repeated"] == []
+
+
+def test_the_caller_may_have_it_fail_or_only_reported(cache: Path) -> None:
+    with pytest.raises(SolveError, match="tip edges stay clear"):
+        table(CLEAR, cache, **SKEWED, on_violation="fail")
+    reported = table(CLEAR, cache, **SKEWED, on_violation="report")
+    assert assumption(reported, "corner_contact")["holds"] is False
+    same(reported, table(CLEAR, cache, **SKEWED, effects={"corner_contact": "off"}))
+    with pytest.raises(InputError, match="on_violation"):
+        check_request(PAIR, TableAxes(torques=[1.0]), AnalysisOptions(on_violation="shrug"))
+
+
+def test_what_was_switched_off_by_name_stays_off(cache: Path) -> None:
+    asked = {"torques": [100.0], "level": "draft", "positions": 64}
+    without, whole = (table(PAIR, cache, **asked, effects=e) for e in ({"corner_contact": "off"}, {}))
+    assert without.metadata.receipt["repeated"] == []
+    found = assumption(without, "corner_contact")
+    assert found["holds"] is False
+    # a contact left out carries at most until the deflection has fallen to its gap
+    change = np.max(without.static_transmission_error - whole.static_transmission_error)
+    assert 0.0 < change < found["change"] * without.peak_to_peak(torque=100.0).value
+
+
+def test_edges_that_stay_clear_pass(cache: Path) -> None:
+    relieved = replace(GEAR, modification=FlankModification(tip_relief=40e-6, tip_relief_length=0.5e-3))
+    asked = {"torques": [20.0], "level": "draft", "positions": 32}
+    found = table(GearPair(relieved, relieved), cache, **asked)
+    assert assumption(found, "corner_contact")["holds"] is True
+    assert assumption(found, "corner_contact")["change"] == 0.0
+
+
+def test_what_moves_all_teeth_alike_closes_no_edge(cache: Path) -> None:
+    """Shafts give way by more than the relief; tip edges move with them."""
+    shaft = Shaft(length=0.2, diameter=0.03, position=0.1)
+    asked = SKEWED | {"misalignments": [0.0], "effects": {"corner_contact": "off"}}
+    found = table(GearPair(RELIEVED, RELIEVED, shafts=(shaft, shaft)), cache, **asked)
+    assert found.static_transmission_error.min() > 24e-6
+    assert assumption(found, "corner_contact")["holds"] is True
+
+
+def test_an_effect_below_the_tolerance_is_neglected_and_its_model_with_it(cache: Path) -> None:
+    neglected, aligned = (table(PAIR, cache, **(TINY | more)) for more in ({}, {"misalignments": [0.0]}))
+    same(neglected, aligned)
+    assert neglected.metadata.receipt["plan"]["model"] == aligned.metadata.receipt["plan"]["model"]
+    entry = next(one for one in neglected.metadata.effect_ledger if one["name"] == "misalignment")
+    assert not entry["on"]
+    assert entry["called_for"]
+    assert entry["decision"].startswith("left off")
+    assert 0.0 < abs(entry["influence"]["relative_mean"]) < 0.1 * 0.02
+    assert assumption(neglected, "misalignment")["holds"] is True
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        {"tolerance": None, "level": "draft"},
+        {"effects": {"misalignment": "on"}},
+        {"misalignments": [20e-6]},
+        {"misalignments": [3e-6], "tolerance": 2e-3},
+    ],
+)
+def test_it_is_kept_without_a_tolerance_by_name_or_where_it_matters(more: Json) -> None:
+    checked = check_request(PAIR, *table_request(**TINY | more))  # type: ignore[arg-type]
+    assert checked.decided["misalignment"] == "on"
+    assert checked.model.across_face
+
+
+def test_an_effect_neglected_in_error_is_set_right(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = TINY | {"misalignments": [10e-6]}
+    right = table(PAIR, cache, **asked)
+    monkeypatch.setattr(neglected_effects, "SHARE", 1e3)
+    only = dict.fromkeys(("corner_contact", "tooth_coupling", "finite_width"), "on")
+    del only["finite_width"]
+    wrong = table(PAIR, cache, **asked, effects=only)
+    (again,) = wrong.metadata.receipt["repeated"]
+    assert set(again["turned_on"]) == {"misalignment"}
+    same(wrong, right)
+
+
+def test_teeth_that_jam_are_noticed(cache: Path) -> None:
+    # backlash of 60 um: room for a misalignment of 40 um, not for one of 80 um
+    thinner = replace(GEAR, thickness_allowance=32e-6)
+    pair = GearPair(thinner, thinner)
+    asked = {"torques": [20.0], "level": "draft", "positions": 16}
+    free, jammed = (
+        table(pair, cache, **asked, misalignments=[skew]).metadata.receipt["assumptions"]
+        for skew in (40e-6, 80e-6)
+    )
+    coast = [next(one for one in found if one["assumption"].startswith("coast")) for found in (free, jammed)]
+    assert [one["holds"] for one in coast] == [True, False]
+    assert "jam" in coast[1]["reason"]

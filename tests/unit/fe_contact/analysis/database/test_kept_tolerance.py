@@ -1,0 +1,280 @@
+"""A tolerance is kept: plan, run, measure, refine what dominates, and say why it ends."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from analysis_requests import table_request
+
+from fe_contact import AllowedError, Gear, GearPair, SteDatabase, analyze
+from fe_contact.analysis import check_request
+from fe_contact.analysis.database import kept_tolerance
+from fe_contact.analysis.database.compute_database import Computed, compute_database, compute_pass
+from fe_contact.analysis.estimates import curve_error_estimate, error_estimate
+from fe_contact.analysis.request.decided import Decided
+from fe_contact.analysis.request.model_choice import decide
+from fe_contact.errors import MeshError, SolveError
+from fe_contact.options import AnalysisOptions, Run, TableAxes
+from fe_contact.planning import error_model, model_error
+from fe_contact.ste.fields import DIMENSIONS
+
+SPUR = GearPair(*[Gear(20, 2e-3, 12e-3, 20e-3)] * 2, 40e-3)
+PLANE = {"torques": [2.0, 5.0], "model": "plane_strain"}
+"""At low loads, where the mesh is most of the error."""
+
+
+@pytest.fixture(autouse=True)
+def nothing_but_discretization(monkeypatch) -> None:
+    """No refinement mends what the method and plane strain leave out: it would end every run here."""
+    for name in ("FLOOR", "LARGE_DISPLACEMENT", "TILT"):
+        monkeypatch.setattr(model_error, name, (0.0, 0.0, 0.0))
+    for module in (error_model, error_estimate, curve_error_estimate):
+        monkeypatch.setattr(module, "LEFT_OUT", 0.0)
+
+
+@pytest.fixture
+def from_draft(monkeypatch) -> None:
+    """Begin with the draft, whatever is expected of it: what follows is about what is measured."""
+
+    def drafted(checked, cache=None, **_) -> Decided:
+        first = decide(checked, cache)
+        return first.refined("draft", first.mesh.slices, first.plan.nodes, "the coarsest")
+
+    monkeypatch.setattr(kept_tolerance, "decide", drafted)
+
+
+def receipt(table: SteDatabase) -> dict:
+    return table.metadata.receipt
+
+
+def same(one: SteDatabase, other: SteDatabase) -> bool:
+    """Whether all arrays agree to the last bit."""
+    names = [*DIMENSIONS, "error_estimate", "curve_error"]
+    return all(
+        np.array_equal(getattr(one, name), getattr(other, name), equal_nan=True)
+        for name in dict.fromkeys(names)
+    )
+
+
+def test_a_loose_tolerance_runs_one_pass_and_gives_the_table_of_its_level():
+    asked = PLANE | {"effects": {"corner_contact": "on"}}  # else the tolerance neglects it
+    table = analyze(SPUR, tolerance=AllowedError(0.5, 0.0), **asked)
+    (only,) = receipt(table)["passes"]
+    assert (only["refined"], only["kept"]) == ([], True)
+    assert receipt(table)["tolerance"]["reason"] == "met"
+    assert same(table, analyze(SPUR, level=only["level"], **asked))
+
+
+def test_a_tight_one_refines_until_it_is_met(from_draft, tmp_path):
+    drafts: list[tuple[SteDatabase, str]] = []
+    tight = AllowedError(0.001, 0.0)
+    table = analyze(
+        SPUR, tolerance=tight, **PLANE, cache=tmp_path, on_draft=lambda t, words: drafts.append((t, words))
+    )
+    passes = receipt(table)["passes"]
+    assert receipt(table)["tolerance"]["met"] is True
+    assert [one["level"] for one in passes] == ["draft", "standard"]
+    assert passes[1]["refined"] == ["mesh draft -> standard"]
+    assert "discretisation takes" in passes[1]["because"]
+    assert [one["kept"] for one in passes] == [False, True]
+    ((draft, words),) = drafts
+    assert words == "mesh draft -> standard"
+    assert receipt(draft)["tolerance"]["used"] == passes[0]["used"] > 1.0
+    exact = decide(check_request(SPUR, *table_request(tolerance=tight, **PLANE))).refined(
+        "standard", 1, table_nodes(tight), "as refined"
+    )
+    assert same(table, compute_database(exact.checked, {}, Run(cache=tmp_path), exact))
+
+
+def table_nodes(allowed: AllowedError):
+    return decide(check_request(SPUR, *table_request(tolerance=allowed, **PLANE))).plan.nodes
+
+
+@pytest.mark.parametrize("tolerance", [0.002, 0.001, 0.0005, 0.0001])
+def test_what_is_used_falls_from_pass_to_pass_and_met_is_what_the_table_states(
+    from_draft, tolerance, tmp_path
+):
+    allowed = AllowedError(tolerance, 0.0)
+    table = analyze(SPUR, tolerance=allowed, **PLANE, cache=tmp_path)
+    used = [one["used"] for one in receipt(table)["passes"]]
+    assert used == sorted(used, reverse=True)
+    assert len(set(used)) == len(used) <= kept_tolerance.MOST_PASSES
+    stated = [
+        getattr(table, name)(torque=torque)
+        for torque in PLANE["torques"]
+        for name in ("mean", "peak_to_peak")
+    ]
+    worst = max(one.error / float(allowed.of(np.array(one.value))) for one in stated)
+    assert receipt(table)["tolerance"]["used"] == pytest.approx(worst, rel=1e-3)
+    assert receipt(table)["tolerance"]["met"] is (worst <= 1.0)
+    assert (receipt(table)["tolerance"]["reason"] == "met") is (worst <= 1.0)
+
+
+def test_a_small_helical_draft_is_refined(from_draft):
+    gear = Gear(18, 2e-3, 12e-3, 20e-3, helix_angle=0.3)
+    pair = GearPair(gear, dataclasses.replace(gear, helix_angle=-0.3), 36e-3 / math.cos(0.3))
+    table = analyze(pair, torques=[50.0], tolerance=AllowedError(0.02, 0.0), positions=32)
+    first, second = receipt(table)["passes"]
+    assert first["level"] == "draft"
+    assert second["level"] == "standard"
+    assert second["refined"] == ["mesh draft -> standard", "slices 12 -> 15"]
+    assert second["used"] < 1.0 < first["used"]
+    assert receipt(table)["tolerance"]["met"] is True
+
+
+def test_a_time_budget_ends_refinement_and_keeps_what_is_there(from_draft):
+    """The draft is kept, its tolerance is not met, and the reason names the refinement and its time."""
+    asked = PLANE | {"tolerance": AllowedError(0.001, 0.0)}
+    table = analyze(SPUR, time_budget=1e-3, **asked)
+    assert receipt(table)["tolerance"]["met"] is False
+    assert [one["level"] for one in receipt(table)["passes"]] == ["draft"]
+    assert "mesh draft -> standard is predicted to take" in receipt(table)["tolerance"]["reason"]
+    assert "of 0.001 are left" in receipt(table)["tolerance"]["reason"]
+
+
+def test_a_time_budget_that_is_not_used_up_changes_nothing(from_draft):
+    asked = PLANE | {"tolerance": AllowedError(0.001, 0.0)}
+    assert same(analyze(SPUR, time_budget=1e5, **asked), analyze(SPUR, **asked))
+
+
+def test_the_first_pass_is_the_most_exact_that_fits_into_the_time():
+    asked = {"torques": [50.0], "model": "3d", "tolerance": AllowedError(0.002, 0.0)}
+    free = decide(check_request(SPUR, *table_request(**asked)))
+    draft = decide(check_request(SPUR, TableAxes(torques=[50.0]), AnalysisOptions(model="3d", level="draft")))
+    between = math.sqrt(free.predicted(None).cpu_seconds * draft.predicted(None).cpu_seconds)
+    bound = decide(check_request(SPUR, *table_request(time_budget=between, **asked)))
+    assert free.mesh.level != "draft"
+    assert (bound.mesh.met, bound.predicted(None).cpu_seconds <= between) == (False, True)
+    assert f"{free.mesh.option.name} is predicted to take" in bound.mesh.reason
+    assert bound.checked.request.options.tolerance == asked["tolerance"]
+
+
+def test_the_cost_is_that_of_all_passes(from_draft):
+    table = analyze(SPUR, tolerance=AllowedError(0.001, 0.0), **PLANE)
+    passes, cost = receipt(table)["passes"], receipt(table)
+    assert len(passes) == 2
+    assert cost["cpu_seconds"] == pytest.approx(sum(one["cpu_seconds"] for one in passes))
+    assert cost["cpu_seconds"] == pytest.approx(
+        sum(stage["cpu_seconds"] for stage in cost["stages"].values())
+    )
+    assert all(one["cpu_seconds"] > 0.0 for one in passes)
+
+
+def test_refining_is_deterministic(from_draft):
+    """With and without a cache, and however long it takes."""
+    one, other = (analyze(SPUR, tolerance=AllowedError(0.001, 0.0), **PLANE) for _ in range(2))
+    assert same(one, other)
+    told = [[dict(p, cpu_seconds=0.0) for p in receipt(table)["passes"]] for table in (one, other)]
+    assert told[0] == told[1]
+
+
+def test_passes_share_condensed_bodies(from_draft, monkeypatch):
+    """Positions that are searched more closely need no new bodies, without a cache either."""
+    computed: list[list[str]] = []
+
+    def counted(checked, case, run, decided, clock) -> Computed:
+        done = compute_pass(checked, case, run, decided, clock)
+        computed.append(sorted(file.name for file in run.cache.glob("compliance-*")))
+        return done
+
+    monkeypatch.setattr(kept_tolerance, "compute_pass", counted)
+    refine_positions(monkeypatch)
+    analyze(SPUR, tolerance=AllowedError(0.001, 0.0), **PLANE)
+    assert len(computed) > 1
+    assert all(names == computed[0] != [] for names in computed)
+
+
+def refine_positions(monkeypatch) -> None:
+    """Let the next pass search its positions more closely, whatever dominates."""
+
+    def closer(decided, _shares):
+        plan = decided.plan
+        finer = decided.refined("draft", 1, dataclasses.replace(plan.nodes, tolerance=1e-4), "closer")
+        return kept_tolerance.Refinement(finer, "position", ("positions",), 0.5)
+
+    monkeypatch.setattr(kept_tolerance, "next_pass", closer)
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        (SolveError("no convergence"), "no convergence"),
+        (MeshError("no acceptable mesh"), "no acceptable mesh"),
+        (MemoryError(), "out of memory"),
+        (KeyboardInterrupt(), "interrupted"),
+    ],
+)
+def test_a_pass_that_fails_or_is_interrupted_keeps_the_table_before_it(from_draft, monkeypatch, error, said):
+    fail_from(monkeypatch, 2, error)
+    drafts: list[SteDatabase] = []
+    allowed = AllowedError(0.001, 0.0)
+    table = analyze(SPUR, tolerance=allowed, **PLANE, on_draft=lambda draft, _: drafts.append(draft))
+    first, second = receipt(table)["passes"]
+    assert (first["level"], first["kept"], second["kept"]) == ("draft", True, False)
+    assert second["failure"] == said
+    assert receipt(table)["tolerance"]["met"] is False
+    assert receipt(table)["tolerance"]["reason"].endswith(f"failed: {said}")
+    assert "pass 2" in receipt(table)["tolerance"]["reason"]
+    assert same(table, drafts[0])
+
+
+def fail_from(monkeypatch, number: int, error: BaseException) -> None:
+    """Let a pass and those after it fail."""
+    begun: list[int] = []
+
+    def failing(*arguments, **more) -> Computed:
+        begun.append(1)
+        if len(begun) >= number:
+            raise error
+        return compute_pass(*arguments, **more)
+
+    monkeypatch.setattr(kept_tolerance, "compute_pass", failing)
+
+
+def test_the_first_pass_may_fail_as_ever(monkeypatch):
+    fail_from(monkeypatch, 1, SolveError("no convergence"))
+    with pytest.raises(SolveError, match="no convergence"):
+        analyze(SPUR, tolerance=0.01, **PLANE)
+
+
+def test_a_pass_that_does_not_lower_the_errors_ends_the_search(from_draft, monkeypatch):
+    refine_positions(monkeypatch)  # fixed ones, so that nothing changes
+    table = analyze(SPUR, tolerance=AllowedError(0.001, 0.0), **PLANE, positions=64)
+    first, second = receipt(table)["passes"]
+    assert first["used"] == second["used"]
+    assert (first["kept"], second["kept"]) == (True, False)
+    assert "did not lower the measured errors" in receipt(table)["tolerance"]["reason"]
+
+
+def test_a_level_or_a_minimal_receipt_refines_nothing():
+    for asked in ({"level": "draft"}, {"tolerance": AllowedError(0.001, 0.0), "receipt": "minimal"}):
+        assert "passes" not in receipt(analyze(SPUR, **asked, **PLANE))
+
+
+def test_loads_between_which_a_table_misses_the_tolerance_are_named(tmp_path: Path):
+    """The axes are the caller's: the receipt says where they want another node."""
+    wide, dense = (
+        analyze(SPUR, tolerance=0.01, **(PLANE | {"torques": torques}), cache=tmp_path)
+        for torques in ([1.0, 80.0], [40.0, 50.0])
+    )
+    (beyond,) = receipt(wide)["tolerance"]["between_nodes"]
+    assert beyond["axis"] == "force"
+    assert beyond["between"] == wide.force.tolist()
+    assert beyond["used"] > 1.0
+    assert wide.force.size == 2
+    assert receipt(wide)["tolerance"]["met"] is True  # of the loads that were requested
+    assert receipt(dense)["tolerance"]["between_nodes"] == []
+
+
+def test_what_the_method_leaves_out_ends_a_run_with_the_reason(monkeypatch):
+    """No mesh is begun for a tolerance below what full contact has proved."""
+    monkeypatch.undo()
+    table = analyze(SPUR, tolerance=AllowedError(0.0005, 0.0), torques=[5.0], level=None)
+    kept = receipt(table)["tolerance"]
+    assert kept["met"] is False
+    assert "mended by no refinement" in kept["reason"]
+    assert len(receipt(table)["passes"]) == 1

@@ -1,0 +1,169 @@
+"""Tables of pairs with pitch deviations: their period, positions, cost and error."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from analysis_requests import table_request
+
+from fe_contact import Gear, GearPair, PitchDeviation, analyze, flank_results
+from fe_contact.analysis import check_request
+from fe_contact.analysis.estimates.position_errors import measured_nodes
+from fe_contact.analysis.tables.position_nodes import adaptive_nodes
+from fe_contact.analysis.tables.table_nodes import assessed_windows
+from fe_contact.effects import EFFECTS, ContactScene, compose
+from fe_contact.errors import InputError
+from fe_contact.options import AnalysisOptions, OperatingPoint, Run, TableAxes
+from fe_contact.planning import NodeRule
+
+TORQUES = (30.0, 100.0)
+RNG = np.random.default_rng(21)
+
+
+def gear(teeth, deviation=()):
+    return Gear(
+        teeth=teeth,
+        normal_module=4e-3,
+        face_width=25e-3,
+        bore_diameter=40e-3,
+        pitch_deviation=PitchDeviation(tuple(deviation)),
+    )
+
+
+@pytest.fixture(scope="module")
+def cache(tmp_path_factory):
+    return tmp_path_factory.mktemp("compliance")
+
+
+@pytest.fixture(scope="module")
+def pair():
+    return GearPair(gear(20, RNG.normal(0.0, 3e-6, 20)), gear(23))
+
+
+@pytest.fixture(scope="module")
+def table(pair, cache):
+    return analyze(pair, torques=TORQUES, level="draft", cache=cache)
+
+
+def test_one_erring_gear_has_the_period_of_its_teeth(table):
+    assert table.period == 20
+    assert table.position.size % 20 == 0
+    assert table.metadata.receipt["predicted"]["pitches"] == 20
+    per_pitch = table.position.reshape(20, -1)
+    assert per_pitch - np.arange(20)[:, None] == pytest.approx(np.tile(per_pitch[0], (20, 1)), abs=1e-14)
+
+
+def test_the_table_is_right_between_its_positions_within_its_own_estimate(pair, table, cache):
+    """At positions all over the period, solved one by one as flank results."""
+    position = RNG.uniform(0.0, 20.0, 400)
+    exact = flank_results(
+        pair, OperatingPoint(torque=100.0), AnalysisOptions(level="draft"), Run(cache=cache), at=position
+    ).deflection
+    error = np.abs(table.ste(position, pair.normal_force(100.0)) - exact)
+    stated = table.metadata.receipt["error_by_source"]["table_interpolation_m"][1]
+    assert np.ptp(exact) > 5e-6
+    assert error.max() < 0.002 * np.ptp(exact)
+    assert np.sqrt(np.mean(error**2)) < 0.0002 * np.ptp(exact)
+    assert np.mean(error <= stated) > 0.99
+
+
+def test_the_curve_of_a_long_period_shows_orders_between_the_mesh_harmonics(cache):
+    """An eccentric pinion is its order 1, and leaves the mesh harmonic as it is."""
+    eccentric = GearPair(gear(20, 5e-6 * np.sin(2 * np.pi * np.arange(20) / 20 + 0.4)), gear(23))
+    options = {"torques": TORQUES, "level": "draft", "positions": 32, "cache": cache}
+    table, perfect = (analyze(p, **options) for p in (eccentric, GearPair(gear(20), gear(23))))
+    spectrum = table.spectrum(torque=100.0)
+    assert spectrum.pinion_order[:3] == pytest.approx([1.0, 2.0, 3.0])
+    assert spectrum.wheel_order[0] == pytest.approx(23 / 20)
+    assert spectrum.amplitude[0] == pytest.approx(5e-6 * np.cos(np.radians(20.0)), rel=0.05)
+    assert spectrum.amplitude[1:19].max() < 0.05 * spectrum.amplitude[0]
+    assert float(table.harmonics(torque=100.0)[0]) == pytest.approx(
+        float(perfect.harmonics(torque=100.0)[0]), rel=0.05
+    )
+
+
+def test_load_shares_follow_the_early_tooth(cache):
+    """A tooth 20 um early carries all, wherever it is in mesh; pairs count from each whole pitch."""
+    early = GearPair(gear(20, np.where(np.arange(20) == 4, 20e-6, 0.0)), gear(23))
+    table = analyze(early, torques=[30.0], level="draft", positions=16, cache=cache)
+    curve = table.curve(torque=30.0, at=[3.8, 4.0, 4.2])
+    pair = [int(curve.pair[k]) for k in curve.load_share.argmax(axis=1)]
+    assert pair == [-1, 0, 0]
+    assert curve.load_share.max(axis=1) == pytest.approx(1.0, abs=1e-9)
+
+
+def test_both_gears_repeat_after_the_hunting_cycle_or_the_pitches_asked_for(cache):
+    both = GearPair(gear(20, RNG.normal(0.0, 3e-6, 20)), gear(22, RNG.normal(0.0, 3e-6, 22)))
+    options = {"torques": TORQUES, "level": "draft", "positions": 8, "cache": cache}
+    cycle, part = analyze(both, **options), analyze(both, **options, pitches=30)
+    assert (cycle.period, part.period) == (220, 30)
+    # away from its seam the part is the cycle
+    same = slice(8, 28 * 8)
+    assert np.array_equal(
+        part.static_transmission_error[same], cycle.static_transmission_error[: 30 * 8][same]
+    )
+    assert part.metadata.content_hash != cycle.metadata.content_hash
+
+
+@pytest.mark.parametrize(
+    ("teeth", "options", "message"),
+    [
+        ((97, 101), {}, r"pitches = 9797: must be at most 2343 .* CPU s and 4.4 GB"),
+        ((97, 101), {"positions": 8, "pitches": 20_000}, "at most 18750 with 8 positions"),
+        ((97, 101), {"pitches": 0}, "an integer from 1"),
+        ((97, 101), {"pitches": 2.5}, "an integer from 1"),
+        (None, {"pitches": 20}, "left out where all teeth are alike"),
+    ],
+)
+def test_periods_that_cannot_be_tabulated_are_refused_by_name(teeth, options, message):
+    pair = GearPair(gear(97), gear(101))
+    if teeth:
+        pair = GearPair(gear(97, RNG.normal(0, 1e-6, 97)), gear(101, RNG.normal(0, 1e-6, 101)))
+    with pytest.raises(InputError, match=message) as refusal:
+        check_request(pair, *table_request(torques=TORQUES, **options))
+    assert refusal.value.field == "pitches"
+    assert check_request(pair, TableAxes(torques=TORQUES), whole_table=False).cycle is None
+
+
+def test_a_misalignment_axis_shortens_the_longest_period():
+    pair = GearPair(gear(97, RNG.normal(0, 1e-6, 97)), gear(101))
+    options = {"torques": TORQUES, "misalignments": np.arange(40) * 1e-6}
+    with pytest.raises(InputError, match="40 alignments"):
+        check_request(pair, *table_request(**options))
+    assert check_request(pair, *table_request(positions=8, **options)).cycle.alignments == 40
+
+
+def test_the_assessed_pitches_span_the_differences_between_neighbors():
+    error = np.where(np.arange(20) == 7, 9e-6, 0.0) + np.where(np.arange(20) > 12, 1e-6, 0.0)
+    scene = ContactScene(GearPair(gear(20, error), gear(23)), np.array([100.0]), EFFECTS)
+    windows = assessed_windows(compose(scene, {})[0], 3)
+    assert all(np.array_equal(np.diff(window), [1, 1]) for window in windows)
+    smooth, _, rough = (int(window[1]) for window in windows)
+    assert smooth not in (0, 6, 7, 8, 12, 13, 19)
+    assert rough in (6, 7, 8)
+    assert len(assessed_windows(compose(scene, {})[0], 100)) == 20
+    plain = replace(scene, pair=GearPair(gear(20), gear(23)))
+    assert [window.tolist() for window in assessed_windows(compose(plain, {})[0], 3)] == [[0]]
+
+
+def steps(position):
+    """Three pitches of a curve that rises by 1 over the middle one, kinked at no grid's place."""
+    pitches = np.arange(-1, 2)[:, None] + position
+    return np.interp(pitches, [-1.0, 0.213, 0.741, 2.0], [0.0, 0.0, 1.0, 1.0])[..., None]
+
+
+def test_nodes_of_one_pitch_among_others_join_its_neighbors():
+    """A pitch that ends higher than it starts is no jump, for the next one goes on from there."""
+    nodes = adaptive_nodes(NodeRule(16, 0.002, 768), steps)
+    assert nodes.position.size < 200
+    assert nodes.error.max() <= 0.002
+    spacing = np.diff(nodes.position, append=1.0)
+    kinks = np.abs(nodes.position[:, None] - [0.213, 0.741]).min(axis=1)
+    assert spacing[kinks < 0.05].min() < 0.15 * spacing[kinks > 0.15].min()
+    even = np.arange(64) / 64
+    fixed, _ = measured_nodes(
+        even, steps(even).reshape(192, 1), lambda x: steps(x).reshape(-1, 1), 3, NodeRule(16, 0.002, 768)
+    )
+    assert fixed.error[[64, 127]].max() < 1e-12

@@ -1,0 +1,172 @@
+"""Laws of the estimated errors of mean, peak-to-peak and harmonics."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from fe_contact import FlankModification, Gear, GearPair, analyze
+from fe_contact.analysis import check_request
+from fe_contact.analysis.database.compute_database import compute_database
+from fe_contact.analysis.estimates.curve_error_estimate import HARMONIC_SHARE
+from fe_contact.analysis.request.model_choice import decide
+from fe_contact.options import LEVELS, AnalysisOptions, Run, TableAxes
+from fe_contact.planning.discretization import SLICE_ORDER, face_discretization
+from fe_contact.ste.curve_errors import SOURCES
+from fe_contact.ste.fields import DIMENSIONS
+
+FORCE = 3000.0
+
+
+@pytest.fixture(scope="module")
+def cache(tmp_path_factory):
+    return tmp_path_factory.mktemp("compliance")
+
+
+def spur(**modification: float) -> GearPair:
+    pinion = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
+    changed = dataclasses.replace(pinion, modification=FlankModification(**modification))
+    return GearPair(changed, pinion, 80e-3)
+
+
+def helical() -> GearPair:
+    pinion = Gear(
+        teeth=18,
+        normal_module=3e-3,
+        face_width=15e-3,
+        bore_diameter=25e-3,
+        helix_angle=math.radians(20.0),
+    )
+    wheel = dataclasses.replace(pinion, helix_angle=-pinion.helix_angle)
+    return GearPair(pinion, wheel, 18 * 3e-3 / math.cos(pinion.helix_angle))
+
+
+def figures(table, **place):
+    curve = table.curve(force=FORCE, **place)
+    return curve.mean, curve.peak_to_peak, curve.harmonics[0]
+
+
+@pytest.mark.parametrize(
+    ("pair", "how"),
+    [
+        (spur(), {"positions": 32}),
+        (spur(profile_slope=5e-6), {"positions": 64}),
+        (spur(profile_crowning=8e-6), {"model": "plane_strain", "positions": 64}),
+    ],
+)
+def test_the_estimate_covers_the_true_error(pair, how, cache):
+    """Against a mesh more than three times as fine, positions where the curve bends, and the finite width."""
+    rough = analyze(pair, normal_forces=[FORCE], level="draft", cache=cache, **how)
+    model = how.get("model", "auto").replace("plane_strain", "auto")
+    truth = analyze(pair, normal_forces=[FORCE], level="fine", cache=cache, model=model)
+    for found, exact in zip(figures(rough), figures(truth), strict=True):
+        true = abs(found.value - exact.value)
+        assert true <= found.error < max(0.05 * found.value, 2.0 * true)
+
+
+def test_slices_of_a_helical_pair_are_a_source_of_ripple(cache):
+    """The estimate must see what slices do to the ripple, also where the mesh is exact: a little."""
+    table = analyze(helical(), normal_forces=[FORCE], level="draft", positions=32, cache=cache)
+    slices = table.curve_error[SOURCES.index("slices"), :, 0, 0, 0]
+    ripple = float(table.peak_to_peak(force=FORCE))
+    assert 1e-4 * ripple < slices[1] < 0.02 * ripple
+    assert slices[0] < 0.01 * float(table.mean(force=FORCE))
+    made = face_discretization(helical(), "draft")
+    assert made.coarse_slices == made.slices // 2
+    assert made.remaining_slices == pytest.approx(
+        1.0 / ((made.slices / made.coarse_slices) ** SLICE_ORDER - 1.0)
+    )
+
+
+def test_what_few_slices_change_is_carried_on_along_the_curve(cache):
+    """The table with the error that is left taken off: of its peak-to-peak, and half that of the error.
+
+    An overlap of one: half the slices ripple more than the table, by far more than they leave in it.
+    """
+    quiet = GearPair(
+        *(dataclasses.replace(gear, face_width=27.55e-3) for gear in (helical().pinion, helical().wheel)),
+        helical().center_distance,
+    )
+    checked = check_request(
+        quiet, TableAxes(normal_forces=[FORCE]), AnalysisOptions(level="draft", positions=32)
+    )
+    decided = decide(checked)
+    made = decided.plan.discretization
+    table, few = (
+        compute_database(checked, {}, Run(cache=cache), decided.in_slices(count))
+        for count in (made.slices, made.coarse_slices)
+    )
+    own, sliced = (one.static_transmission_error[:, 0, 0, 0] for one in (table, few))
+    left = made.remaining_slices * (own - sliced)
+    expected = max(abs(np.ptp(own + left) - np.ptp(own)), 0.5 * np.ptp(left))
+    stated = table.curve_error[SOURCES.index("slices"), :, 0, 0, 0]
+    assert stated[1] == pytest.approx(expected, rel=1e-9)
+    assert expected < 0.9 * made.remaining_slices * abs(np.ptp(own) - np.ptp(sliced))
+    assert stated[0] == pytest.approx(abs(left.mean()), rel=1e-3)
+
+
+def test_no_harmonic_of_a_helical_pair_errs_by_less_than_its_share(cache):
+    table = analyze(helical(), normal_forces=[FORCE], level="draft", positions=32, cache=cache)
+    for name in ("slices", "discretisation"):
+        errors = table.curve_error[SOURCES.index(name), :, 0, 0, 0]
+        share = HARMONIC_SHARE * errors[1] / np.sqrt(np.arange(1, errors.size - 1))
+        assert np.all(errors[2:] >= share * (1.0 - 1e-12))
+        assert np.any(errors[2:] > 1.01 * share)
+
+
+def test_what_a_coarse_mesh_leaves_follows_the_layers_it_has():
+    """Second order; layers come in whole groups, so that a coarse mesh may have more than two thirds."""
+    for width in (5.0, 9.0, 12.0, 15.0, 18.0, 22.0):
+        for level in LEVELS:
+            gear = dataclasses.replace(helical().pinion, face_width=width * 3e-3)
+            mate = dataclasses.replace(gear, helix_angle=-gear.helix_angle)
+            made = face_discretization(GearPair(gear, mate, helical().center_distance), level)
+            ratio = made.recipes[0].layers / made.coarse_recipes[0].layers
+            assert 4.0 / 3.0 <= ratio <= 1.6
+            assert made.remaining == pytest.approx(1.0 / (min(ratio, 1.5) ** 2 - 1.0))
+            for recipe in (*made.recipes, *made.coarse_recipes):
+                assert recipe.layers // recipe.layer_group >= 6  # below a helical tooth
+
+
+def test_a_finer_level_states_a_smaller_error(cache):
+    errors = [
+        [found.error for found in figures(analyze(spur(), normal_forces=[FORCE], level=level, cache=cache))]
+        for level in ("draft", "standard", "fine")
+    ]
+    assert np.all(np.diff(errors, axis=0) < 0.0)
+
+
+def test_a_source_that_does_not_act_is_zero(cache):
+    plane = analyze(spur(), normal_forces=[FORCE], level="draft", cache=cache)
+    for name in ("slices", "force", "misalignment", "center_distance_change"):
+        assert not plane.curve_error[SOURCES.index(name)].any()
+    assert plane.curve_error[SOURCES.index("discretisation")].any()
+
+
+def test_the_receipt_tells_the_sources_that_make_up_the_numbers(cache):
+    table = analyze(spur(), normal_forces=[1500.0, FORCE], level="draft", cache=cache)
+    by_source = table.metadata.receipt["curve_error"]
+    assert set(by_source) == set(SOURCES)
+    assert not table.metadata.receipt["not_estimated"]
+    stated = math.hypot(*(source["peak_to_peak_m"][1] for source in by_source.values()))
+    assert stated == pytest.approx(table.peak_to_peak(force=FORCE).error, rel=1e-12)
+    between = table.peak_to_peak(force=0.5 * (1500.0 + FORCE)).error
+    assert between > 0.5 * math.hypot(*(source["peak_to_peak_m"][0] for source in by_source.values()))
+
+
+@pytest.mark.parametrize("positions", [None, 32])
+def test_a_minimal_receipt_changes_no_result_and_says_what_is_unknown(positions, cache):
+    how = {"normal_forces": [1500.0, FORCE], "level": "draft", "positions": positions, "cache": cache}
+    full, minimal = analyze(spur(), **how), analyze(spur(), receipt="minimal", **how)
+    for name in DIMENSIONS:
+        if name != "error_estimate":
+            assert np.array_equal(getattr(full, name), getattr(minimal, name)), name
+    receipt = minimal.metadata.receipt
+    assert receipt["not_estimated"] == list(SOURCES)
+    assert not receipt["curve_error"]
+    assert "error estimate" not in receipt["stages"]
+    assert np.isnan(minimal.error_estimate).all()
+    assert all(math.isnan(found.error) for found in figures(minimal))

@@ -1,0 +1,132 @@
+"""What a table says of its error between the nodes of its axes is what it misses there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fe_contact import Gear, GearPair, analyze
+from fe_contact.analysis.estimates.held_out_axes import _around, held_out_axes
+from fe_contact.effects import EFFECTS, ContactScene
+from fe_contact.types import Status
+
+TORQUES = (50.0, 100.0, 200.0)
+CHANGES = (0.0, 2e-4, 4e-4)
+
+
+@pytest.fixture(scope="module")
+def cache(tmp_path_factory):
+    return tmp_path_factory.mktemp("compliance")
+
+
+@pytest.fixture(scope="module")
+def made(cache):
+    gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
+
+    def make(**options):
+        arguments = {"torques": TORQUES, "level": "draft", "positions": 32, "model": "plane_strain"} | options
+        return analyze(GearPair(gear, gear, 80e-3), cache=cache, **arguments)
+
+    return make
+
+
+@pytest.fixture(scope="module")
+def coarse(made):
+    return made(center_distance_changes=CHANGES)
+
+
+def stated(table, axis):
+    """Held-out points (I,) and errors (I, L) in m."""
+    found = table.metadata.receipt["held_out"][axis]
+    return np.array(found["at"]), np.array(found["error_m"])
+
+
+def missed(table, truth):
+    """Largest difference (L,) over the positions, of a table and one solved where it has no node."""
+    force = truth.force[None, :]
+    place = (truth.position[:, None], force, truth.misalignment[0], truth.center_distance_change[0])
+    return np.abs(table.ste(*place) - truth.static_transmission_error[..., 0, 0]).max(axis=0)
+
+
+def test_axes_of_one_node_have_no_error(made):
+    assert made(torques=[100.0]).metadata.receipt["held_out"] == {}
+    assert set(made().metadata.receipt["held_out"]) == {"force"}
+
+
+def test_the_points_fake_the_middle_of_every_interval(coarse):
+    assert stated(coarse, "center_distance_change")[0] == pytest.approx([1e-4, 3e-4])
+    at, error = stated(coarse, "force")
+    assert at == pytest.approx(np.sqrt(coarse.force[:-1] * coarse.force[1:]))
+    assert error.shape == (2, 1)
+    assert stated(coarse, "center_distance_change")[1].shape == (2, 3)
+
+
+def test_the_error_is_the_difference_to_a_table_computed_there(coarse, made):
+    """Another way to the same number: of the 32 positions half are assessed, the telling ones."""
+    for k, change in enumerate((1e-4, 3e-4)):
+        error = stated(coarse, "center_distance_change")[1][k]
+        everywhere = missed(coarse, made(center_distance_changes=[change]))
+        assert np.all(error <= everywhere * (1.0 + 1e-9))
+        assert np.all(error >= 0.9 * everywhere)
+
+
+def test_the_estimate_of_a_coarse_axis_covers_the_true_error_all_over_its_intervals(coarse, made):
+    error = stated(coarse, "center_distance_change")[1]
+    truths = [made(center_distance_changes=[change]) for change in (0.5e-4, 1.5e-4, 2.5e-4, 3.5e-4)]
+    found = [missed(coarse, truth) for truth in truths]
+    assert np.max(found) <= 1.3 * error.max()
+    assert np.max(found) > 1e-7  # of 10 um: the axis is coarse
+
+
+def test_the_estimate_between_loads_covers_the_true_error(coarse, made):
+    error = stated(coarse, "force")[1]
+    truths = {}
+    for part in (0.25, 0.4, 0.5, 0.6, 0.75):
+        between = coarse.force[:-1] ** (1.0 - part) * coarse.force[1:] ** part
+        alike = np.append(between, coarse.force[-1])  # the largest load decides on the patches
+        truths[part] = missed(coarse, made(torques=None, normal_forces=alike))[:-1]
+    probed = np.max([truths[part] for part in (0.25, 0.5, 0.75)], axis=0)
+    assert error[:, 0] == pytest.approx(probed, rel=1e-6)
+    assert np.max([truths[0.4], truths[0.6]]) <= 1.5 * error.max()
+
+
+def test_more_nodes_leave_less_error(coarse, made):
+    dense = made(center_distance_changes=np.linspace(0.0, 4e-4, 17))
+    few, many = (stated(table, "center_distance_change")[1].max() for table in (coarse, dense))
+    assert many < 0.5 * few
+
+
+def test_misalignment_in_three_dimensions(made):
+    """One node more at the held-out point turns the stated error into a stored difference."""
+    options = {"model": "3d", "torques": [100.0], "positions": 16}
+    two, three = (made(**options, misalignments=axis) for axis in ([0.0, 6e-5], [0.0, 3e-5, 6e-5]))
+    at, error = stated(two, "misalignment")
+    assert at == pytest.approx([3e-5])
+    found = two.ste(two.position, float(two.force[0]), 3e-5) - three.static_transmission_error[:, 0, 1, 0]
+    assert error[0, 0] == pytest.approx(np.abs(found).max(), rel=1e-9)
+    assert error[0, 0] > 1e-6
+    assert stated(three, "misalignment")[1].max() < 0.5 * error[0, 0]
+
+
+def test_points_stand_between_the_nodes_beside_them():
+    nodes, at = np.array([1.0, 2.0, 5.0]), np.array([1.0, 1.25, 2.0, 4.0, 5.0])
+    below, above, part = _around(nodes, at)
+    assert np.all(above == below + 1)
+    assert nodes[below] + part * (nodes[above] - nodes[below]) == pytest.approx(at, rel=1e-15)
+    assert [found.tolist() for found in _around(nodes[:1], nodes[:1])] == [[0], [0], [0.0]]
+
+
+def test_a_table_that_cannot_be_interpolated_has_no_estimate(coarse):
+    ste, status = coarse.static_transmission_error.copy(), coarse.status.copy()
+    ste[0, 0, 0, 0], status[0, 0, 0, 0] = np.nan, Status.SINGULAR
+    failed = replace(coarse, static_transmission_error=ste, status=status)
+    falling = replace(
+        coarse, static_transmission_error=coarse.static_transmission_error[:, ::-1], support_force=np.empty(0)
+    )
+    scene = ContactScene(None, np.array(TORQUES), EFFECTS)  # type: ignore[arg-type]  # never looked at
+    assert held_out_axes(failed, None, scene, {}, ()) == {}  # type: ignore[arg-type]
+    assert held_out_axes(falling, None, scene, {}, ()) == {}  # type: ignore[arg-type]
+    with pytest.raises(AttributeError):  # a good table asks its places
+        held_out_axes(coarse, None, scene, {}, ())  # type: ignore[arg-type]

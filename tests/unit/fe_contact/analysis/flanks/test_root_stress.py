@@ -1,0 +1,200 @@
+"""Root stress of a pair: linear in the forces, mirror images, scaling, plane against face, peaks."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from analysis_requests import point_request
+from numpy.typing import ArrayLike
+
+from fe_contact import Gear, GearPair, RootStress, root_stress
+from fe_contact.analysis.flanks.root_stress import pair_histories
+from fe_contact.analysis.flanks.root_stress_history import crests
+from fe_contact.analysis.flanks.solved_operating_point import SolvedOperatingPoint, solve_operating_point
+from fe_contact.analysis.request.request_check import check_request
+from fe_contact.compliance import unit_root_stress, unit_root_stress_3d
+from fe_contact.errors import InputError
+from fe_contact.geometry import InternalGearPair, RingGear
+from fe_contact.mesh import MeshRecipe, SectorRecipe
+from fe_contact.options import AnalysisOptions, OperatingPoint, Run, TableAxes
+from fe_contact.planning.root_recipes import finer_root
+from fe_contact.stage_clock import StageClock
+
+FORCE = 2000.0
+GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
+SPUR = GearPair(GEAR, GEAR, 80e-3)
+PINION = Gear(
+    teeth=19, normal_module=3e-3, face_width=6e-3, bore_diameter=30e-3, helix_angle=math.radians(20.0)
+)
+HELICAL = GearPair(PINION, replace(PINION, teeth=26, helix_angle=-PINION.helix_angle))
+NO_CORNERS = {"corner_contact": "off"}
+
+
+@pytest.fixture(scope="module")
+def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("compliance")
+
+
+def solved(
+    pair: GearPair | InternalGearPair, cache: Path, at: ArrayLike | None = None, **options: object
+) -> RootStress:
+    options = {"normal_force": FORCE, "level": "draft"} | options
+    return root_stress(pair, *point_request(**options), run=Run(cache=cache), at=at)
+
+
+def place(pair: GearPair, cache: Path, model: str) -> SolvedOperatingPoint:
+    checked = check_request(
+        pair, TableAxes(normal_forces=[FORCE]), AnalysisOptions(level="draft", model=model)
+    )
+    return solve_operating_point(checked, np.array([0.1, 0.45, 0.8]), StageClock(), Run(cache=cache))
+
+
+def with_forces(found: SolvedOperatingPoint, keep: np.ndarray, factor: float = 1.0) -> SolvedOperatingPoint:
+    solution = found.solution
+    return replace(found, solution=replace(solution, force=factor * np.where(keep, solution.force, 0.0)))
+
+
+@pytest.mark.parametrize("model", ["plane_strain", "3d"])
+def test_stress_is_linear_in_the_forces(cache: Path, model: str) -> None:
+    found = place(SPUR, cache, model)
+    if model == "3d":
+        unit = unit_root_stress_3d(GEAR, finer_root(SectorRecipe.draft(GEAR)), cache=cache)
+    else:
+        unit = unit_root_stress(GEAR, MeshRecipe.standard(GEAR).refined(0.6), cache=cache)
+    whole = pair_histories(found, (unit, unit))[0].stress
+    first = found.problem.candidates.pair < 0
+    parts = [pair_histories(with_forces(found, keep), (unit, unit))[0].stress for keep in (first, ~first)]
+    scale = np.abs(whole).max()
+    assert min(np.abs(part).max() for part in parts) > 0.1 * scale
+    assert np.abs(sum(parts) - whole).max() < 1e-12 * scale
+    double = pair_histories(with_forces(found, np.ones_like(first), 2.0), (unit, unit))[0].stress
+    assert np.array_equal(double, 2.0 * whole)
+
+
+def test_one_pair_alone_gives_stress_in_proportion_to_the_load(cache: Path) -> None:
+    """At the pitch point nothing is shared, so that the contact cannot change where the force goes."""
+    one, five = (solved(SPUR, cache, normal_force=f, at=[0.0]).pinion for f in (FORCE, 5.0 * FORCE))
+    assert np.abs(five.stress - 5.0 * one.stress).max() < 1e-9 * np.abs(five.stress).max()
+    own = np.abs(one.stress).max(axis=(0, 2, 3, 4, 5))
+    assert own[one.pair == 0] > 2.0 * own[one.pair != 0].max()  # neighbors share the tooth spaces
+    assert own.min() > 0.0
+
+
+def test_gears_alike_are_mirror_images_in_position(cache: Path) -> None:
+    """What the pinion's tooth meets on its way in, the wheel's meets on its way out."""
+    found = solved(SPUR, cache, at=np.arange(16) / 16, effects=NO_CORNERS)
+    pinion, wheel = found.pinion.passage(), found.wheel.passage()
+    inside = np.abs(pinion.position) < 1.5
+    for name in ("tension", "compression"):
+        mine = getattr(pinion, name)[inside]
+        theirs = np.interp(-pinion.position[inside], wheel.position, getattr(wheel, name))
+        assert np.abs(mine - theirs).max() < 1e-6 * np.abs(mine).max()
+
+
+@pytest.mark.nightly
+def test_opposite_hands_are_mirror_images_along_the_face(cache: Path) -> None:
+    swapped = GearPair(*(replace(g, helix_angle=-g.helix_angle) for g in (HELICAL.pinion, HELICAL.wheel)))
+    options = {"at": [0.2, 0.7], "misalignment": 10e-6}
+    one = solved(HELICAL, cache, **options)
+    other = solved(swapped, cache, **(options | {"misalignment": -10e-6}))
+    for mine, theirs in ((one.pinion, other.pinion), (one.wheel, other.wheel)):
+        mirrored = theirs.stress[..., ::-1] * np.array([1.0, 1.0, -1.0])[:, None, None]
+        assert np.abs(mirrored - mine.stress).max() < 1e-6 * np.abs(mine.stress).max()
+        assert mine.peak("tension").face_position == pytest.approx(-theirs.peak("tension").face_position)
+
+
+def test_lengths_by_s_and_forces_by_s_squared_leave_the_stress(cache: Path) -> None:
+    large = replace(GEAR, normal_module=12e-3, face_width=75e-3, bore_diameter=120e-3)
+    one = solved(SPUR, cache, at=[0.0, 0.4])
+    nine = solved(GearPair(large, large, 240e-3), cache, normal_force=9.0 * FORCE, at=[0.0, 0.4])
+    assert np.abs(nine.pinion.stress - one.pinion.stress).max() < 1e-5 * np.abs(one.pinion.stress).max()
+    assert nine.wheel.peak("compression").stress.value == pytest.approx(
+        one.wheel.peak("compression").stress.value, rel=1e-5
+    )
+
+
+def test_misalignment_raises_the_stress_where_the_load_goes(cache: Path) -> None:
+    aligned, skew = (solved(SPUR, cache, at=[0.0], model="3d", misalignment=m) for m in (0.0, 20e-6))
+    for gear in ("pinion", "wheel"):
+        low, high = (getattr(found, gear).peak("tension") for found in (aligned, skew))
+        assert high.stress.value > 1.3 * low.stress.value
+        assert high.face_position < -5e-3  # the gap opens towards larger face positions
+        assert abs(low.face_position) < 2e-3
+
+
+def test_the_roots_of_a_ring_gear_are_pulled_at_the_same_end(cache: Path) -> None:
+    """A ring is seen from its other side: its fillets and its ends must still be those of the contact."""
+    ring = RingGear(teeth=60, normal_module=4e-3, face_width=10e-3, rim_diameter=0.29, tip_diameter=0.2342)
+    pair = InternalGearPair(replace(GEAR, face_width=10e-3), ring, 80e-3)
+    found = solved(pair, cache, at=[0.0], model="3d", misalignment=10e-6)
+    for gear in (found.pinion, found.wheel):
+        tension, compression = (gear.peak(root) for root in ("tension", "compression"))
+        assert (tension.pair, compression.pair) == (0, 0)
+        assert tension.face_position < -2e-3
+        assert compression.face_position < -2e-3
+        assert 0.7 < -tension.stress.value / compression.stress.value < 1.0
+    # ISO 6336-3 looks at 60 degrees on internal gears, at 30 on external ones
+    assert math.degrees(found.wheel.peak("tension").tangent_angle) == pytest.approx(55.0, abs=5.0)
+    assert math.degrees(found.pinion.peak("tension").tangent_angle) == pytest.approx(37.0, abs=5.0)
+
+
+def test_peak_and_passage_say_the_same(cache: Path) -> None:
+    history = solved(SPUR, cache, at=np.arange(8) / 8).pinion
+    passage = history.passage()
+    assert np.all(np.diff(passage.position) > 0.0)
+    for root, extreme in (("tension", passage.tension.max()), ("compression", passage.compression.min())):
+        peak = history.peak(root)
+        assert peak.stress.value == extreme
+        at = np.argmin(np.abs(passage.position - peak.position - peak.pair))
+        assert getattr(passage, root)[at] == extreme
+        assert getattr(passage, f"at_{root}_peak")[at] == pytest.approx(extreme, rel=0.02)
+        assert peak.stress.unit == "Pa"
+        assert 0.0 < peak.stress.error < 0.05 * abs(extreme)
+    assert passage.tension[0] == passage.tension[-1] == 0.0  # far from the mesh
+
+
+def test_crests_of_parabolas_and_of_slopes() -> None:
+    s = np.array([0.0, 1.0, 1.5, 3.0, 3.5])
+    values = np.stack([5.0 - 2.0 * (s - at) ** 2 for at in (1.2, 2.1, 3.2)])
+    value, at = crests(s, values)
+    assert value == pytest.approx([5.0, 5.0, 5.0], rel=1e-12)
+    assert at == pytest.approx([1.2, 2.1, 3.2], rel=1e-12)
+    value, at = crests(s, np.stack([s, -s, np.full(5, 2.0)]))
+    assert value == pytest.approx([3.5, 0.0, 2.0])
+    assert at[:2] == pytest.approx([3.5, 0.0])
+
+
+def test_crests_do_not_lean_on_what_does_not_count() -> None:
+    s = np.arange(5.0)
+    value, at = crests(s, np.array([[1.0, 4.0, 5.0, -np.inf, -np.inf], [-np.inf, 3.0, 4.0, 3.0, -np.inf]]))
+    assert value == pytest.approx([5.0, 4.0])
+    assert at == pytest.approx([2.0, 2.0])
+
+
+def test_a_root_under_the_patch_counts_for_no_peak(cache: Path) -> None:
+    """Contact next to the form point: the patch, wider than the contact, lies on the fillet."""
+    gear = replace(GEAR, profile_shift_coefficient=-0.05)
+    deep = GearPair(gear, replace(GEAR, profile_shift_coefficient=0.05), 80e-3)
+    history = solved(deep, cache, at=np.arange(8) / 8).pinion
+    near = history.near_load[..., 0]
+    assert near.any()
+    assert not near[:, [0, -1]].any()  # teeth that carry nothing
+    lowest = history.flank_coordinate[near.any(axis=(0, 1))].min()
+    unchanged = history.peak("tension")
+    spoiled = history.stress.copy()
+    spoiled[:, :, 0, 0, :, 0] += 1e12 * near
+    assert replace(history, stress=spoiled).peak("tension") == unchanged
+    assert unchanged.flank_coordinate < lowest
+
+
+def test_what_cannot_be_asked(cache: Path) -> None:
+    with pytest.raises(InputError) as refusal:
+        root_stress(SPUR, OperatingPoint(), run=Run(cache=cache))
+    assert refusal.value.field in ("torques", "normal_forces")
+    with pytest.raises(InputError) as refusal:
+        root_stress(SPUR, OperatingPoint(torque=10.0), run=Run(cache=cache), at=[[0.1]])
+    assert refusal.value.field == "at"

@@ -1,0 +1,155 @@
+"""Which model and mesh an accuracy asks for: the cheapest that promises it, unless chosen explicitly."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from analysis_requests import table_request
+
+from fe_contact import FlankModification, Gear, GearPair, Material, analyze
+from fe_contact.allowed_error import AllowedError
+from fe_contact.analysis.request.model_choice import alternatives, decide
+from fe_contact.analysis.request.request_check import check_request
+from fe_contact.analysis.request.ripple import expected_curves
+from fe_contact.geometry.finite_width import finite_width_excess
+from fe_contact.options import AnalysisOptions, TableAxes
+from fe_contact.ste.curve_errors import SOURCES
+
+LOADS = [400.0, 1600.0]
+
+
+def pair(helix: float = 0.0, width: float = 16e-3, **modification: float) -> GearPair:
+    gear = Gear(
+        teeth=20,
+        normal_module=2e-3,
+        face_width=width,
+        bore_diameter=20e-3,
+        helix_angle=helix,
+        modification=FlankModification(**modification),
+    )
+    mate = dataclasses.replace(gear, helix_angle=-helix, modification=FlankModification())
+    return GearPair(gear, mate, 40e-3 / math.cos(helix))
+
+
+def replace_materials(pair: GearPair, material: Material) -> GearPair:
+    gears = (dataclasses.replace(gear, material=material) for gear in (pair.pinion, pair.wheel))
+    return GearPair(*gears, pair.center_distance)
+
+
+def decided(pair: GearPair, **asked):
+    return decide(check_request(pair, *table_request(normal_forces=LOADS, **asked)))
+
+
+def model_of(found) -> str:
+    return found.to_json()["model"]
+
+
+def test_a_looser_tolerance_never_takes_more_work():
+    """Down to plane strain, where what it leaves out is within the tolerance."""
+    for case in (pair(), pair(0.3), pair(width=3e-3)):
+        found = [decided(case, tolerance=t) for t in (0.2, 0.05, 0.02, 0.01, 0.005, 0.002)]
+        effort = [one.mesh.option.effort for one in found if one.mesh.met]
+        assert effort == sorted(effort)
+        assert all(one.mesh.option.error.total <= t for one, t in zip(found, (0.2, 0.05), strict=False))
+    assert model_of(decided(pair(), tolerance=0.05)) == "plane strain"
+    assert model_of(decided(pair(), tolerance=0.01)) == "plane strain corrected for the finite width"
+
+
+def test_three_dimensions_are_taken_where_the_correction_is_not_enough():
+    """Of usual steel the correction errs by less than the finest mesh of three dimensions does."""
+    soft = Material(youngs_modulus=206e9, poissons_ratio=0.45)
+    plain = pair(width=2e-3)
+    narrow = replace_materials(plain, soft)
+    assert 0.03 * finite_width_excess(narrow) > 0.0035 > 0.03 * finite_width_excess(plain)
+    assert model_of(decided(plain, tolerance=0.0035)) == "plane strain corrected for the finite width"
+    found = decided(narrow, tolerance=0.0035)
+    assert model_of(found) == "three dimensions"
+    entry = next(e for e in found.checked.ledger if e.name == "face_load_distribution")
+    assert entry.on
+    assert entry.choice == "auto"
+    assert "taken for the asked accuracy: expected error" in entry.override
+
+
+def test_the_ledger_says_why_the_finite_width_is_left_out():
+    found = decided(pair(), tolerance=0.05)
+    entry = next(e for e in found.checked.ledger if e.name == "finite_width")
+    assert (entry.on, entry.choice, entry.verdict.on) == (False, "auto", True)
+    assert "left out for the asked accuracy: expected error" in entry.override
+
+
+@pytest.mark.parametrize(
+    "explicit",
+    [
+        {"model": "plane_strain"},
+        {"model": "3d"},
+        {"effects": {"finite_width": "on"}},
+        {"effects": {"finite_width": "off"}},
+        {"effects": {"face_load_distribution": "on"}},
+    ],
+)
+def test_an_explicit_model_or_effect_is_obeyed(explicit):
+    asked = check_request(pair(), *table_request(normal_forces=LOADS, tolerance=0.05, **explicit))
+    found = decide(asked)
+    assert found.checked.model == asked.model
+    assert found.checked.ledger == asked.ledger
+
+
+def test_a_level_or_nothing_asked_keeps_the_model_of_the_scene():
+    for asked in ({"level": "draft"}, {}):
+        (only,) = alternatives(check_request(pair(), *table_request(normal_forces=LOADS, **asked)))
+        assert only.model.finite_width
+    (only,) = alternatives(
+        check_request(pair(0.3), TableAxes(normal_forces=LOADS), AnalysisOptions(tolerance=AllowedError(0.1)))
+    )
+    assert only.model.across_face
+
+
+def test_helical_pairs_get_the_cheapest_mesh_and_slices_that_are_exact_enough():
+    found = [decided(pair(0.3), tolerance=t) for t in (0.1, 0.01)]
+    assert found[0].mesh.level == "draft"
+    assert found[1].mesh.option.error.total < 0.01 < found[0].mesh.option.error.total
+    assert found[1].plan.discretization.slices == found[1].mesh.slices
+
+
+def test_a_small_ripple_asks_for_more():
+    """Steep and wide: the contact lines hardly change their length, so that per cents of ripple are small."""
+    smooth = pair(math.radians(30.0), width=math.pi * 2e-3 / math.sin(math.radians(30.0)))
+    curves = [
+        expected_curves(check_request(one, TableAxes(normal_forces=LOADS))) for one in (pair(0.15), smooth)
+    ]
+    parts = [(one.peak_to_peak / one.mean).min() for one in curves]
+    assert parts[1] < 0.3 * parts[0]
+    efforts = [decided(one, tolerance=0.02).mesh.option.effort for one in (pair(0.15), smooth)]
+    assert efforts[1] > 1.5 * efforts[0]
+
+
+def test_the_choice_knows_neither_host_nor_cache(tmp_path, monkeypatch):
+    before = decided(pair(0.3), tolerance=0.01).to_json()
+    monkeypatch.setattr("fe_contact.planning.cost_model.host_slowness", lambda _: 40.0)
+    asked = check_request(
+        pair(0.3), TableAxes(normal_forces=LOADS), AnalysisOptions(tolerance=AllowedError(0.01))
+    )
+    assert decide(asked, tmp_path).to_json() == before
+
+
+def test_a_plane_states_what_it_leaves_out_whoever_chose_it():
+    """A tolerance or the caller by name: the stated error covers the corrected plane."""
+    found = analyze(pair(), normal_forces=LOADS, tolerance=0.05, positions=32)
+    named = analyze(pair(), normal_forces=LOADS, model="plane_strain", level="draft", positions=32)
+    truth = analyze(pair(), normal_forces=LOADS, level="draft", positions=32)
+    assert found.metadata.receipt["choice"]["model"] == "plane strain"
+    stress = analyze(pair(), normal_forces=LOADS, model="plane_stress", level="draft", positions=32)
+    for name in ("mean", "peak_to_peak"):
+        one, exact, plain, thin = (
+            getattr(table, name)(force=LOADS[0]) for table in (found, truth, named, stress)
+        )
+        assert one.value == plain.value and one.error == plain.error
+        assert abs(one.value - exact.value) < one.error < 0.06 * one.value
+        assert abs(thin.value - exact.value) < thin.error < 0.12 * thin.value
+        assert exact.error < 0.3 * one.error
+    row = SOURCES.index("finite_width")
+    assert np.all(found.curve_error[row, :2] > 0.0)
+    assert np.array_equal(named.curve_error[row], found.curve_error[row])
