@@ -12,7 +12,7 @@ from pathlib import Path
 
 from host import kill_group
 from service.live.order import AnswerHead, LiveOrder
-from service.worker.worker import child_environment
+from service.worker.child_process import child_environment
 
 _PIECE = 1 << 16
 

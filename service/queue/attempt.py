@@ -9,6 +9,7 @@ import structlog
 
 from service.queue.claims import Claim
 from service.settings import LEAST_MEMORY_MB, Settings
+from service.worker.child_process import Launch
 from service.worker.memory import machine_memory_mb
 from service.worker.order import USABLE, WorkOrder
 from service.worker.worker import Worker
@@ -49,12 +50,12 @@ class Attempt:
         )
 
 
-def begun(settings: Settings, entry: str, claim: Claim) -> Attempt:
-    """Start a worker for a claim; raises what keeps the system from starting one."""
+def begun(settings: Settings, entry: str, claim: Claim, launch: Launch) -> Attempt:
+    """Launch a worker for a claim; raises what keeps the system from it."""
     workspace = workspace_of(settings, claim)
     log = settings.data_directory / "log" / f"{claim.id}.log"
     workspace.mkdir(parents=True, exist_ok=True)
-    worker = Worker(_order(settings, entry, claim), log)
+    worker = Worker(_order(settings, entry, claim), log, launch)
     facts = {"computation": claim.id, "process": claim.process, "key": claim.key}
     logger.info("worker started", **facts, pid=worker.pid, attempt=claim.attempts)
     return Attempt(claim, worker, workspace, log)

@@ -21,6 +21,7 @@ from service.queue.leases import RENEWALS, Leases
 from service.queue.settlement import Ended, Settlement
 from service.settings import Settings
 from service.store import ResultStore
+from service.worker.forks import Forks
 from service.worker.order import Outcome
 from service.worker.process import Registry
 from service.worker.worker import Worker
@@ -48,6 +49,7 @@ class Scheduler:
         self._housekeeper = housekeeper
         self._settlement = Settlement(claims, store, settings.attempts)
         self._leases = Leases(claims, settings.lease_s)
+        self._forks = Forks(registry.modules, settings.data_directory / "log" / "warm.log")
         self._running: dict[int, Attempt] = {}
         self._unsettled: list[Ended] = []
         self._stopping = threading.Event()
@@ -112,6 +114,7 @@ class Scheduler:
                     logger.exception("scheduler turn failed")
                 self._stopping.wait(_HEARTBEAT_S)
         self._put_all_back()
+        self._forks.close()
         self._leases.stop()
 
     def _put_all_back(self) -> None:
@@ -150,7 +153,7 @@ class Scheduler:
     def _begin(self, claim: Claim) -> None:
         """Start a worker for a claim."""
         try:
-            attempt = begun(self._settings, self._registry[claim.process].entry, claim)
+            attempt = begun(self._settings, self._registry[claim.process].entry, claim, self._forks.launch)
         except Exception:
             reference = uuid.uuid4().hex[:12]
             logger.exception("no worker could be started", computation=claim.id, reference=reference)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 
 from fe_contact.analysis import ste_database
+from fe_contact.analysis.studies.warm_up import warm_up as load_compiled
 from fe_contact.options import Run
 from fe_contact.ste import SteDatabase
 from service.convert.case import analysis_options, boundary_errors, case_json, gear_pair, table_axes
@@ -13,6 +14,11 @@ from service.schemas import Case
 from service.worker.cluster import table_workers
 from service.worker.drafted_progress import DraftedProgress
 from service.worker.order import Product, Progress, WorkOrder
+
+
+def warm_up() -> None:
+    """Load what is compiled for tables."""
+    load_compiled(across_face=False)
 
 
 def analyze_case(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:

@@ -1,10 +1,10 @@
 """The worker process: one order in, progress and one outcome out, then the end.
 
-Started as ``python -m service.worker.child DESCRIPTOR`` in a session of its own. The order is the first line of
-standard input, which then stays open; on it comes a line whenever the lease of the computation was renewed:
-the instant until which. When it closes, the service is gone; when that instant passes, another scheduler may
-take the computation up: then the whole process group (gmsh's process included) is killed. Progress and
-outcome are lines of JSON on DESCRIPTOR. Standard error is the log.
+Started as ``python -m service.worker.child DESCRIPTOR``, or forked, in a session of its own. The order is
+the first line of standard input, which then stays open; on it comes a line whenever the lease of the
+computation was renewed: the instant until which. When it closes, the service is gone; when that instant
+passes, another scheduler may take the computation up: then the whole process group (gmsh's process included)
+is killed. Progress and outcome are lines of JSON on DESCRIPTOR. Standard error is the log.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ _NICENESS = 10
 _SHORTEST_INTERVAL_S = 0.1
 
 
-def main() -> None:
-    """Run one order."""
+def work(descriptor: int) -> None:
+    """Run one order; messages go to the descriptor."""
     warnings.filterwarnings(
         "ignore", message="implausible"
     )  # results say it in the caller's fields and units
@@ -47,7 +47,7 @@ def main() -> None:
     lower_priority(_NICENESS)
     if order.memory_limit_mb is not None:
         hold_to(order.memory_limit_mb)
-    with os.fdopen(int(sys.argv[1]), "w", buffering=1) as channel:
+    with os.fdopen(descriptor, "w", buffering=1) as channel:
         logging.getLogger("service").addHandler(_Telling(channel))
         _send(channel, _outcome(order, _Reporter(channel)) | {"peak_mb": own_peak_mb()})
 
@@ -148,4 +148,4 @@ def _translated(error: Exception) -> ServiceError | None:
 
 
 if __name__ == "__main__":
-    main()
+    work(int(sys.argv[1]))

@@ -101,6 +101,11 @@ class Registry(Mapping[str, Process]):
     def __contains__(self, name: object) -> bool:
         return name in self._processes
 
+    @property
+    def modules(self) -> frozenset[str]:
+        """Names of the modules that hold the entries."""
+        return frozenset(process.entry.partition(":")[0] for process in self._processes.values())
+
     def __iter__(self) -> Iterator[str]:
         return iter(self._processes)
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import subprocess
-import sys
 import threading
 import time
 from pathlib import Path
@@ -14,65 +12,48 @@ from typing import Any
 
 import structlog
 
-from host import ending_signal, has_exited, kill_group, never_wait_at, reap
+from host import Ended, ending_signal, kill_group, never_wait_at
+from service.worker.child_process import Ends, Launch, start_child
 from service.worker.order import Outcome, Product, WorkOrder
 from service.worker.usage import BYTES_PER_MB, Usage
 
 logger = structlog.get_logger(__name__)
 
-_ONE_THREAD = dict.fromkeys(
-    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
-)
 _LEAVING_S = 2.0
 _OF_LITTLE_MEMORY = ("SIGKILL", "SIGABRT")  # by the system, and by libraries that cannot go on
-_ROOT = str(Path(__file__).resolve().parents[2])
-
-
-def child_environment() -> dict[str, str]:
-    """Environment of the child: one thread, and the code we run ourselves, installed or not."""
-    path = os.pathsep.join(part for part in (_ROOT, os.environ.get("PYTHONPATH", "")) if part)
-    return {**os.environ, **_ONE_THREAD, "PYTHONPATH": path}
 
 
 class Worker:
     """One child process for one order, leader of a session of its own."""
 
-    def __init__(self, order: WorkOrder, log: Path) -> None:
+    def __init__(self, order: WorkOrder, log: Path, launch: Launch = start_child) -> None:
         self.started = time.monotonic()
         self.usage: Usage | None = None
         self._outcome: Outcome | None = None
+        self._ended: Ended | None = None
         self._peak_mb: float | None = None
         self._rest = b""
         self._giving = threading.Lock()
-        self.channel, theirs = os.pipe()
+        theirs, self._orders = os.pipe()
+        self.channel, answers = os.pipe()
         never_wait_at(self.channel)
         try:
             with log.open("wb") as stream:
-                self._process = subprocess.Popen(
-                    [sys.executable, "-m", "service.worker.child", str(theirs)],
-                    stdin=subprocess.PIPE,
-                    stdout=stream,
-                    stderr=stream,
-                    pass_fds=(theirs,),
-                    start_new_session=True,
-                    env=child_environment(),
-                    cwd=order.workspace,
-                )
+                self._process = launch(Ends(theirs, answers, stream.fileno(), order.workspace))
         except OSError:
             os.close(self.channel)
+            os.close(self._orders)
             raise
         finally:
             os.close(theirs)
+            os.close(answers)
         self._give(order)
 
     def _give(self, order: WorkOrder) -> None:
         """Write the order; a child that died before reading it shows when its channel ends."""
-        stream = self._process.stdin
-        assert stream is not None
-        with contextlib.suppress(BrokenPipeError):
+        with contextlib.suppress(BrokenPipeError), os.fdopen(self._orders, "wb", closefd=False) as stream:
             stream.write(order.line())
-            stream.flush()
-        never_wait_at(stream.fileno())
+        never_wait_at(self._orders)
 
     @property
     def pid(self) -> int:
@@ -87,8 +68,8 @@ class Worker:
     def beat(self, until: float) -> None:
         """Tell the child until when its lease was renewed; it ends itself at that instant."""
         with self._giving, contextlib.suppress(BrokenPipeError, BlockingIOError):
-            if self._process.stdin is not None and not self._process.stdin.closed:
-                os.write(self._process.stdin.fileno(), b"%r\n" % until)
+            if self._orders >= 0:
+                os.write(self._orders, b"%r\n" % until)
 
     def listen(self) -> tuple[list[tuple[str, float]], bool]:
         """Return the progress since the last call, and whether the child closed its channel."""
@@ -124,7 +105,8 @@ class Worker:
         self.kill()
         if self._outcome is not None:
             return self._outcome
-        return Outcome(failure=_cause(self._process.returncode), died=True)
+        assert self._ended is not None
+        return Outcome(failure=_cause(self._ended.code), died=True)
 
     def _has_exited(self, patience_s: float) -> bool:
         """Whether the child leaves within a moment; do not reap it yet.
@@ -132,7 +114,7 @@ class Worker:
         Until it is reaped its process id, which is also its group's, cannot be given to another.
         """
         deadline = time.monotonic() + patience_s
-        while not has_exited(self.pid):
+        while not self._process.has_exited():
             if time.monotonic() > deadline:
                 return False
             time.sleep(0.005)
@@ -140,7 +122,7 @@ class Worker:
 
     def end_group(self) -> None:
         """Send the group (gmsh's process included) SIGKILL."""
-        if self._process.returncode is None:
+        if self._ended is None:
             with contextlib.suppress(ProcessLookupError):
                 kill_group(self.pid)
 
@@ -150,21 +132,21 @@ class Worker:
         A killed process needs the processor to die, and at our low priority it waits for that long beside
         others: one that is not dead after `patience_s` is left to the system, without its `usage`.
         """
-        if self._process.returncode is None:
+        if self._ended is None:
             self.end_group()
             if patience_s is None or self._has_exited(patience_s):
                 self._reap()
-        if self._process.stdin is not None:
-            with self._giving, contextlib.suppress(BrokenPipeError):
-                self._process.stdin.close()
+        with self._giving:
+            if self._orders >= 0:
+                os.close(self._orders)
+                self._orders = -1
         if self.channel >= 0:
             os.close(self.channel)
             self.channel = -1
 
     def _reap(self) -> None:
         """Wait for the child's end, and note what it took."""
-        ended = reap(self.pid)
-        self._process.returncode = ended.code
+        self._ended = ended = self._process.reap()
         peak_mb = ended.peak_memory / BYTES_PER_MB if self._peak_mb is None else self._peak_mb
         self.usage = Usage(self.age, ended.cpu_seconds, peak_mb)
 

@@ -19,9 +19,13 @@ from killed_part import Part
 from result_witness import LOST, Witness
 from running_service import PATIENCE_S, lives, until
 
+from host import processes_in
+
 EXECUTION = "/v1/processes/fake/execution"
 _MARK = "LOA_TEST_MARK"
 _BACKLOG = 3
+WORKER = "service.worker."
+"""What the command of a worker holds, started anew or forked."""
 _ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -135,7 +139,7 @@ class KilledService:
 
     def _kill(self, part: Part) -> None:
         """Kill a part and start it again; its workers end by themselves."""
-        left = [pid for pid in self._workers() if _parent(pid) == part.pid]
+        left = processes_in(Path(part.environment["LOA_DATA_DIRECTORY"]), WORKER)
         part.end(signal.SIGKILL)
         part.start()
         until(lambda: not any(lives(pid) for pid in left))
@@ -167,13 +171,8 @@ class KilledService:
         return found
 
     def _workers(self) -> list[int]:
-        """Return the processes that do fake work."""
-        found = []
-        for pid in self.marked():
-            with suppress(OSError):
-                if b"service.worker.child" in Path(f"/proc/{pid}/cmdline").read_bytes():
-                    found.append(pid)
-        return found
+        """Return the processes that do fake work: each stands in a directory below that of its part."""
+        return processes_in(self.directory, WORKER)
 
     def settled(self) -> dict[str, Any]:
         """Wait until every job has ended; return their states."""
@@ -193,10 +192,3 @@ class KilledService:
         for part in self.parts:
             until(part.heeds_stops)
         return [part.end(signal.SIGTERM) for part in self.parts]
-
-
-def _parent(pid: int) -> int:
-    """Return the parent of a process, 0 if it has ended."""
-    with suppress(OSError):
-        return int(Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[1])
-    return 0

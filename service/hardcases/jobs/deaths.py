@@ -19,8 +19,8 @@ from service.hardcases.scene import HardScene, Measured
 from service.queue.job import Job
 from service.schemas import Case, validated
 
-MESHER_COMMAND, WORKER_COMMAND = "gmsh_worker", "service.worker.child"
-"""What their commands hold."""
+MESHER_COMMAND, WORKER_COMMAND = "gmsh_worker", "service.worker."
+"""What their commands hold; a worker is started anew or forked."""
 
 
 def kill_meshers(times: int, killed: list[int]) -> Disturb:

@@ -20,13 +20,16 @@ from service.store.results import StoredResult
 from service.worker.memory import machine_memory_mb
 
 
-@pytest.fixture
-def machine(tmp_path: Path) -> Iterator[Bench]:
-    """A started scheduler with two workers."""
-    found = bench(tmp_path, REGISTRY, workers=2)
-    found.scheduler.start()
-    yield found
-    found.close()
+@pytest.fixture(params=["started anew", "forked"])
+def machine(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Bench]:
+    """A started scheduler with two workers, started anew or forked from a warm process."""
+    made = bench(tmp_path, REGISTRY, workers=2)
+    made.scheduler.start()
+    if request.param == "forked":
+        made.scheduler._forks.warm_up()
+        until(lambda: made.scheduler._forks.warm)
+    yield made
+    made.close()
 
 
 def grandchild(machine: Bench, key: str) -> int:

@@ -1,0 +1,170 @@
+"""The warm process seen from the service: started once, asked for a child per order.
+
+A child forked from it is spared imports and compilation. It is started beside the second child; while it
+warms up, and where it cannot be had, children are started anew.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import select
+import socket
+import subprocess
+import sys
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import structlog
+
+from host import Ended, ending_signal
+from service.worker.child_process import ChildProcess, Ends, child_environment, start_child
+from service.worker.fork_server import MESSAGE_BYTES, READY
+
+logger = structlog.get_logger(__name__)
+
+MOST_FORKS = 500
+"""Children of one warm process; then a new one takes its place."""
+_PATIENCE_S = 10.0
+"""For an answer, which takes a hundredth of a second."""
+_LOST = Ended(-9, 0.0, 0)
+"""A child whose end nobody saw, because the warm process had ended before it."""
+
+
+class Forks:
+    """Launches children, warm ones where it can. For one thread, but for `close`."""
+
+    def __init__(self, modules: Iterable[str], log: Path) -> None:
+        self._modules, self._log = sorted(set(modules)), log
+        self._server: _Server | None = None
+        self._launched = 0
+
+    def warm_up(self) -> None:
+        """Start the warm process, if the system forks and there is none; return at once."""
+        server = self._server
+        if sys.platform != "linux" or (server is not None and (server.usable or server.living)):
+            return
+        self.close()
+        try:
+            self._server = _Server(self._modules, self._log)
+        except OSError as error:
+            logger.warning("no warm process", reason=str(error))
+
+    @property
+    def warm(self) -> bool:
+        """Whether the next child is forked."""
+        return self._server is not None and self._server.ready
+
+    def launch(self, ends: Ends) -> ChildProcess:
+        """Fork a child, or start one; OSError: the system does neither."""
+        self._launched += 1
+        if self._launched > 1:
+            self.warm_up()
+        if self._server is not None and self.warm:
+            with contextlib.suppress(ConnectionError):
+                return self._server.fork(ends)
+        return start_child(ends)
+
+    def close(self) -> None:
+        """End the warm process; its children live on."""
+        if self._server is not None:
+            self._server.close()
+            self._server = None
+
+
+class _Server:
+    """The process, and the socket to it."""
+
+    def __init__(self, modules: list[str], log: Path) -> None:
+        self._channel, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self._channel.settimeout(_PATIENCE_S)
+        self._ready, self._forks, self.living, self._gone = False, 0, 0, False
+        with theirs, log.open("wb") as stream:
+            try:
+                self._process = subprocess.Popen(
+                    [sys.executable, "-m", "service.worker.fork_server", str(theirs.fileno()), *modules],
+                    stdin=subprocess.DEVNULL,
+                    stdout=stream,
+                    stderr=stream,
+                    pass_fds=(theirs.fileno(),),
+                    start_new_session=True,
+                    env=child_environment(),
+                )
+            except OSError:
+                self._channel.close()
+                raise
+
+    @property
+    def usable(self) -> bool:
+        """Whether it runs and may fork once more."""
+        return not self._gone and self._forks < MOST_FORKS and self._process.poll() is None
+
+    @property
+    def ready(self) -> bool:
+        """Whether it has warmed up."""
+        if not self._ready and self.usable:
+            heard, _, _ = select.select([self._channel], [], [], 0.0)
+            self._ready = bool(heard) and self._channel.recv(MESSAGE_BYTES) == READY
+        return self._ready and self.usable
+
+    def fork(self, ends: Ends) -> ForkedChild:
+        """Fork a child."""
+        descriptors = [ends.orders, ends.channel, ends.log]
+        pid = self.ask({"workspace": str(ends.workspace)}, descriptors)
+        if isinstance(pid, dict):
+            raise OSError(pid["errno"], pid["strerror"])
+        self._forks += 1
+        self.living += 1
+        return ForkedChild(pid, os.pidfd_open(pid), self)
+
+    def ask(self, request: dict[str, Any], descriptors: Iterable[int] = ()) -> Any:
+        """Return the answer to a request; ConnectionError: the process is gone."""
+        try:
+            socket.send_fds(self._channel, [json.dumps(request).encode()], descriptors)
+            answer = self._channel.recv(MESSAGE_BYTES)
+        except OSError:
+            answer = b""
+        if not answer:
+            self._gone = True
+            raise ConnectionError
+        return json.loads(answer)
+
+    def close(self) -> None:
+        """End the process."""
+        self._channel.close()
+        self._process.kill()
+        self._process.wait()
+
+
+@dataclass(frozen=True)
+class ForkedChild:
+    """A child of the warm process.
+
+    Attributes
+    ----------
+    pid : int
+    handle : int
+        Descriptor that becomes readable when it ends.
+    """
+
+    pid: int
+    handle: int
+    parent: _Server
+
+    def has_exited(self) -> bool:
+        """Whether it has ended."""
+        return bool(select.select([self.handle], [], [], 0.0)[0])
+
+    def reap(self) -> Ended:
+        """Wait for its end, and let its parent reap it."""
+        select.select([self.handle], [], [])
+        os.close(self.handle)
+        self.parent.living -= 1
+        try:
+            return Ended(*self.parent.ask({"reap": self.pid}))
+        except ConnectionError:
+            logger.warning("warm process gone", pid=self.pid, signal=ending_signal(_LOST.code))
+            return _LOST

@@ -1,0 +1,94 @@
+"""Children forked from a warm process are as those started anew, and nothing is lost if it dies."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from running_service import Bench, bench, lives, until
+from service_fakes import REGISTRY
+
+from service.worker.forks import Forks
+
+
+@pytest.fixture
+def machine(tmp_path: Path) -> Iterator[Bench]:
+    made = bench(tmp_path, REGISTRY)
+    made.scheduler.start()
+    yield made
+    made.close()
+
+
+def warm_process(machine: Bench) -> int:
+    """Return the process id of the warm process, once it is warm."""
+    forks = machine.scheduler._forks
+    until(lambda: forks.warm)
+    assert forks._server is not None
+    return forks._server._process.pid
+
+
+def parent_of_last(machine: Bench, key: str) -> int:
+    """Return the parent of the process that works on a key."""
+    file = machine.settings.data_directory / f"started_{key[:8]}"
+    until(lambda: file.exists() and file.read_text() != "")
+    pid = file.read_text().splitlines()[-1].split()[0]
+    return int(Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[1])
+
+
+def test_the_third_child_is_forked(machine: Bench) -> None:
+    for text in ("first", "second"):
+        assert machine.ended(machine.submit(text=text)).status == "successful"
+    warm = warm_process(machine)
+    job = machine.submit(mode="hang")
+    assert parent_of_last(machine, job.key) == warm
+    machine.submissions.dismiss(job.id)
+    machine.scheduler.wake()
+    until(lambda: machine.submissions.find(job.id).ended)
+    third = machine.ended(machine.submit(text="third"))
+    assert machine.store.verified(third.key, "database").path.read_text() == "third"
+
+
+def test_a_child_outlives_the_warm_process_and_others_follow(machine: Bench) -> None:
+    machine.scheduler._forks.warm_up()
+    warm = warm_process(machine)
+    slow = machine.submit(mode="slow", text="slow")
+    assert parent_of_last(machine, slow.key) == warm
+    os.kill(warm, signal.SIGKILL)
+    assert machine.ended(slow).status == "successful"
+    assert len(machine.starts(slow)) == 1
+    until(lambda: not lives(warm))
+    for text in ("a", "b"):
+        assert machine.ended(machine.submit(text=text)).status == "successful"
+    assert warm_process(machine) != warm
+
+
+def test_a_stop_ends_the_warm_process(machine: Bench) -> None:
+    machine.scheduler._forks.warm_up()
+    warm = warm_process(machine)
+    machine.scheduler.stop()
+    assert not lives(warm)
+
+
+def test_after_so_many_children_another_takes_its_place(
+    machine: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.worker.forks.MOST_FORKS", 2)
+    machine.scheduler._forks.warm_up()
+    warm = warm_process(machine)
+    for text in ("a", "b", "c"):
+        assert machine.ended(machine.submit(text=text)).status == "successful"
+    assert warm_process(machine) != warm
+    until(lambda: not lives(warm))
+
+
+def test_modules_that_cannot_be_imported_leave_a_warm_process(tmp_path: Path) -> None:
+    forks = Forks(["no_such_module", "service_fake_work"], tmp_path / "log")
+    forks.warm_up()
+    try:
+        until(lambda: forks.warm)
+        assert "no_such_module" in (tmp_path / "log").read_text()
+    finally:
+        forks.close()
