@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from fe_contact.analysis import ste_database
-from fe_contact.analysis.studies.warm_up import warm_up as load_compiled
 from fe_contact.options import Run
 from fe_contact.ste import SteDatabase
 from service.convert.case import analysis_options, boundary_errors, case_json, gear_pair, table_axes
 from service.convert.plausibility import phrased_database
-from service.schemas import Case
+from service.schemas import Case, validated
 from service.worker.cluster import table_workers
 from service.worker.drafted_progress import DraftedProgress
 from service.worker.order import Product, Progress, WorkOrder
 
 
 def warm_up() -> None:
-    """Load what is compiled for tables."""
-    load_compiled(across_face=False)
+    """Analyze the smallest pair into a file: it loads what every analysis needs."""
+    gear = {"teeth": 20, "face_width_mm": 2.0, "bore_diameter_mm": 10.0}
+    pair = {"normal_module_mm": 1.0, "center_distance_mm": 20.0, "pinion": gear, "wheel": gear}
+    accuracy = {"level": "draft", "positions": 8}
+    case = {"pair": pair, "load": {"torque_n_m": [0.1]}, "accuracy": accuracy}
+    with TemporaryDirectory() as name:
+        inputs = {"case": validated(Case, case).model_dump(mode="json")}
+        analyze_case(WorkOrder("", inputs, "", Path(name), Path(name)), lambda stage, fraction: None)
 
 
 def analyze_case(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
