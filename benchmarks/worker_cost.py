@@ -55,7 +55,7 @@ def orders() -> Iterator[tuple[str, str, dict[str, Any]]]:
     relieved = json.loads(json.dumps(helical))
     relieved["pair"]["pinion"] |= {"tip_relief_um": 20.0, "tip_relief_length_mm": 1.5}
     scene = scene_inputs(_EXAMPLES / "palermo_scene.toml")
-    study = tomllib.loads((_EXAMPLES / "optimise_tip_relief.toml").read_text("utf-8"))
+    study = tomllib.loads((_EXAMPLES / "optimize_tip_relief.toml").read_text("utf-8"))
     yield "analyze, spur, in the plane", "analyze", {"case": spur}
     yield "analyze, helical, three dimensions", "analyze", {"case": helical}
     yield "analyze, the same gears with a tip relief", "analyze", {"case": relieved}
@@ -69,7 +69,7 @@ def orders() -> Iterator[tuple[str, str, dict[str, Any]]]:
             "center_distance_change_percent": [0.0, 0.1],
         },
     )
-    yield "optimise, spur, 800 evaluations", "optimise", {"case": spur, **study}
+    yield "optimize, spur, 800 evaluations", "optimize", {"case": spur, **study}
     yield "scatter, spur, 1000 pairs", "scatter", {"case": spur}
     rungs = {"rungs": ["thin_slices", "corrected", "3d_draft"]}
     yield "frontier, spur, 3 rungs", "frontier", {"case": spur, **rungs}

@@ -175,12 +175,12 @@ STUDIES: dict[str, Study] = {
             aliases=("--image",),
         ),
         Study(
-            "optimise",
+            "optimize",
             "case",
-            "Optimise the flanks",
+            "Optimize the flanks",
             "Search better flanks",
             "Choose flank modifications for the least peak-to-peak STE over torques and scatter.",
-            "examples/palermo_spur_20_20.toml examples/optimise_tip_relief.toml -o best",
+            "examples/palermo_spur_20_20.toml examples/optimize_tip_relief.toml -o best",
             kind="optimisation",
             collection="optimisations",
             stages=(("compliance", 0.2), ("search", 0.6), ("confirmation", 0.2)),
@@ -244,6 +244,9 @@ STUDIES: dict[str, Study] = {
     )
 }
 """By name."""
+
+FORMER = {"optimise": "optimize"}
+"""Former names of verbs, processes and methods of the client, which are heard until version 0.3."""
 
 
 def study_of(kind: str) -> Study | None:

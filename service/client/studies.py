@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from service.client.jobs import JobClient
 from service.client.study_method import study_method
-from service.registry import STUDIES
+from service.registry import FORMER, STUDIES
 
 
 class Studies(JobClient):
@@ -17,3 +17,5 @@ class Studies(JobClient):
 
 for _method in map(study_method, STUDIES.values()):
     setattr(Studies, _method.__name__, _method)
+for _former, _name in FORMER.items():
+    setattr(Studies, _former, getattr(Studies, _name))

@@ -51,7 +51,7 @@ class Studies(JobClient):
         misalignment_um: float | None = ...,
         center_distance_change_mm: float | None = ...,
     ) -> dict[str, Any]: ...
-    def optimise(
+    def optimize(
         self,
         case: CaseLike,
         study: Mapping[str, Any],

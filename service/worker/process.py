@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from service.loading import LOADING
 from service.problems import NoSuchProcess
+from service.registry import FORMER
 from service.schemas.model import BoundaryModel
 from service.stages import Stage, overall
 from service.worker.key import content_key
@@ -93,13 +94,13 @@ class Registry(Mapping[str, Process]):
 
     def __getitem__(self, name: str) -> Process:
         try:
-            return self._processes[name]
+            return self._processes[FORMER.get(name, name)]
         except KeyError:
             known = ", ".join(self._processes)
             raise NoSuchProcess(f"There is no process {name!r}. Known: {known}.") from None
 
     def __contains__(self, name: object) -> bool:
-        return name in self._processes
+        return FORMER.get(str(name), name) in self._processes
 
     @property
     def modules(self) -> frozenset[str]:

@@ -26,8 +26,8 @@ STUDIES = {
         {"Misalignments": "0, 20", "Changes of the center distance": "0, 0.5"}, ["sensitivity"], True,
     ),
     "root-stress": ("Tooth-root stress", "Compute the root stress", {}, ["root_stress"], False),
-    "optimise": (
-        "Optimise the flanks", "Search better flanks",
+    "optimize": (
+        "Optimize the flanks", "Search better flanks",
         {"Most tip relief": "10", "Designs tried": "30"}, ["harris_map"], False,
     ),
     "scatter": (
@@ -40,7 +40,7 @@ STUDIES = {
     ),
 }  # fmt: skip
 
-FEW = ("flank", "optimise", "modes")
+FEW = ("flank", "optimize", "modes")
 EACH = [pytest.param(name, marks=[pytest.mark.nightly] * (name not in FEW)) for name in STUDIES]
 
 
@@ -122,7 +122,7 @@ def test_every_study_of_a_case_has_a_card(visit: Visit) -> None:
 
 
 def test_the_optimum_goes_into_the_case(visit: Visit) -> None:
-    part = ran(visit, "optimise")
+    part = ran(visit, "optimize")
     rows = part.get_by_role("row", name=re.compile("pinion.tip_relief_um"))
     optimum = float(rows.first.get_by_role("cell").nth(1).text_content() or "nan")
     part.get_by_role("button", name="Take the optimum").press("Enter")

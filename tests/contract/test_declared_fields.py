@@ -24,7 +24,7 @@ from service.schemas import Case
 from service.schemas.declared import Figure, figures
 from service.schemas.live import LiveInput
 from service.schemas.request_examples import CASE
-from service.studies.optimise import GearScatterInput, GearVariablesInput
+from service.studies.optimize import GearScatterInput, GearVariablesInput
 
 FIGURES = figures(FlankModification)
 EVERY = pytest.mark.parametrize("figure", FIGURES, ids=[figure.name for figure in FIGURES])

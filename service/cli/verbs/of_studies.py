@@ -12,7 +12,7 @@ from typer.core import TyperGroup
 
 from service.cli.guard import computing
 from service.cli.verbs.options import AsCsv, AsJson, DaskScheduler, TableService, TaskWorkers
-from service.registry import STUDIES, Study
+from service.registry import FORMER, STUDIES, Study
 from service.schemas.spelling import is_list, spelling_of
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ class StudyGroup(TyperGroup):
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """Return a verb."""
-        study = STUDIES.get(cmd_name)
+        study = STUDIES.get(FORMER.get(cmd_name, cmd_name))
         return super().get_command(ctx, cmd_name) if study is None else _command(study)
 
 

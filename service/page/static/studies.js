@@ -2,7 +2,7 @@
 
 import { card } from "./card.js";
 import { byId } from "./elements.js";
-import { optimisationOf, showOptimisation } from "./optimise.js";
+import { optimizationOf, showOptimization } from "./optimize.js";
 import { showReport } from "./report.js";
 
 const IN_THE_PLANE = ["iso6336", "thin_slices", "plane_strain", "corrected_draft", "corrected", "corrected_fine"];
@@ -27,13 +27,13 @@ const OWN = {
     inputs: (found, { reach }) => ({ case: found, ...(reach === "quick" ? { rungs: found.pair?.helix_angle_deg ? QUICK_HELICAL : IN_THE_PLANE } : {}) }),
   },
   sensitivity: { inputs: (found, values) => ({ case: acrossTheFace(found), ...values }) },
-  optimise: {
+  optimize: {
     fields: [
       { name: "relief_um", label: "Most tip relief, µm", value: "40" },
       { name: "scatter_um", label: "Misalignment, standard deviation, µm", value: "10" },
       { name: "evaluations", label: "Designs tried, at most", value: "1000" },
     ],
-    inputs: optimisationOf,
+    inputs: optimizationOf,
   },
 };
 
@@ -56,9 +56,9 @@ function fieldOf([name, schema]) {
   return { name, label: schema.title, value, list, ...(kind.enum ? { choices: kind.enum.map((choice) => [choice, choice]) } : {}) };
 }
 
-/** Show a result of any kind but a table; `take` is given the flanks of an optimisation. */
+/** Show a result of any kind but a table; `take` is given the flanks of an optimization. */
 export async function showResult(target, reference, { take, signal }) {
-  if (reference.kind === "optimisation") await showOptimisation(target, reference, { take, signal });
+  if (reference.kind === "optimisation") await showOptimization(target, reference, { take, signal });
   else await showReport(target, reference, { signal });
 }
 

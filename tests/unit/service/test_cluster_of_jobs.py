@@ -89,7 +89,7 @@ class Recording:
     [
         (ANALYZE, {}, "solve_block"),
         (default_registry()["sensitivity"], DEVIATIONS, "solve_block"),
-        (default_registry()["optimise"], STUDY, "search_one"),
+        (default_registry()["optimize"], STUDY, "search_one"),
         (default_registry()["scatter"], {"samples": 30}, "ripple_of_samples"),
     ],
     ids=lambda given: given.id if isinstance(given, Process) else "",

@@ -30,7 +30,7 @@ VERBS = (
     "report",
     "sensitivity",
     "frontier",
-    "optimise",
+    "optimize",
     "scatter",
     "plan",
     "serve",
@@ -184,11 +184,11 @@ CASE, SCENE = "palermo_spur_20_20.toml", "palermo_scene.toml"
         ("simulate", CASE, r"a scene \(with \[\[shafts\]\]\)\. It holds a case .*: loa analyze"),
         ("modes", CASE, r"a scene \(with \[\[shafts\]\]\)\. It holds a case .*: loa analyze"),
         ("analyze", SCENE, r"a case \(with \[pair\]\)\. It holds a scene .*: loa simulate"),
-        ("optimise", SCENE, r"a case \(with \[pair\]\)\. It holds a scene .*: loa simulate"),
+        ("optimize", SCENE, r"a case \(with \[pair\]\)\. It holds a scene .*: loa simulate"),
     ],
 )
 def test_a_case_given_as_a_scene_is_one_fault(tmp_path: Path, verb: str, file: str, said: str) -> None:
-    given = [ROOT / "examples" / file] * (2 if verb == "optimise" else 1)
+    given = [ROOT / "examples" / file] * (2 if verb == "optimize" else 1)
     result = loa(verb, *given, "-o", tmp_path / "x.nc")
     assert result.exit_code == 2
     (line,) = result.stderr.splitlines()

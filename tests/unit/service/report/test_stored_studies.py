@@ -36,8 +36,8 @@ from service.report.inputs import read_inputs
 from service.studies.ablate.page import ablation_page
 from service.studies.ablate.run import facts as ablation_json
 from service.studies.frontier.page import frontier_page
-from service.studies.optimise.page import optimisation_page
-from service.studies.optimise.run import optimisation_json
+from service.studies.optimize.page import optimization_page
+from service.studies.optimize.run import optimization_json
 from service.studies.scatter import page as scatter_page
 from service.studies.scatter import run as scatter_run
 
@@ -96,8 +96,8 @@ def studies(compliance: Path) -> dict[str, tuple[str, dict[str, Any], Page]]:
         "ablation of a case": ("ablation", ablation_json(of_case), ablation_page(of_case)),
         "ablation of a scene": ("ablation", ablation_json(of_scene), ablation_page(of_scene)),
         "ladder of a scene": ("frontier", ladder.to_json(), frontier_page(ladder)),
-        "optimisation": ("optimisation", optimisation_json(found), optimisation_page(found)),
-        "optimisation without scatter": ("optimisation", optimisation_json(exact), optimisation_page(exact)),
+        "optimisation": ("optimisation", optimization_json(found), optimization_page(found)),
+        "optimization without scatter": ("optimisation", optimization_json(exact), optimization_page(exact)),
         "tolerances": ("scatter", scatter_run.facts(drawn), scatter_page.page(drawn)),
     }
 
@@ -107,7 +107,7 @@ ALL = (
     "ablation of a scene",
     "ladder of a scene",
     "optimisation",
-    "optimisation without scatter",
+    "optimization without scatter",
     "tolerances",
 )
 

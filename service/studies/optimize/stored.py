@@ -1,4 +1,4 @@
-"""An optimisation as its report needs it: a fresh one, or read back from the JSON that it was stored as."""
+"""An optimization as its report needs it: a fresh one, or read back from the JSON that it was stored as."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ class ShownDesign(Protocol):
         """Expected peak-to-peak in m."""
 
 
-class ShownOptimisation(Protocol):
-    """What a report shows of an optimisation: an `Optimization`, or one read back."""
+class ShownOptimization(Protocol):
+    """What a report shows of an optimization: an `Optimization`, or one read back."""
 
     @property
     def outcome(self) -> str:
@@ -101,8 +101,8 @@ class StoredDesign:
 
 
 @dataclass(frozen=True)
-class StoredOptimisation:
-    """A `ShownOptimisation` that was read back."""
+class StoredOptimization:
+    """A `ShownOptimization` that was read back."""
 
     outcome: str
     reason: str
@@ -119,8 +119,8 @@ class StoredOptimisation:
     evaluations: int
 
 
-def read(file: Path) -> StoredOptimisation:
-    """Return the optimisation in a file of its figures.
+def read(file: Path) -> StoredOptimization:
+    """Return the optimization in a file of its figures.
 
     Not stored, and NaN in it: the places and merits of the searches' best designs.
     """
@@ -148,7 +148,7 @@ def read(file: Path) -> StoredOptimisation:
         )
         for one in content["runs"]
     )
-    return StoredOptimisation(
+    return StoredOptimization(
         content["outcome"],
         content["reason"],
         tuple(variables),

@@ -1,4 +1,4 @@
-"""Micro-geometry optimisations as jobs: the real process over HTTP, and through the client."""
+"""Micro-geometry optimizations as jobs: the real process over HTTP, and through the client."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from service.client import JobState, LineOfActionClient
 from service.problems import BadInput
 from service.schemas import Case, validated
 from service.studies.computation import Means
-from service.studies.optimise import Inputs
-from service.studies.optimise.run import optimisation_json, optimisation_of
+from service.studies.optimize import Inputs
+from service.studies.optimize.run import optimization_json, optimization_of
 from service.worker.catalogue import default_registry
 
-OPTIMISE = default_registry()["optimise"]
+OPTIMISE = default_registry()["optimize"]
 GEAR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0}
 CASE: dict[str, Any] = {
     "pair": {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": GEAR, "wheel": GEAR},
@@ -59,13 +59,13 @@ def untimed(value: Any) -> Any:
     return [untimed(item) for item in value] if isinstance(value, list) else value
 
 
-def test_the_optimisation_is_that_of_python(served: Served, data: Path) -> None:
+def test_the_optimization_is_that_of_python(served: Served, data: Path) -> None:
     client, http = served
     seen: list[JobState] = []
-    told = client.optimise(CASE, STUDY, seen.append)
+    told = client.optimize(CASE, STUDY, seen.append)
     # on the gears as the job condensed them: linear algebra in more threads sums in another order
-    here = optimisation_of(validated(Case, CASE), validated(Inputs, STUDY), Means(data, lambda *_: None))
-    expected = json.loads(json.dumps(optimisation_json(here))) | {"warnings": []}
+    here = optimization_of(validated(Case, CASE), validated(Inputs, STUDY), Means(data, lambda *_: None))
+    expected = json.loads(json.dumps(optimization_json(here))) | {"warnings": []}
     assert untimed(told) == untimed(expected)
     assert told["outcome"] == "improved" and told["gain_um"] > told["gain_error_um"]
     assert set(told["optimum"]["values"]) == {"pinion", "wheel"}
@@ -79,7 +79,7 @@ def test_the_optimisation_is_that_of_python(served: Served, data: Path) -> None:
     assert told["nodes"]["deviation"] == [[-2.0], [2.0]]
     progress = [state.progress for state in seen]
     assert progress == sorted(progress) and progress[-1] == 100
-    job = client.submit("optimise", {"case": CASE, **STUDY})  # the same question: stored already
+    job = client.submit("optimize", {"case": CASE, **STUDY})  # the same question: stored already
     assert job.status == "successful"
     reference = http.get(f"/v1/jobs/{job.id}/results", params=REFERENCES).json()["optimisation"]
     assert http.get(reference["href"], headers={"Accept": "application/x-netcdf"}).json() == told
@@ -114,6 +114,6 @@ def test_bad_inputs_are_refused_by_name_before_there_is_a_job(
     client, http = served
     jobs = len(http.get("/v1/jobs").json()["jobs"])
     with pytest.raises(BadInput) as caught:
-        client.submit("optimise", {"case": CASE, **STUDY, **further})
+        client.submit("optimize", {"case": CASE, **STUDY, **further})
     assert any(field in fault.field for fault in caught.value.faults), caught.value.faults
     assert len(http.get("/v1/jobs").json()["jobs"]) == jobs

@@ -1,4 +1,4 @@
-"""Micro-geometry optimisation of a case."""
+"""Micro-geometry optimization of a case."""
 
 from __future__ import annotations
 
@@ -30,16 +30,16 @@ from service.convert.case import analysis_options, boundary_errors, gear_pair
 from service.convert.vocabulary import boundary_name
 from service.schemas import Case
 from service.studies.computation import Computation, Means
-from service.studies.optimise import GearScatterInput, GearVariablesInput, Inputs, ScatterInput, SearchInput
-from service.studies.optimise.stored import read
+from service.studies.optimize import GearScatterInput, GearVariablesInput, Inputs, ScatterInput, SearchInput
+from service.studies.optimize.stored import read
 from service.units import UM, factor, in_um
 
 Json = dict[str, Any]
 MPA = 1e6
 
 
-def optimisation_of(case: Case, study: Inputs, means: Means) -> Optimization:
-    """Optimise the modifications of a case; when it is cancelled, end with the best so far.
+def optimization_of(case: Case, study: Inputs, means: Means) -> Optimization:
+    """Optimize the modifications of a case; when it is cancelled, end with the best so far.
 
     Designs are remembered: another attempt, or another deadline, goes on from them.
 
@@ -58,7 +58,7 @@ def optimisation_of(case: Case, study: Inputs, means: Means) -> Optimization:
 
 
 def check(case: Case, study: Inputs) -> None:
-    """Raise `BadInput` for what `optimisation_of` would, without computing anything."""
+    """Raise `BadInput` for what `optimization_of` would, without computing anything."""
     with boundary_errors():
         _request(case, study).check()
 
@@ -134,8 +134,8 @@ def _search(given: SearchInput) -> Search:
     return Search(methods[given.method], given.seed, *counts)
 
 
-def optimisation_json(found: Optimization) -> Json:
-    """Return an optimisation in the units of a case file, other lengths in um."""
+def optimization_json(found: Optimization) -> Json:
+    """Return an optimization in the units of a case file, other lengths in um."""
     plain = found.to_json()
     variables = [
         {"name": boundary_name(one.name), "bounds": [_typed(one.name, one.low), _typed(one.name, one.high)]}
@@ -214,8 +214,8 @@ def write_values(found: Optimization, target: Path) -> None:
 
 
 RUN = Computation(
-    optimisation_of,
-    optimisation_json,
+    optimization_of,
+    optimization_json,
     read,
     marks=dict.fromkeys(("start", "optimum", "variables")),
     check=check,

@@ -22,7 +22,7 @@ from service.drawing.figure import (
     thousands,
 )
 from service.drawing.page import Headline, Page, Section
-from service.studies.optimise.stored import ShownDesign, ShownOptimisation
+from service.studies.optimize.stored import ShownDesign, ShownOptimization
 from service.studies.presentation import Presentation
 from service.units import UM, factor
 
@@ -32,7 +32,7 @@ _STEP = 0.4  # between two torques of a map, over the largest ripple
 _ROOM = 1.12  # of the axis over the curves: for the names at their ends
 
 
-def harris_figure(found: ShownOptimisation) -> Figure:
+def harris_figure(found: ShownOptimization) -> Figure:
     """Draw both Harris maps on equal axes, and peak-to-peak over torque."""
     designs = (("before", found.start), ("after", found.optimum))
     curves = [_shown(found, design) for _, design in designs]
@@ -46,7 +46,7 @@ def harris_figure(found: ShownOptimisation) -> Figure:
     ]
     return Figure(
         key="harris_map",
-        title="Transmission error before and after optimisation",
+        title="Transmission error before and after optimization",
         caption="Harris maps without scatter, a curve for each torque, less its mean, set apart by "
         f"{_STEP:g} of the largest ripple of both; and peak-to-peak over torque. "
         f"{_scattered(found)} Dotted upright lines: torques that count.",
@@ -56,21 +56,21 @@ def harris_figure(found: ShownOptimisation) -> Figure:
     )
 
 
-def _chosen(found: ShownOptimisation) -> list[int]:
+def _chosen(found: ShownOptimization) -> list[int]:
     """Torques whose curves are drawn: those of the map nearest to evenly spaced ones."""
     torque = found.start.harris_map.torque
     even = np.linspace(torque[0], torque[-1], min(torque.size, MOST_CURVES))
     return sorted({int(np.abs(torque - value).argmin()) for value in even})
 
 
-def _shown(found: ShownOptimisation, design: ShownDesign) -> FloatArray:
+def _shown(found: ShownOptimization, design: ShownDesign) -> FloatArray:
     """Curves (P, K) of the chosen torques less their means, um."""
     values = design.harris_map.ste[:, _chosen(found)] / UM
     return np.asarray(values - values.mean(axis=0))
 
 
 def _map(
-    found: ShownOptimisation, name: str, design: ShownDesign, values: FloatArray, step: float, axis: Axis
+    found: ShownOptimization, name: str, design: ShownDesign, values: FloatArray, step: float, axis: Axis
 ) -> Panel:
     """Draw one line per torque, closed over its period, named at its end."""
     harris, index = design.harris_map, _chosen(found)
@@ -86,7 +86,7 @@ def _map(
     return Panel(across, axis, tuple(lines), title=f"Harris map {name}", notes=tuple(labels))
 
 
-def _scattered(found: ShownOptimisation) -> str:
+def _scattered(found: ShownOptimization) -> str:
     """Say what the lines of the scatter are."""
     if found.nodes.weight.size == 1:
         return "Nothing scatters."
@@ -96,7 +96,7 @@ def _scattered(found: ShownOptimisation) -> str:
     )
 
 
-def _ripple(found: ShownOptimisation) -> Panel:
+def _ripple(found: ShownOptimization) -> Panel:
     """Draw the expectation of both designs over torque, between the extremes of their nodes."""
     lines: list[Line] = []
     for name, design, color in (
@@ -117,7 +117,7 @@ def _ripple(found: ShownOptimisation) -> Panel:
     return Panel(across, Axis("peak to peak, µm"), tuple(lines), counted, title="Ripple over torque")
 
 
-def ripple_table(found: ShownOptimisation) -> Table:
+def ripple_table(found: ShownOptimization) -> Table:
     """Return peak-to-peak at the torques of the map, with errors."""
     before, after = found.start.harris_map, found.optimum.harris_map
     rows = tuple(
@@ -142,7 +142,7 @@ def _value(value: float, error: float) -> tuple[str, str]:
     return number(value / UM, 3), number(error / UM, 2)
 
 
-def optimum_table(found: ShownOptimisation) -> Table:
+def optimum_table(found: ShownOptimization) -> Table:
     """Return the variables, and what a perturbation changes."""
     rows = []
     for one, step in zip(found.variables, found.sensitivity, strict=True):
@@ -158,7 +158,7 @@ def optimum_table(found: ShownOptimisation) -> Table:
     return Table("Design, and the change of the objective by a perturbation", head, tuple(rows))
 
 
-def node_table(found: ShownOptimisation) -> Table:
+def node_table(found: ShownOptimization) -> Table:
     """Return every node of the scatter with the ripple at the torques that count."""
     head = [*(f"{boundary_name(name)} by" for name in found.nodes.names), "weight"]
     for word in ("before", "after"):
@@ -174,7 +174,7 @@ def node_table(found: ShownOptimisation) -> Table:
     return Table("Robustness: peak to peak at every node of the scatter", tuple(head), tuple(rows))
 
 
-def run_table(found: ShownOptimisation) -> Table:
+def run_table(found: ShownOptimization) -> Table:
     """Return the searches."""
     rows = tuple(
         (
@@ -191,15 +191,15 @@ def run_table(found: ShownOptimisation) -> Table:
     return Table("Searches", ("start", "objective, µm", "designs", "ended", "CPU s"), rows)
 
 
-def cost_table(found: ShownOptimisation) -> Table:
+def cost_table(found: ShownOptimization) -> Table:
     """Return the CPU time of the stages."""
     stages = found.cost["stages"].items()
     rows = tuple((name, number(float(one["cpu_seconds"]), 3)) for name, one in stages)
     return Table("Cost", ("stage", "CPU s"), rows)
 
 
-def optimisation_page(found: ShownOptimisation) -> Page:
-    """Return the page of an optimisation."""
+def optimization_page(found: ShownOptimization) -> Page:
+    """Return the page of an optimization."""
     one, two = found.start.objective, found.optimum.objective
     heads = (
         Headline("before", f"{number(one.value / UM, 3)} µm", f"± {number(one.error / UM, 2)} µm"),
@@ -215,7 +215,7 @@ def optimisation_page(found: ShownOptimisation) -> Page:
     return Page("Micro-geometry of least transmission error", lead, heads, (figure, design, robust, search))
 
 
-def _text(found: ShownOptimisation) -> Iterator[Table | str]:
+def _text(found: ShownOptimization) -> Iterator[Table | str]:
     """Yield the design, its ripple, and how the search ended."""
     yield optimum_table(found)
     yield ripple_table(found)
@@ -225,4 +225,4 @@ def _text(found: ShownOptimisation) -> Iterator[Table | str]:
     yield f"{found.outcome.replace('_', ' ')}: {found.reason}; {search}"
 
 
-PAGE = Presentation(harris_figure, optimisation_page, _text)
+PAGE = Presentation(harris_figure, optimization_page, _text)

@@ -10,7 +10,7 @@ import { showReport } from "./report.js";
  * @param {{relief_um: number, scatter_um?: number, evaluations?: number}} wish largest relief,
  *   standard deviation of the misalignment, most designs
  */
-export function optimisationOf(content, wish) {
+export function optimizationOf(content, wish) {
   const module = content.pair.normal_module_mm;
   const relief = { tip_relief_um: [0, wish.relief_um], tip_relief_length_mm: [0.15 * module, 0.8 * module] };
   const plane = /^plane/.test(content.accuracy?.model ?? "");
@@ -19,8 +19,8 @@ export function optimisationOf(content, wish) {
   return wish.scatter_um > 0 && !plane ? { ...asked, scatter: { misalignment_um: wish.scatter_um } } : asked;
 }
 
-/** Show an optimisation; `take` is given its flanks. */
-export async function showOptimisation(target, reference, { take, signal }) {
+/** Show an optimization; `take` is given its flanks. */
+export async function showOptimization(target, reference, { take, signal }) {
   const found = await patiently(() => get(reference.href));
   if (!(await showReport(target, reference, { making: true, signal }))) return;
   for (const part of target.querySelectorAll(":scope > details")) part.open = true; // the design and its scatter

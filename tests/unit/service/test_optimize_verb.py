@@ -1,4 +1,4 @@
-"""``loa optimise``: tables, files of every kind, and a design that the case file takes as it is."""
+"""``loa optimize``: tables, files of every kind, and a design that the case file takes as it is."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Path, Path]:
 
 def test_all_files_say_the_same(files: tuple[Path, Path], tmp_path: Path) -> None:
     folder = tmp_path / "optimum"
-    ran = CliRunner().invoke(app, ["optimise", *map(str, files), "-o", str(folder)])
+    ran = CliRunner().invoke(app, ["optimize", *map(str, files), "-o", str(folder)])
     assert ran.exit_code == 0, ran.output
     told = json.loads((folder / "optimum.json").read_text(encoding="utf-8"))
     assert told["outcome"] == "improved"
@@ -78,7 +78,7 @@ def test_the_design_in_the_case_file_has_the_ripple_that_was_told(
 ) -> None:
     case, study = files
     study.write_text(STUDY.replace("profile_slope_um = 2.0", ""), encoding="utf-8")
-    ran = CliRunner().invoke(app, ["optimise", str(case), str(study), "--json"])
+    ran = CliRunner().invoke(app, ["optimize", str(case), str(study), "--json"])
     assert ran.exit_code == 0, ran.output
     told = json.loads(ran.output)
     tables = {
@@ -112,7 +112,7 @@ def test_an_interrupted_search_writes_its_best_and_says_so(
         yield cancel
 
     monkeypatch.setattr("service.cli.study.until_interrupted", interrupted_after_thirty)
-    ran = CliRunner().invoke(app, ["optimise", *map(str, files), "-o", str(tmp_path / "best.json")])
+    ran = CliRunner().invoke(app, ["optimize", *map(str, files), "-o", str(tmp_path / "best.json")])
     assert ran.exit_code == 130, ran.output
     told = json.loads((tmp_path / "best.json").read_text(encoding="utf-8"))
     assert told["evaluations"] == 30 and told["runs"][0]["ended"] == "interrupted"
@@ -121,6 +121,6 @@ def test_an_interrupted_search_writes_its_best_and_says_so(
 
 
 def test_what_cannot_be_written_is_refused_before_anything_is_computed(files: tuple[Path, Path]) -> None:
-    ran = CliRunner().invoke(app, ["optimise", *map(str, files), "-o", "optimum.csv"])
+    ran = CliRunner().invoke(app, ["optimize", *map(str, files), "-o", "optimum.csv"])
     assert ran.exit_code != 0
     assert ".toml" in ran.output and "Harris" not in ran.output

@@ -1,4 +1,4 @@
-"""What a micro-geometry optimisation varies, how it scatters, and what it is assessed by."""
+"""What a micro-geometry optimization varies, how it scatters, and what it is assessed by."""
 
 from __future__ import annotations
 
@@ -156,7 +156,7 @@ class SearchInput(BoundaryModel):
 
 
 class Inputs(BoundaryModel):
-    """An optimisation of a case's flank modifications."""
+    """An optimization of a case's flank modifications."""
 
     torque_n_m: Torques | None = Field(
         default=None,
