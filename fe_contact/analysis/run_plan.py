@@ -1,4 +1,4 @@
-"""What a run will be and cost, said without meshing or solving anything."""
+"""The plan and the cost of a run, predicted without meshing or solving anything."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ class RunPlan:
 
     @property
     def chosen(self) -> PlannedLevel:
-        """What is predicted of the mesh that would be taken."""
+        """The prediction for the mesh that would be taken."""
         return next(entry for entry in self.levels if entry.level == self.choice.level)
 
     def to_json(self) -> Json:
@@ -141,11 +141,11 @@ def _planned(
 
     With the case's own curves, as its mesh is chosen by: both must tell the same error.
     """
-    asked = checked.request
-    options = asked.options.at_level(level)
-    plan = make_plan(asked.pair, asked.load, options, checked.model, slices=slices)
-    cost = predict_run(asked.pair, plan, checked.model, asked.alignments, cache)
-    error = expected_error(asked.pair, plan, curves)
+    request = checked.request
+    options = request.options.at_level(level)
+    plan = make_plan(request.pair, request.load, options, checked.model, slices=slices)
+    cost = predict_run(request.pair, plan, checked.model, request.alignments, cache)
+    error = expected_error(request.pair, plan, curves)
     return PlannedLevel(level, plan.discretization.slices, cost, error)
 
 
@@ -153,8 +153,8 @@ def _conflict(decided: Decided, time_budget: float, cache: Path | None) -> str:
     """Say why what is requested does not fit into the time; empty if it does."""
     within = f"within {time_budget:.3g} CPU s"
     tolerance = decided.checked.request.options.tolerance
-    wish = f"level {decided.mesh.level}" if tolerance is None else tolerance.words
+    goal = f"level {decided.mesh.level}" if tolerance is None else tolerance.words
     if not decided.mesh.met:
-        return f"{wish} {within} cannot be had: {decided.mesh.reason}"
+        return f"{goal} {within} cannot be had: {decided.mesh.reason}"
     seconds = decided.predicted(cache).cpu_seconds
-    return "" if seconds <= time_budget else f"{wish} {within} cannot be had: it needs {seconds:.2g} CPU s"
+    return "" if seconds <= time_budget else f"{goal} {within} cannot be had: it needs {seconds:.2g} CPU s"

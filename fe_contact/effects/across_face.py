@@ -1,4 +1,4 @@
-"""What in a scene acts across the face, so that a plane cannot hold it."""
+"""Everything in a scene that acts across the face, so that a plane cannot hold it."""
 
 from __future__ import annotations
 

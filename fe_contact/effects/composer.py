@@ -40,7 +40,7 @@ class LedgerEntry:
 
     @property
     def decision(self) -> str:
-        """Why it is on or off, in words."""
+        """The reason it is on or off, in words."""
         if self.override:
             return self.override
         called = "the scene calls for it" if self.verdict.on else "the scene does not call for it"

@@ -1,4 +1,4 @@
-"""What an effect is: one optional piece of physics that can be switched on or off.
+"""An effect: one optional piece of physics that can be switched on or off.
 
 An effect is a file: its decision, what it contributes, what of it acts across the face, and the scene without
 it. The composer knows none by name and applies them in any order. Neutral settings (nothing to contribute)
@@ -20,7 +20,7 @@ from fe_contact.types import FloatArray
 
 @dataclass(frozen=True)
 class ContactScene:
-    """What the effects assess by.
+    """The scene that the effects assess by.
 
     Attributes
     ----------

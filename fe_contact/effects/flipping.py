@@ -20,9 +20,9 @@ def flipped(decided: Mapping[str, str], name: str, choice: str) -> dict[str, str
         Every effect "on" or "off".
     name, choice : str
     """
-    asked = {**decided, name: choice}
+    choices = {**decided, name: choice}
     if name == FaceLoadDistribution.name:
-        asked[FiniteWidth.name] = "auto" if choice == "off" else "off"
+        choices[FiniteWidth.name] = "auto" if choice == "off" else "off"
     if name == FiniteWidth.name and choice == "on":
-        asked[FaceLoadDistribution.name] = "off"
-    return asked
+        choices[FaceLoadDistribution.name] = "off"
+    return choices

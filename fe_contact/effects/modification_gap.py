@@ -28,7 +28,7 @@ class ModificationGap:
         return self.pinion.varies_along_profile or self.wheel.varies_along_profile
 
     def breaks(self, pair: ParallelAxes) -> tuple[Break, ...]:
-        """Where reliefs and the edges of rounded or chamfered tips begin on either flank."""
+        """Roll lengths at which reliefs and the edges of rounded or chamfered tips begin on either flank."""
         sides = ((pair.pinion, self.pinion), (pair.wheel, self.wheel))
         return tuple(
             Break(

@@ -19,7 +19,7 @@ from fe_contact.types import FloatArray
 
 @dataclass(frozen=True)
 class SeatCompliance:
-    """How a unit load on its seat moves a gear, in any plane through the axis.
+    """Displacement of a gear by a unit load on its seat, in any plane through the axis.
 
     Attributes
     ----------
@@ -64,9 +64,9 @@ def _section(shaft: Shaft, low: float, high: float, bending: float, shear: float
     middle = 0.5 * (low + high)
     force = np.zeros(2)
     constant = np.zeros(2)  # moment = constant + force x
-    for place, load in ((0.0, first), (shaft.length, second), (shaft.position, np.array([1.0, 0.0]))):
-        if middle > place:
-            force, constant = force + load, constant - place * load
+    for position, load in ((0.0, first), (shaft.length, second), (shaft.position, np.array([1.0, 0.0]))):
+        if middle > position:
+            force, constant = force + load, constant - position * load
     if middle > shaft.position:
         constant = constant - np.array([0.0, 1.0])
     ends = [constant + force * x for x in (low, middle, high)]

@@ -1,4 +1,4 @@
-"""What a run took for granted, checked on its solution: neglected effects, ranges of its models."""
+"""Assumptions of a run, checked on its solution: neglected effects, ranges of its models."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Assumption:
 
 
 class SolvedRun(Protocol):
-    """What assumptions are checked on: a request, its plan, and the contact solved at its places."""
+    """A run as its checks see it: a request, its plan, and the contact solved at its operating points."""
 
     @property
     def checked(self) -> Checked:
@@ -123,7 +123,7 @@ def _tip_edges(run: SolvedRun, size: FloatArray) -> Iterator[Assumption]:
         return
     assemble_edges(run.places, run.solved)
     pairs = zip(run.places.places, run.solved, strict=True)
-    depth = np.stack([deepest_edge(place, run.plan.load, *solved) for place, solved in pairs], axis=1)
+    depth = np.stack([deepest_edge(point, run.plan.load, *solved) for point, solved in pairs], axis=1)
     change = float(np.max(depth / np.maximum(allowed(run).scale(size), 1e-12 * np.abs(_means(run)))))
     deepest = 1e6 * float(depth.max())
     reason = "the gaps at the tip edges stay open"
@@ -159,9 +159,9 @@ def _plane(run: SolvedRun) -> Iterator[Assumption]:
     if model.across_face:
         return
     reasons = across_face(request.scene)
-    found = "; ".join(reasons) if reasons else "nothing in the scene acts across it"
+    reason = "; ".join(reasons) if reasons else "nothing in the scene acts across it"
     name = FaceLoadDistribution.name
-    yield Assumption(name, "load even over the face", not reasons, float("nan"), found)
+    yield Assumption(name, "load even over the face", not reasons, float("nan"), reason)
     missing = left_out(run.places.places[0].contact.pair, run.plan.discretization)
     if missing:
         reason = f"the finite width changes about {100 * missing:.2g} % of the mean"
@@ -172,13 +172,13 @@ def _plane(run: SolvedRun) -> Iterator[Assumption]:
 def _coast_flanks(run: SolvedRun) -> Iterator[Assumption]:
     """Between the coast flanks there is room: the contact analysis has the driving flanks alone."""
     room = []
-    for place, (_, solution) in zip(run.places.places, run.solved, strict=True):
-        pair = place.contact.pair
+    for point, (_, solution) in zip(run.places.places, run.solved, strict=True):
+        pair = point.contact.pair
         if pair.transverse_base_backlash <= LEAST_BACKLASH:
             reason = "the teeth as given have no backlash: coast flanks were not assessed"
             yield Assumption("", "coast flanks stay apart", None, float("nan"), reason)
             return
-        room.append(pair.transverse_base_backlash + float(np.min(solution.no_load)) - _closing(place))
+        room.append(pair.transverse_base_backlash + float(np.min(solution.no_load)) - _closing(point))
     least = 1e6 * min(room)
     reason = f"the least room is {least:.3g} um" if least > 0 else f"the teeth jam by {-least:.3g} um"
     yield Assumption("", "coast flanks stay apart", least > 0, float("nan"), reason)
@@ -196,11 +196,11 @@ def _printed_data(run: SolvedRun) -> Iterator[Assumption]:
         yield Assumption("", "nominal teeth do not jam", True, float("nan"), reason)
 
 
-def _closing(place: OperatingPoint) -> float:
-    """How much deviations and misalignment close the coast side beside what the driving side opens, m."""
-    skew = sum(abs(term.growth) for term in place.model.gaps if isinstance(term, MisalignmentGap))
-    meeting = np.arange(place.model.period)
-    teeth = sum(float(np.max(term(meeting))) for term in place.model.tooth_gaps)
+def _closing(point: OperatingPoint) -> float:
+    """Distance by which deviations and misalignment close the coast side beyond the driving side, m."""
+    skew = sum(abs(term.growth) for term in point.model.gaps if isinstance(term, MisalignmentGap))
+    meeting = np.arange(point.model.period)
+    teeth = sum(float(np.max(term(meeting))) for term in point.model.tooth_gaps)
     return 0.5 * skew + teeth
 
 
@@ -229,12 +229,12 @@ def _ripples(run: SolvedRun) -> FloatArray:
 
 
 def _over_nodes(run: SolvedRun, figure: Callable[..., Any]) -> FloatArray:
-    """Take a figure of every curve, its failed points left out: failures are told by themselves."""
-    curves = [[column[np.isfinite(column)] for column in one.deflection.T] for _, one in run.solved]
-    found = [[float(figure(curve)) if curve.size else np.inf for curve in place] for place in curves]
-    return np.array(found).T
+    """Take a figure of every curve, its failed points left out: failures are reported by themselves."""
+    curves = [[column[np.isfinite(column)] for column in solution.deflection.T] for _, solution in run.solved]
+    figures = [[float(figure(curve)) if curve.size else np.inf for curve in columns] for columns in curves]
+    return np.array(figures).T
 
 
-def violated(found: Sequence[Assumption]) -> tuple[Assumption, ...]:
+def violated(assumptions: Sequence[Assumption]) -> tuple[Assumption, ...]:
     """Return those that do not hold."""
-    return tuple(one for one in found if one.holds is False)
+    return tuple(assumption for assumption in assumptions if assumption.holds is False)

@@ -58,13 +58,13 @@ def _entry(
     entry: LedgerEntry, influence: Influence | None, seconds: float | None, assumptions: Sequence[Assumption]
 ) -> Json:
     """One effect."""
-    found = [one for one in assumptions if one.effect == entry.name]
+    checks = [check for check in assumptions if check.effect == entry.name]
     return entry.to_json() | {
         "influence": None if influence is None else influence.to_json(),
         "cost_cpu_seconds": seconds,
         "price": _price(entry, influence, seconds),
-        "checked": "; ".join(f"{one.what}: {one.reason}" for one in found) or NOT_CHECKED,
-        "holds": all(one.holds is not False for one in found) if found else None,
+        "checked": "; ".join(f"{check.what}: {check.reason}" for check in checks) or NOT_CHECKED,
+        "holds": all(check.holds is not False for check in checks) if checks else None,
     }
 
 
@@ -93,12 +93,12 @@ def _cost(
 def _predicted(checked: Checked, cache: Path | None, run: Plan | None) -> float:
     """CPU seconds of a request, on the mesh and in the slices of the run if that is over the face as well."""
     request = checked.request
-    wanted = request.pair, request.load, request.options, checked.model
+    arguments = request.pair, request.load, request.options, checked.model
     if run is None:
-        plan = planned(*wanted, request.alignments, cache)
+        plan = planned(*arguments, request.alignments, cache)
     else:
         slices = run.discretization.slices
-        plan = make_plan(*wanted, run.level, slices if slices > 1 else None)
+        plan = make_plan(*arguments, run.level, slices if slices > 1 else None)
     return predict_run(request.pair, plan, checked.model, request.alignments, cache).cpu_seconds
 
 
@@ -120,9 +120,9 @@ def toggled(checked: Checked, name: str, choice: str) -> Checked:
         The model cannot be had, as a plane with what acts across the face.
     """
     request = checked.request
-    asked = flipped(checked.decided, name, choice)
+    choices = flipped(checked.decided, name, choice)
     # choices of every effect are explicit now, so that an explicit model has no say about them any more
-    plane_stress = request.options.model == "plane_stress" and asked["face_load_distribution"] == "off"
-    options = replace(request.options, model="plane_stress" if plane_stress else "auto", effects=asked)
-    neglected = {one: reason for one, reason in request.neglected.items() if one != name}
+    plane_stress = request.options.model == "plane_stress" and choices["face_load_distribution"] == "off"
+    options = replace(request.options, model="plane_stress" if plane_stress else "auto", effects=choices)
+    neglected = {other: reason for other, reason in request.neglected.items() if other != name}
     return check_asked(replace(request, options=options, neglected=neglected, turned_on={}), spare=False)

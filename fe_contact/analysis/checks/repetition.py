@@ -1,4 +1,4 @@
-"""What to do where a run shows that something it took for granted is wrong."""
+"""Repetition of a run that shows that something it took for granted is wrong."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ Run = TypeVar("Run", bound=SolvedRun)
 def settled(
     run: Run,
     check: Callable[[Run], tuple[Assumption, ...]],
-    again: Callable[[Run, Mapping[str, str]], Run],
+    repeat: Callable[[Run, Mapping[str, str]], Run],
     clock: StageClock,
 ) -> tuple[Run, tuple[Assumption, ...], list[Json]]:
     """Check what a run took for granted; where that is wrong, do as the caller chose.
 
-    An automatic effect that turns out to be needed is switched on and the run made `again` with the effects
+    An automatic effect that turns out to be needed is switched on and the run made `repeat` with the effects
     and reasons given. What was requested by name is only reported.
 
     Returns
     -------
     run
         The last one.
-    found : tuple of Assumption
+    assumptions : tuple of Assumption
         Of the last one.
     repeated : list of dict
         What was turned on each time, and the CPU seconds it took.
@@ -44,18 +44,18 @@ def settled(
     repeated: list[Json] = []
     while True:
         with clock.stage("assumptions"):
-            found = check(run)
-        wrong = violated(found)
+            assumptions = check(run)
+        wrong = violated(assumptions)
         request = run.checked.request
         if wrong and request.options.on_violation == "fail":
-            said = "; ".join(f"{one.what}: {one.reason}" for one in wrong)
-            raise SolveError(f"assumptions that do not hold: {said}")
+            reasons = "; ".join(f"{flaw.what}: {flaw.reason}" for flaw in wrong)
+            raise SolveError(f"assumptions that do not hold: {reasons}")
         automatic = {entry.name for entry in run.checked.ledger if entry.choice == "auto" and not entry.on}
-        needed = {one.effect: f"{one.what}: {one.reason}" for one in wrong if one.effect in automatic}
+        needed = {flaw.effect: f"{flaw.what}: {flaw.reason}" for flaw in wrong if flaw.effect in automatic}
         if not needed or request.options.on_violation != "repeat":
-            return run, found, repeated
+            return run, assumptions, repeated
         before = sum(clock.seconds.values())
-        run = again(run, needed)
+        run = repeat(run, needed)
         repeated.append({"turned_on": needed, "cpu_seconds": sum(clock.seconds.values()) - before})
 
 

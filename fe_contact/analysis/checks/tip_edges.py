@@ -1,4 +1,4 @@
-"""How far tip edges would be inside the mating flanks in a contact that was solved without them."""
+"""Depth of tip edges inside the mating flanks in a contact that was solved without them."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ OUTSIDE = 1e-3
 """Base pitches before A and after E at which the gap of an edge is assessed: it grows from there on."""
 
 
-def assemble_edges(places: OperatingPoints, solved: Sequence[tuple[ContactProblem, ContactSolution]]) -> None:
+def assemble_edges(points: OperatingPoints, solved: Sequence[tuple[ContactProblem, ContactSolution]]) -> None:
     """Let workers assemble the compliance at the tip edges of all places, as `edge_depth` needs it."""
-    models = [replace(place.model, corner_contact=True) for place in places.places]
-    assemble_remotely(places, models, _phase(solved[0][0]))
+    models = [replace(point.model, corner_contact=True) for point in points.places]
+    assemble_remotely(points, models, _phase(solved[0][0]))
 
 
 def deepest_edge(
-    place: OperatingPoint, load: FloatArray, problem: ContactProblem, solution: ContactSolution
+    point: OperatingPoint, load: FloatArray, problem: ContactProblem, solution: ContactSolution
 ) -> FloatArray:
     """Return how far tip edges would be inside the mating flanks (L,), m; 0 where they stay clear.
 
     At the positions solved, and where pairs come into contact and leave it: there the gap of an edge is
     least, and solved positions may pass it by. The contact is solved for these too.
     """
-    position = handovers(place.contact.pair)
-    meant = place.solve_pitches(position, load, np.arange(place.model.period))
-    return np.maximum(edge_depth(place, problem, solution), edge_depth(place, *meant))
+    position = handovers(point.contact.pair)
+    meant = point.solve_pitches(position, load, np.arange(point.model.period))
+    return np.maximum(edge_depth(point, problem, solution), edge_depth(point, *meant))
 
 
 def handovers(pair: ParallelAxes) -> FloatArray:
@@ -43,15 +43,15 @@ def handovers(pair: ParallelAxes) -> FloatArray:
     return np.sort(np.array([start - OUTSIDE, end + OUTSIDE]) % 1.0)
 
 
-def edge_depth(place: OperatingPoint, problem: ContactProblem, solution: ContactSolution) -> FloatArray:
+def edge_depth(point: OperatingPoint, problem: ContactProblem, solution: ContactSolution) -> FloatArray:
     """Return how far tip edges would be inside the mating flanks (L,), m; 0 where they stay clear.
 
     Under the forces as solved: what the loaded teeth move at the unloaded edges is in.
     """
     where = problem.candidates.position
     phase, pitch = _phase(problem), np.floor(where).astype(np.int64)
-    model = replace(place.model, corner_contact=True)
-    edges = place.contact.problem(model, phase, pitch if model.tooth_gaps else None)
+    model = replace(point.model, corner_contact=True)
+    edges = point.contact.problem(model, phase, pitch if model.tooth_gaps else None)
     touch = edges.candidates.touch
     off_line = (touch.lever_1 != 1.0) | (touch.lever_2 != 1.0)
     force = _carried(problem.candidates, edges.candidates, np.nan_to_num(solution.force))
@@ -68,8 +68,8 @@ def _phase(problem: ContactProblem) -> FloatArray:
 
 def _carried(these: Candidates, those: Candidates, force: FloatArray) -> FloatArray:
     """Return forces (P, L, n) of some candidates on others, of which they are a part."""
-    place = {key: i for i, key in enumerate(zip(those.pair.tolist(), those.face_position, strict=True))}
-    found = np.zeros((*force.shape[:2], those.pair.size))
+    column = {key: i for i, key in enumerate(zip(those.pair.tolist(), those.face_position, strict=True))}
+    carried = np.zeros((*force.shape[:2], those.pair.size))
     keys = zip(these.pair.tolist(), these.face_position, strict=True)
-    found[:, :, [place[key] for key in keys]] = force
-    return found
+    carried[:, :, [column[key] for key in keys]] = force
+    return carried

@@ -92,7 +92,7 @@ def compute_pass(
             estimates=_full(made),
         )
     receipt = clock.to_json() | assessed.to_json() | contact | _planned(made)
-    receipt |= {"assumptions": [one.to_json() for one in assumptions], "repeated": repeated}
+    receipt |= {"assumptions": [assumption.to_json() for assumption in assumptions], "repeated": repeated}
     if remote.tasks or remote.lost:
         receipt["elsewhere"] = asdict(remote)
     metadata = _metadata(case, made, receipt, ledger)

@@ -1,4 +1,4 @@
-"""What the receipt says of the contact solver: how hard the points were, and which failed."""
+"""The contact solver in the receipt: how hard the points were, and which failed."""
 
 from __future__ import annotations
 

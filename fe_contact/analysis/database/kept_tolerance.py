@@ -27,7 +27,7 @@ OnDraft = Callable[[SteDatabase, str], None]
 
 @dataclass(frozen=True)
 class _Passes:
-    """What all passes share; the run has a cache."""
+    """The inputs that all passes share; the run has a cache."""
 
     case: Json
     run: Run
@@ -103,8 +103,8 @@ def _refined(checked: Checked, shared: _Passes) -> SteDatabase:
         if last.table is None:
             return of_all_passes(passes, table, f"pass {len(passes)} ({last.name}) failed: {last.failure}")
         if last.used >= best.used:
-            said = f"pass {len(passes)} ({made.words}) did not lower the measured errors"
-            return of_all_passes(passes, table, said)
+            reason = f"pass {len(passes)} ({made.words}) did not lower the measured errors"
+            return of_all_passes(passes, table, reason)
         best, table = last, last.table
 
 
@@ -125,7 +125,7 @@ def _ended(made: Refinement, passes: Sequence[Pass], cache: Path | None) -> str:
     budget = made.decided.checked.request.options.time_budget
     if budget is None:
         return ""
-    left = budget - sum(one.cost["cpu_seconds"] for one in passes)
+    left = budget - sum(done.cost["cpu_seconds"] for done in passes)
     needed = made.decided.predicted(cache).cpu_seconds
     if needed <= left:
         return ""

@@ -75,9 +75,9 @@ def of_all_passes(passes: Sequence[Pass], kept: SteDatabase, reason: str) -> Ste
     reason : str
         Why no further pass was made.
     """
-    receipt = kept.metadata.receipt | _summed([one.cost for one in passes])
+    receipt = kept.metadata.receipt | _summed([done.cost for done in passes])
     receipt["tolerance"] = receipt["tolerance"] | {"reason": reason}
-    receipt["passes"] = [one.to_json() | {"kept": one.table is kept} for one in passes]
+    receipt["passes"] = [done.to_json() | {"kept": done.table is kept} for done in passes]
     return replace(kept, metadata=replace(kept.metadata, receipt=receipt))
 
 
@@ -93,6 +93,6 @@ def _summed(costs: Sequence[Json]) -> Json:
     total |= {"stages": stages, "peak_memory_bytes": max(cost["peak_memory_bytes"] for cost in costs)}
     others = [cost["elsewhere"] for cost in costs if "elsewhere" in cost]
     if others:  # the peak and the loss of workers are those of all passes so far
-        sums = {name: sum(one[name] for one in others) for name in ("tasks", "cpu_seconds")}
+        sums = {name: sum(remote[name] for remote in others) for name in ("tasks", "cpu_seconds")}
         total["elsewhere"] = others[-1] | sums
     return total

@@ -1,4 +1,4 @@
-"""What the next pass refines, decided by the errors that a pass has measured.
+"""The refinement of the next pass, decided by the errors that a pass has measured.
 
 A source of error is refined by what it comes from: the mesh by the next level, slices by more of them,
 positions by a closer search, the correction for a finite width by three dimensions. How far a step takes its
@@ -56,7 +56,7 @@ class Refinement:
 
     @property
     def words(self) -> str:
-        """What is refined, in one line."""
+        """The refinement in one line."""
         return ", ".join(self.steps)
 
 
@@ -110,8 +110,8 @@ class _Resolution:
 
     def _more_slices(self) -> _Resolution | None:
         """Take the next number of slices that the layers of the mesh resolve, or else a mesh with more."""
-        for wanted in (SLICES, *FINER_SLICES):
-            count = self._slices_that_fit(wanted, self.level)
+        for slices in (SLICES, *FINER_SLICES):
+            count = self._slices_that_fit(slices, self.level)
             if count > self.slices:
                 return self._in_slices(count)
         if self.slices >= FINER_SLICES[-1]:
@@ -119,9 +119,9 @@ class _Resolution:
         finer = self._next_level(across_face=True)
         return finer and (finer if finer.slices > self.slices else finer._more_slices())
 
-    def _slices_that_fit(self, wanted: int, level: str) -> int:
+    def _slices_that_fit(self, slices: int, level: str) -> int:
         """Return how many of the wanted slices the layers of a mesh resolve."""
-        return face_discretization(self.decided.checked.request.pair, level, wanted).slices
+        return face_discretization(self.decided.checked.request.pair, level, slices).slices
 
     def _in_slices(self, count: int) -> _Resolution:
         """Return the same mesh in so many slices."""
@@ -136,15 +136,15 @@ class _Resolution:
         if self.nodes.tolerance * CLOSER < usual * CLOSEST:
             return None
         nodes = replace(self.nodes, tolerance=CLOSER * self.nodes.tolerance, most=2 * self.nodes.most)
-        said = f"positions {100 * self.nodes.tolerance:.2g} -> {100 * nodes.tolerance:.2g} % of the ripple"
-        return replace(self._with(_POSITION, CLOSER, said), nodes=nodes)
+        step = f"positions {100 * self.nodes.tolerance:.2g} -> {100 * nodes.tolerance:.2g} % of the ripple"
+        return replace(self._with(_POSITION, CLOSER, step), nodes=nodes)
 
-    def _with(self, source: int, part: float, said: str) -> _Resolution:
+    def _with(self, source: int, part: float, step: str) -> _Resolution:
         """Return the same with one source a part of what it was."""
         factors = np.ones(len(AT_NODES))
         factors[source] = part
         shares = self.shares * _by_source(factors, self.shares)
-        return replace(self, shares=shares, steps=(*self.steps, said))
+        return replace(self, shares=shares, steps=(*self.steps, step))
 
 
 def next_pass(decided: Decided, shares: FloatArray) -> Refinement | str:
@@ -217,10 +217,10 @@ def _by_source(values: FloatArray, shares: FloatArray) -> FloatArray:
 
 def _of_model(model: Decided, begun: _Resolution) -> Refinement:
     """Return the pass of a more exact model; what lies between positions stays, the rest is expected."""
-    said = f"model {model_name(begun.decided.checked)} -> {model_name(model.checked)}"
+    step = f"model {model_name(begun.decided.checked)} -> {model_name(model.checked)}"
     tolerance = model.checked.request.options.allowed.relative
     expected = float(np.hypot(model.mesh.option.error.total / tolerance, begun.shares[_POSITION].max()))
-    return Refinement(model, AT_NODES[_WIDTH], (said,), expected)
+    return Refinement(model, AT_NODES[_WIDTH], (step,), expected)
 
 
 def _no_way(finest: _Resolution, source: int) -> str:

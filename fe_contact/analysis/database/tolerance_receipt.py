@@ -1,4 +1,4 @@
-"""Whether a table keeps the tolerance that was requested, by the errors that were measured."""
+"""The tolerance that was requested, held against the errors that were measured."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ def tolerance_receipt(table: SteDatabase, allowed: AllowedError) -> Json:
     shares = error_shares(table, allowed)
     total = all_sources(shares[: len(AT_NODES)])
     used = float(np.max(total))
-    asked = {"relative": allowed.relative, "floor_m": allowed.floor}
+    limits = {"relative": allowed.relative, "floor_m": allowed.floor}
     if np.isnan(total).all():
-        return asked | {"used": None, "met": None}
+        return limits | {"used": None, "met": None}
     kept = {"used": used if np.isfinite(used) else None, "met": used <= 1.0}
-    return asked | kept | {"between_nodes": _between_nodes(table, shares)}
+    return limits | kept | {"between_nodes": _between_nodes(table, shares)}
 
 
 def _between_nodes(table: SteDatabase, shares: FloatArray) -> list[Json]:

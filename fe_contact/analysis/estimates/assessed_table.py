@@ -41,8 +41,8 @@ class AssessedTable:
 
     def to_json(self) -> Json:
         """Return what the receipt says of the errors."""
-        found = {"error_by_source": self.by_source, "held_out": self.held_out}
-        return found | summary(self.curve_error)
+        sources = {"error_by_source": self.by_source, "held_out": self.held_out}
+        return sources | summary(self.curve_error)
 
 
 def assessed_table(
@@ -68,23 +68,23 @@ def assessed_table(
     checked : Checked
     plan : Plan
     """
-    made, found = plan.discretization, [solution for _, solution in solved]
+    made, solutions = plan.discretization, [solution for _, solution in solved]
     axes = plan.load, table.misalignment, table.center_distance_change
     sample = TableSample.of(nodes.position, fine.period, axes)
-    own = sample.taken(found)
+    own = sample.taken(solutions)
     plane = sample.solved(fine.in_plane_strain, fine) if made.corrected else own
     sliced = sample.solved(fine.in_slices(made.coarse_slices), fine) if made.slices > 1 else own
     nested = Nested(sample, own, plane, sample.solved(coarse, fine), sliced)
-    positions = position_errors(nodes, fine, found, plan)
-    measured = fine, found, nested, positions, plan
+    positions = position_errors(nodes, fine, solutions, plan)
+    measured = fine, solutions, nested, positions, plan
     sources, errors = estimate_errors(*measured), curve_errors(*measured)
     between = held_out_axes(table, fine, checked.request.scene, checked.decided, solved)
     held_out = {name: error.to_json() for name, error in between.items()}
     return AssessedTable(sources.total, with_axes(errors, between), sources.to_json(), held_out)
 
 
-def unassessed_table(table: SteDatabase, places: OperatingPoints, plan: Plan) -> AssessedTable:
+def unassessed_table(table: SteDatabase, points: OperatingPoints, plan: Plan) -> AssessedTable:
     """Return the errors of a table of which none was estimated, but for what is known in closed form."""
-    left = {"plane_for_finite_width_relative": left_out(places.places[0].contact.pair, plan.discretization)}
+    left = {"plane_for_finite_width_relative": left_out(points.places[0].contact.pair, plan.discretization)}
     unknown = np.full(table.error_estimate.shape, np.nan)
-    return AssessedTable(unknown, unestimated(places, plan), left, {})
+    return AssessedTable(unknown, unestimated(points, plan), left, {})

@@ -1,4 +1,4 @@
-"""How wrong mean, peak-to-peak and harmonics are, by source.
+"""Errors of mean, peak-to-peak and harmonics, by source.
 
 Each quantity is computed from nested discretizations, the run's own and a rougher one, and the change between
 the two is carried on to the error that is left by the order known of the discretization, as the point bands
@@ -49,7 +49,7 @@ SHOWN = {"mean_m": MEAN, "peak_to_peak_m": PEAK_TO_PEAK, "first_harmonic_m": FIR
 
 
 def curve_errors(
-    places: OperatingPoints,
+    points: OperatingPoints,
     solutions: list[ContactSolution],
     nested: Nested,
     positions: PositionErrors,
@@ -60,7 +60,7 @@ def curve_errors(
     Parameters are those of `estimate_errors`. Errors of the discretization are those at the loads and
     alignments that were solved again, and interpolated between them.
     """
-    made, sample, pair = plan.discretization, nested.sample, places.nominal.pair
+    made, sample, pair = plan.discretization, nested.sample, points.nominal.pair
     helical = isinstance(made, FaceDiscretization) and pair.base_helix_angle != 0.0
     # on the curve: half the slices may multiply a small ripple, and no part of that is what many change
     many_slices = nested.table + made.remaining_slices * (nested.table - nested.sliced)
@@ -76,10 +76,10 @@ def curve_errors(
     by_source = {
         "discretisation": by_mesh,
         "slices": by_slices,
-        "contact_solver": _by_solver(places, solutions, sample),
+        "contact_solver": _by_solver(points, solutions, sample),
         "finite_width": free_ends,
         "position": np.broadcast_to(
-            positions.curves[:, :, None, None], (*positions.curves.shape, *places.shape)
+            positions.curves[:, :, None, None], (*positions.curves.shape, *points.shape)
         ),
         "model": model_errors(pair, plan.load, own),
     }
@@ -94,19 +94,19 @@ def _changes(
     helical: bool,
 ) -> FloatArray:
     """Return parts (k, 22) of the changes of k sets of curves (T R, f, m, d), (k, 22, F, M, D) in m."""
-    one, other = np.stack(these, axis=1), np.stack(those, axis=1)
+    first, second = np.stack(these, axis=1), np.stack(those, axis=1)
     rows = sample.knots.size
-    change = quantity_changes(sample.knots, one.reshape(rows, -1), other.reshape(rows, -1), sample.period)
-    change = parts.T[:, :, None, None, None] * change.reshape(QUANTITIES, *one.shape[1:])
+    change = quantity_changes(sample.knots, first.reshape(rows, -1), second.reshape(rows, -1), sample.period)
+    change = parts.T[:, :, None, None, None] * change.reshape(QUANTITIES, *first.shape[1:])
     return sample.spread(np.moveaxis(_shared(change) if helical else change, 1, 0))
 
 
-def _by_solver(places: OperatingPoints, solutions: list[ContactSolution], sample: TableSample) -> FloatArray:
+def _by_solver(points: OperatingPoints, solutions: list[ContactSolution], sample: TableSample) -> FloatArray:
     """Errors (22, F, M, D) that the residuals of the contact can make."""
-    knots = (np.arange(places.period)[:, None] + sample.position).ravel()
-    return places.gathered(
+    knots = (np.arange(points.period)[:, None] + sample.position).ravel()
+    return points.gathered(
         [
-            error_bound(knots, contact_error(solution), solution.deflection, places.period)
+            error_bound(knots, contact_error(solution), solution.deflection, points.period)
             for solution in solutions
         ]
     )
@@ -143,9 +143,9 @@ def with_axes(at_nodes: FloatArray, axes: Mapping[str, AxisError]) -> FloatArray
     return np.concatenate([at_nodes, np.stack(between)])
 
 
-def unestimated(places: OperatingPoints, plan: Plan) -> FloatArray:
+def unestimated(points: OperatingPoints, plan: Plan) -> FloatArray:
     """Return the errors of a run in which none was estimated, (9, 22, F, M, D): NaN."""
-    return np.full((len(SOURCES), QUANTITIES, plan.load.size, *places.shape), np.nan)
+    return np.full((len(SOURCES), QUANTITIES, plan.load.size, *points.shape), np.nan)
 
 
 def summary(errors: FloatArray) -> Json:
@@ -154,8 +154,8 @@ def summary(errors: FloatArray) -> Json:
     A source is not estimated if it is unknown anywhere.
     """
     known = {name: source for name, source in zip(SOURCES, errors, strict=True) if not np.isnan(source).any()}
-    found = {
+    largest = {
         name: {label: source[i].max(axis=(1, 2)).tolist() for label, i in SHOWN.items()}
         for name, source in known.items()
     }
-    return {"curve_error": found, "not_estimated": [name for name in SOURCES if name not in known]}
+    return {"curve_error": largest, "not_estimated": [name for name in SOURCES if name not in known]}

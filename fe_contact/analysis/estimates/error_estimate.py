@@ -1,4 +1,4 @@
-"""How wrong a table is, by source.
+"""Errors of a table, by source.
 
 The finite-element error comes from a second, coarser discretization solved at the same points; with
 quadratic elements and Galerkin patches the error falls at least with the square of the element size, which
@@ -104,7 +104,7 @@ class Nested:
 
 
 def estimate_errors(
-    places: OperatingPoints,
+    points: OperatingPoints,
     solutions: list[ContactSolution],
     nested: Nested,
     positions: PositionErrors,
@@ -114,7 +114,7 @@ def estimate_errors(
 
     Parameters
     ----------
-    places : OperatingPoints
+    points : OperatingPoints
     solutions : list of ContactSolution
         The table's.
     nested : Nested
@@ -122,7 +122,7 @@ def estimate_errors(
         The largest of the assessed operating points stand for every place.
     plan : Plan
     """
-    made, pair = plan.discretization, places.places[0].contact.pair
+    made, pair = plan.discretization, points.places[0].contact.pair
     missing = left_out(pair, made)
 
     def left(these: FloatArray, those: FloatArray, part: float) -> FloatArray:
@@ -132,21 +132,21 @@ def estimate_errors(
     free_ends = left(nested.table, nested.plane, CORRECTION_ERROR)
     if missing:
         curves = [LEFT_OUT * missing * np.nan_to_num(np.abs(solution.deflection)) for solution in solutions]
-        free_ends = places.gathered(curves)
+        free_ends = points.gathered(curves)
     return ErrorSources(
         left(nested.plane, nested.coarse, made.remaining),
         left(nested.table, nested.sliced, made.remaining_slices),
-        np.broadcast_to(positions.band[:, :, None, None], (*positions.band.shape, *places.shape)),
-        places.gathered([contact_error(solution) for solution in solutions]),
+        np.broadcast_to(positions.band[:, :, None, None], (*positions.band.shape, *points.shape)),
+        points.gathered([contact_error(solution) for solution in solutions]),
         free_ends,
-        places.gathered([_left_by_model(solution, places, plan) for solution in solutions]),
+        points.gathered([_left_by_model(solution, points, plan) for solution in solutions]),
         missing,
     )
 
 
-def _left_by_model(solution: ContactSolution, places: OperatingPoints, plan: Plan) -> FloatArray:
+def _left_by_model(solution: ContactSolution, points: OperatingPoints, plan: Plan) -> FloatArray:
     """Return what the method leaves out at points (P, F), m."""
-    return point_error(places.nominal.pair, plan.load, np.nan_to_num(solution.deflection))
+    return point_error(points.nominal.pair, plan.load, np.nan_to_num(solution.deflection))
 
 
 def contact_error(solution: ContactSolution) -> FloatArray:

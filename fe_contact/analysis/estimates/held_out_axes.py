@@ -57,7 +57,7 @@ class AxisError:
 
 def held_out_axes(
     table: SteDatabase,
-    places: OperatingPoints,
+    points: OperatingPoints,
     scene: ContactScene,
     choices: Mapping[str, str],
     solved: Solved,
@@ -73,7 +73,7 @@ def held_out_axes(
     ----------
     table : SteDatabase
         As computed.
-    places : OperatingPoints
+    points : OperatingPoints
         That it was computed at.
     scene : ContactScene
         With the axes of the table.
@@ -91,7 +91,7 @@ def held_out_axes(
     if table.n_failed:
         return {}
     table = _first_pitch(table)
-    assessed = _Assessed(table, some_positions(table.position.size), places, scene, choices, solved)
+    assessed = _Assessed(table, some_positions(table.position.size), points, scene, choices, solved)
     axes = {
         "force": (table.force, assessed.force),
         "misalignment": (table.misalignment, assessed.misalignment),
@@ -134,11 +134,11 @@ class _Assessed:
         """Assess the loads."""
         force = self.table.force
         (m,), (d,) = self._nearest("misalignment"), self._nearest("center_distance_change")
-        place = self.places.places[self._place(int(np.searchsorted(self.table.misalignment, m)), d)]
+        point = self.places.places[self._place(int(np.searchsorted(self.table.misalignment, m)), d)]
         probes = LOAD_PROBES if force.size <= WIDE_INTERVALS + 1 else MIDDLE
         loads = force[:-1, None] ** (1.0 - probes) * force[1:, None] ** probes
-        self._keep_rows(place)
-        curves = self._curves(place, self.rows, loads.ravel(), m, d)
+        self._keep_rows(point)
+        curves = self._curves(point, self.rows, loads.ravel(), m, d)
         error = _worst(curves).reshape(loads.shape).max(axis=1)
         change = self._changes(curves).reshape(-1, *loads.shape).max(axis=2)
         return AxisError(np.sqrt(force[1:] * force[:-1]), error[:, None], change[..., None])
@@ -147,12 +147,12 @@ class _Assessed:
         """Assess the misalignments, at some loads."""
         force, some = self.table.force, sample_of(self.table.force.size, LOADS)
         middles, d = _middles(self.table.misalignment), self._nearest("center_distance_change")
-        places = self._held_out(middles, d)
-        self._keep_rows(places[0])
-        held_out = zip(places, middles, strict=True)
-        found = [self._curves(place, self.rows, force[some], x, d[0]) for place, x in held_out]
-        change = np.stack([self._changes(curves) for curves in found], axis=1)
-        error = np.array([_worst(curves) for curves in found])
+        points = self._held_out(middles, d)
+        self._keep_rows(points[0])
+        held_out = zip(points, middles, strict=True)
+        pairs = [self._curves(point, self.rows, force[some], x, d[0]) for point, x in held_out]
+        change = np.stack([self._changes(curves) for curves in pairs], axis=1)
+        error = np.array([_worst(curves) for curves in pairs])
         return AxisError(middles, spread(force, some, error, 1), spread(force, some, change, 2))
 
     def center_distance_change(self) -> AxisError:
@@ -160,17 +160,17 @@ class _Assessed:
         force, some = self.table.force, sample_of(self.table.force.size, LOADS)
         middles, m = _middles(self.table.center_distance_change), self._nearest("misalignment")
         position = [self.table.position[rows] for rows in _telling(self.table)]
-        places, workers = self._held_out(m, middles), self.places.workers
-        solved = deflected_operating_points(places, position, force[some], None, workers)
+        points, workers = self._held_out(m, middles), self.places.workers
+        solved = deflected_operating_points(points, position, force[some], None, workers)
         held_out = zip(position, solved, middles, strict=True)
         worst = [_worst((self._tabulated(where, force[some], m[0], x), own)) for where, own, x in held_out]
         errors = spread(force, some, np.array(worst), 1)
         return AxisError(middles, errors, np.stack([errors, *[2.0 * errors] * (QUANTITIES - 1)]))
 
-    def _curves(self, place: OperatingPoint, rows: IntArray, load: FloatArray, *alignment: float) -> Curves:
+    def _curves(self, point: OperatingPoint, rows: IntArray, load: FloatArray, *alignment: float) -> Curves:
         """Interpolant and solutions (positions, L), m; NaN where one did not converge."""
         position = self.table.position[rows]
-        solution = place.solve(position, load, start=self._start(rows, load, *alignment))[1]
+        solution = point.solve(position, load, start=self._start(rows, load, *alignment))[1]
         return self._tabulated(position, load, *alignment), solution.deflection
 
     def _start(self, rows: IntArray, load: FloatArray, misalignment: float, change: float) -> Start:
@@ -204,9 +204,9 @@ class _Assessed:
         nodes: FloatArray = getattr(self.table, name)
         return nodes[[int(np.argmin(np.abs(nodes)))]]
 
-    def _keep_rows(self, place: OperatingPoint) -> None:
+    def _keep_rows(self, point: OperatingPoint) -> None:
         """Let a place take the compliance at the assessed positions from that at all of the table's."""
-        place.contact.keep_rows(place.model, self.table.position, self.rows)
+        point.contact.keep_rows(point.model, self.table.position, self.rows)
 
     def _held_out(self, misalignment: FloatArray, change: FloatArray) -> tuple[OperatingPoint, ...]:
         """Lay out held-out places like those of the table."""
@@ -222,9 +222,9 @@ def _around(nodes: FloatArray, at: FloatArray) -> tuple[IntArray, IntArray, Floa
     return below, above, (at - nodes[below]) / np.where(step > 0.0, step, 1.0)
 
 
-def _worst(found: Curves) -> FloatArray:
+def _worst(curves: Curves) -> FloatArray:
     """Largest difference (L,) over the positions, m."""
-    return np.asarray(np.abs(found[0] - found[1]).max(axis=0))
+    return np.asarray(np.abs(curves[0] - curves[1]).max(axis=0))
 
 
 def _telling(table: SteDatabase) -> list[IntArray]:

@@ -1,4 +1,4 @@
-"""What a table misses between its positions, at every point and in its curves.
+"""Errors of a table between its positions, at every point and in its curves.
 
 An adaptive search has solved the middles of all intervals. Of fixed positions only those intervals are
 solved in which the curve bends: every position is predicted from the others first, and where that hardly
@@ -55,7 +55,7 @@ class PositionErrors:
 
 
 def position_errors(
-    nodes: PositionNodes, places: OperatingPoints, solutions: list[ContactSolution], plan: Plan
+    nodes: PositionNodes, points: OperatingPoints, solutions: list[ContactSolution], plan: Plan
 ) -> PositionErrors:
     """Assess the positions of a table.
 
@@ -63,40 +63,40 @@ def position_errors(
     ----------
     nodes : PositionNodes
         As the search left them; those of fixed positions, and of several pitches, are measured here.
-    places : OperatingPoints
+    points : OperatingPoints
     solutions : list of ContactSolution
         Of all places.
     plan : Plan
         For its loads and the error that a search would allow.
     """
-    load, period = plan.load, places.period
+    load, period = plan.load, points.period
     if np.isfinite(nodes.interval_error).any() and period == 1:
         return _told(nodes, _by_middles(nodes, 1), load.size)
     some = sample_of(load.size, LOADS)
-    found, left = _measured(nodes.position, places, solutions, plan, some)
-    curves = _by_middles(found, period) + _by_bands(found, left, period)
-    told = _told(found, curves, some.size)
-    return PositionErrors(spread(load, some, told.band, 1), spread(load, some, told.curves, 1))
+    measured, left = _measured(nodes.position, points, solutions, plan, some)
+    curves = _by_middles(measured, period) + _by_bands(measured, left, period)
+    errors = _told(measured, curves, some.size)
+    return PositionErrors(spread(load, some, errors.band, 1), spread(load, some, errors.curves, 1))
 
 
 def _measured(
     position: FloatArray,
-    places: OperatingPoints,
+    points: OperatingPoints,
     solutions: list[ContactSolution],
     plan: Plan,
     some: IntArray,
 ) -> tuple[PositionNodes, FloatArray]:
     """Solve the middles of intervals at some loads, in all base pitches; see `measured_nodes`."""
-    assessed, pitches = places.assessed_indices, np.arange(places.period)
+    assessed, pitches = points.assessed_indices, np.arange(points.period)
     value = np.concatenate([solutions[k].deflection[:, some] for k in assessed], axis=1)
 
     def solve(middles: FloatArray) -> FloatArray:
         curves = deflected_operating_points(
-            places.assessed, [middles] * len(assessed), plan.load[some], pitches, places.workers
+            points.assessed, [middles] * len(assessed), plan.load[some], pitches, points.workers
         )
         return np.concatenate(curves, axis=1)
 
-    return measured_nodes(position, value, solve, places.period, plan.nodes)
+    return measured_nodes(position, value, solve, points.period, plan.nodes)
 
 
 def measured_nodes(
@@ -140,9 +140,9 @@ def measured_nodes(
     solved = np.sort(solved[worst[solved] > rule.tolerance])
     if solved.size:
         rows = (np.arange(period)[:, None] * count + solved).ravel()
-        found = solve(middle[solved])
-        error[rows], left[rows] = np.abs(between[rows] - found), 0.0
-        between[rows] = found
+        solution = solve(middle[solved])
+        error[rows], left[rows] = np.abs(between[rows] - solution), 0.0
+        between[rows] = solution
     return PositionNodes(position, error, value, between), left
 
 
@@ -154,8 +154,8 @@ def predicted_failure(axis: Axis, value: FloatArray) -> FloatArray:
     failed = np.zeros_like(value)
     for first in (0, 1):
         kept, left = np.arange(first, axis.knots.size, 2), np.arange(1 - first, axis.knots.size, 2)
-        found = interpolate(Axis(axis.knots[kept], axis.period), value[kept], axis.knots[left])
-        failed[left] = np.abs(found - value[left])
+        predicted = interpolate(Axis(axis.knots[kept], axis.period), value[kept], axis.knots[left])
+        failed[left] = np.abs(predicted - value[left])
     return failed
 
 

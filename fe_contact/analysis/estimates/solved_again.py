@@ -1,4 +1,4 @@
-"""A table solved again at some of its points, on the rougher discretizations that its errors are told by.
+"""A table solved again at some of its points, on the rougher discretizations that measure its errors.
 
 Bodies, slices and corrections change; where teeth touch does not, so that the candidates of the run serve
 again unless the slices are others.
@@ -94,23 +94,23 @@ class TableSample:
         curves = [solutions[k].deflection[np.ix_(self.every_row, loads)] for k in self.places]
         return self.shaped(curves)
 
-    def solved(self, places: OperatingPoints, known: OperatingPoints) -> FloatArray:
+    def solved(self, points: OperatingPoints, known: OperatingPoints) -> FloatArray:
         """Solve the points on other places, (T R, f, m, d) in m; `known` are those of the table."""
         pitches, load = np.arange(self.period), self.axes[0][self.nodes[0]]
-        asked = [places.places[k] for k in self.places]
-        where = [self.position[self.rows]] * len(asked)
-        candidates = self._candidates(asked[0], [known.places[k] for k in self.places])
+        chosen = [points.places[k] for k in self.places]
+        where = [self.position[self.rows]] * len(chosen)
+        candidates = self._candidates(chosen[0], [known.places[k] for k in self.places])
         return self.shaped(
-            deflected_operating_points(asked, where, load, pitches, places.workers, candidates)
+            deflected_operating_points(chosen, where, load, pitches, points.workers, candidates)
         )
 
-    def _candidates(self, place: OperatingPoint, known: Sequence[OperatingPoint]) -> list[Candidates] | None:
+    def _candidates(self, point: OperatingPoint, known: Sequence[OperatingPoint]) -> list[Candidates] | None:
         """Return those of the table's places, which do not depend on the bodies.
 
         None in other slices and under other load patches, which have candidates of their own.
         """
-        plans = place.contact.plan, known[0].contact.plan
-        one, other = ((plan.discretization.slices, plan.patch) for plan in plans)
-        if one != other:
+        plans = point.contact.plan, known[0].contact.plan
+        first, second = ((plan.discretization.slices, plan.patch) for plan in plans)
+        if first != second:
             return None
-        return [one.contact.candidates(one.model, self.position).rows(self.rows) for one in known]
+        return [own.contact.candidates(own.model, self.position).rows(self.rows) for own in known]

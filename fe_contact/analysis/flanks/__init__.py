@@ -1,1 +1,1 @@
-"""What happens on the flanks and in the roots at one operating point."""
+"""Results on the flanks and in the roots at one operating point."""

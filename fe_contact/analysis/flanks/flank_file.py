@@ -43,30 +43,30 @@ STORED: dict[str, tuple[tuple[str, ...], str, str]] = {
 }
 
 
-def to_dataset(found: LoadDistribution) -> xarray.Dataset:
+def to_dataset(results: LoadDistribution) -> xarray.Dataset:
     """Return flank results as an xarray Dataset, with line load, centroid, factors and contact patterns."""
     import xarray  # noqa: PLC0415 - half a second, and needed for files only
 
-    arrays = _arrays(found)
+    arrays = _arrays(results)
     variables: dict[str, Any] = {
         name: (dimensions, arrays[name], {"units": units, "long_name": text})
         for name, (dimensions, units, text) in STORED.items()
     }
     coordinates = {name: variables.pop(name) for name in _GRID}
     for gear in _GEARS:
-        pattern = contact_pattern(found, gear)
+        pattern = contact_pattern(results, gear)
         along = f"pattern_roll_length_{gear}"
         text = {"units": "m", "long_name": f"roll length on the {gear}, middles of cells"}
         coordinates[along] = ((along,), pattern.roll_length, text)
         text = {"units": "Pa", "long_name": f"largest pressure on the {gear}'s flank over the positions"}
         variables[f"contact_pattern_{gear}"] = ((along, "face_position"), pattern.pressure, text)
-    variables |= _derived(found)
-    return xarray.Dataset(variables, coordinates, _attributes(found, arrays))
+    variables |= _derived(results)
+    return xarray.Dataset(variables, coordinates, _attributes(results, arrays))
 
 
-def write(found: LoadDistribution, path: Path) -> None:
+def write(results: LoadDistribution, path: Path) -> None:
     """Write flank results: into a temporary file beside `path`, then renamed over it."""
-    write_dataset(to_dataset(found), path)
+    write_dataset(to_dataset(results), path)
 
 
 def read(path: Path) -> dict[str, Any]:
@@ -101,39 +101,39 @@ def read(path: Path) -> dict[str, Any]:
     }
 
 
-def _arrays(found: LoadDistribution) -> dict[str, Any]:
+def _arrays(results: LoadDistribution) -> dict[str, Any]:
     """Return what is read back, in its order; netCDF has no booleans."""
-    arrays = {name: getattr(found, name) for name in STORED}
-    return arrays | {"on_path": found.on_path.astype(np.int8)}
+    arrays = {name: getattr(results, name) for name in STORED}
+    return arrays | {"on_path": results.on_path.astype(np.int8)}
 
 
-def _derived(found: LoadDistribution) -> dict[str, Any]:
+def _derived(results: LoadDistribution) -> dict[str, Any]:
     """Return what follows from the rest, for readers without this library."""
     along = ("position",)
     return {
-        "line_load": (_GRID, found.line_load, {"units": "N m-1", "long_name": "force per contact line"}),
+        "line_load": (_GRID, results.line_load, {"units": "N m-1", "long_name": "force per contact line"}),
         "face_load": (
             ("position", "face_position"),
-            found.face_load,
+            results.face_load,
             {"units": "N m-1", "long_name": "force of all pairs per face width"},
         ),
-        "load_centroid": (along, found.load_centroid, {"units": "m", "long_name": "along the face"}),
-        "face_load_factor": (along, found.face_load_factor, {"units": "1", "long_name": "K_Hbeta"}),
+        "load_centroid": (along, results.load_centroid, {"units": "m", "long_name": "along the face"}),
+        "face_load_factor": (along, results.face_load_factor, {"units": "1", "long_name": "K_Hbeta"}),
     }
 
 
-def _attributes(found: LoadDistribution, arrays: dict[str, Any]) -> Json:
+def _attributes(results: LoadDistribution, arrays: dict[str, Any]) -> Json:
     """Format, schema, the JSON documents, and a checksum of the arrays."""
     return {
         "Conventions": "CF-1.11",
         "title": "Load and pressure on the flanks of a gear pair",
         "format": FORMAT,
         "schema_version": np.int64(SCHEMA_VERSION),
-        "content_hash": found.metadata.content_hash,
-        "mean_face_load_factor": found.mean_face_load_factor,
-        "scene": json.dumps(found.scene.to_json()),
-        "metadata": json.dumps(asdict(found.metadata)),
-        "warnings": json.dumps(found.metadata.warnings),
-        **{name: getattr(found, name) for name in _SCALARS},
+        "content_hash": results.metadata.content_hash,
+        "mean_face_load_factor": results.mean_face_load_factor,
+        "scene": json.dumps(results.scene.to_json()),
+        "metadata": json.dumps(asdict(results.metadata)),
+        "warnings": json.dumps(results.metadata.warnings),
+        **{name: getattr(results, name) for name in _SCALARS},
         "data_sha256": digest(arrays),
     }

@@ -57,7 +57,7 @@ def flank_results(
     """
     solved, receipt = solved_point(pair, point, options, at, StageClock(), run)
     checked, request = solved.checked, solved.checked.request
-    found = load_distribution(
+    results = load_distribution(
         solved.contact.pair,
         solved.problem,
         solved.solution,
@@ -65,30 +65,30 @@ def flank_results(
         center_distance_change=float(request.center_distance_change[0]),
         metadata=Metadata(receipt=receipt),
     )
-    warn_of(unexpected(request.findings, _findings(found)))
-    return replace(found, metadata=_metadata(checked, found, case))
+    warn_of(unexpected(request.findings, _findings(results)))
+    return replace(results, metadata=_metadata(checked, results, case))
 
 
-def _findings(found: LoadDistribution) -> tuple[Finding, ...]:
+def _findings(results: LoadDistribution) -> tuple[Finding, ...]:
     """Return what is implausible about the pressures."""
-    return flank_findings(float(np.max(found.pressure, initial=0.0)))
+    return flank_findings(float(np.max(results.pressure, initial=0.0)))
 
 
-def _metadata(checked: Checked, found: LoadDistribution, case: Json | None) -> Metadata:
+def _metadata(checked: Checked, results: LoadDistribution, case: Json | None) -> Metadata:
     """Everything about the making; the hash is of all that decides the result."""
-    scene = found.scene
-    asked: Json = {
+    scene = results.scene
+    request: Json = {
         "case": case or checked.request.to_json(),
         "normal_force": scene.normal_force,
         "misalignment": scene.misalignment,
         "center_distance_change": scene.center_distance_change,
-        "position": found.position.tolist(),
+        "position": results.position.tolist(),
     }
     return replace(
-        found.metadata,
-        case=asked["case"],
+        results.metadata,
+        case=request["case"],
         effect_ledger=[entry.to_json() for entry in checked.ledger],
-        content_hash=content_hash({"flank_results": asked}, SOLVER_VERSION, SCHEMA_VERSION),
+        content_hash=content_hash({"flank_results": request}, SOLVER_VERSION, SCHEMA_VERSION),
         software_versions=software_versions(),
-        warnings=[finding.to_json() for finding in merged(checked.request.findings, _findings(found))],
+        warnings=[finding.to_json() for finding in merged(checked.request.findings, _findings(results))],
     )

@@ -1,4 +1,4 @@
-"""Where flank results belong: the load, the alignment, and the marks on both flanks."""
+"""The scene of flank results: the load, the alignment, and the marks on both flanks."""
 
 from __future__ import annotations
 

@@ -94,11 +94,11 @@ def _not_root(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
 
 
 def _histories(
-    found: SolvedOperatingPoint, meshes: PlaneRootMeshes | FaceRootMeshes, cache: Path | None
+    solved: SolvedOperatingPoint, meshes: PlaneRootMeshes | FaceRootMeshes, cache: Path | None
 ) -> list[RootStressHistory]:
-    """Return the histories of both gears, with the error that coarser meshes tell."""
+    """Return the histories of both gears, with the error that coarser meshes show."""
     fine, rough = (
-        pair_histories(found, _unit_stresses(found, meshes, coarse, cache)) for coarse in (False, True)
+        pair_histories(solved, _unit_stresses(solved, meshes, coarse, cache)) for coarse in (False, True)
     )
     histories = []
     for history, other in zip(fine, rough, strict=True):
@@ -110,11 +110,11 @@ def _histories(
 
 
 def _unit_stresses(
-    found: SolvedOperatingPoint, meshes: PlaneRootMeshes | FaceRootMeshes, coarse: bool, cache: Path | None
+    solved: SolvedOperatingPoint, meshes: PlaneRootMeshes | FaceRootMeshes, coarse: bool, cache: Path | None
 ) -> UnitStresses:
     """Compute or fetch the unit-load stress of both gears; identical gears are computed once."""
-    pair = found.contact.pair
-    gears = found.contact.plan.bodies(pair)
+    pair = solved.contact.pair
+    gears = solved.contact.plan.bodies(pair)
     if isinstance(meshes, FaceRootMeshes):
         sectors = meshes.coarse_recipes if coarse else meshes.recipes
         first, second = unit_root_stresses_3d(gears, sectors, cache=cache)
@@ -126,20 +126,20 @@ def _unit_stresses(
 
 
 def pair_histories(
-    found: SolvedOperatingPoint, units: UnitStresses
+    solved: SolvedOperatingPoint, units: UnitStresses
 ) -> tuple[RootStressHistory, RootStressHistory]:
     """Return the stress of both gears under the solved contact.
 
     Parameters
     ----------
-    found : SolvedOperatingPoint
+    solved : SolvedOperatingPoint
     units : (UnitRootStress, UnitRootStress)
         Of the driving and the driven gear, on any mesh.
     """
-    pair, candidates = found.contact.pair, found.problem.candidates
+    pair, candidates = solved.contact.pair, solved.problem.candidates
     carrying = np.unique(candidates.pair)
     stressed = np.arange(carrying[0] - 1, carrying[-1] + 2)
-    forces = _forces(found, units, carrying)
+    forces = _forces(solved, units, carrying)
     first, second = (
         RootStressHistory(
             position=candidates.position,
@@ -149,7 +149,7 @@ def pair_histories(
             face_position=unit.station_z + offset,
             # pair j is on tooth -j of the driving gear and on tooth j of the driven one
             stress=_superposed(unit, loads, direction * (stressed[:, None] - carrying)),
-            near_load=_near_load(found, unit, patches, stressed, unit.station_z + offset),
+            near_load=_near_load(solved, unit, patches, stressed, unit.station_z + offset),
             relative_error=np.nan,
             critical_coordinate=critical_section(tooth_profile(gear)),
         )
@@ -167,14 +167,14 @@ def pair_histories(
 
 
 def _forces(
-    found: SolvedOperatingPoint, units: UnitStresses, pairs: IntArray
+    solved: SolvedOperatingPoint, units: UnitStresses, pairs: IntArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return the inward nodal forces on the teeth of `pairs` (K,) of both gears, (P, K, n)."""
-    candidates, force = found.problem.candidates, found.solution.force[:, 0]
+    candidates, force = solved.problem.candidates, solved.solution.force[:, 0]
     out = [np.zeros((len(force), pairs.size, unit.stress.shape[-1])) for unit in units]
     for p in range(len(force)):
         if units[0].across_face:
-            offset = found.contact.pair.axial_offset
+            offset = solved.contact.pair.axial_offset
             both, inward = face_flank_forces(candidates, force, p, units, offset), -1.0
         else:
             both, inward = plane_flank_forces(candidates, force, p, units), 1.0
@@ -185,10 +185,10 @@ def _forces(
 
 
 def _near_load(
-    found: SolvedOperatingPoint, unit: UnitRootStress, patches: Patches, stressed: IntArray, face: FloatArray
+    solved: SolvedOperatingPoint, unit: UnitRootStress, patches: Patches, stressed: IntArray, face: FloatArray
 ) -> BoolArray:
     """Return which stations, at `face` (q,), are within half a patch of a loaded patch, (P, N, p, q)."""
-    candidates, force = found.problem.candidates, found.solution.force[:, 0]
+    candidates, force = solved.problem.candidates, solved.solution.force[:, 0]
     near = np.zeros((len(force), stressed.size, unit.station_s.size, face.size), dtype=bool)
     tooth = np.searchsorted(stressed, candidates.pair)
     for p, i in np.argwhere(force > 0.0):

@@ -42,7 +42,7 @@ class RootPeak(NamedTuple):
 
 
 class RootPassage(NamedTuple):
-    """What the roots of one tooth meet on its way through the mesh.
+    """The stress in the roots of one tooth on its way through the mesh.
 
     Attributes
     ----------
@@ -136,8 +136,8 @@ class RootStressHistory:
         Positions in several base pitches are of several teeth, which then stand beside each other.
         """
         # In a later base pitch pair j stands where pair j stood before: other teeth, the same way.
-        place = (self.position[:, None] % 1.0 + self.pair).ravel()
-        order = np.argsort(place, kind="stable")
+        position = (self.position[:, None] % 1.0 + self.pair).ravel()
+        order = np.argsort(position, kind="stable")
         extremes, fixed = [], []
         for root, sign in zip(ROOTS, (1.0, -1.0), strict=True):
             values, _ = self._crests(root)
@@ -147,7 +147,7 @@ class RootStressHistory:
             across = np.argmin(np.abs(self.face_position - peak.face_position))
             along = self.stress[:, :, ROOTS.index(root), 0, station, across]
             fixed.append(along.ravel()[order])
-        return RootPassage(place[order], extremes[0], extremes[1], fixed[0], fixed[1])
+        return RootPassage(position[order], extremes[0], extremes[1], fixed[0], fixed[1])
 
 
 def crests(s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -177,5 +177,5 @@ def crests(s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
     flat = bend >= 0.0  # no crest inside: a rising end, all alike, or no three values
     way = np.clip(-slope / np.where(flat, -1.0, 2.0 * bend), low - here, high - here)
     value = np.where(flat, np.max(y, axis=0), y[1] + way * (slope + bend * way))
-    place = np.where(flat, np.choose(np.argmax(y, axis=0), [low, here, high]), here + way)
-    return value, place
+    position = np.where(flat, np.choose(np.argmax(y, axis=0), [low, here, high]), here + way)
+    return value, position

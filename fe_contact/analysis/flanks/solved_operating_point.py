@@ -60,7 +60,7 @@ def solved_point(
     clock: StageClock,
     run: Run,
 ) -> tuple[SolvedOperatingPoint, Json]:
-    """Solve an operating point at positions, check what that took for granted, and repeat it as asked.
+    """Solve an operating point at positions, check what that took for granted, and repeat it if needed.
 
     Parameters
     ----------
@@ -93,8 +93,8 @@ def solved_point(
         )
 
     first = solve_operating_point(checked, position, clock, run)
-    made, found, repeated = settled(first, check_one_place, repeat, clock)
-    plan, assumptions = made.plan.to_json(), [one.to_json() for one in found]
+    made, checks, repeated = settled(first, check_one_place, repeat, clock)
+    plan, assumptions = made.plan.to_json(), [check.to_json() for check in checks]
     return made, clock.to_json() | {"plan": plan, "assumptions": assumptions, "repeated": repeated}
 
 
@@ -117,14 +117,14 @@ def solve_operating_point(
         nominal = pair_contact(request.pair, plan, run.cache, distance_changes=request.center_distance_change)
     run.progress("compliance", 1.0)
     with clock.stage("contact"):
-        places = operating_points(request.scene, request.choices, nominal)
-        (place,) = places.places
+        points = operating_points(request.scene, request.choices, nominal)
+        (point,) = points.places
         pitch = np.floor(position).astype(np.int64)
-        problem, solution = place.solve(position - pitch, plan.load, pitch if pitch.any() else None)
+        problem, solution = point.solve(position - pitch, plan.load, pitch if pitch.any() else None)
     run.progress("contact", 1.0)
     if not solution.converged:
         raise SolveError(_failure(position, solution), partial=solution)
-    return SolvedOperatingPoint(checked, places, problem, solution)
+    return SolvedOperatingPoint(checked, points, problem, solution)
 
 
 def _failure(position: FloatArray, solution: ContactSolution, shown: int = 5) -> str:

@@ -1,4 +1,4 @@
-"""What a table of a condensed pair took for granted: what costs nothing is checked, the rest is named."""
+"""Assumptions of a condensed pair's table: what costs nothing is checked, the rest is named."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from fe_contact.planning import Plan
 
 @dataclass(frozen=True)
 class CondensedRun:
-    """What assumptions are checked on, as `SolvedRun` has it."""
+    """A table of a condensed pair as its checks see it, after `SolvedRun`."""
 
     checked: Checked
     plan: Plan

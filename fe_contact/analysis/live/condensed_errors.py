@@ -1,4 +1,4 @@
-"""How wrong a table is that was solved on a condensed pair, at a part of the cost of solving it.
+"""Errors of a table that was solved on a condensed pair, at a part of the cost of solving it.
 
 The rougher discretizations are those of an analysis, at half of the positions or fewer, and the parts of
 their changes that are left are the same. What is between the positions is told by half of them. Coarse
@@ -28,13 +28,13 @@ from fe_contact.ste.curve_quantities import MEAN, QUANTITIES, quantity_changes
 from fe_contact.types import FloatArray
 
 OVER_MEDIAN = 2.0
-"""What stands in over the median error of a level: nine runs of ten state less."""
+"""Factor on the median error of a level: nine runs of ten state less."""
 BY_MESH = AT_NODES.index("discretisation")
 
 
 def condensed_errors(
     table: SteDatabase,
-    places: OperatingPoints,
+    points: OperatingPoints,
     solution: ContactSolution,
     contacts: CondensedContacts,
     sample: TableSample,
@@ -45,7 +45,7 @@ def condensed_errors(
     Parameters
     ----------
     table : SteDatabase
-    places : OperatingPoints
+    points : OperatingPoints
         Its one place, on the discretization of the table.
     solution : ContactSolution
     contacts : CondensedContacts
@@ -64,13 +64,13 @@ def condensed_errors(
         """Solve the sample on a rougher discretization, (T R, f, 1, 1) in m."""
         if rougher is None:
             return otherwise
-        return sample.solved(replace(places, places=(replace(places.places[0], contact=rougher),)), places)
+        return sample.solved(replace(points, places=(replace(points.places[0], contact=rougher),)), points)
 
     own = sample.taken([solution])
     plane = solved(contacts.plane, own)
     nested = Nested(sample, own, plane, solved(contacts.coarse, plane), solved(contacts.sliced, own))
-    positions = errors_by_halves(table.position, solution.deflection, places.period)
-    measured = places, [solution], nested, positions, plan
+    positions = errors_by_halves(table.position, solution.deflection, points.period)
+    measured = points, [solution], nested, positions, plan
     sources, errors = estimate_errors(*measured), curve_errors(*measured)
     if contacts.coarse is None:
         errors[BY_MESH], band = _expected(table, plan, contacts.own)
@@ -83,11 +83,11 @@ def condensed_errors(
     return AssessedTable(sources.total, with_axes(errors, {}), sources.to_json(), {})
 
 
-def _changed(sample: TableSample, one: FloatArray, other: FloatArray, part: float) -> FloatArray:
+def _changed(sample: TableSample, own: FloatArray, other: FloatArray, part: float) -> FloatArray:
     """Return a part of the changes of the quantities of curves (T R, f, 1, 1), (22, F, 1, 1) in m."""
-    first, second = (values.reshape(sample.knots.size, -1) for values in (one, other))
+    first, second = (values.reshape(sample.knots.size, -1) for values in (own, other))
     change = part * quantity_changes(sample.knots, first, second, sample.period)
-    return sample.spread(change.reshape(QUANTITIES, *one.shape[1:]))
+    return sample.spread(change.reshape(QUANTITIES, *own.shape[1:]))
 
 
 def _expected(table: SteDatabase, plan: Plan, contact: PairContact) -> tuple[FloatArray, FloatArray]:

@@ -116,15 +116,15 @@ class CondensedPair:
         load, alignment = plan.load, (checked.request.misalignment, checked.request.center_distance_change)
         sample = TableSample.of(nodes.position, checked.model.period, (load, *alignment))
         with clock.stage("compliance"):
-            contacts, places = self._placed(checked)
-            contacts.assemble(places.places[0].model, sample)
+            contacts, points = self._placed(checked)
+            contacts.assemble(points.places[0].model, sample)
         with clock.stage("contact"):
-            solved = places.places[0].solve_pitches(nodes.position, load, np.arange(places.period))
-            table = assembled_table(checked.request, places, nodes, [solved], [])
+            solved = points.places[0].solve_pitches(nodes.position, load, np.arange(points.period))
+            table = assembled_table(checked.request, points, nodes, [solved], [])
         with clock.stage("error estimate"):
-            assessed = condensed_errors(table, places, solved[1], contacts, sample, plan)
-        found = check_condensed(CondensedRun(checked, plan, places, [solved]), self.neglected)
-        receipt = condensed_receipt(plan, solved[1], assessed, found, clock)
+            assessed = condensed_errors(table, points, solved[1], contacts, sample, plan)
+        assumptions = check_condensed(CondensedRun(checked, plan, points, [solved]), self.neglected)
+        receipt = condensed_receipt(plan, solved[1], assessed, assumptions, clock)
         receipt["discretisation_error"] = "expected" if contacts.coarse is None else "measured"
         ledger = [{"name": entry.name, "on": entry.on} for entry in checked.ledger]
         metadata = Metadata(effect_ledger=ledger, receipt=receipt)
@@ -153,10 +153,10 @@ class CondensedPair:
         """
         checked = self._asked(pair, torques, misalignment, center_distance_change)
         nodes, plan = self._laid_out(checked)
-        _, places = self._placed(checked)
-        place = places.places[0]
-        solved = place.solve_pitches(nodes.position, plan.load, np.arange(places.period))
-        return place.contact.pair, checked, *solved
+        _, points = self._placed(checked)
+        point = points.places[0]
+        solved = point.solve_pitches(nodes.position, plan.load, np.arange(points.period))
+        return point.contact.pair, checked, *solved
 
     def _asked(self, pair: ParallelAxes, torques: FloatArray, misalignment: float, change: float) -> Checked:
         """Check a question, and compose its model."""
@@ -183,9 +183,9 @@ class CondensedPair:
     def _checked(self, pair: ParallelAxes, axes: TableAxes) -> Checked:
         """Compose the model of other flanks on the bodies there are."""
         request = self.checked.request
-        asked = request.options.effects.get(CornerContact.name, "auto")
+        choice = request.options.effects.get(CornerContact.name, "auto")
         # always on: what a tip edge does is then in every curve, and one compliance serves them all
-        corners = "on" if asked == "auto" else asked
+        corners = "on" if choice == "auto" else choice
         effects = {**request.options.effects, CornerContact.name: corners}
         return check_asked(
             replace(
@@ -208,7 +208,7 @@ class CondensedPair:
         return unmeasured_nodes(count, load.size), replace(self.contact.plan, load=load, positions=count)
 
     def _placed(self, checked: Checked) -> tuple[CondensedContacts, OperatingPoints]:
-        """Return the contacts of the asked flanks at the asked distance, and the place they make."""
+        """Return the contacts of the flanks at the requested distance, and the operating point they make."""
         request = checked.request
         contacts = self._at(float(request.center_distance_change[0]))
         distance = contacts.own.pair.center_distance

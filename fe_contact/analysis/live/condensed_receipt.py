@@ -1,4 +1,4 @@
-"""What a table of a condensed pair says of its making: errors by source, cost by stage, assumptions."""
+"""The receipt of a condensed pair's table: errors by source, cost by stage, assumptions."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def condensed_receipt(
     assumptions: Sequence[Assumption],
     clock: StageClock,
 ) -> Json:
-    """Return the receipt of a table at the loads that were asked, between which nothing is told."""
+    """Return the receipt of a table at the requested loads, between which nothing is known."""
     errors = assessed.to_json()
     missing = [name for name in errors["not_estimated"] if name not in BETWEEN_NODES]
     known = {name: value for name, value in errors["curve_error"].items() if name not in BETWEEN_NODES}
@@ -36,6 +36,6 @@ def condensed_receipt(
             "beyond_load_patches": int(solution.beyond.sum()),
             "residuals_max": worst_residual(solution),
             "failed_points": failed_points([solution]),
-            "assumptions": [one.to_json() for one in assumptions],
+            "assumptions": [assumption.to_json() for assumption in assumptions],
         }
     )

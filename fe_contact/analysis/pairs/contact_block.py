@@ -56,7 +56,7 @@ class ContactBlock:
 
 @dataclass(frozen=True)
 class SolvedBlock:
-    """What is found at the positions of a block.
+    """The solution at the positions of a block.
 
     Attributes
     ----------

@@ -90,13 +90,13 @@ class SolvedLine:
 
 def solved_lines(lines: Sequence[Line], workers: Workers, *, conditioned: bool = False) -> list[SolvedLine]:
     """Solve lines; their contacts keep what was assembled for them."""
-    found = []
+    solved = []
     for line, blocks in zip(lines, _by_line(lines, workers, solve_block, conditioned), strict=True):
         whole = _joined(line, blocks)
         plain = replace(whole.problems[0], candidates=line.candidates)
         line.contact.take(line.models[0], plain)
-        found.append(whole)
-    return found
+        solved.append(whole)
+    return solved
 
 
 def deflections(lines: Sequence[Line], workers: Workers) -> list[list[FloatArray]]:

@@ -75,7 +75,7 @@ class OperatingPoints:
 
     @property
     def assessed_indices(self) -> tuple[int, ...]:
-        """Where those stand among all places."""
+        """Indices of those among all operating points."""
         last = len(self.places) - 1
         return tuple(sorted({0, last // 2, last}))
 
@@ -86,8 +86,8 @@ class OperatingPoints:
 
     def on_bodies(self, nominal: PairContact) -> OperatingPoints:
         """Return the same places over other compliances of the gears, those of `nominal`."""
-        places = self._with_contacts(lambda contact: replace(nominal, pair=contact.pair, _problems={}))
-        return replace(places, nominal=nominal)
+        points = self._with_contacts(lambda contact: replace(nominal, pair=contact.pair, _problems={}))
+        return replace(points, nominal=nominal)
 
     def in_slices(self, count: int) -> OperatingPoints:
         """Return the same places in other slices."""
@@ -95,9 +95,9 @@ class OperatingPoints:
 
     def _with_contacts(self, change: Callable[[PairContact], PairContact]) -> OperatingPoints:
         """Return the same places with other contacts; those of one center distance share their compliance."""
-        contacts = {id(place.contact): change(place.contact) for place in self.places}
-        places = tuple(replace(place, contact=contacts[id(place.contact)]) for place in self.places)
-        return replace(self, places=places)
+        contacts = {id(point.contact): change(point.contact) for point in self.places}
+        points = tuple(replace(point, contact=contacts[id(point.contact)]) for point in self.places)
+        return replace(self, places=points)
 
     def gathered(self, values: list[NDArray[Any]]) -> NDArray[Any]:
         """Stack arrays (P, L, ...) of all places into (P, L, M, D, ...)."""
@@ -127,13 +127,13 @@ def operating_points(
     _, ledger = compose(scene, choices)
     decided = {entry.name: "on" if entry.on else "off" for entry in ledger}
     contacts = list(_contacts(nominal, scene.center_distance_change))
-    places = []
+    points = []
     for misalignment in scene.misalignment:
         for contact in contacts:
-            one = np.array([misalignment]), np.zeros(1)
-            here = replace(scene, pair=contact.pair, misalignment=one[0], center_distance_change=one[1])
-            places.append(OperatingPoint(contact, compose(here, decided)[0]))
-    return OperatingPoints((scene.misalignment.size, len(contacts)), tuple(places), nominal, workers)
+            axes = np.array([misalignment]), np.zeros(1)
+            here = replace(scene, pair=contact.pair, misalignment=axes[0], center_distance_change=axes[1])
+            points.append(OperatingPoint(contact, compose(here, decided)[0]))
+    return OperatingPoints((scene.misalignment.size, len(contacts)), tuple(points), nominal, workers)
 
 
 def _contacts(nominal: PairContact, changes: FloatArray) -> Iterator[PairContact]:

@@ -77,10 +77,10 @@ class PairContact:
     @property
     def bodies(self) -> Bodies:
         """Its compliances; the same object at every center distance."""
-        found = self.plane if self.face is None else self.face
-        if found is None:
+        bodies = self.plane if self.face is None else self.face
+        if bodies is None:
             raise ValueError("a pair contact needs the compliance of its gears")
-        return found
+        return bodies
 
     def solve(
         self,

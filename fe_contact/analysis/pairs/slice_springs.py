@@ -38,7 +38,7 @@ SLICES = 65
 
 @dataclass(frozen=True)
 class SliceLaw:
-    """What the slices of a fidelity are.
+    """The law of the slices of a fidelity.
 
     Attributes
     ----------

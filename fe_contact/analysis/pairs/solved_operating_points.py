@@ -17,13 +17,13 @@ Lines = dict[tuple[object, ...], tuple[Line, list[int]]]
 
 
 def solve_operating_points(
-    places: OperatingPoints, position: FloatArray, loads: tuple[FloatArray, ...], *, conditioned: bool
+    points: OperatingPoints, position: FloatArray, loads: tuple[FloatArray, ...], *, conditioned: bool
 ) -> tuple[list[Solved], FloatArray | None]:
     """Solve all places at the positions of all base pitches.
 
     Parameters
     ----------
-    places : OperatingPoints
+    points : OperatingPoints
     position : ndarray, shape (P,)
         In [0, 1).
     loads : tuple of ndarray
@@ -38,21 +38,21 @@ def solve_operating_points(
     ndarray or None
         Condition numbers of all compliances, if workers found them.
     """
-    pitches = np.arange(places.period)
-    everywhere = [position] * len(places.places)
-    lines = _sent_lines(places.workers, places.places, everywhere, loads, pitches)
+    pitches = np.arange(points.period)
+    everywhere = [position] * len(points.places)
+    lines = _sent_lines(points.workers, points.places, everywhere, loads, pitches)
     if not lines:
-        here = [[place.solve_pitches(position, load, pitches) for place in places.places] for load in loads]
+        here = [[point.solve_pitches(position, load, pitches) for point in points.places] for load in loads]
         return here, None
-    found = solved_lines([line for line, _ in lines.values()], places.workers, conditioned=conditioned)
-    each = _each_place(lines, found)
+    solved_each = solved_lines([line for line, _ in lines.values()], points.workers, conditioned=conditioned)
+    each = _each_place(lines, solved_each)
     solved = [[(problem, solutions[k]) for problem, solutions in each] for k in range(len(loads))]
-    known = [line.condition for line in found if line.condition is not None]
+    known = [line.condition for line in solved_each if line.condition is not None]
     return solved, np.concatenate(known) if known else None
 
 
 def deflected_operating_points(
-    places: Sequence[OperatingPoint],
+    points: Sequence[OperatingPoint],
     position: Sequence[FloatArray],
     load: FloatArray,
     pitches: IntArray | None,
@@ -63,7 +63,7 @@ def deflected_operating_points(
 
     Parameters
     ----------
-    places : sequence of OperatingPoint
+    points : sequence of OperatingPoint
     position : sequence of ndarray, shape (P,)
         Of each place, in [0, 1).
     load : ndarray, shape (L,)
@@ -74,30 +74,30 @@ def deflected_operating_points(
     known : sequence of Candidates, optional
         Of plain involutes at the positions, for each place.
     """
-    lines = _sent_lines(workers, places, position, (load,), pitches, known)
+    lines = _sent_lines(workers, points, position, (load,), pitches, known)
     if not lines:
         return [
-            _deflected(place, position[k], load, pitches, None if known is None else known[k])
-            for k, place in enumerate(places)
+            _deflected(point, position[k], load, pitches, None if known is None else known[k])
+            for k, point in enumerate(points)
         ]
-    found = deflections([line for line, _ in lines.values()], workers)
+    deflected = deflections([line for line, _ in lines.values()], workers)
     by_place = {
         k: curve
-        for (_, members), curves in zip(lines.values(), found, strict=True)
+        for (_, members), curves in zip(lines.values(), deflected, strict=True)
         for k, curve in zip(members, curves, strict=True)
     }
-    return [by_place[k] for k in range(len(places))]
+    return [by_place[k] for k in range(len(points))]
 
 
-def assemble_remotely(places: OperatingPoints, models: Sequence[ContactModel], position: FloatArray) -> None:
-    """Let workers assemble what places are about to be asked with other models; nothing without workers."""
-    asked = [OperatingPoint(place.contact, model) for place, model in zip(places.places, models, strict=True)]
-    lines = _sent_lines(places.workers, asked, [position] * len(asked), (), None)
-    solved_lines([line for line, _ in lines.values()], places.workers)
+def assemble_remotely(points: OperatingPoints, models: Sequence[ContactModel], position: FloatArray) -> None:
+    """Let workers assemble what operating points need with other models; nothing without workers."""
+    sent = [OperatingPoint(point.contact, model) for point, model in zip(points.places, models, strict=True)]
+    lines = _sent_lines(points.workers, sent, [position] * len(sent), (), None)
+    solved_lines([line for line, _ in lines.values()], points.workers)
 
 
 def _deflected(
-    place: OperatingPoint,
+    point: OperatingPoint,
     position: FloatArray,
     load: FloatArray,
     pitches: IntArray | None,
@@ -105,15 +105,15 @@ def _deflected(
 ) -> FloatArray:
     """Return the STE of one place, solved here."""
     if known is not None:
-        place.contact.assemble(place.model, known)
+        point.contact.assemble(point.model, known)
     if pitches is None:
-        return place.solve(position, load)[1].deflection
-    return place.solve_pitches(position, load, pitches)[1].deflection
+        return point.solve(position, load)[1].deflection
+    return point.solve_pitches(position, load, pitches)[1].deflection
 
 
 def _sent_lines(
     workers: Workers,
-    places: Sequence[OperatingPoint],
+    points: Sequence[OperatingPoint],
     position: Sequence[FloatArray],
     loads: tuple[FloatArray, ...],
     pitches: IntArray | None,
@@ -127,13 +127,13 @@ def _sent_lines(
     if isinstance(workers, InProcess):
         return {}
     members: dict[tuple[object, ...], list[int]] = {}
-    for k, place in enumerate(places):
-        members.setdefault((id(place.contact), *place.contact.key(place.model, position[k])), []).append(k)
+    for k, point in enumerate(points):
+        members.setdefault((id(point.contact), *point.contact.key(point.model, position[k])), []).append(k)
     lines = {}
     for key, numbers in members.items():
-        contact, first = places[numbers[0]].contact, places[numbers[0]].model
+        contact, first = points[numbers[0]].contact, points[numbers[0]].model
         candidates = contact.candidates(first, position[numbers[0]]) if known is None else known[numbers[0]]
-        models = tuple(places[k].model for k in numbers)
+        models = tuple(points[k].model for k in numbers)
         line = Line(contact, models, candidates, pitches if first.period > 1 else None, loads)
         lines[key] = (line, numbers)
     seconds = sum(line.seconds_a_position * line.candidates.position.size for line, _ in lines.values())
@@ -141,12 +141,12 @@ def _sent_lines(
 
 
 def _each_place(
-    lines: Lines, found: Sequence[SolvedLine]
+    lines: Lines, solved: Sequence[SolvedLine]
 ) -> list[tuple[ContactProblem, tuple[ContactSolution, ...]]]:
     """Return problem and solutions of every place, in the order of the places."""
     by_place = {
         k: (problem, solutions)
-        for (_, members), line in zip(lines.values(), found, strict=True)
+        for (_, members), line in zip(lines.values(), solved, strict=True)
         for k, problem, solutions in zip(members, line.problems, line.solutions, strict=True)
     }
     return [by_place[k] for k in sorted(by_place)]

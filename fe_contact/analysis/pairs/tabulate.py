@@ -30,24 +30,24 @@ def pair_facts(pair: ParallelAxes) -> PairFacts:
 
 
 def table_fields(
-    places: OperatingPoints, solved: list[tuple[ContactProblem, ContactSolution]]
+    points: OperatingPoints, solved: list[tuple[ContactProblem, ContactSolution]]
 ) -> dict[str, NDArray[Any]]:
-    """Arrays of the database at the asked loads, (P, F, M, D, ...), and its pair axis."""
+    """Arrays of the database at the requested loads, (P, F, M, D, ...), and its pair axis."""
     seen = np.concatenate([problem.candidates.pair for problem, _ in solved])
     pairs = np.arange(seen.min(), seen.max() + 1)
     fields = [contact_fields(problem, solution, pairs) for problem, solution in solved]
-    no_load = places.gathered([solution.no_load[:, None] for _, solution in solved])[:, 0]
-    gathered = {name: places.gathered([place[name] for place in fields]) for name in fields[0]}
+    no_load = points.gathered([solution.no_load[:, None] for _, solution in solved])[:, 0]
+    gathered = {name: points.gathered([field[name] for field in fields]) for name in fields[0]}
     return gathered | {"pair": pairs, "no_load_transmission_error": no_load}
 
 
 def table_support(
-    places: OperatingPoints, solved: list[tuple[ContactProblem, ContactSolution]]
+    points: OperatingPoints, solved: list[tuple[ContactProblem, ContactSolution]]
 ) -> dict[str, NDArray[Any]]:
     """Support loads that converged everywhere, and their arrays (P, S, M, D)."""
     fields = [support_fields(problem, solution) for problem, solution in solved]
     good = np.all([solution.status == Status.CONVERGED for _, solution in solved], axis=(0, 1))
-    gathered = {name: places.gathered([place[name][:, good] for place in fields]) for name in fields[0]}
+    gathered = {name: points.gathered([field[name][:, good] for field in fields]) for name in fields[0]}
     return gathered | {"support_force": solved[0][1].load[good]}
 
 

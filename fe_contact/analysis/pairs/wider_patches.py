@@ -1,4 +1,4 @@
-"""What load patches cost that are wider than the contact strips, because the mesh asks for it.
+"""The error of load patches wider than the contact strips, because the mesh asks for it.
 
 A patch spreads the load of a strip over more of the flank than it has, which shows where the gap changes
 within it: at the knee of a relief above all. Coarse meshes do not tell, as they carry the same patches;
@@ -23,7 +23,7 @@ def left_by_patches(pair: ParallelAxes, plan: Plan) -> float:
 
     Against patches as wide as the strips of the largest load ask for; 0 where the run has those.
     """
-    wanted = wanted_patch(pair, LARGEST_SUPPORT * float(plan.load[-1]))
-    if plan.patch.half_width <= wanted:
+    half_width = wanted_patch(pair, LARGEST_SUPPORT * float(plan.load[-1]))
+    if plan.patch.half_width <= half_width:
         return 0.0
-    return SEEN * (1.0 - (wanted / plan.patch.half_width) ** 2) / (WIDER**2 - 1.0)
+    return SEEN * (1.0 - (half_width / plan.patch.half_width) ** 2) / (WIDER**2 - 1.0)

@@ -1,1 +1,1 @@
-"""What is requested: checked, with the model and the effects that it calls for."""
+"""The request: checked, with the model and the effects that it calls for."""

@@ -52,7 +52,7 @@ class Decided:
 
     @property
     def usual_nodes(self) -> NodeRule:
-        """How positions are placed before any refinement."""
+        """The rule by which positions are placed before any refinement."""
         return self._plan(self.plan.level, None).nodes
 
     def refined(self, level: str, slices: int, nodes: NodeRule, reason: str) -> Decided:

@@ -29,16 +29,16 @@ def estimated_influences(checked: Checked, names: Iterable[str] | None = None) -
         At the highest load and the largest misalignment in size. None where one of the two states cannot be
         had, as a plane with what acts across the face, or the springs do not know it.
     """
-    wanted = [effect.name for effect in checked.request.registry] if names is None else list(names)
-    neglected = [name for name in wanted if name in checked.request.neglected]
-    own = [name for name in wanted if name not in neglected]
+    chosen = [effect.name for effect in checked.request.registry] if names is None else list(names)
+    neglected = [name for name in chosen if name in checked.request.neglected]
+    own = [name for name in chosen if name not in neglected]
     influences = estimate_influences(checked.request.scene.at_nominal_load, checked.decided, own)
     for name in neglected:
         scene, decided = checked.assessing(name)
         influences[name] = estimate_influence(scene.at_nominal_load, decided, name)
-    asked = checked.request.whole_scene
+    whole = checked.request.whole_scene
     return {
-        name: None if influence is None else _influence(influence, asked)
+        name: None if influence is None else _influence(influence, whole)
         for name, influence in influences.items()
     }
 

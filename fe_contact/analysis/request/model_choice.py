@@ -1,4 +1,4 @@
-"""Which model a tolerance or a time asks for, among those that hold what is in the scene.
+"""Choice of the model by a tolerance or a time, among those that hold what is in the scene.
 
 A spur pair with nothing acting across its face may be computed in the plane, in the plane corrected for its
 finite width, or in three dimensions: the cheapest that is expected to meet the wish is taken. An explicit
@@ -65,8 +65,8 @@ def _within_time(checked: Checked, cache: Path | None, *, keep_model: bool, trie
     options = checked.request.options
     budget = options.time_budget or 0.0
 
-    def chosen(wish: AnalysisOptions) -> Decided:
-        request = replace(checked.request, options=wish)
+    def chosen(relaxed: AnalysisOptions) -> Decided:
+        request = replace(checked.request, options=relaxed)
         made = decide(replace(checked, request=request), cache, keep_model=keep_model, tried=tried)
         request = replace(made.checked.request, options=options)
         return replace(made, checked=replace(made.checked, request=request))
@@ -85,20 +85,20 @@ def _meshes(
     models: Sequence[Checked], curves: ExpectedCurves | None, cache: Path | None, stretch: float
 ) -> list[tuple[Checked, MeshChoice]]:
     """Choose a mesh for every model, by `stretch` times the tolerance."""
-    found: list[tuple[Checked, MeshChoice]] = []
-    for one in models:
+    meshes: list[tuple[Checked, MeshChoice]] = []
+    for model in models:
         # what the coarsest mesh in the plane meets, three dimensions meet no cheaper
-        if not (one.model.across_face and any(mesh.met and mesh.level == LEVELS[0] for _, mesh in found)):
-            found.append((one, _mesh(one, curves, cache, stretch)))
-    return found
+        if not (model.model.across_face and any(mesh.met and mesh.level == LEVELS[0] for _, mesh in meshes)):
+            meshes.append((model, _mesh(model, curves, cache, stretch)))
+    return meshes
 
 
 def _said_tried(checked: Checked, chosen: MeshChoice, first: MeshChoice) -> MeshChoice:
     """Say why something cheaper is tried first than what is expected to meet the tolerance."""
-    said = f"{model_name(checked)}, {chosen.option.name}"
+    dearer = f"{model_name(checked)}, {chosen.option.name}"
     error = f"{100.0 * first.option.error.total:.2g} %"
     part = f"{100.0 * first.option.effort / chosen.option.effort:.2g} %"
-    reason = f"expected error {error}, tried first: it costs {part} of {said}"
+    reason = f"expected error {error}, tried first: it costs {part} of {dearer}"
     return MeshChoice(first.option, chosen.met, reason)
 
 
@@ -136,8 +136,8 @@ def next_model(checked: Checked) -> Decided | None:
         _again(replace(request, neglected=neglected, turned_on={**kept, name: "taken"})) for name in effects
     ]
     curves = expected_curves(checked)
-    found = [(one, _mesh(one, curves, None)) for one in models]
-    return next((_planned(*_said(one)) for one in found if one[1].met), None)
+    meshes = [(model, _mesh(model, curves, None)) for model in models]
+    return next((_planned(*_said(choice)) for choice in meshes if choice[1].met), None)
 
 
 def _width_is_small(checked: Checked) -> bool:
@@ -162,27 +162,27 @@ def _mesh(
     checked: Checked, curves: ExpectedCurves | None, cache: Path | None, stretch: float = 1.0
 ) -> MeshChoice:
     """Choose the mesh of one model."""
-    asked, options = checked.request, checked.request.options
+    request, options = checked.request, checked.request.options
     if options.tolerance is not None:
         options = replace(options, tolerance=options.tolerance.stretched(stretch))
-    wanted = asked.pair, asked.load, options, checked.model
-    return chosen_mesh(*wanted, asked.alignments, cache, curves)
+    arguments = request.pair, request.load, options, checked.model
+    return chosen_mesh(*arguments, request.alignments, cache, curves)
 
 
-def _best(found: Sequence[tuple[Checked, MeshChoice]]) -> tuple[Checked, MeshChoice]:
+def _best(choices: Sequence[tuple[Checked, MeshChoice]]) -> tuple[Checked, MeshChoice]:
     """Return the cheapest that meets a tolerance, the most exact that meets a time, else the most exact."""
-    if len(found) == 1:
-        return found[0]
-    good = [one for one in found if one[1].met]
-    by_time = found[0][0].request.options.time_budget is not None
+    if len(choices) == 1:
+        return choices[0]
+    good = [choice for choice in choices if choice[1].met]
+    by_time = choices[0][0].request.options.time_budget is not None
     if good and not by_time:
-        return _said(min(good, key=lambda one: one[1].option.effort))
-    return _said(min(good or found, key=lambda one: one[1].option.error.total))
+        return _said(min(good, key=lambda choice: choice[1].option.effort))
+    return _said(min(good or choices, key=lambda choice: choice[1].option.error.total))
 
 
-def _said(found: tuple[Checked, MeshChoice]) -> tuple[Checked, MeshChoice]:
+def _said(choice: tuple[Checked, MeshChoice]) -> tuple[Checked, MeshChoice]:
     """Write into the ledger why an effect is off that the scene calls for, or the other way round."""
-    checked, mesh = found
+    checked, mesh = choice
     request, error = checked.request, mesh.option.error
     parts = f"{100.0 * error.total:.2g} %, of which the model {100.0 * error.model:.2g} %"
     neglected, turned_on = (
@@ -190,7 +190,7 @@ def _said(found: tuple[Checked, MeshChoice]) -> tuple[Checked, MeshChoice]:
         for overrides in (request.neglected, request.turned_on)
     )
     if (neglected, turned_on) == (dict(request.neglected), dict(request.turned_on)):
-        return found
+        return choice
     return _again(replace(request, neglected=neglected, turned_on=turned_on)), mesh
 
 
@@ -202,6 +202,6 @@ def _reason(name: str, text: str, parts: str) -> str:
 
 def _planned(checked: Checked, mesh: MeshChoice) -> Decided:
     """Make the plan."""
-    asked = checked.request
-    plan = make_plan(asked.pair, asked.load, asked.options, checked.model, mesh.level, mesh.slices)
+    request = checked.request
+    plan = make_plan(request.pair, request.load, request.options, checked.model, mesh.level, mesh.slices)
     return Decided(checked, mesh, plan)

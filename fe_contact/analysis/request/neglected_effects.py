@@ -1,4 +1,4 @@
-"""Which automatic effects an asked tolerance does not need."""
+"""Automatic effects that a requested tolerance does not need."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ def neglected_effects(
     automatic = [entry.name for entry in ledger if entry.on and entry.choice == "auto"]
     able = [name for name in automatic if scene.effect(name).without(scene) is not None]
     decided = {entry.name: "on" if entry.on else "off" for entry in ledger}
-    found = estimate_influences(scene, decided, able, tolerance.least_scale)
+    estimates = estimate_influences(scene, decided, able, tolerance.least_scale)
     neglected: dict[str, str] = {}
     total = 0.0
-    influences = [(name, influence) for name, influence in found.items() if influence is not None]
-    for name, influence in sorted(influences, key=lambda one: one[1].largest):
+    influences = [(name, influence) for name, influence in estimates.items() if influence is not None]
+    for name, influence in sorted(influences, key=lambda item: item[1].largest):
         total += influence.largest
         if total > SHARE * tolerance.relative:
             break

@@ -1,4 +1,4 @@
-"""What a plane model cannot hold: all that acts across the face."""
+"""Limits of a plane model: all that acts across the face."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What `analyze` was asked, checked and in one frozen object."""
+"""The request to `analyze`, checked and in one frozen object."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ class Request:
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
-        """What is implausible about it."""
+        """Findings on implausible inputs."""
         axes = self.misalignment, self.center_distance_change
         return pair_findings(self.pair, self.load, *axes, loads_as=self.loads_as)
 
@@ -82,13 +82,13 @@ class Request:
 
     @property
     def whole_scene(self) -> ContactScene:
-        """What the effects assess by, before any was neglected."""
+        """The scene that the effects assess by, before any was neglected."""
         alignments = self.misalignment, self.center_distance_change
         return ContactScene(self.pair, self.torque, self.registry, *alignments, pitches=self.pitches)
 
     @property
     def scene(self) -> ContactScene:
-        """What the effects assess by: what is neglected is not in it."""
+        """The scene that the effects assess by: what is neglected is not in it."""
         scene = self.whole_scene
         for name in self.neglected:
             scene = scene.effect(name).without(scene) or scene
@@ -97,9 +97,9 @@ class Request:
     @property
     def asked_choices(self) -> dict[str, str]:
         """Choice of each effect; an explicit model decides about the face and its finite width."""
-        asked = {"3d": "on", "plane_strain": "off", "plane_stress": "off"}.get(self.options.model)
-        if asked is not None:
-            return dict(self.options.effects) | {FaceLoadDistribution.name: asked, FiniteWidth.name: "off"}
+        face = {"3d": "on", "plane_strain": "off", "plane_stress": "off"}.get(self.options.model)
+        if face is not None:
+            return dict(self.options.effects) | {FaceLoadDistribution.name: face, FiniteWidth.name: "off"}
         if self.options.effects.get(FaceLoadDistribution.name) == "on":
             return dict(self.options.effects) | {FiniteWidth.name: "off"}
         return dict(self.options.effects)

@@ -1,4 +1,4 @@
-"""From what `analyze` was asked to a request that can be computed, or one clear error."""
+"""Check of the arguments of `analyze`: a request that can be computed, or one clear error."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def check_request(
     whole_table: bool = True,
     spare: bool = True,
 ) -> Checked:
-    """Check everything that a table is asked for, without computing anything.
+    """Check all inputs of a table, without computing anything.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def check_request(
 
 
 def check_point(pair: ParallelAxes, point: OperatingPoint, options: AnalysisOptions) -> Checked:
-    """Check what is asked of one load and one alignment, as `check_request` does."""
+    """Check the inputs of one load and one alignment, as `check_request` does."""
     # what does not show in the transmission error may show in pressures and stresses
     return check_request(pair, point.axes, options, whole_table=False, spare=False)
 
@@ -83,13 +83,13 @@ def check_asked(request: Request, *, whole_table: bool = True, spare: bool = Tru
 def _composed(request: Request) -> tuple[ContactModel, tuple[LedgerEntry, ...]]:
     """Compose the model; the ledger says what was requested, and of what is neglected what the scene held."""
     composed, ledger = compose(request.scene, request.choices)
-    asked, overrides = request.asked_choices, {**request.neglected, **request.turned_on}
+    choices, overrides = request.asked_choices, {**request.neglected, **request.turned_on}
     scene = request.whole_scene
     whole = {name: scene.effect(name).called_for(scene) for name in request.neglected}
     return composed, tuple(
         replace(
             entry,
-            choice=asked.get(entry.name, "auto"),
+            choice=choices.get(entry.name, "auto"),
             verdict=whole.get(entry.name, entry.verdict),
             override=overrides.get(entry.name, ""),
         )

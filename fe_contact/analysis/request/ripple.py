@@ -1,4 +1,4 @@
-"""How large mean and ripple of the transmission error will be, before anything is computed.
+"""Expected mean and ripple of the transmission error, before anything is computed.
 
 Errors of meshes and slices are parts of the mean transmission error; requested is a part of peak-to-peak,
 which may be half of the mean or a thousandth. Uncoupled slices tell which in hundredths of a second. Without
@@ -42,13 +42,13 @@ def expected_curves(checked: Checked) -> ExpectedCurves | None:
         misalignment=_some(request.misalignment, ALIGNMENTS),
         center_distance_change=_some(request.center_distance_change, ALIGNMENTS),
     )
-    places = operating_points(scene, checked.decided, SpringContact(request.pair, plan, law=LAW)).places
+    points = operating_points(scene, checked.decided, SpringContact(request.pair, plan, law=LAW)).places
     position, load = np.arange(POSITIONS) / POSITIONS, _some(request.load, LOADS)
-    solved = [place.solve(position, load)[1] for place in places]
+    solved = [point.solve(position, load)[1] for point in points]
     # errors grow with what the load adds: a misaligned pair leads at no load
-    unloaded = np.concatenate([np.full(load.size, np.mean(one.no_load)) for one in solved])
-    added = COUPLED_MEAN * (np.concatenate([np.mean(one.deflection, axis=0) for one in solved]) - unloaded)
-    slices = np.concatenate([np.ptp(one.deflection, axis=0) for one in solved])
+    unloaded = np.concatenate([np.full(load.size, np.mean(thin.no_load)) for thin in solved])
+    added = COUPLED_MEAN * (np.concatenate([np.mean(thin.deflection, axis=0) for thin in solved]) - unloaded)
+    slices = np.concatenate([np.ptp(thin.deflection, axis=0) for thin in solved])
     mean = np.abs(unloaded + added)
     ripple = np.hypot(COUPLED_RIPPLE * slices, UNSEEN_RIPPLE * added)
     return ExpectedCurves(np.tile(load, len(solved)), added, mean, ripple, request.options.allowed)

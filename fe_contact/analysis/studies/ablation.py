@@ -34,7 +34,7 @@ FAILURES = (InputError, MeshError, SolveError)
 
 @dataclass(frozen=True)
 class Figures(model_studies.Figures):
-    """What a table says of its curves at each load (L,), at the largest of its misalignments in size.
+    """Figures of a table's curves at each load (L,), at the largest of its misalignments in size.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a fidelity of the accuracy study gave on a case, and how far it is from the finest one."""
+"""The result of a fidelity of the accuracy study on a case, and its distance from the finest one."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ NAN = float("nan")
 
 @dataclass(frozen=True)
 class FidelityResult(model_studies.FidelityResult):
-    """What one fidelity gave on a case.
+    """The result of one fidelity on a case.
 
     Attributes
     ----------

@@ -31,7 +31,7 @@ PLANE, FACE = "plane strain", "three dimensions"
 
 @dataclass(frozen=True)
 class MeasuredFullContact:
-    """What the condensed peer gave on the case itself.
+    """The result of the condensed peer on the case itself.
 
     Attributes
     ----------
@@ -73,7 +73,7 @@ class MeasuredFullContact:
 
     @property
     def positions(self) -> int:
-        """How many positions were run."""
+        """The number of positions that were run."""
         return len(self.tables[0].position)
 
     @property
@@ -197,7 +197,7 @@ def measure_full_contact(
     SolveError
         No point has a solution.
     """
-    request, places = checked.request, [count / positions for count in range(positions)]
+    request, fractions = checked.request, [count / positions for count in range(positions)]
     torques = [float(torque) for torque in request.torque]
     misalignments = tuple(float(misalignment) for misalignment in request.misalignment)
     inclined = over_face(checked)
@@ -209,14 +209,14 @@ def measure_full_contact(
 
     if inclined:
         tables = solve_full_contact_over_face(
-            request.pair, torques, places, misalignments, estimate_error=True, report=reported
+            request.pair, torques, fractions, misalignments, estimate_error=True, report=reported
         )
     else:
-        tables = (solve_full_contact(request.pair, torques, places, estimate_error=True, report=reported),)
-    found = MeasuredFullContact(tables, misalignments, FACE if inclined else PLANE, predicted * positions)
-    if not found.solved:
-        raise SolveError("; ".join(dict.fromkeys(point.reason for point in found.points)))
-    return found
+        tables = (solve_full_contact(request.pair, torques, fractions, estimate_error=True, report=reported),)
+    measured = MeasuredFullContact(tables, misalignments, FACE if inclined else PLANE, predicted * positions)
+    if not measured.solved:
+        raise SolveError("; ".join(dict.fromkeys(point.reason for point in measured.points)))
+    return measured
 
 
 def _predicted(solves: int, *, inclined: bool) -> float:
@@ -226,10 +226,10 @@ def _predicted(solves: int, *, inclined: bool) -> float:
     return POSITION_SECONDS + LOAD_SECONDS * solves
 
 
-def _errors(found: FloatArray, reference: FloatArray) -> tuple[float, float]:
+def _errors(curve: FloatArray, reference: FloatArray) -> tuple[float, float]:
     """Relative errors of mean and peak-to-peak over the same positions, as magnitudes; NaN if too few."""
-    mean = abs(float(np.mean(found) / np.mean(reference)) - 1.0) if found.size else float("nan")
-    swing = abs(float(np.ptp(found) / np.ptp(reference)) - 1.0) if found.size > 1 else float("nan")
+    mean = abs(float(np.mean(curve) / np.mean(reference)) - 1.0) if curve.size else float("nan")
+    swing = abs(float(np.ptp(curve) / np.ptp(reference)) - 1.0) if curve.size > 1 else float("nan")
     return mean, swing
 
 

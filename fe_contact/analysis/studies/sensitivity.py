@@ -104,5 +104,5 @@ def _curves(
 def _ripple(table: SteDatabase, axis: str) -> RippleCurve:
     """Peak-to-peak along the axis of a table of one load."""
     deviation: FloatArray = getattr(table, axis)
-    found = [table.peak_to_peak(force=float(table.force[0]), **{axis: float(x)}) for x in deviation]
-    return RippleCurve(deviation, np.array([e.value for e in found]), np.array([e.error for e in found]))
+    ripples = [table.peak_to_peak(force=float(table.force[0]), **{axis: float(x)}) for x in deviation]
+    return RippleCurve(deviation, np.array([e.value for e in ripples]), np.array([e.error for e in ripples]))

@@ -10,7 +10,7 @@ from fe_contact.geometry import Gear, GearPair
 
 @lru_cache(maxsize=2)
 def warm_up(*, across_face: bool) -> None:
-    """Analyze a narrow pair once per process, in the plane and, if asked, over the face."""
+    """Analyze a narrow pair once per process, in the plane and, if requested, over the face."""
     gear = Gear(teeth=20, normal_module=1e-3, face_width=2e-3, bore_diameter=10e-3)
     pair = GearPair(gear, gear, center_distance=20e-3)
     for model in ("auto", "3d") if across_face else ("auto",):

@@ -1,4 +1,4 @@
-"""Where the database has its positions: equally spaced, or denser where the curves bend."""
+"""Positions of the database: equally spaced, or denser where the curves bend."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from fe_contact.types import BoolArray, FloatArray
 
 MAX_ROUNDS = 10
 PROBES = np.array([0.25, 0.5, 0.75])
-"""Where in every interval the interpolant is held against a solution; the middle one becomes a node."""
+"""Points of every interval where the interpolant is held against a solution; the middle becomes a node."""
 
 
 @dataclass(frozen=True)
@@ -72,8 +72,8 @@ def adaptive_nodes(rule: NodeRule, solve: Callable[[FloatArray], FloatArray]) ->
     for remaining in reversed(range(MAX_ROUNDS)):
         own = values[values.shape[0] // 2]
         allowed = rule.tolerance * rule.ripple(own)
-        middles, found, probed = _probed(nodes, values, solve, ~settled, PROBES)
-        error[~settled], between[:, ~settled] = probed[~settled], found[:, ~settled]
+        middles, at_middle, probed = _probed(nodes, values, solve, ~settled, PROBES)
+        error[~settled], between[:, ~settled] = probed[~settled], at_middle[:, ~settled]
         missed = np.any(error > allowed, axis=1)
         if not missed.any() or not remaining or nodes.size + missed.sum() > rule.most:
             break
@@ -95,10 +95,10 @@ def _probed(
     solved = solve(where.ravel())
     own = solved[solved.shape[0] // 2]
     missed = np.abs(_interpolated(nodes, values, where.ravel()) - own).reshape(*where.shape, -1)
-    found, error = np.zeros_like(values), np.zeros(values.shape[1:])
-    found[:, open_] = solved.reshape(solved.shape[0], *where.shape, -1)[:, :, probes.size // 2]
+    at_middle, error = np.zeros_like(values), np.zeros(values.shape[1:])
+    at_middle[:, open_] = solved.reshape(solved.shape[0], *where.shape, -1)[:, :, probes.size // 2]
     error[open_] = missed.max(axis=1)
-    return nodes + 0.5 * spacing, found, error
+    return nodes + 0.5 * spacing, at_middle, error
 
 
 def _interpolated(nodes: FloatArray, values: FloatArray, where: FloatArray) -> FloatArray:
@@ -113,7 +113,7 @@ def _inserted(
     values: FloatArray,
     missed: BoolArray,
     middles: FloatArray,
-    found: FloatArray,
+    at_middle: FloatArray,
     error: FloatArray,
 ) -> tuple[FloatArray, FloatArray, BoolArray, FloatArray, FloatArray]:
     """Insert the middles of the missed intervals; both halves and the neighbors are measured again."""
@@ -122,8 +122,8 @@ def _inserted(
     merged = np.concatenate([nodes, middles[missed]])[order]
     return (
         merged,
-        np.concatenate([values, found[:, missed]], axis=1)[:, order],
+        np.concatenate([values, at_middle[:, missed]], axis=1)[:, order],
         np.concatenate([~touched, np.zeros(int(missed.sum()), dtype=bool)])[order],
         np.concatenate([error, np.full((int(missed.sum()), error.shape[1]), np.inf)])[order],
-        np.concatenate([found, np.zeros_like(found[:, missed])], axis=1)[:, order],
+        np.concatenate([at_middle, np.zeros_like(at_middle[:, missed])], axis=1)[:, order],
     )

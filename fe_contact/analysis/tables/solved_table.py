@@ -90,19 +90,19 @@ def solve_table(
     with clock.stage("planning"):
         decided = decided or decide(checked, run.cache)
         checked, plan, request = decided.checked, decided.plan, decided.checked.request
-        wanted = request.pair, plan, checked.model, request.alignments
-        prediction = predict_run(*wanted, run.cache, with_errors=full)
+        arguments = request.pair, plan, checked.model, request.alignments
+        prediction = predict_run(*arguments, run.cache, with_errors=full)
     known = before.places.nominal if before is not None and _same_bodies(before.plan, plan) else None
     nominal = condensed_bodies(checked, plan, clock, run, known=known)
-    places = operating_points(request.scene, request.choices, nominal, run.workers)
+    points = operating_points(request.scene, request.choices, nominal, run.workers)
     with clock.stage("contact"):
-        nodes = table_nodes(places, plan)
+        nodes = table_nodes(points, plan)
         run.progress("contact", 0.3)
         loads = plan.load, plan.support
-        (solved, support), condition = solve_operating_points(places, nodes.position, loads, conditioned=full)
-        table = assembled_table(request, places, nodes, solved, support)
+        (solved, support), condition = solve_operating_points(points, nodes.position, loads, conditioned=full)
+        table = assembled_table(request, points, nodes, solved, support)
         run.progress("contact", 1.0)
-    return SolvedTable(decided, prediction, places, nodes, solved, support, table, condition)
+    return SolvedTable(decided, prediction, points, nodes, solved, support, table, condition)
 
 
 def condensed_bodies(
@@ -136,17 +136,17 @@ def _condensed(pair: ParallelAxes, plan: Plan, coarse: bool, changes: FloatArray
         return pair_contact(pair, plan, kept, coarse, changes)
 
 
-def _same_bodies(one: Plan, other: Plan) -> bool:
+def _same_bodies(own: Plan, other: Plan) -> bool:
     """Whether two plans of one pair have the same finite elements."""
-    first, second = ((plan.discretization, plan.parts) for plan in (one, other))
+    first, second = ((plan.discretization, plan.parts) for plan in (own, other))
     return first == second
 
 
 def assembled_table(
-    request: Request, places: OperatingPoints, nodes: PositionNodes, solved: Solved, support: Solved
+    request: Request, points: OperatingPoints, nodes: PositionNodes, solved: Solved, support: Solved
 ) -> SteDatabase:
     """Assemble the table, its errors not yet estimated; `support` may be empty."""
-    position = (np.arange(places.period)[:, None] + nodes.position).ravel()
+    position = (np.arange(points.period)[:, None] + nodes.position).ravel()
     return SteDatabase(
         position=position,
         force=request.load,
@@ -154,9 +154,9 @@ def assembled_table(
         misalignment=request.misalignment,
         center_distance_change=request.center_distance_change,
         facts=pair_facts(request.pair),
-        period=places.period,
-        error_estimate=np.full((position.size, request.load.size, *places.shape), np.nan),
+        period=points.period,
+        error_estimate=np.full((position.size, request.load.size, *points.shape), np.nan),
         metadata=Metadata(),
-        **table_fields(places, solved),
-        **(table_support(places, support) if support else {}),
+        **table_fields(points, solved),
+        **(table_support(points, support) if support else {}),
     )

@@ -18,21 +18,21 @@ from fe_contact.planning import MOST_ROWS, Plan
 from fe_contact.types import FloatArray, IntArray
 
 
-def table_nodes(places: OperatingPoints, plan: Plan) -> PositionNodes:
+def table_nodes(points: OperatingPoints, plan: Plan) -> PositionNodes:
     """Place the positions: the number requested, or where the assessed curves bend.
 
     What is missed between fixed ones is not measured here (`position_errors`).
     """
     if plan.positions is not None:
-        return unmeasured_nodes(plan.positions, len(places.assessed) * plan.load.size)
-    windows = assessed_windows(places.places[0].model, plan.nodes.assessed_pitches)
+        return unmeasured_nodes(plan.positions, len(points.assessed) * plan.load.size)
+    windows = assessed_windows(points.places[0].model, plan.nodes.assessed_pitches)
 
     def solve(position: FloatArray) -> FloatArray:
         """STE (W, P, windows x places x L) in m."""
-        curves = [_curves(places, plan.load, position, window) for window in windows]
+        curves = [_curves(points, plan.load, position, window) for window in windows]
         return np.concatenate(curves, axis=2)
 
-    rows = places.period * len(places.places)
+    rows = points.period * len(points.places)
     most = max(min(plan.nodes.most, MOST_ROWS // rows), plan.nodes.start)
     return adaptive_nodes(replace(plan.nodes, most=most), solve)
 
@@ -53,10 +53,10 @@ def assessed_windows(model: ContactModel, most: int) -> tuple[IntArray, ...]:
     return tuple(order[k] + np.arange(-1, 2) for k in chosen)
 
 
-def _curves(places: OperatingPoints, load: FloatArray, position: FloatArray, pitches: IntArray) -> FloatArray:
+def _curves(points: OperatingPoints, load: FloatArray, position: FloatArray, pitches: IntArray) -> FloatArray:
     """STE (T, P, places x L) in m of the assessed operating points in the given pitches."""
-    found = deflected_operating_points(
-        places.assessed, [position] * len(places.assessed), load, pitches, places.workers
+    curves = deflected_operating_points(
+        points.assessed, [position] * len(points.assessed), load, pitches, points.workers
     )
     shape = (pitches.size, position.size, -1)
-    return np.concatenate([curve.reshape(shape) for curve in found], axis=2)
+    return np.concatenate([curve.reshape(shape) for curve in curves], axis=2)

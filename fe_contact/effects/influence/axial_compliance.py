@@ -1,4 +1,4 @@
-"""How far a gear gives way to the axial part of the force of a helical tooth, in closed form.
+"""Compliance of a gear under the axial part of the force of a helical tooth, in closed form.
 
 The body is an annular plate held at its bore, loaded at its edge (S. Timoshenko, S. Woinowsky-Krieger: Theory
 of Plates and Shells, 1959, art. 62): every harmonic of the load around the gear bends it, clamped inside and
@@ -71,8 +71,8 @@ def _bent(n: int, ratio: float, above: float, poisson: float) -> float:
 
 def _derivatives(power: int, logarithm: int, r: float) -> list[float]:
     """Return r^power, times ln r if `logarithm` is 1, and its first three derivatives."""
-    found, slope, rest = [], float(logarithm), 1.0 - logarithm
+    derivatives, slope, rest = [], float(logarithm), 1.0 - logarithm
     for k in range(power, power - 4, -1):
-        found.append((slope * math.log(r) + rest) * r**k)
+        derivatives.append((slope * math.log(r) + rest) * r**k)
         slope, rest = k * slope, k * rest + slope
-    return found
+    return derivatives

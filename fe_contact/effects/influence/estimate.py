@@ -1,4 +1,4 @@
-"""What flipping one effect changes, by the slice model: both states are estimated and compared."""
+"""Change by flipping one effect, by the slice model: both states are estimated and compared."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from fe_contact.types import FloatArray
 
 @dataclass(frozen=True)
 class EstimatedInfluence:
-    """What leaving an effect out is estimated to change: without it less with it.
+    """Estimated change by leaving an effect out: without it less with it.
 
     Attributes
     ----------
@@ -106,15 +106,15 @@ def _curves(scene: ContactScene, choices: Mapping[str, str], springs: Springs) -
     other = scene.misalignment[0] if scene.largest_misalignment > 0.0 else scene.misalignment[-1]
     ends = list(dict.fromkeys((float(other), scene.largest_misalignment)))
     load = scene.pair.normal_force(scene.torque)
-    found: dict[str, EstimatedCurve] = {}
+    curves: dict[str, EstimatedCurve] = {}
     models = []
     for growth in ends:
         here = replace(scene, misalignment=np.array([growth]))
         model = compose(here, choices)[0]
         models.append(repr(model))
-        if models[-1] not in found:  # without misalignment both ends are one
-            found[models[-1]] = springs.curve(model, load)
-    return [found[model] for model in models]
+        if models[-1] not in curves:  # without misalignment both ends are one
+            curves[models[-1]] = springs.curve(model, load)
+    return [curves[model] for model in models]
 
 
 def _compared(

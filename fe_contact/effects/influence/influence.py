@@ -16,7 +16,7 @@ _NOTHING = 5e-5  # um and %, well below what two digits of any change that count
 
 @dataclass(frozen=True)
 class Influence:
-    """What leaving an effect out changes: without it less with it.
+    """Change by leaving an effect out: without it less with it.
 
     Attributes
     ----------

@@ -33,7 +33,7 @@ BODY_DECAY = 2.0 / math.pi
 SUNK_DEPTH = 3.75
 """Modules of body depth that Weber and Banaschek's half plane stands for."""
 WEB_EXCESS = 2.1
-"""What a web adds over its own twist: 1.9 to 2.3 measured (docs/effects/thin_rim.md)."""
+"""Compliance that a web adds over its own twist: 1.9 to 2.3 measured (docs/effects/thin_rim.md)."""
 
 
 def slice_compliance(pair: ParallelAxes, slices: LoadedSlices, model: ContactModel) -> FloatArray:
@@ -74,8 +74,8 @@ def _of_gear(
     face = slices.face_position
     decay = TOOTH_DECAY * gear.normal_module
     own = (apart == 0) * _along_face(face, decay, slices.slice_width)
-    found = root[:, :, None] * root[:, None, :]
-    found *= own
+    compliance = root[:, :, None] * root[:, None, :]
+    compliance *= own
     depth = 2.0 * bending.at(bending.depth, s) / patch
     ratio = gear.material.poissons_ratio
     local = np.log(depth) - 0.5 * ratio / (1.0 - ratio) - 0.25
@@ -83,10 +83,10 @@ def _of_gear(
     local = np.maximum(local, np.log(slices.law_length / patch))
     diagonal = np.arange(face.size)
     local *= math.cos(gear.helix_angle) * half_plane(gear) / slices.slice_width
-    found[:, diagonal, diagonal] += local
+    compliance[:, diagonal, diagonal] += local
     body = _body(gear, slices, model)
-    found += body if model.couple_teeth else (apart == 0) * body
-    return np.asarray(found)
+    compliance += body if model.couple_teeth else (apart == 0) * body
+    return np.asarray(compliance)
 
 
 def _body(gear: Toothing, slices: LoadedSlices, model: ContactModel) -> FloatArray:

@@ -67,8 +67,8 @@ class Springs:
         if model.tooth_gaps:
             pitches = np.arange(min(model.period, MOST_PITCHES))
             problem = in_pitches(problem, model, np.repeat(pitches, count))
-        found = self._solved(problem, model, load)
-        return EstimatedCurve(np.nanmean(found, axis=0), np.nanmax(found, axis=0) - np.nanmin(found, axis=0))
+        curve = self._solved(problem, model, load)
+        return EstimatedCurve(np.nanmean(curve, axis=0), np.nanmax(curve, axis=0) - np.nanmin(curve, axis=0))
 
     def _solved(self, problem: ContactProblem, model: ContactModel, load: FloatArray) -> FloatArray:
         """Solve a problem (P, L) in m, started from the last one with the same gaps."""

@@ -1,4 +1,4 @@
-"""How far a tooth gives way under a line load, in closed form.
+"""Compliance of a tooth under a line load, in closed form.
 
 C. Weber, K. Banaschek: Formaenderung und Profilruecknahme bei gerad- und schraegverzahnten Raedern.
 Schriftenreihe Antriebstechnik 11, Vieweg 1953: bending, shear and compression of the tooth over its root, the

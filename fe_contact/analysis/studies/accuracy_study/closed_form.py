@@ -80,21 +80,21 @@ class ClosedFormFidelity:
         plan = make_plan(request.pair, request.load, request.options, checked.model)
         with clock.stage("contact"):
             nominal = SpringContact(request.pair, plan, law=self.law)
-            places = operating_points(request.scene, request.choices, nominal)
-            table = self._table(checked, plan, places)
+            points = operating_points(request.scene, request.choices, nominal)
+            table = self._table(checked, plan, points)
         case = request.to_json() | {"rung": self.name}
         ledger = [entry.to_json() for entry in checked.ledger]
         receipt = clock.to_json() | {"plan": {"model": self.name, "positions": table.position.size}}
         name = content_hash(case, SOLVER_VERSION, SCHEMA_VERSION)
         return replace(table, metadata=Metadata(case, ledger, receipt, name, software_versions()))
 
-    def _table(self, checked: Checked, plan: Plan, places: OperatingPoints) -> SteDatabase:
+    def _table(self, checked: Checked, plan: Plan, points: OperatingPoints) -> SteDatabase:
         """Solve all places at equally spaced positions."""
         request = checked.request
         count = plan.positions or POSITIONS
-        position, pitches = np.arange(count) / count, np.arange(places.period)
-        solved = [place.solve_pitches(position, plan.load, pitches) for place in places.places]
-        support = [place.solve_pitches(position, plan.support, pitches) for place in places.places]
+        position, pitches = np.arange(count) / count, np.arange(points.period)
+        solved = [point.solve_pitches(position, plan.load, pitches) for point in points.places]
+        support = [point.solve_pitches(position, plan.support, pitches) for point in points.places]
         error = [self._error(solution) for _, solution in solved]
         return SteDatabase(
             position=(pitches[:, None] + position).ravel(),
@@ -103,11 +103,11 @@ class ClosedFormFidelity:
             misalignment=request.misalignment,
             center_distance_change=request.center_distance_change,
             facts=pair_facts(request.pair),
-            period=places.period,
-            error_estimate=places.gathered(error),
+            period=points.period,
+            error_estimate=points.gathered(error),
             metadata=Metadata(),
-            **table_fields(places, solved),
-            **table_support(places, support),
+            **table_fields(points, solved),
+            **table_support(points, support),
         )
 
     def _error(self, solution: ContactSolution) -> FloatArray:

@@ -1,4 +1,4 @@
-"""What a fidelity of the accuracy study is."""
+"""A fidelity of the accuracy study."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What full finite-element contact costs for the same work: a peer on the plot of error against time.
+"""Cost of full finite-element contact for the same work: a peer on the plot of error against time.
 
 Our own measurement of the 20/20 spur pair (normal module 4 mm, face 25 mm, 10 to 400 N m) in plane strain, on
 meshes that resolve the contact strip, with two independent codes that agree to 0.06 % on the line of action
