@@ -13,7 +13,7 @@ from model_studies.record import Record, called, in_unit
 
 @dataclass(frozen=True)
 class Figures(Record):
-    """What variants of a model are compared by; a library adds its own arrays.
+    """The figures that variants of a model are compared by; a library adds its own arrays.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class Figures(Record):
 
 
 class Estimate(Protocol):
-    """What leaving an effect out is estimated to change."""
+    """Estimated change by leaving an effect out."""
 
     def to_json(self) -> Json:
         """Return plain JSON in SI units."""

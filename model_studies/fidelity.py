@@ -30,7 +30,7 @@ class Fidelity(Protocol[Q_contra]):
 
     @property
     def family(self) -> str:
-        """What it varies: errors within a family fall towards its finest."""
+        """The parameter it varies: errors within a family fall towards its finest."""
 
     def refusal(self, request: Q_contra) -> str | None:
         """Say why this fidelity says nothing about a request; None if it does."""
@@ -41,7 +41,7 @@ F = TypeVar("F", bound=Fidelity[Any])
 
 @dataclass(frozen=True)
 class Outcome(Generic[F, R]):
-    """What a fidelity computed, and its CPU time in this process, s."""
+    """The result of a fidelity, and its CPU time in this process, s."""
 
     fidelity: F
     result: R

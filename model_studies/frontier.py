@@ -15,7 +15,7 @@ from model_studies.record import Record, called
 
 @dataclass(frozen=True)
 class FidelityResult(Record):
-    """What one fidelity gave; a library adds its errors and what else it has to say.
+    """The outcome of one fidelity; a library adds its errors and what else it has to say.
 
     Attributes
     ----------

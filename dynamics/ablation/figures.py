@@ -1,4 +1,4 @@
-"""What runs are compared by: mean, peak-to-peak and mesh orders of transmission errors and bearing forces."""
+"""The figures that runs are compared by: mean, peak-to-peak, mesh orders of errors and bearing forces."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What accuracy costs in time on a scene: models and settings from quasi-static to the finest steps."""
+"""The cost of accuracy on a scene: models and settings from quasi-static to the finest steps."""
 
 from __future__ import annotations
 

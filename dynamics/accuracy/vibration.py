@@ -40,7 +40,7 @@ class Vibration:
 
 @dataclass(frozen=True)
 class Blocks:
-    """Where the run is looked at.
+    """The output grid that a run is compared on.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""From a scene to arrays: the main flow of this room."""
+"""Assembly of a scene into arrays: the main flow of this package."""
 
 from __future__ import annotations
 
@@ -92,8 +92,8 @@ class System:
     @property
     def corrections(self) -> Json:
         """Say what of the scene was corrected; nothing where nothing was."""
-        found = {name: {"given": stated, "used": used} for name, (stated, used) in self.corrected.items()}
-        return {"base_radius_corrected": found} if found else {}
+        radii = {name: {"given": stated, "used": used} for name, (stated, used) in self.corrected.items()}
+        return {"base_radius_corrected": radii} if radii else {}
 
     @property
     def driving_rows(self) -> IntArray:

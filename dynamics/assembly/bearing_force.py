@@ -38,11 +38,11 @@ class BearingForce(NamedTuple):
     def of(self, local: FloatArray, q: FloatArray, v: FloatArray) -> FloatArray:
         """Return the signals (S, T) of the local forces (R, T), `q` and `v` (T, n)."""
         state = np.concatenate([local, q.T, v.T])
-        found = np.repeat(self.constant[:, None], q.shape[0], axis=1)
+        signals = np.repeat(self.constant[:, None], q.shape[0], axis=1)
         for signal, (start, end) in enumerate(zip(self.first[:-1], self.first[1:], strict=True)):
             for entry in range(start, end):
-                found[signal] += self.weight[entry] * state[self.column[entry]]
-        return found
+                signals[signal] += self.weight[entry] * state[self.column[entry]]
+        return signals
 
 
 def bearing_force_map(

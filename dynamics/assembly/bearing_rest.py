@@ -1,4 +1,4 @@
-"""Where bodies rest on nonlinear bearings under forces that are known; the bearings' tangents there."""
+"""Rest of bodies on nonlinear bearings under known forces, and the bearings' tangents there."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ def rest_on_bearings(arrays: SystemArrays, matrix: FloatArray, force: FloatArray
     q = np.zeros(force.size)
     for _ in range(ITERATIONS):
         left = matrix + gradient.T @ (stiffness[:, None] * gradient)
-        found = np.asarray(np.linalg.lstsq(left, force - offset @ gradient, rcond=1e-13)[0])
-        if np.max(np.abs(found - q), initial=0.0) <= SETTLED * np.max(np.abs(found), initial=0.0):
-            return found
-        q = found
+        solution = np.asarray(np.linalg.lstsq(left, force - offset @ gradient, rcond=1e-13)[0])
+        if np.max(np.abs(solution - q), initial=0.0) <= SETTLED * np.max(np.abs(solution), initial=0.0):
+            return solution
+        q = solution
         stiffness, offset = _springs(arrays, q, rows, stiffness * (gradient @ q) + offset)
     return q
 
@@ -89,7 +89,7 @@ def linear_scene(
     torque = np.array([float(load.torque(0.0)) for load in scene.loads])
     matrix = arrays.stiffness + stiffness_across(arrays, 0.0)
     q = rest_on_bearings(arrays, matrix, arrays.constant + torque @ arrays.load.direction + push)
-    local, found = local_state(arrays, 0.0, q, np.zeros(q.size)), dict(supports)
+    local, linear = local_state(arrays, 0.0, q, np.zeros(q.size)), dict(supports)
     first = arrays.elements.first[arrays.elements.law.size - len(bearings) :]
     for start, (name, at) in zip(first, bearings, strict=False):
         size = at.way.shape[0]
@@ -100,8 +100,8 @@ def linear_scene(
             local.viscous[rows, :size],
             local.coordinate[rows],
         )
-        found[name] = with_tangent(found[name], at, *state)
-    parts = [found[part.name] for part in (*scene.bushings, *scene.planet_bearings)]
+        linear[name] = with_tangent(linear[name], at, *state)
+    parts = [linear[part.name] for part in (*scene.bushings, *scene.planet_bearings)]
     return replace(
         scene,
         bushings=tuple(part for part in parts if isinstance(part, Bushing)),

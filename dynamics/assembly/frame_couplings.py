@@ -48,7 +48,7 @@ class FrameCoupling:
 
 def frame_couplings(scene: Scene) -> tuple[FrameCoupling, ...]:
     """Return all couplings with matrices between shafts of different frames."""
-    found = []
+    couplings = []
     for index, coupling in enumerate(scene.couplings):
         ends = [scene.shaft_index(name) for name in (coupling.first, coupling.second)]
         if not crosses_frames(scene.shafts[ends[0]], scene.shafts[ends[1]], coupling):
@@ -58,13 +58,13 @@ def frame_couplings(scene: Scene) -> tuple[FrameCoupling, ...]:
             ends.reverse()
         matrices = [full_matrix(m, 0.0) for m in (coupling.stiffness, coupling.damping)]
         tilts = any(np.any(matrix[3:5, :5] != 0.0) for matrix in matrices)
-        found.append(FrameCoupling(index, ends[0], ends[1], z, 4 if tilts else 2))
-    return tuple(found)
+        couplings.append(FrameCoupling(index, ends[0], ends[1], z, 4 if tilts else 2))
+    return tuple(couplings)
 
 
 def frame_turns(scene: Scene, kinematics: Kinematics) -> tuple[tuple[Fraction, ...], ...]:
     """Return the revolutions of the second frame against the first per revolution of each law, for each."""
-    found = []
+    turns = []
     for coupling in scene.couplings:
         ends = [scene.shaft_index(name) for name in (coupling.first, coupling.second)]
         if not crosses_frames(scene.shafts[ends[0]], scene.shafts[ends[1]], coupling):
@@ -72,8 +72,8 @@ def frame_turns(scene: Scene, kinematics: Kinematics) -> tuple[tuple[Fraction, .
         if scene.shafts[ends[1]].frame is None:
             ends.reverse()
         first, second = (_frame_speed(scene, kinematics, end) for end in ends)
-        found.append(tuple(b - a for a, b in zip(first, second, strict=True)))
-    return tuple(found)
+        turns.append(tuple(b - a for a, b in zip(first, second, strict=True)))
+    return tuple(turns)
 
 
 def frame_coupling_elements(
@@ -105,14 +105,14 @@ def frame_coupling_elements(
 def stiffness_across(arrays: SystemArrays, time: float) -> FloatArray:
     """Return the stiffness (n, n) of all couplings across frames, at their angles at `time`."""
     elements, n = arrays.elements, arrays.mass.shape[0]
-    found, crossing = np.zeros((n, n)), np.flatnonzero(elements.law == Law.FRAME_COUPLING)
+    stiffness, crossing = np.zeros((n, n)), np.flatnonzero(elements.law == Law.FRAME_COUPLING)
     if crossing.size:
         tangent = local_state(arrays, time, np.zeros(n), np.zeros(n)).tangent
         for e in crossing:
             rows = slice(elements.first[e], elements.first[e + 1])
             direction = arrays.direction[rows]
-            found += direction.T @ tangent[rows, : direction.shape[0]] @ direction
-    return found
+            stiffness += direction.T @ tangent[rows, : direction.shape[0]] @ direction
+    return stiffness
 
 
 def frame_joint(

@@ -1,4 +1,4 @@
-"""What a scene is modeled with: freedoms, connections, flanks, and the effects decided on."""
+"""The model of a scene: freedoms, connections, flanks, and the effects decided on."""
 
 from __future__ import annotations
 

@@ -125,22 +125,22 @@ def _own_motions(mechanism: Mechanism) -> FloatArray:
     elastic coordinates: the work on it leaves out their accelerations.
     """
     rotors = mechanism.rotors
-    found = np.zeros((len(mechanism.kinematics.law_shaft), column_count(rotors)))
+    motions = np.zeros((len(mechanism.kinematics.law_shaft), column_count(rotors)))
     for law, shaft in enumerate(mechanism.kinematics.law_shaft):
-        found[law, 6 * shaft + ROTATION] = 1.0
+        motions[law, 6 * shaft + ROTATION] = 1.0
         elastic = rotors[shaft].elastic
         if elastic is not None:
-            found[law, elastic_columns(rotors, shaft)] = -elastic.turned / elastic.mass
-    return found
+            motions[law, elastic_columns(rotors, shaft)] = -elastic.turned / elastic.mass
+    return motions
 
 
 def drive_springs(
     scene: Scene, kinematics: Kinematics, rotors: Sequence[Rotor], freedoms: Freedoms
 ) -> list[tuple[int, ImposedRotation, FloatArray]]:
     """Return the law of each drive with a spring, the drive, and the rotation it strains per freedom (n,)."""
-    found = []
+    springs = []
     for law, drive in enumerate(scene.drives):
         if drive.stiffness is not None:
             shaft = kinematics.law_shaft[law]
-            found.append((law, drive, freedoms.keep(turn_row(rotors, shaft, drive.position))))
-    return found
+            springs.append((law, drive, freedoms.keep(turn_row(rotors, shaft, drive.position))))
+    return springs

@@ -23,33 +23,33 @@ def rotating_frame_elements(model: Model) -> tuple[tuple[Element, ...], Rotating
     """
     mechanism, freedoms = model.mechanism, model.freedoms
     lever, free, vectors = frame_lever(mechanism.scene), mechanism.freely_turned, mechanism.vectors
-    found: list[tuple[int, FrameTerm]] = []
+    terms: list[tuple[int, FrameTerm]] = []
     for index, rotor in enumerate(mechanism.rotors):
-        terms = [
+        own = [
             term
             for effect in model.ledger.on_rotor(rotor.shaft.name)
             for term in effect.frame_terms(mechanism, model.connections, index)
         ]
-        moving = [term for term in terms if np.any(freedoms.keep(term.rows))]
-        found += [(index, term) for term in _merged(moving, freedoms)]
+        moving = [term for term in own if np.any(freedoms.keep(term.rows))]
+        terms += [(index, term) for term in _merged(moving, freedoms)]
     elements = tuple(
         _element(mechanism, vectors, entry, index, term.rows, lever if free[index] else 0.0)
-        for entry, (index, term) in enumerate(found)
+        for entry, (index, term) in enumerate(terms)
     )
-    return elements, frame_laws([term for _, term in found], lever, [bool(free[index]) for index, _ in found])
+    return elements, frame_laws([term for _, term in terms], lever, [bool(free[index]) for index, _ in terms])
 
 
 def _merged(terms: Sequence[FrameTerm], freedoms: Freedoms) -> list[FrameTerm]:
     """Return the terms of a rotor with those that move alike made one: each costs two unknowns a stage."""
-    found: list[FrameTerm] = []
+    merged: list[FrameTerm] = []
     for term in terms:
-        for entry, other in enumerate(found):
+        for entry, other in enumerate(merged):
             if np.array_equal(freedoms.keep(term.rows), freedoms.keep(other.rows)):
-                found[entry] = other.plus(term)
+                merged[entry] = other.plus(term)
                 break
         else:
-            found.append(term)
-    return found
+            merged.append(term)
+    return merged
 
 
 def _element(

@@ -55,7 +55,7 @@ def spatial_elements(model: Model, plain: Sequence[Element]) -> tuple[tuple[Elem
     """
     vectors = model.mechanism.vectors
     elements: list[Element] = []
-    found: list[SpatialFlank] = []
+    flanks: list[SpatialFlank] = []
     for entry, element in enumerate(plain):
         flank = FlankInSpace(model.mechanism, element.mesh, coast=entry >= len(model.mechanism.lines))
         in_plane = FlankTerms(model.flanks.tables[entry])
@@ -68,9 +68,9 @@ def spatial_elements(model: Model, plain: Sequence[Element]) -> tuple[tuple[Elem
         laid_out = _lay_out(entry, element, flank, terms)
         drift = np.where(laid_out.slides[:, None], laid_out.gradient @ vectors.T, 0.0)
         law, rows = Law.SPATIAL_FLANK, (laid_out.gradient, laid_out.offset)
-        elements.append(Element(law, len(found), element.mesh, *rows, drift))
-        found.append(laid_out)
-    return tuple(elements), _pack(model, found)
+        elements.append(Element(law, len(flanks), element.mesh, *rows, drift))
+        flanks.append(laid_out)
+    return tuple(elements), _pack(model, flanks)
 
 
 def _lay_out(entry: int, element: Element, flank: FlankInSpace, terms: FlankTerms) -> SpatialFlank:

@@ -25,7 +25,7 @@ def speed_elements(
     is the shaft's speed times that radius.
     """
     radius = max((gear.base_radius for gear in scene.gears), default=1.0)
-    found = []
+    elements = []
     for entry, part in enumerate(scene.speed_torques):
         shaft = scene.shaft_index(part.shaft)
         sense = kinematics.sense[shaft]
@@ -35,5 +35,5 @@ def speed_elements(
         gradient = np.zeros((1, column_count(rotors)))
         gradient[0] += sense * radius * turn_row(rotors, shaft, part.position)
         drift = sense * radius * kinematics.float_ratio[shaft][None, :]
-        found.append(Element(Law.SPEED_TORQUE, entry, -1, gradient, np.zeros(1), drift))
-    return tuple(found), pack_speed_torques(scene.speed_torques, radius)
+        elements.append(Element(Law.SPEED_TORQUE, entry, -1, gradient, np.zeros(1), drift))
+    return tuple(elements), pack_speed_torques(scene.speed_torques, radius)

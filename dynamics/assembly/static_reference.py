@@ -24,15 +24,15 @@ def operating_points_at(system: System, displacement: FloatArray, time: float = 
     rest = np.zeros(displacement.size)
     coordinate = local_state(system.arrays, time, displacement, rest).coordinate
     elements, laws = system.arrays.elements, system.arrays.elements.laws.spatial_flank
-    found = np.array([[mesh.misalignment, mesh.center_distance_change] for mesh in system.scene.meshes])
-    for index in range(found.shape[0]):
+    points = np.array([[mesh.misalignment, mesh.center_distance_change] for mesh in system.scene.meshes])
+    for index in range(points.shape[0]):
         if elements.law[index] != SPATIAL_FLANK:
             continue
         entry = elements.entry[index]
         for axis in range(2):
             if laws.row[entry, axis] > 0 and laws.follows[entry, axis] == 1:
-                found[index, axis] = coordinate[elements.first[index] + laws.row[entry, axis]]
-    return found
+                points[index, axis] = coordinate[elements.first[index] + laws.row[entry, axis]]
+    return points
 
 
 def with_static_reference(system: System, displacement: FloatArray, time: float = 0.0) -> System:

@@ -1,4 +1,4 @@
-"""What an effect of the multibody model is: its facts, its decision and what it contributes where it is on.
+"""An effect of the multibody model: its facts, its decision and what it contributes where it is on.
 
 An effect is one file: a class of a rotor or of a mesh and a line in the registry. The rest of the model knows
 none by name; what an effect does not contribute, the class it derives from leaves as it is.

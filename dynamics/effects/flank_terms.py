@@ -1,4 +1,4 @@
-"""What effects make of the force of one flank: the table it reads, what it follows, where and how it acts."""
+"""Terms of the force of one flank: the table it reads, what it follows, where and how it acts."""
 
 from __future__ import annotations
 

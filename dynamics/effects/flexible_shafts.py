@@ -133,10 +133,10 @@ def _held(mechanism: Mechanism) -> FloatArray:
     rotors = mechanism.rotors
     joined = gather_connections(mechanism.scene, rotors)
     supports, seats = joined.supports, joined.seats
-    found = supports.matrix(supports.stiffness, supports.motion, supports.motion)
-    found += seats.motion.T @ seats.stiffness @ seats.motion + np.diag(elastic_terms(rotors)[0])
+    total = supports.matrix(supports.stiffness, supports.motion, supports.motion)
+    total += seats.motion.T @ seats.stiffness @ seats.motion + np.diag(elastic_terms(rotors)[0])
     for index, rotor in enumerate(rotors):
         for stiffness, lever in rotor.curved:
             rows = section_rows(rotors, index, rotor.center[2] + lever)[:SEAT]
-            found += rows.T @ stiffness @ rows
-    return found
+            total += rows.T @ stiffness @ rows
+    return total

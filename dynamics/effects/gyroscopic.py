@@ -58,15 +58,15 @@ class Gyroscopic(RotorEffect):
         rotor, lever = mechanism.rotors[index], frame_lever(mechanism.scene)
         mass, polar, across = rotor.inertia.mass, rotor.inertia.polar, rotor.inertia.transverse
         own = np.eye(column_count(mechanism.rotors))[6 * index : 6 * index + 6]
-        found = []
+        terms = []
         if rotor.frame is not None:
-            found.append(FrameTerm(own[list(LATERAL)], (0.0, 2.0 * mass, 0.0, -mass, 0.0)))
+            terms.append(FrameTerm(own[list(LATERAL)], (0.0, 2.0 * mass, 0.0, -mass, 0.0)))
         if rotor.elastic is not None and rotor.elastic.bends:
-            return [*found, *_along_the_shaft(mechanism, index, lever)]
+            return [*terms, *_along_the_shaft(mechanism, index, lever)]
         square = lever**2
         tilt = (-polar / square, 2.0 * across / square, polar / square, -across / square, 0.0)
-        found.append(FrameTerm(lever * own[list(TILT)], tilt))
-        return [*found, *_dampers(connections, index, lever)]
+        terms.append(FrameTerm(lever * own[list(TILT)], tilt))
+        return [*terms, *_dampers(connections, index, lever)]
 
 
 def _tilt_share(rotor: LoadedRotor) -> float:
@@ -103,16 +103,16 @@ def _along_the_shaft(mechanism: Mechanism, index: int, lever: float) -> list[Fra
 
 
 def _dampers(connections: Connections, index: int, lever: float) -> list[FrameTerm]:
-    """Return what ground dampers of a rotor in a rotating frame are.
+    """Return the terms of the ground dampers of a rotor in a rotating frame.
 
     A bushing's damping matrix, alike in all directions, is a damper at a point of the axis and one of tilt.
     """
     supports, seats = connections.supports, connections.seats
-    found: list[tuple[FloatArray, float]] = []
+    dampers: list[tuple[FloatArray, float]] = []
     for support, frame in enumerate(supports.frame):
         rows = supports.motion[support, :2]
         if frame is not None and np.any(rows[:, 6 * index]):
-            found.append((rows, float(supports.damping[support, 0])))
+            dampers.append((rows, float(supports.damping[support, 0])))
     for seat, frame in enumerate(seats.frame):
         first = 5 * seat
         motion, c = seats.motion[first : first + 5], seats.damping[first : first + 5, first : first + 5]
@@ -120,6 +120,6 @@ def _dampers(connections: Connections, index: int, lever: float) -> list[FrameTe
             continue
         away = float(c[0, 4] / c[0, 0]) if c[0, 0] > 0.0 else 0.0
         at = motion[:2] + away * np.array([motion[4], -motion[3]])
-        found.append((at, float(c[0, 0])))
-        found.append((lever * motion[3:5], float(c[3, 3] - c[0, 0] * away**2) / lever**2))
-    return [FrameTerm(rows, (0.0, 0.0, 0.0, 0.0, damping)) for rows, damping in found if damping != 0.0]
+        dampers.append((at, float(c[0, 0])))
+        dampers.append((lever * motion[3:5], float(c[3, 3] - c[0, 0] * away**2) / lever**2))
+    return [FrameTerm(rows, (0.0, 0.0, 0.0, 0.0, damping)) for rows, damping in dampers if damping != 0.0]

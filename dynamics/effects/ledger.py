@@ -40,13 +40,13 @@ class LedgerEntry:
 
     @property
     def on(self) -> bool:
-        """What is done: an explicit choice is obeyed as far as the scene allows, else the verdict."""
+        """The decision: an explicit choice is obeyed as far as the scene allows, else the verdict."""
         obeyed = self.choice != "auto" and self.possible
         return self.choice == "on" if obeyed else self.called_for
 
     @property
     def reason(self) -> str:
-        """Why."""
+        """The reason of the decision."""
         if self.on == self.called_for:
             return self.verdict.reason
         reason = self.verdict.reason
@@ -74,7 +74,7 @@ class LedgerEntry:
 
     @property
     def price(self) -> str:
-        """What a choice against the scene costs; empty where it does not."""
+        """The price of a choice against the scene, in words; empty where there is none."""
         if self.on == self.called_for:
             return ""
         return self.cost if self.on else f"{1e6 * self.influence:.3g} um of static displacement left out"

@@ -1,4 +1,4 @@
-"""What the effects of meshes look at: a mesh under its nominal force, on bodies that yield."""
+"""Meshes as their effects assess them: each under its nominal force, on bodies that yield."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class LoadedTrain:
 
     @cached_property
     def mean_force(self) -> FloatArray:
-        """What balances loads and imposed accelerations over the run, (m, T), N; < 0: the coast flank's."""
+        """Forces that balance loads and imposed accelerations, (m, T), N; < 0: the coast flank's."""
         scene, inertia = self.mechanism.scene, self.mechanism.rotational_inertia
         return mean_forces(scene, self.mechanism.kinematics, inertia, telling_moments(scene))
 
@@ -106,7 +106,7 @@ class LoadedMesh:
         return bool(np.any(self.axes[axis] != 0.0))
 
     def not_read(self) -> str | None:
-        """Why the table cannot be read along its axes as bodies move; None where it can."""
+        """Reason that the table cannot be read along its axes as bodies move; None where it can."""
         if self.mesh.technique != "variable_torque":
             return "the constant-torque technique has one stiffness per position"
         if getattr(self.mesh.table, "deflection_derivative", None) is None:

@@ -1,4 +1,4 @@
-"""What the effects of rotors look at: a rotor on its supports and the meshes it carries."""
+"""Rotors as their effects assess them: each on its supports, with the meshes it carries."""
 
 from __future__ import annotations
 

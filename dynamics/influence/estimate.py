@@ -21,7 +21,7 @@ ROUNDING = 1e-8
 
 @dataclass(frozen=True)
 class Influence(Record):
-    """What leaving one effect out, in all parts of a scene, is estimated to change; m meshes, b bearings.
+    """Estimated change by leaving one effect out in all parts of a scene; m meshes, b bearings.
 
     Attributes
     ----------
@@ -96,7 +96,7 @@ def estimate_influences(scene: Scene, settled: float = 0.0) -> dict[str, Influen
         whole = linear_figures(system, conditions)
     except (InputError, SolveError):
         return {}
-    found = {}
+    influences = {}
     for name, on in switchable(system).items():
         try:
             other = assemble(replace(scene, effects={**scene.effects, name: "off" if on else "on"}))
@@ -104,18 +104,18 @@ def estimate_influences(scene: Scene, settled: float = 0.0) -> dict[str, Influen
         except (InputError, SolveError):
             continue
         both = (whole, figures) if on else (figures, whole)
-        found[name] = influence_of(system, on, *both)
-    return found
+        influences[name] = influence_of(system, on, *both)
+    return influences
 
 
 def switchable(system: System) -> dict[str, bool]:
     """Return the effects that a part of a system can have and would feel, and whether any has them on."""
-    found: dict[str, bool] = {}
+    states: dict[str, bool] = {}
     for name in dict.fromkeys(entry.effect for entry in system.ledger.entries):
         able = [entry for entry in system.ledger.of(name) if entry.possible]
         if any(entry.on or entry.influence > 0.0 for entry in able):
-            found[name] = any(entry.on for entry in able)
-    return found
+            states[name] = any(entry.on for entry in able)
+    return states
 
 
 def influence_of(system: System, on: bool, whole: LinearFigures, without: LinearFigures) -> Influence:
@@ -142,7 +142,7 @@ def influence_of(system: System, on: bool, whole: LinearFigures, without: Linear
 
 
 def _through(system: System, parted: FloatArray) -> FloatArray:
-    """How far flanks would go beyond the backlash (m,), m; nowhere where none is given."""
+    """Travel of flanks beyond the backlash (m,), m; 0 where none is given."""
     room = [np.inf if mesh.coast is None else mesh.coast.backlash for mesh in system.scene.meshes]
     return np.asarray(np.maximum(parted - np.array(room), 0.0))
 

@@ -29,7 +29,7 @@ POSITIONS = 128
 
 @dataclass(frozen=True)
 class LinearFigures:
-    """What a run is expected to show; m meshes, b bearings.
+    """Figures that a run is expected to show; m meshes, b bearings.
 
     Attributes
     ----------
@@ -72,15 +72,15 @@ def linear_figures(system: System, conditions: Sequence[OperatingCondition]) -> 
         at = excited(system, some.time, ORDERS, POSITIONS)
         condition = some.passing(resonances(at)) if some.speed.size > 1 else some
         answer = parametric_response(at, condition.speed, condition.rate, ORDERS, Gyroscopic.name in on)
-        found, static = answer.harmonics, [float(np.mean(cycle.static_error)) for cycle in at.cycles]
+        harmonics, static = answer.harmonics, [float(np.mean(cycle.static_error)) for cycle in at.cycles]
         rest = np.array(static)[:, None] + answer.mean_shift
-        least, most = extremes(found.dynamic_transmission_error, found.order)
+        least, most = extremes(harmonics.dynamic_transmission_error, harmonics.order)
         low = np.minimum(low, np.min(rest + least, axis=1))
         high = np.maximum(high, np.max(rest + most, axis=1))
         mean += rest @ condition.weight
-        amplitude = np.maximum(amplitude, bearing_orders(found))
-        pull = np.maximum(-np.min(found.least_mesh_force, axis=1), 0.0)
-        parted = np.maximum(parted, pull / np.maximum(found.mean_stiffness, 1e-300))
+        amplitude = np.maximum(amplitude, bearing_orders(harmonics))
+        pull = np.maximum(-np.min(harmonics.least_mesh_force, axis=1), 0.0)
+        parted = np.maximum(parted, pull / np.maximum(harmonics.mean_stiffness, 1e-300))
     size = system.arrays.mass.shape[0], system.arrays.direction.shape[0]
     force = np.sqrt(np.sum(amplitude**2, axis=(1, 2)))
     return LinearFigures(mean, high - low, force, parted, *size, bool(system.flanks.coast))
@@ -103,11 +103,11 @@ def resonances(at: Excited) -> FloatArray:
     return np.unique(reported[:, None, None] / (order[:, None] * per_speed))
 
 
-def bearing_orders(found: HarmonicResponse) -> FloatArray:
+def bearing_orders(response: HarmonicResponse) -> FloatArray:
     """Return the largest amplitude over the speeds of mesh orders 1 to 5 of every bearing, (b, 3, 5) N."""
-    largest = np.zeros((found.bearing_force.shape[0], 3, COMPARED))
+    largest = np.zeros((response.bearing_force.shape[0], 3, COMPARED))
     for k in range(COMPARED):
-        at = np.flatnonzero(np.abs(found.order - (k + 1)) < 1e-9)
+        at = np.flatnonzero(np.abs(response.order - (k + 1)) < 1e-9)
         if at.size:
-            largest[..., k] = np.max(np.abs(found.bearing_force[:, :3, :, at[0]]), axis=2)
+            largest[..., k] = np.max(np.abs(response.bearing_force[:, :3, :, at[0]]), axis=2)
     return largest

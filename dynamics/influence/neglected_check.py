@@ -1,4 +1,4 @@
-"""Whether effects neglected for a tolerance were too small to be seen in the run without them."""
+"""Check that effects neglected for a tolerance were too small to be seen in the run without them."""
 
 from __future__ import annotations
 
