@@ -63,10 +63,10 @@ class ResultCache:
         """Return the result that was given for these inputs before, if its file is here and undamaged."""
         try:
             facts = json.loads(self._note(service, process, inputs).read_text())
-            found = Result(str(facts["key"]), str(facts["kind"]), str(facts["href"]))
+            result = Result(str(facts["key"]), str(facts["kind"]), str(facts["href"]))
         except (OSError, ValueError, KeyError, TypeError):
             return None
-        return found if self.get(found.kind, found.key) is not None else None
+        return result if self.get(result.kind, result.key) is not None else None
 
     def _folder(self, kind: str, key: str) -> Path:
         """Return the folder of a key, whose files differ where services gave different bytes for it."""
@@ -104,13 +104,13 @@ def _holds(file: Path, digest: str) -> bool:
     """Whether a file holds what its name says; if not it is set aside."""
     try:
         with file.open("rb") as stream:
-            found = hashlib.file_digest(stream, "sha256").hexdigest()
+            actual = hashlib.file_digest(stream, "sha256").hexdigest()
     except OSError:  # unreadable, or set aside by another process: as good as not here
         return False
-    if found != digest:
+    if actual != digest:
         with contextlib.suppress(OSError):
             file.replace(f"{file}{SET_ASIDE}")
-    return found == digest
+    return actual == digest
 
 
 def _settle(stream: BinaryIO, file: Path) -> None:

@@ -83,8 +83,8 @@ class LineOfActionClient(Studies):
             Named by the fields of the scene.
         JobFailed, NotFound, Unreachable, ServiceError
         """
-        given, folder = scene_of(scene)
-        return scene_on_tables(given, MeshTables(folder, self.tables(progress)))
+        inputs, folder = scene_of(scene)
+        return scene_on_tables(inputs, MeshTables(folder, self.tables(progress)))
 
     def tables(self, progress: Watch | None = None) -> ServiceTables:
         """Return this service as who holds and computes the STE databases of scenes."""

@@ -172,8 +172,8 @@ _exponential = wait_exponential(multiplier=0.1, max=2.0)
 def _wait(state: RetryCallState) -> float:
     """Wait as long as the service asks for, else exponentially longer."""
     error = state.outcome.exception() if state.outcome else None
-    asked = _asked_s(error.response.headers.get("retry-after", "")) if isinstance(error, _TryAgain) else None
-    return _exponential(state) if asked is None else min(max(asked, 0.0), _LONGEST_WAIT_S)
+    delay = _asked_s(error.response.headers.get("retry-after", "")) if isinstance(error, _TryAgain) else None
+    return _exponential(state) if delay is None else min(max(delay, 0.0), _LONGEST_WAIT_S)
 
 
 def _asked_s(text: str) -> float | None:

@@ -49,17 +49,17 @@ class MeshTables:
         DatabaseError
             Its file is no database.
         """
-        place = f"meshes[{index}]"
+        field = f"meshes[{index}]"
         if mesh.database_file is not None:
-            return self._in_file(f"{place}.database_file", mesh.database_file)
-        case = case_of_mesh(mesh, place, self._folder)
+            return self._in_file(f"{field}.database_file", mesh.database_file)
+        case = case_of_mesh(mesh, field, self._folder)
         try:
             if case is not None:
                 return self._of_case(case)
             assert mesh.database_hash is not None  # the schema has seen to it
             return self._source.by_hash(mesh.database_hash)
         except BadInput as error:
-            raise error.within(place if case is None else f"{place}.case") from None
+            raise error.within(field if case is None else f"{field}.case") from None
 
     def _in_file(self, field: str, name: str) -> SteDatabase:
         """Return the database in a file."""

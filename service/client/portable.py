@@ -14,47 +14,47 @@ CaseLike = Case | Mapping[str, Any] | Path
 SceneLike = SceneInput | Mapping[str, Any] | Path
 
 
-def case_of(given: CaseLike) -> Case:
+def case_of(case: CaseLike) -> Case:
     """Return a case from a model, a table or a file; raises `BadInput`."""
-    if isinstance(given, Case):
-        return given
-    return read_model(Case, given) if isinstance(given, Path) else validated(Case, dict(given))
+    if isinstance(case, Case):
+        return case
+    return read_model(Case, case) if isinstance(case, Path) else validated(Case, dict(case))
 
 
-def scene_of(given: SceneLike) -> tuple[SceneInput, Path]:
+def scene_of(scene: SceneLike) -> tuple[SceneInput, Path]:
     """Return a scene and the folder its files are relative to; raises `BadInput`."""
-    if isinstance(given, SceneInput):
-        return given, Path()
-    if isinstance(given, Path):
-        return read_model(SceneInput, given), given.parent
-    return validated(SceneInput, dict(given)), Path()
+    if isinstance(scene, SceneInput):
+        return scene, Path()
+    if isinstance(scene, Path):
+        return read_model(SceneInput, scene), scene.parent
+    return validated(SceneInput, dict(scene)), Path()
 
 
-def scene_inputs(given: SceneLike) -> dict[str, Any]:
+def scene_inputs(scene: SceneLike) -> dict[str, Any]:
     """Return ``{"scene": ...}`` as JSON, its case files written out; raises `BadInput`."""
-    return {"scene": portable_scene(*scene_of(given)).model_dump(mode="json")}
+    return {"scene": portable_scene(*scene_of(scene)).model_dump(mode="json")}
 
 
-def inputs_of(given: CaseLike | SceneLike) -> dict[str, Any]:
+def inputs_of(source: CaseLike | SceneLike) -> dict[str, Any]:
     """Return ``{"case": ...}``, or of what has shafts ``{"scene": ...}``, as JSON; raises `BadInput`."""
-    if isinstance(given, SceneInput) or (not isinstance(given, Case) and "shafts" in _table(given)):
-        return scene_inputs(given)
-    return {"case": case_of(given).model_dump(mode="json")}
+    if isinstance(source, SceneInput) or (not isinstance(source, Case) and "shafts" in _table(source)):
+        return scene_inputs(source)
+    return {"case": case_of(source).model_dump(mode="json")}
 
 
-def _table(given: Mapping[str, Any] | Path) -> Mapping[str, Any]:
+def _table(source: Mapping[str, Any] | Path) -> Mapping[str, Any]:
     """Return the table that was given, or that a file holds."""
-    return read_table(given) if isinstance(given, Path) else given
+    return read_table(source) if isinstance(source, Path) else source
 
 
-def case_of_mesh(mesh: MeshInput, place: str, folder: Path) -> Case | None:
+def case_of_mesh(mesh: MeshInput, field: str, folder: Path) -> Case | None:
     """Return the case of a mesh, from the scene or its file; None if the mesh names a database."""
     if mesh.case_file is None:
         return mesh.case
     try:
         return read_model(Case, folder / mesh.case_file)
     except BadInput as error:
-        raise error.within(f"{place}.case_file") from None
+        raise error.within(f"{field}.case_file") from None
 
 
 def portable_scene(scene: SceneInput, folder: Path) -> SceneInput:
@@ -67,10 +67,10 @@ def portable_scene(scene: SceneInput, folder: Path) -> SceneInput:
     """
     meshes = []
     for index, mesh in enumerate(scene.meshes):
-        place = f"meshes[{index}]"
+        field = f"meshes[{index}]"
         if mesh.database_file is not None:
             advice = "Give case_file or database_hash, or run the scene here without a service."
-            raise BadInput.of(f"{place}.database_file", mesh.database_file, "left out for a service", advice)
-        case = case_of_mesh(mesh, place, folder)
+            raise BadInput.of(f"{field}.database_file", mesh.database_file, "left out for a service", advice)
+        case = case_of_mesh(mesh, field, folder)
         meshes.append(mesh.model_copy(update={"case": case, "case_file": None}))
     return scene.model_copy(update={"meshes": tuple(meshes)})

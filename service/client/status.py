@@ -1,4 +1,4 @@
-"""What the client says about a job."""
+"""The status of a job, as the client reports it."""
 
 from __future__ import annotations
 
@@ -47,12 +47,12 @@ class JobState:
 
 
 Watch = Callable[[JobState], None]
-"""What is called with every state of a job that is seen."""
+"""A function that is called with every state of a job that is seen."""
 
 
 @dataclass(frozen=True)
 class Result:
-    """Where a result is: its content hash, its kind (the name of the output) and its path on the service."""
+    """Address of a result: its content hash, its kind (the name of the output), its path on the service."""
 
     key: str
     kind: str

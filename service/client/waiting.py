@@ -1,4 +1,4 @@
-"""How a job is waited for: at growing intervals, through restarts of its service."""
+"""Waiting for a job: at growing intervals, through restarts of its service."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _GROWTH = 1.1
 
 @dataclass(frozen=True)
 class Pace:
-    """How often to look, and for how long.
+    """Intervals between looks at a job, and the time limit.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What the module `run` of a study offers."""
+"""The interface of a study's module `run`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Result = Any
 
 @dataclass(frozen=True)
 class Means:
-    """What a study works with.
+    """The means that a study works with.
 
     Attributes
     ----------
@@ -98,13 +98,13 @@ class Computation:
     writers: Mapping[str, Callable[[Result, Path], object]] = field(default_factory=dict)
     failure: Callable[[Result], str] = lambda _found: ""
 
-    def save(self, found: Result, file: Path) -> None:
+    def save(self, result: Result, file: Path) -> None:
         """Write the file of the service."""
         if self.write is None:
-            self.save_facts(found, file)
+            self.save_facts(result, file)
         else:
-            self.write(found, file)
+            self.write(result, file)
 
-    def save_facts(self, found: Result, file: Path) -> None:
+    def save_facts(self, result: Result, file: Path) -> None:
         """Write the figures as JSON."""
-        file.write_text(f"{json.dumps(self.facts(found), allow_nan=False)}\n", encoding="utf-8")
+        file.write_text(f"{json.dumps(self.facts(result), allow_nan=False)}\n", encoding="utf-8")

@@ -1,4 +1,4 @@
-"""What the module `page` of a study offers."""
+"""The interface of a study's module `page`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every effect of a case or a scene changes: each toggled by itself."""
+"""The change by every effect of a case or a scene: each toggled by itself."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How ablations of cases and of scenes are shown: what both have."""
+"""The look of ablations of cases and of scenes: what both have."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from service.drawing.figure import Axis, FloatArray, Line, Panel, Table
 
 @dataclass(frozen=True)
 class Look:
-    """How an ablation is shown.
+    """The look of an ablation.
 
     ``change(ablation, entry)`` is the change of peak-to-peak by leaving an effect out, m; `signed` writes one
     in um. `caption` says how to read the plot, `table` lists all effects in figures.
@@ -42,7 +42,7 @@ def over_orders(
 ) -> Panel:
     """Draw amplitudes over the mesh orders: as decided, and with each effect toggled."""
     states = [("as decided", ablation.nominal)]
-    states += [(f"{'without' if one.on else 'with'} {one.name}", one.toggled) for one in ablation.effects]
+    states += [(f"{'without' if row.on else 'with'} {row.name}", row.toggled) for row in ablation.effects]
     lines = [
         _line(index, name.replace("_", " "), unit * amplitude(figures))
         for index, (name, figures) in enumerate(states)

@@ -1,4 +1,4 @@
-"""What every effect of a scene changes, beside what it was estimated at."""
+"""The change by every effect of a scene, beside its estimate."""
 
 from __future__ import annotations
 

@@ -41,11 +41,11 @@ def flanks_of(case: Case, cache: Path | None, progress: Progress = silent) -> Lo
     """
     run = Run(cache=cache, progress=progress)
     with boundary_errors():
-        found = flank_results(
+        results = flank_results(
             gear_pair(case), operating_point(case), analysis_options(case), run, case=case_json(case)
         )
-    warnings = phrased_for(case, found.metadata.warnings)
-    return replace(found, metadata=replace(found.metadata, warnings=warnings))
+    warnings = phrased_for(case, results.metadata.warnings)
+    return replace(results, metadata=replace(results.metadata, warnings=warnings))
 
 
 def flank_json(flanks: LoadDistribution) -> Json:
@@ -78,5 +78,5 @@ RUN = Computation(
     narrowed=case_at,
     check=lambda case, _inputs: check_case(case, whole_table=False),
     normalized=lambda _case, _inputs: {},
-    warnings=lambda found: found.metadata.warnings,
+    warnings=lambda results: results.metadata.warnings,
 )

@@ -1,4 +1,4 @@
-"""What the accuracy studies of cases and of scenes say in words of their own."""
+"""The words of the accuracy studies of cases and of scenes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Study = Frontier | SceneFrontier
 
 @dataclass(frozen=True)
 class Look:
-    """How an accuracy study is shown.
+    """The look of an accuracy study.
 
     `key`, `title`, the label of `time`, `panels` (error, title, label, head of its column) and `families`
     (name, members, color) make the plot; `member` is the attribute of a result that tells its family. The

@@ -1,4 +1,4 @@
-"""What stands beside the fidelities of an accuracy study: another way to the same numbers."""
+"""A peer beside the fidelities of an accuracy study: another way to the same numbers."""
 
 from __future__ import annotations
 

@@ -26,9 +26,9 @@ WHIRLS: dict[str, tuple[str, Dash]] = {
 }
 
 
-def modal_figures(found: ModalAnalysis) -> tuple[Figure, ...]:
+def modal_figures(modes: ModalAnalysis) -> tuple[Figure, ...]:
     """Draw the Campbell diagram, if there are speeds, and the energies."""
-    return (_campbell(found), _energies(found)) if found.speed.size > 1 else (_energies(found),)
+    return (_campbell(modes), _energies(modes)) if modes.speed.size > 1 else (_energies(modes),)
 
 
 def whirl_name(whirl: float) -> str:
@@ -38,83 +38,83 @@ def whirl_name(whirl: float) -> str:
     return "forward whirl" if whirl > 0.0 else "backward whirl"
 
 
-def _campbell(found: ModalAnalysis) -> Figure:
+def _campbell(modes: ModalAnalysis) -> Figure:
     """Frequencies over speed."""
-    place = found.speed / RPM
-    reach = float(found.facts["orders"]) * float(np.max(found.mesh_frequency))
-    top = min(HEADROOM * float(np.nanmax(found.frequency)), max(HEADROOM * reach, LEAST_TOP))
-    lines = [*_orders(found, place, top), *_modes(found, place)]
-    if found.critical_speed.size:
-        there = found.critical_speed / RPM
+    speed = modes.speed / RPM
+    reach = float(modes.facts["orders"]) * float(np.max(modes.mesh_frequency))
+    top = min(HEADROOM * float(np.nanmax(modes.frequency)), max(HEADROOM * reach, LEAST_TOP))
+    lines = [*_orders(modes, speed, top), *_modes(modes, speed)]
+    if modes.critical_speed.size:
+        there = modes.critical_speed / RPM
         lines.append(
-            Line("critical speeds", there, found.critical_frequency, palette.INK, width=0.0, markers=True)
+            Line("critical speeds", there, modes.critical_frequency, palette.INK, width=0.0, markers=True)
         )
-    x = Axis(f"speed of {found.facts['leading_shaft']}, rpm", limits=(float(place[0]), float(place[-1])))
+    x = Axis(f"speed of {modes.facts['leading_shaft']}, rpm", limits=(float(speed[0]), float(speed[-1])))
     y = Axis("frequency, Hz", limits=(0.0, top))
     return Figure(
         key="modal_campbell",
         title="Campbell diagram: whirl modes over speed",
         caption="Damped frequencies about the static equilibrium with gyroscopic, Coriolis and centripetal "
         "terms of each speed. Dotted: multiples of the mesh frequency. Points: critical speeds.",
-        alternative=_words(found),
-        content=(Panel(x, y, tuple(lines), notes=tuple(_order_notes(found, place, top))),),
-        table=critical_table(found),
+        alternative=_words(modes),
+        content=(Panel(x, y, tuple(lines), notes=tuple(_order_notes(modes, speed, top))),),
+        table=critical_table(modes),
     )
 
 
-def _orders(found: ModalAnalysis, place: FloatArray, top: float) -> Iterator[Line]:
+def _orders(modes: ModalAnalysis, speed: FloatArray, top: float) -> Iterator[Line]:
     """Multiples of every mesh frequency, each once."""
-    for mesh in _different(found):
-        for order in range(1, int(found.facts["orders"]) + 1):
-            height = order * found.mesh_frequency[mesh]
+    for mesh in _different(modes):
+        for order in range(1, int(modes.facts["orders"]) + 1):
+            height = order * modes.mesh_frequency[mesh]
             yield Line(
-                "mesh orders", place, np.where(height <= top, height, np.nan), palette.PURPLE, "dot", 1.0
+                "mesh orders", speed, np.where(height <= top, height, np.nan), palette.PURPLE, "dot", 1.0
             )
 
 
-def _different(found: ModalAnalysis) -> list[int]:
+def _different(modes: ModalAnalysis) -> list[int]:
     """Meshes whose frequency no earlier one has."""
-    last = found.mesh_frequency[:, -1]
+    last = modes.mesh_frequency[:, -1]
     return [
         m for m in range(last.size) if last[m] > 0.0 and not np.any(np.isclose(last[:m], last[m], rtol=1e-9))
     ]
 
 
-def _order_notes(found: ModalAnalysis, place: FloatArray, top: float) -> Iterator[Note]:
+def _order_notes(modes: ModalAnalysis, speed: FloatArray, top: float) -> Iterator[Note]:
     """Name the orders where they leave the panel."""
-    several, width = len(_different(found)) > 1, float(np.ptp(place))
-    for mesh in _different(found):
-        rate, last = float(found.mesh_frequency[mesh, -1] / place[-1]), np.inf
-        for order in range(1, int(found.facts["orders"]) + 1):
-            end = min(float(place[-1]), 0.97 * top / (order * rate))
-            if end <= place[0] or last - end < ROOM * width:
+    several, width = len(_different(modes)) > 1, float(np.ptp(speed))
+    for mesh in _different(modes):
+        rate, last = float(modes.mesh_frequency[mesh, -1] / speed[-1]), np.inf
+        for order in range(1, int(modes.facts["orders"]) + 1):
+            end = min(float(speed[-1]), 0.97 * top / (order * rate))
+            if end <= speed[0] or last - end < ROOM * width:
                 continue
-            last, name = end, f"{order}x {found.mesh[mesh]}" if several else f"{order}x"
+            last, name = end, f"{order}x {modes.mesh[mesh]}" if several else f"{order}x"
             yield Note(end - ROOM * width, order * rate * end * 0.985, name)
 
 
-def _modes(found: ModalAnalysis, place: FloatArray) -> Iterator[Line]:
+def _modes(modes: ModalAnalysis, speed: FloatArray) -> Iterator[Line]:
     """Every mode by its sense of whirl; points between two speeds take that of the first."""
     for name, (color, dash) in WHIRLS.items():
-        for mode in range(found.frequency.shape[1]):
-            here = np.array([whirl_name(w) == name for w in found.whirl[:, mode]])
+        for mode in range(modes.frequency.shape[1]):
+            here = np.array([whirl_name(w) == name for w in modes.whirl[:, mode]])
             if not np.any(here):
                 continue
             shown = here | np.append(False, here[:-1])
-            yield Line(name, place, np.where(shown, found.frequency[:, mode], np.nan), color, dash, 1.6)
+            yield Line(name, speed, np.where(shown, modes.frequency[:, mode], np.nan), color, dash, 1.6)
 
 
-def _energies(found: ModalAnalysis) -> Figure:
+def _energies(modes: ModalAnalysis) -> Figure:
     """Show which mesh, bearing, coupling and drive holds each natural mode."""
-    parts = list(dict.fromkeys(found.spring_part))
+    parts = list(dict.fromkeys(modes.spring_part))
     strain = np.array(
-        [[found.held_by(row).get(part, 0.0) for part in parts] for row in found.natural_strain_energy]
+        [[modes.held_by(row).get(part, 0.0) for part in parts] for row in modes.natural_strain_energy]
     ).reshape(-1, len(parts))
-    moving = found.natural_frequency > 0.0
+    moving = modes.natural_frequency > 0.0
     lines = tuple(
         Line(
             part,
-            found.natural_frequency[moving],
+            modes.natural_frequency[moving],
             100.0 * strain[moving, k],
             palette.category(k),
             width=0.0,
@@ -129,23 +129,23 @@ def _energies(found: ModalAnalysis) -> Figure:
         "one frequency are any combination of each other.",
         alternative="Shares of the strain energy by mode; the table has the largest.",
         content=(Panel(Axis("natural frequency, Hz"), Axis("strain energy, %"), lines),),
-        table=modes_table(found),
+        table=modes_table(modes),
     )
 
 
-def modes_table(found: ModalAnalysis) -> Table:
+def modes_table(modes: ModalAnalysis) -> Table:
     """List the natural modes at rest; those of one frequency are still one line each."""
     rows = []
-    for mode, frequency in enumerate(found.natural_frequency):
-        strain, kinetic = found.natural_strain_energy[mode], found.natural_kinetic_energy[mode]
+    for mode, frequency in enumerate(modes.natural_frequency):
+        strain, kinetic = modes.natural_strain_energy[mode], modes.natural_kinetic_energy[mode]
         rows.append(
             (
                 str(mode + 1),
                 number(float(frequency), 5),
-                number(100.0 * float(found.natural_damping_ratio[mode]), 3),
-                found.kind(strain, kinetic),
-                _shares(found.held_by(strain)),
-                _shares(found.moved(kinetic)),
+                number(100.0 * float(modes.natural_damping_ratio[mode]), 3),
+                modes.kind(strain, kinetic),
+                _shares(modes.held_by(strain)),
+                _shares(modes.moved(kinetic)),
             )
         )
     head = ("mode", "frequency, Hz", "damping ratio, %", "kind", "strain energy in", "kinetic energy in")
@@ -158,79 +158,79 @@ def _shares(parts: dict[str, float]) -> str:
     return ", ".join(shown[:SHOWN_PARTS]) or "none"
 
 
-def critical_table(found: ModalAnalysis) -> Table:
+def critical_table(modes: ModalAnalysis) -> Table:
     """List the critical speeds; modes that an order meets together share a line."""
     groups: list[list[int]] = []
-    for index, speed in enumerate(found.critical_speed):
-        mate = next((g for g in groups if _together(found, g[0], index, float(speed))), None)
+    for index, speed in enumerate(modes.critical_speed):
+        mate = next((g for g in groups if _together(modes, g[0], index, float(speed))), None)
         if mate is None:
             groups.append([index])
         else:
             mate.append(index)
     head = ("speed, rpm", "frequency, Hz", "order", "mesh", "modes", "kind", "whirl", "damping ratio, %")
-    rows = tuple(_critical_row(found, group) for group in groups)
+    rows = tuple(_critical_row(modes, group) for group in groups)
     return Table("Critical speeds: where a mesh order meets a mode", head, rows)
 
 
-def _together(found: ModalAnalysis, first: int, other: int, speed: float) -> bool:
+def _together(modes: ModalAnalysis, first: int, other: int, speed: float) -> bool:
     """Whether two crossings are of one order at one speed."""
-    same = found.critical_order[first] == found.critical_order[other]
-    same = same and found.critical_mesh[first] == found.critical_mesh[other]
-    return bool(same and abs(found.critical_speed[first] - speed) <= ALIKE * speed)
+    same = modes.critical_order[first] == modes.critical_order[other]
+    same = same and modes.critical_mesh[first] == modes.critical_mesh[other]
+    return bool(same and abs(modes.critical_speed[first] - speed) <= ALIKE * speed)
 
 
-def _critical_row(found: ModalAnalysis, group: list[int]) -> tuple[str, ...]:
+def _critical_row(modes: ModalAnalysis, group: list[int]) -> tuple[str, ...]:
     """One line of the table."""
     kinds: dict[str, None] = {}
     senses: dict[str, None] = {}
     for index in group:
-        mode = int(found.critical_mode[index])
-        known = np.isfinite(found.frequency[:, mode])
-        row = int(np.argmin(np.where(known, np.abs(found.speed - found.critical_speed[index]), np.inf)))
-        kinds[found.kind(found.strain_energy[row, mode], found.kinetic_energy[row, mode])] = None
-        senses[whirl_name(float(found.whirl[row, mode])).removesuffix(" whirl")] = None
+        mode = int(modes.critical_mode[index])
+        known = np.isfinite(modes.frequency[:, mode])
+        row = int(np.argmin(np.where(known, np.abs(modes.speed - modes.critical_speed[index]), np.inf)))
+        kinds[modes.kind(modes.strain_energy[row, mode], modes.kinetic_energy[row, mode])] = None
+        senses[whirl_name(float(modes.whirl[row, mode])).removesuffix(" whirl")] = None
     first = group[0]
     return (
-        number(float(found.critical_speed[first]) / RPM, 5),
-        number(float(found.critical_frequency[first]), 5),
-        str(int(found.critical_order[first])),
-        found.mesh[int(found.critical_mesh[first])],
-        ", ".join(str(int(found.critical_mode[index]) + 1) for index in group),
+        number(float(modes.critical_speed[first]) / RPM, 5),
+        number(float(modes.critical_frequency[first]), 5),
+        str(int(modes.critical_order[first])),
+        modes.mesh[int(modes.critical_mesh[first])],
+        ", ".join(str(int(modes.critical_mode[index]) + 1) for index in group),
         "; ".join(kinds),
         ", ".join(senses),
-        number(100.0 * float(np.min(found.critical_damping_ratio[group])), 3),
+        number(100.0 * float(np.min(modes.critical_damping_ratio[group])), 3),
     )
 
 
-def _words(found: ModalAnalysis) -> str:
+def _words(modes: ModalAnalysis) -> str:
     """Say how many crossings there are and where the least damped is."""
-    if not found.critical_speed.size:
+    if not modes.critical_speed.size:
         return "No mesh order meets a mode in this range."
-    least = int(np.argmin(found.critical_damping_ratio))
+    least = int(np.argmin(modes.critical_damping_ratio))
     return (
-        f"{found.critical_speed.size} crossings; the least damped, with "
-        f"{number(100.0 * float(found.critical_damping_ratio[least]), 3)} %, at "
-        f"{number(float(found.critical_speed[least]) / RPM, 4)} rpm and "
-        f"{number(float(found.critical_frequency[least]), 4)} Hz, mesh order "
-        f"{int(found.critical_order[least])}."
+        f"{modes.critical_speed.size} crossings; the least damped, with "
+        f"{number(100.0 * float(modes.critical_damping_ratio[least]), 3)} %, at "
+        f"{number(float(modes.critical_speed[least]) / RPM, 4)} rpm and "
+        f"{number(float(modes.critical_frequency[least]), 4)} Hz, mesh order "
+        f"{int(modes.critical_order[least])}."
     )
 
 
-def _text(found: ModalAnalysis) -> Iterator[Table | str]:
+def _text(modes: ModalAnalysis) -> Iterator[Table | str]:
     """Modes and critical speeds."""
-    start = found.facts["equilibrium"]
+    start = modes.facts["equilibrium"]
     forces = ", ".join(f"{name} {force:.5g} N" for name, force in start["mesh_force"].items())
     yield f"static equilibrium {start['status'].lower()}, {start['residual']:.1e} N left; {forces}"
-    yield modes_table(found)
-    if found.speed.size:
+    yield modes_table(modes)
+    if modes.speed.size:
         yield ""
-        yield critical_table(found)
-    yield f"cost {sum(found.facts['seconds'].values()):.3g} CPU s"
-    yield from run_lines(found.facts)
+        yield critical_table(modes)
+    yield f"cost {sum(modes.facts['seconds'].values()):.3g} CPU s"
+    yield from run_lines(modes.facts)
 
 
 PAGE = Presentation(
-    lambda found: modal_figures(found)[0],
-    lambda found: dynamics_page("Modes", modal_figures(found)),
+    lambda modes: modal_figures(modes)[0],
+    lambda modes: dynamics_page("Modes", modal_figures(modes)),
     _text,
 )

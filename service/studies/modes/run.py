@@ -30,9 +30,9 @@ def modes_of(scene: Scene, inputs: Inputs, means: Means) -> ModalAnalysis:
         )
 
 
-def facts(found: ModalAnalysis) -> Json:
+def facts(modes: ModalAnalysis) -> Json:
     """Return all figures; shares below 0.1 % are left out."""
-    about = dict(found.facts)
+    about = dict(modes.facts)
     start = about.pop("equilibrium")
     return {
         "leading_shaft": about["leading_shaft"],
@@ -42,67 +42,67 @@ def facts(found: ModalAnalysis) -> Json:
             "residual_n": start["residual"],
             "mesh_force_n": start["mesh_force"],
         },
-        "at_rest": [_at_rest(found, mode) for mode in range(found.natural_frequency.size)],
-        "speed_rpm": (found.speed / RPM).tolist(),
+        "at_rest": [_at_rest(modes, mode) for mode in range(modes.natural_frequency.size)],
+        "speed_rpm": (modes.speed / RPM).tolist(),
         "mesh_frequency_hz": {
-            name: found.mesh_frequency[index].tolist() for index, name in enumerate(found.mesh)
+            name: modes.mesh_frequency[index].tolist() for index, name in enumerate(modes.mesh)
         },
-        "modes": [_over_speed(found, mode) for mode in range(found.frequency.shape[1])],
-        "critical_speeds": [_crossing(found, index) for index in range(found.critical_speed.size)],
+        "modes": [_over_speed(modes, mode) for mode in range(modes.frequency.shape[1])],
+        "critical_speeds": [_crossing(modes, index) for index in range(modes.critical_speed.size)],
         "cpu_seconds": about["seconds"],
         "effect_ledger": about["effect_ledger"],
     }
 
 
-def _at_rest(found: ModalAnalysis, mode: int) -> Json:
+def _at_rest(modes: ModalAnalysis, mode: int) -> Json:
     """One natural mode."""
-    strain, kinetic = found.natural_strain_energy[mode], found.natural_kinetic_energy[mode]
+    strain, kinetic = modes.natural_strain_energy[mode], modes.natural_kinetic_energy[mode]
     return {
         "mode": mode + 1,
-        "frequency_hz": float(found.natural_frequency[mode]),
-        "damping_ratio": float(found.natural_damping_ratio[mode]),
-        **_energies(found, strain, kinetic),
+        "frequency_hz": float(modes.natural_frequency[mode]),
+        "damping_ratio": float(modes.natural_damping_ratio[mode]),
+        **_energies(modes, strain, kinetic),
     }
 
 
-def _energies(found: ModalAnalysis, strain: Any, kinetic: Any) -> Json:
+def _energies(modes: ModalAnalysis, strain: Any, kinetic: Any) -> Json:
     """Say what holds and what moves."""
     return {
-        "kind": found.kind(strain, kinetic),
-        "strain_energy": {name: s for name, s in found.held_by(strain).items() if s >= LEAST_SHARE},
-        "kinetic_energy": {name: s for name, s in found.moved(kinetic).items() if s >= LEAST_SHARE},
+        "kind": modes.kind(strain, kinetic),
+        "strain_energy": {name: s for name, s in modes.held_by(strain).items() if s >= LEAST_SHARE},
+        "kinetic_energy": {name: s for name, s in modes.moved(kinetic).items() if s >= LEAST_SHARE},
     }
 
 
-def _over_speed(found: ModalAnalysis, mode: int) -> Json:
+def _over_speed(modes: ModalAnalysis, mode: int) -> Json:
     """One whirl mode where it oscillates, its energies at the highest of these speeds."""
-    there = np.flatnonzero(np.isfinite(found.frequency[:, mode]))
+    there = np.flatnonzero(np.isfinite(modes.frequency[:, mode]))
     last = there[-1]
     return {
         "mode": mode + 1,
-        "speed_rpm": (found.speed[there] / RPM).tolist(),
-        "frequency_hz": found.frequency[there, mode].tolist(),
-        "damping_ratio": found.damping_ratio[there, mode].tolist(),
-        "whirl": found.whirl[there, mode].tolist(),
-        **_energies(found, found.strain_energy[last, mode], found.kinetic_energy[last, mode]),
+        "speed_rpm": (modes.speed[there] / RPM).tolist(),
+        "frequency_hz": modes.frequency[there, mode].tolist(),
+        "damping_ratio": modes.damping_ratio[there, mode].tolist(),
+        "whirl": modes.whirl[there, mode].tolist(),
+        **_energies(modes, modes.strain_energy[last, mode], modes.kinetic_energy[last, mode]),
     }
 
 
-def _crossing(found: ModalAnalysis, index: int) -> Json:
+def _crossing(modes: ModalAnalysis, index: int) -> Json:
     """One critical speed; what the mode is, at the nearest of the speeds."""
-    mode, speed = int(found.critical_mode[index]), float(found.critical_speed[index])
-    known = np.isfinite(found.frequency[:, mode])
-    row = int(np.argmin(np.where(known, np.abs(found.speed - speed), np.inf)))
+    mode, speed = int(modes.critical_mode[index]), float(modes.critical_speed[index])
+    known = np.isfinite(modes.frequency[:, mode])
+    row = int(np.argmin(np.where(known, np.abs(modes.speed - speed), np.inf)))
     return {
         "speed_rpm": speed / RPM,
-        "frequency_hz": float(found.critical_frequency[index]),
-        "order": int(found.critical_order[index]),
-        "mesh": found.mesh[int(found.critical_mesh[index])],
+        "frequency_hz": float(modes.critical_frequency[index]),
+        "order": int(modes.critical_order[index]),
+        "mesh": modes.mesh[int(modes.critical_mesh[index])],
         "mode": mode + 1,
-        "kind": found.kind(found.strain_energy[row, mode], found.kinetic_energy[row, mode]),
-        "whirl": float(found.whirl[row, mode]),
-        "damping_ratio": float(found.critical_damping_ratio[index]),
-        "residual_hz": float(found.critical_residual[index]),
+        "kind": modes.kind(modes.strain_energy[row, mode], modes.kinetic_energy[row, mode]),
+        "whirl": float(modes.whirl[row, mode]),
+        "damping_ratio": float(modes.critical_damping_ratio[index]),
+        "residual_hz": float(modes.critical_residual[index]),
     }
 
 

@@ -1,4 +1,4 @@
-"""What a micro-geometry optimization varies, how it scatters, and what it is assessed by."""
+"""Inputs of a micro-geometry optimization: variables, scatter, objective."""
 
 from __future__ import annotations
 

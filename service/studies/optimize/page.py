@@ -32,16 +32,16 @@ _STEP = 0.4  # between two torques of a map, over the largest ripple
 _ROOM = 1.12  # of the axis over the curves: for the names at their ends
 
 
-def harris_figure(found: ShownOptimization) -> Figure:
+def harris_figure(result: ShownOptimization) -> Figure:
     """Draw both Harris maps on equal axes, and peak-to-peak over torque."""
-    designs = (("before", found.start), ("after", found.optimum))
-    curves = [_shown(found, design) for _, design in designs]
+    designs = (("before", result.start), ("after", result.optimum))
+    curves = [_shown(result, design) for _, design in designs]
     largest = max(float(np.ptp(values, axis=0).max()) for values in curves)
     step = _STEP * largest
     top = step * (curves[0].shape[1] - 1)
     axis = Axis("STE offset by torque, µm", limits=(-0.6 * largest, top + 0.6 * largest))
     maps = [
-        _map(found, name, design, values, step, axis)
+        _map(result, name, design, values, step, axis)
         for (name, design), values in zip(designs, curves, strict=True)
     ]
     return Figure(
@@ -49,31 +49,31 @@ def harris_figure(found: ShownOptimization) -> Figure:
         title="Transmission error before and after optimization",
         caption="Harris maps without scatter, a curve for each torque, less its mean, set apart by "
         f"{_STEP:g} of the largest ripple of both; and peak-to-peak over torque. "
-        f"{_scattered(found)} Dotted upright lines: torques that count.",
-        alternative=f"{found.reason}.",
-        content=(*maps, _ripple(found)),
-        table=ripple_table(found),
+        f"{_scattered(result)} Dotted upright lines: torques that count.",
+        alternative=f"{result.reason}.",
+        content=(*maps, _ripple(result)),
+        table=ripple_table(result),
     )
 
 
-def _chosen(found: ShownOptimization) -> list[int]:
+def _chosen(result: ShownOptimization) -> list[int]:
     """Torques whose curves are drawn: those of the map nearest to evenly spaced ones."""
-    torque = found.start.harris_map.torque
+    torque = result.start.harris_map.torque
     even = np.linspace(torque[0], torque[-1], min(torque.size, MOST_CURVES))
     return sorted({int(np.abs(torque - value).argmin()) for value in even})
 
 
-def _shown(found: ShownOptimization, design: ShownDesign) -> FloatArray:
+def _shown(result: ShownOptimization, design: ShownDesign) -> FloatArray:
     """Curves (P, K) of the chosen torques less their means, um."""
-    values = design.harris_map.ste[:, _chosen(found)] / UM
+    values = design.harris_map.ste[:, _chosen(result)] / UM
     return np.asarray(values - values.mean(axis=0))
 
 
 def _map(
-    found: ShownOptimization, name: str, design: ShownDesign, values: FloatArray, step: float, axis: Axis
+    result: ShownOptimization, name: str, design: ShownDesign, values: FloatArray, step: float, axis: Axis
 ) -> Panel:
     """Draw one line per torque, closed over its period, named at its end."""
-    harris, index = design.harris_map, _chosen(found)
+    harris, index = design.harris_map, _chosen(result)
     names = [f"{torque} N m" for torque in thousands([float(harris.torque[k]) for k in index])]
     end = float(np.ceil(harris.position[-1] + 1e-12))
     position, closed = np.append(harris.position, end), np.vstack([values, values[:1]])
@@ -86,44 +86,44 @@ def _map(
     return Panel(across, axis, tuple(lines), title=f"Harris map {name}", notes=tuple(labels))
 
 
-def _scattered(found: ShownOptimization) -> str:
+def _scattered(result: ShownOptimization) -> str:
     """Say what the lines of the scatter are."""
-    if found.nodes.weight.size == 1:
+    if result.nodes.weight.size == 1:
         return "Nothing scatters."
-    count = found.nodes.weight.size
+    count = result.nodes.weight.size
     return (
         f"Thick lines: expectation over the {count} nodes of the scatter, dotted ones: its least and largest."
     )
 
 
-def _ripple(found: ShownOptimization) -> Panel:
+def _ripple(result: ShownOptimization) -> Panel:
     """Draw the expectation of both designs over torque, between the extremes of their nodes."""
     lines: list[Line] = []
     for name, design, color in (
-        ("before", found.start, palette.VERMILLION),
-        ("after", found.optimum, palette.BLUE),
+        ("before", result.start, palette.VERMILLION),
+        ("after", result.optimum, palette.BLUE),
     ):
         harris = design.harris_map
-        if found.nodes.weight.size > 1:
-            for what, values in (
+        if result.nodes.weight.size > 1:
+            for extreme, values in (
                 ("least", harris.peak_to_peak.min(0)),
                 ("largest", harris.peak_to_peak.max(0)),
             ):
-                lines.append(Line(f"{name}, {what}", harris.torque, values / UM, color, "dot", 1.0))
+                lines.append(Line(f"{name}, {extreme}", harris.torque, values / UM, color, "dot", 1.0))
             lines.append(Line(f"{name}, no scatter", harris.torque, harris.nominal / UM, color, "dash", 1.0))
         lines.append(Line(name, harris.torque, harris.expected / UM, color, "solid", 2.4, markers=True))
-    counted = tuple(Reference("", float(torque)) for torque in found.torque)
+    counted = tuple(Reference("", float(torque)) for torque in result.torque)
     across = Axis("torque on the driving gear, N m")
     return Panel(across, Axis("peak to peak, µm"), tuple(lines), counted, title="Ripple over torque")
 
 
-def ripple_table(found: ShownOptimization) -> Table:
+def ripple_table(result: ShownOptimization) -> Table:
     """Return peak-to-peak at the torques of the map, with errors."""
-    before, after = found.start.harris_map, found.optimum.harris_map
+    before, after = result.start.harris_map, result.optimum.harris_map
     rows = tuple(
         (
             text,
-            "yes" if torque in found.torque else "",
+            "yes" if torque in result.torque else "",
             *_value(before.expected[k], before.expected_error[k]),
             *_value(after.expected[k], after.expected_error[k]),
             number(float(before.expected[k] / after.expected[k]), 3),
@@ -142,13 +142,13 @@ def _value(value: float, error: float) -> tuple[str, str]:
     return number(value / UM, 3), number(error / UM, 2)
 
 
-def optimum_table(found: ShownOptimization) -> Table:
+def optimum_table(result: ShownOptimization) -> Table:
     """Return the variables, and what a perturbation changes."""
     rows = []
-    for one, step in zip(found.variables, found.sensitivity, strict=True):
-        name = boundary_name(one.name)
+    for var, step in zip(result.variables, result.sensitivity, strict=True):
+        name = boundary_name(var.name)
         unit = factor(name)
-        values = found.start.values[one.name], found.optimum.values[one.name], one.low, one.high
+        values = result.start.values[var.name], result.optimum.values[var.name], var.low, var.high
         aside = (
             f"{change / UM:+.2g} at {number(end / unit, 3)}"
             for change, end in ((step.change_low, step.low), (step.change_high, step.high))
@@ -158,23 +158,23 @@ def optimum_table(found: ShownOptimization) -> Table:
     return Table("Design, and the change of the objective by a perturbation", head, tuple(rows))
 
 
-def node_table(found: ShownOptimization) -> Table:
+def node_table(result: ShownOptimization) -> Table:
     """Return every node of the scatter with the ripple at the torques that count."""
-    head = [*(f"{boundary_name(name)} by" for name in found.nodes.names), "weight"]
+    head = [*(f"{boundary_name(name)} by" for name in result.nodes.names), "weight"]
     for word in ("before", "after"):
-        head += [f"{word}, {torque} N m, µm" for torque in thousands(found.torque.tolist())]
-    counted = np.flatnonzero(np.isin(found.start.harris_map.torque, found.torque))
+        head += [f"{word}, {torque} N m, µm" for torque in thousands(result.torque.tolist())]
+    counted = np.flatnonzero(np.isin(result.start.harris_map.torque, result.torque))
     rows = []
-    for node, weight in enumerate(found.nodes.weight):
-        units = [factor(boundary_name(name)) for name in found.nodes.names]
-        deviation = (f"{x / u:+.3g}" for x, u in zip(found.nodes.deviation[node], units, strict=True))
-        ripples = (d.harris_map.peak_to_peak[node, counted] / UM for d in (found.start, found.optimum))
+    for node, weight in enumerate(result.nodes.weight):
+        units = [factor(boundary_name(name)) for name in result.nodes.names]
+        deviation = (f"{x / u:+.3g}" for x, u in zip(result.nodes.deviation[node], units, strict=True))
+        ripples = (d.harris_map.peak_to_peak[node, counted] / UM for d in (result.start, result.optimum))
         cells = (number(float(x), 3) for ripple in ripples for x in ripple)
         rows.append((*deviation, number(float(weight), 3), *cells))
     return Table("Robustness: peak to peak at every node of the scatter", tuple(head), tuple(rows))
 
 
-def run_table(found: ShownOptimization) -> Table:
+def run_table(result: ShownOptimization) -> Table:
     """Return the searches."""
     rows = tuple(
         (
@@ -186,43 +186,43 @@ def run_table(found: ShownOptimization) -> Table:
             run.ended.value,
             number(run.cpu_seconds, 2),
         )
-        for k, run in enumerate(found.runs)
+        for k, run in enumerate(result.runs)
     )
     return Table("Searches", ("start", "objective, µm", "designs", "ended", "CPU s"), rows)
 
 
-def cost_table(found: ShownOptimization) -> Table:
+def cost_table(result: ShownOptimization) -> Table:
     """Return the CPU time of the stages."""
-    stages = found.cost["stages"].items()
-    rows = tuple((name, number(float(one["cpu_seconds"]), 3)) for name, one in stages)
+    stages = result.cost["stages"].items()
+    rows = tuple((name, number(float(cost["cpu_seconds"]), 3)) for name, cost in stages)
     return Table("Cost", ("stage", "CPU s"), rows)
 
 
-def optimization_page(found: ShownOptimization) -> Page:
+def optimization_page(result: ShownOptimization) -> Page:
     """Return the page of an optimization."""
-    one, two = found.start.objective, found.optimum.objective
+    before, after = result.start.objective, result.optimum.objective
     heads = (
-        Headline("before", f"{number(one.value / UM, 3)} µm", f"± {number(one.error / UM, 2)} µm"),
-        Headline("after", f"{number(two.value / UM, 3)} µm", f"± {number(two.error / UM, 2)} µm"),
-        Headline("gain", f"{number(found.gain.value / UM, 3)} µm", found.outcome.replace("_", " ")),
+        Headline("before", f"{number(before.value / UM, 3)} µm", f"± {number(before.error / UM, 2)} µm"),
+        Headline("after", f"{number(after.value / UM, 3)} µm", f"± {number(after.error / UM, 2)} µm"),
+        Headline("gain", f"{number(result.gain.value / UM, 3)} µm", result.outcome.replace("_", " ")),
     )
-    lead = f"{found.reason}; {found.evaluations} designs of {len(found.variables)} variables"
-    figure = Section("Harris map", "", (replace(harris_figure(found), table=None),), (ripple_table(found),))
-    design = Section("Design", "", tables=(optimum_table(found),))
-    tried = f"Not tried: {'; '.join(found.not_tried)}."
-    search = Section("Search", tried, tables=(run_table(found), cost_table(found)))
-    robust = Section("Scatter", "", tables=(node_table(found),))
+    lead = f"{result.reason}; {result.evaluations} designs of {len(result.variables)} variables"
+    figure = Section("Harris map", "", (replace(harris_figure(result), table=None),), (ripple_table(result),))
+    design = Section("Design", "", tables=(optimum_table(result),))
+    tried = f"Not tried: {'; '.join(result.not_tried)}."
+    search = Section("Search", tried, tables=(run_table(result), cost_table(result)))
+    robust = Section("Scatter", "", tables=(node_table(result),))
     return Page("Micro-geometry of least transmission error", lead, heads, (figure, design, robust, search))
 
 
-def _text(found: ShownOptimization) -> Iterator[Table | str]:
+def _text(result: ShownOptimization) -> Iterator[Table | str]:
     """Yield the design, its ripple, and how the search ended."""
-    yield optimum_table(found)
-    yield ripple_table(found)
-    for line in found.not_tried:
+    yield optimum_table(result)
+    yield ripple_table(result)
+    for line in result.not_tried:
         yield f"not tried: {line}"
-    search = f"{found.evaluations} designs in {found.cost['stages']['search']['cpu_seconds']:.3g} CPU s"
-    yield f"{found.outcome.replace('_', ' ')}: {found.reason}; {search}"
+    search = f"{result.evaluations} designs in {result.cost['stages']['search']['cpu_seconds']:.3g} CPU s"
+    yield f"{result.outcome.replace('_', ' ')}: {result.reason}; {search}"
 
 
 PAGE = Presentation(harris_figure, optimization_page, _text)

@@ -88,28 +88,28 @@ def _variables(study: Inputs) -> list[DesignVariable]:
     gears = {"pinion": study.variables.pinion, "wheel": study.variables.wheel}
     return [
         DesignVariable(name, *(end * unit for end in ends))
-        for gear, given in gears.items()
-        for name, ends, unit in _given(gear, given)
+        for gear, fields in gears.items()
+        for name, ends, unit in _given(gear, fields)
     ]
 
 
-def scatter_of(given: ScatterInput, seed: int) -> Scatter:
+def scatter_of(scatter: ScatterInput, seed: int) -> Scatter:
     """Return the scatter in SI."""
-    rule = GaussHermite(given.points) if given.rule == "gauss_hermite" else SobolSample(given.log2_size, seed)
-    gears = {"pinion": given.pinion, "wheel": given.wheel}
+    hermite = scatter.rule == "gauss_hermite"
+    rule = GaussHermite(scatter.points) if hermite else SobolSample(scatter.log2_size, seed)
+    gears = {"pinion": scatter.pinion, "wheel": scatter.wheel}
     deviations = {
-        name: value * unit for gear, one in gears.items() for name, value, unit in _given(gear, one)
+        name: value * unit for gear, fields in gears.items() for name, value, unit in _given(gear, fields)
     }
-    return Scatter(given.misalignment_um * UM, deviations, rule)
+    return Scatter(scatter.misalignment_um * UM, deviations, rule)
 
 
-def _given(gear: str, given: GearVariablesInput | GearScatterInput) -> list[tuple[str, Any, float]]:
+def _given(gear: str, inputs: GearVariablesInput | GearScatterInput) -> list[tuple[str, Any, float]]:
     """Return name in the library, value and unit of the fields that are given."""
-    found = ((field, getattr(given, field)) for field in type(given).model_fields)
     return [
         (f"{gear}.{field.rpartition('_')[0]}", value, factor(field))
-        for field, value in found
-        if value is not None
+        for field in type(inputs).model_fields
+        if (value := getattr(inputs, field)) is not None
     ]
 
 
@@ -123,63 +123,63 @@ def _limits(study: Inputs) -> Limits:
     )
 
 
-def _search(given: SearchInput) -> Search:
+def _search(search: SearchInput) -> Search:
     """Return how it is searched."""
     methods: dict[str, Method] = {
-        "sequential_linear_programming": SequentialLinearProgramming(given.sample, given.trials),
-        "differential_evolution": DifferentialEvolution(given.population),
+        "sequential_linear_programming": SequentialLinearProgramming(search.sample, search.trials),
+        "differential_evolution": DifferentialEvolution(search.population),
         "nelder_mead": NelderMead(),
     }
-    counts = given.starts, given.evaluations, given.positions, given.exploration
-    return Search(methods[given.method], given.seed, *counts)
+    counts = search.starts, search.evaluations, search.positions, search.exploration
+    return Search(methods[search.method], search.seed, *counts)
 
 
-def optimization_json(found: Optimization) -> Json:
+def optimization_json(result: Optimization) -> Json:
     """Return an optimization in the units of a case file, other lengths in um."""
-    plain = found.to_json()
+    plain = result.to_json()
     variables = [
-        {"name": boundary_name(one.name), "bounds": [_typed(one.name, one.low), _typed(one.name, one.high)]}
-        for one in found.variables
+        {"name": boundary_name(var.name), "bounds": [_typed(var.name, var.low), _typed(var.name, var.high)]}
+        for var in result.variables
     ]
     steps = [
         {
-            "name": boundary_name(one.name),
-            "values": [_typed(one.name, one.low), _typed(one.name, one.high)],
-            "change_um": [one.change_low / UM, one.change_high / UM],
+            "name": boundary_name(step.name),
+            "values": [_typed(step.name, step.low), _typed(step.name, step.high)],
+            "change_um": [step.change_low / UM, step.change_high / UM],
         }
-        for one in found.sensitivity
+        for step in result.sensitivity
     ]
-    designs = {name: _design_json(getattr(found, name)) for name in ("start", "optimum")}
+    designs = {name: _design_json(getattr(result, name)) for name in ("start", "optimum")}
     converted: Json = in_um(plain)
-    converted["asked"] |= {"scatter": _scatter_json(found), "limits": _limits_json(found)}
-    return converted | designs | {"variables": variables, "sensitivity": steps, "nodes": _nodes_json(found)}
+    converted["asked"] |= {"scatter": _scatter_json(result), "limits": _limits_json(result)}
+    return converted | designs | {"variables": variables, "sensitivity": steps, "nodes": _nodes_json(result)}
 
 
-def _scatter_json(found: Optimization) -> Json:
+def _scatter_json(result: Optimization) -> Json:
     """Return what scatters, by the fields of a case file."""
-    asked = found.asked["scatter"]
-    rule = {name: value for name, value in asked.items() if not name.endswith("_m")}
-    spread = {"misalignment_um": asked["misalignment_m"] / UM, **boundary_values(asked["modification_m"])}
+    scatter = result.asked["scatter"]
+    rule = {name: value for name, value in scatter.items() if not name.endswith("_m")}
+    spread = {"misalignment_um": scatter["misalignment_m"] / UM, **boundary_values(scatter["modification_m"])}
     return {**spread, **rule}
 
 
-def _limits_json(found: Optimization) -> Json:
+def _limits_json(result: Optimization) -> Json:
     """Return the limits that were requested."""
-    limits = dict(found.asked["limits"])
+    limits = dict(result.asked["limits"])
     pressure = limits.pop("max_pressure_pa")
     return {"max_pressure_mpa": None if pressure is None else pressure / MPA, **limits}
 
 
-def _nodes_json(found: Optimization) -> Json:
+def _nodes_json(result: Optimization) -> Json:
     """Return the nodes of the scatter."""
-    names = found.nodes.names
+    names = result.nodes.names
     return {
         "names": [boundary_name(name) for name in names],
         "deviation": [
             [_typed(name, float(x)) for name, x in zip(names, row, strict=True)]
-            for row in found.nodes.deviation
+            for row in result.nodes.deviation
         ],
-        "weight": found.nodes.weight.tolist(),
+        "weight": result.nodes.weight.tolist(),
     }
 
 
@@ -205,10 +205,10 @@ def _typed(name: str, value: float) -> float:
     return float(f"{value / factor(boundary_name(name)):.12g}")
 
 
-def write_values(found: Optimization, target: Path) -> None:
+def write_values(result: Optimization, target: Path) -> None:
     """Write the best design as TOML: lines for the tables of both gears in the case file."""
-    lines = [f"# {found.reason}"]
-    for gear, fields in boundary_values(found.optimum.values).items():
+    lines = [f"# {result.reason}"]
+    for gear, fields in boundary_values(result.optimum.values).items():
         lines += ["", f"[pair.{gear}]", *(f"{name} = {value:.6g}" for name, value in fields.items())]
     target.write_text("\n".join(lines) + "\n", encoding="utf-8")
 

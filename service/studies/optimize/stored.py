@@ -20,7 +20,7 @@ Json = dict[str, Any]
 
 
 class ShownDesign(Protocol):
-    """What a report shows of a design: a `ConfirmedDesign`, or one read back."""
+    """A design as a report shows it: a `ConfirmedDesign`, or one read back."""
 
     @property
     def values(self) -> Mapping[str, float]:
@@ -36,7 +36,7 @@ class ShownDesign(Protocol):
 
 
 class ShownOptimization(Protocol):
-    """What a report shows of an optimization: an `Optimization`, or one read back."""
+    """An optimization as a report shows it: an `Optimization`, or one read back."""
 
     @property
     def outcome(self) -> str:
@@ -48,7 +48,7 @@ class ShownOptimization(Protocol):
 
     @property
     def variables(self) -> Sequence[DesignVariable]:
-        """What was free."""
+        """The free variables."""
 
     @property
     def torque(self) -> FloatArray:
@@ -72,11 +72,11 @@ class ShownOptimization(Protocol):
 
     @property
     def sensitivity(self) -> Sequence[Perturbation]:
-        """What a perturbation changes."""
+        """The changes by a perturbation of each variable."""
 
     @property
     def not_tried(self) -> Sequence[str]:
-        """What the optimum is the best without, in words."""
+        """The alternatives that were not tried, in words."""
 
     @property
     def cost(self) -> Json:
@@ -127,26 +127,26 @@ def read(file: Path) -> StoredOptimization:
     content = json.loads(file.read_text(encoding="utf-8"))
     nodes = _nodes(content["nodes"])
     variables = (
-        DesignVariable(_library(one["name"]), *_si(one["name"], one["bounds"]))
-        for one in content["variables"]
+        DesignVariable(_library(variable["name"]), *_si(variable["name"], variable["bounds"]))
+        for variable in content["variables"]
     )
     asides = (
         Perturbation(
-            _library(one["name"]), *_si(one["name"], one["values"]), *(UM * x for x in one["change_um"])
+            _library(step["name"]), *_si(step["name"], step["values"]), *(UM * x for x in step["change_um"])
         )
-        for one in content["sensitivity"]
+        for step in content["sensitivity"]
     )
     runs = (
         SearchRun(
             np.full(len(content["variables"]), np.nan),
-            Assessed(one["objective_um"] * UM, one["violation"], np.nan),
-            one["evaluations"],
-            Ended(one["ended"]),
-            one["cpu_seconds"],
-            one["explored"],
-            one["spread_um"] * UM,
+            Assessed(run["objective_um"] * UM, run["violation"], np.nan),
+            run["evaluations"],
+            Ended(run["ended"]),
+            run["cpu_seconds"],
+            run["explored"],
+            run["spread_um"] * UM,
         )
-        for one in content["runs"]
+        for run in content["runs"]
     )
     return StoredOptimization(
         content["outcome"],

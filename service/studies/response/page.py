@@ -16,31 +16,31 @@ RPM = np.pi / 30.0
 SHOWN_ORDERS, SHOWN_PEAKS = 6, 15
 
 
-def response_figure(found: ForcedResponse, mesh: int = 0) -> Figure:
+def response_figure(response: ForcedResponse, mesh: int = 0) -> Figure:
     """Draw the largest orders of one mesh and of the bearing that feels most."""
-    place = found.speed / RPM
-    ends = (float(place[0]), float(place[-1])) if place.size > 1 else None
-    x = Axis(f"speed of {found.facts['leading_shaft']}, rpm", limits=ends)
-    shown = _loudest(np.abs(found.mesh_force[mesh]))
-    name = f" of {found.mesh[mesh]}" if len(found.mesh) > 1 else ""
-    force = np.sqrt(np.sum(np.abs(found.bearing_force[:, :3]) ** 2, axis=1))
+    speed = response.speed / RPM
+    ends = (float(speed[0]), float(speed[-1])) if speed.size > 1 else None
+    x = Axis(f"speed of {response.facts['leading_shaft']}, rpm", limits=ends)
+    shown = _loudest(np.abs(response.mesh_force[mesh]))
+    name = f" of {response.mesh[mesh]}" if len(response.mesh) > 1 else ""
+    force = np.sqrt(np.sum(np.abs(response.bearing_force[:, :3]) ** 2, axis=1))
     quantities = [
-        (f"transmission error{name}, µm", 1e6 * np.abs(found.dynamic_transmission_error[mesh])),
-        (f"mesh force{name}, N", np.abs(found.mesh_force[mesh])),
+        (f"transmission error{name}, µm", 1e6 * np.abs(response.dynamic_transmission_error[mesh])),
+        (f"mesh force{name}, N", np.abs(response.mesh_force[mesh])),
     ]
     if force.size:
         loudest = int(np.argmax(np.max(force, axis=(1, 2))))
-        quantities.append((f"force on {found.bearing[loudest]}, N", force[loudest]))
-    panels = [_panel(x, label, place, amplitude, found, shown) for label, amplitude in quantities]
-    panels.append(_least(x, place, found, mesh))
+        quantities.append((f"force on {response.bearing[loudest]}, N", force[loudest]))
+    panels = [_panel(x, label, speed, amplitude, response, shown) for label, amplitude in quantities]
+    panels.append(_least(x, speed, response, mesh))
     return Figure(
         key="response",
         title="Forced response to the transmission error",
         caption="Peak amplitudes of the mesh orders about the static equilibrium, linear: mean mesh "
         "stiffness, no loss of contact. Below: the least mesh force; negative means that flanks part.",
-        alternative=_words(found),
+        alternative=_words(response),
         content=tuple(panels),
-        table=peak_table(found),
+        table=peak_table(response),
     )
 
 
@@ -51,28 +51,28 @@ def _loudest(amplitude: FloatArray) -> list[int]:
 
 
 def _panel(
-    x: Axis, label: str, place: FloatArray, amplitude: FloatArray, found: ForcedResponse, shown: list[int]
+    x: Axis, label: str, speed: FloatArray, amplitude: FloatArray, response: ForcedResponse, shown: list[int]
 ) -> Panel:
     """One quantity by order."""
     lines = tuple(
-        Line(f"order {found.order[h]:g}", place, amplitude[:, h], palette.category(k), width=1.4)
+        Line(f"order {response.order[h]:g}", speed, amplitude[:, h], palette.category(k), width=1.4)
         for k, h in enumerate(shown)
     )
     return Panel(x, Axis(label), lines)
 
 
-def _least(x: Axis, place: FloatArray, found: ForcedResponse, mesh: int) -> Panel:
+def _least(x: Axis, speed: FloatArray, response: ForcedResponse, mesh: int) -> Panel:
     """Least mesh force."""
-    line = Line("least mesh force", place, found.least_mesh_force[mesh], palette.INK, width=1.4)
+    line = Line("least mesh force", speed, response.least_mesh_force[mesh], palette.INK, width=1.4)
     return Panel(
         x, Axis("least mesh force, N"), (line,), (Reference("flanks part", 0.0, "horizontal", 0.12),)
     )
 
 
-def peak_table(found: ForcedResponse) -> Table:
+def peak_table(response: ForcedResponse) -> Table:
     """List the largest peaks of mesh and bearing forces."""
     rows: list[tuple[str, ...]] = []
-    every = peaks(found)
+    every = peaks(response)
     for quantity in ("mesh_force", "bearing_force"):
         own = [peak for peak in every if peak.quantity == quantity][:SHOWN_PEAKS]
         rows += [
@@ -99,35 +99,35 @@ def peak_table(found: ForcedResponse) -> Table:
     return Table("Peaks over speed, the largest first", head, tuple(rows))
 
 
-def _words(found: ForcedResponse) -> str:
+def _words(response: ForcedResponse) -> str:
     """Say the largest amplitude, and where flanks part."""
-    size = np.abs(found.mesh_force)
+    size = np.abs(response.mesh_force)
     mesh, s, h = np.unravel_index(int(np.argmax(size)), size.shape)
     text = (
-        f"Largest mesh force: {number(float(size[mesh, s, h]), 3)} N of order {found.order[h]:g} at "
-        f"{number(float(found.speed[s]) / RPM, 4)} rpm."
+        f"Largest mesh force: {number(float(size[mesh, s, h]), 3)} N of order {response.order[h]:g} at "
+        f"{number(float(response.speed[s]) / RPM, 4)} rpm."
     )
-    parting = found.speed[~found.in_contact] / RPM
+    parting = response.speed[~response.in_contact] / RPM
     if parting.size:
         first = number(float(parting[0]), 4)
-        text += f" Flanks part at {parting.size} of {found.speed.size} speeds, from {first} rpm on."
+        text += f" Flanks part at {parting.size} of {response.speed.size} speeds, from {first} rpm on."
     return text
 
 
-def _text(found: ForcedResponse) -> Iterator[Table | str]:
+def _text(response: ForcedResponse) -> Iterator[Table | str]:
     """Peaks, and what the linear answer does not hold."""
-    yield peak_table(found)
-    parting = found.speed[~found.in_contact] / RPM
+    yield peak_table(response)
+    parting = response.speed[~response.in_contact] / RPM
     if parting.size:
         where = f"{parting[0]:.5g} to {parting[-1]:.5g} rpm"
-        yield f"flanks part at {parting.size} of {found.speed.size} speeds, {where}: see loa steady"
-    worst = 100.0 * float(found.excitation_difference.max(initial=0.0))
+        yield f"flanks part at {parting.size} of {response.speed.size} speeds, {where}: see loa steady"
+    worst = 100.0 * float(response.excitation_difference.max(initial=0.0))
     yield f"first-order theory: the other excitation changes amplitudes by up to {worst:.2g} % of the largest"
-    yield f"residual of the solves {found.residual:.1e}"
-    yield f"cost {sum(found.facts['seconds'].values()):.3g} CPU s"
-    yield from run_lines(found.facts)
+    yield f"residual of the solves {response.residual:.1e}"
+    yield f"cost {sum(response.facts['seconds'].values()):.3g} CPU s"
+    yield from run_lines(response.facts)
 
 
 PAGE = Presentation(
-    response_figure, lambda found: dynamics_page("Forced response", (response_figure(found),)), _text
+    response_figure, lambda response: dynamics_page("Forced response", (response_figure(response),)), _text
 )

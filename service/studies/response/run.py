@@ -28,22 +28,22 @@ def response_of(scene: Scene, inputs: Inputs, means: Means) -> ForcedResponse:
         )
 
 
-def facts(found: ForcedResponse) -> Json:
+def facts(response: ForcedResponse) -> Json:
     """Return all amplitudes (lists by order, then by speed) and the peaks."""
-    about = found.facts
+    about = response.facts
     return {
         "leading_shaft": about["leading_shaft"],
-        "speed_rpm": (found.speed / RPM).tolist(),
-        "order": found.order.tolist(),
-        "meshes": {name: _mesh_json(found, index) for index, name in enumerate(found.mesh)},
+        "speed_rpm": (response.speed / RPM).tolist(),
+        "order": response.order.tolist(),
+        "meshes": {name: _mesh_json(response, index) for index, name in enumerate(response.mesh)},
         "bearings": {
-            name: {"force_n": np.sqrt(np.sum(np.abs(found.bearing_force[index, :3]) ** 2, axis=0)).T.tolist()}
-            for index, name in enumerate(found.bearing)
+            name: {"force_n": np.sqrt(np.sum(np.abs(response.bearing_force[b, :3]) ** 2, axis=0)).T.tolist()}
+            for b, name in enumerate(response.bearing)
         },
-        "peaks": [_peak_json(peak) for peak in peaks(found)],
-        "parting_rpm": (found.speed[~found.in_contact] / RPM).tolist(),
-        "natural_frequency_hz": found.natural_frequency.tolist(),
-        "residual": found.residual,
+        "peaks": [_peak_json(peak) for peak in peaks(response)],
+        "parting_rpm": (response.speed[~response.in_contact] / RPM).tolist(),
+        "natural_frequency_hz": response.natural_frequency.tolist(),
+        "residual": response.residual,
         "equilibrium": {
             "status": about["equilibrium"]["status"].lower(),
             "residual_n": about["equilibrium"]["residual"],
@@ -53,16 +53,16 @@ def facts(found: ForcedResponse) -> Json:
     }
 
 
-def _mesh_json(found: ForcedResponse, mesh: int) -> Json:
+def _mesh_json(response: ForcedResponse, mesh: int) -> Json:
     """One mesh."""
     return {
-        "mean_force_n": float(found.mean_force[mesh]),
-        "mean_stiffness_n_per_um": float(found.mean_stiffness[mesh]) / N_PER_UM,
-        "static_transmission_error_um": (np.abs(found.static_transmission_error[mesh]) / UM).tolist(),
-        "dynamic_transmission_error_um": (np.abs(found.dynamic_transmission_error[mesh]).T / UM).tolist(),
-        "mesh_force_n": np.abs(found.mesh_force[mesh]).T.tolist(),
-        "least_mesh_force_n": found.least_mesh_force[mesh].tolist(),
-        "excitation_difference": found.excitation_difference[mesh].tolist(),
+        "mean_force_n": float(response.mean_force[mesh]),
+        "mean_stiffness_n_per_um": float(response.mean_stiffness[mesh]) / N_PER_UM,
+        "static_transmission_error_um": (np.abs(response.static_transmission_error[mesh]) / UM).tolist(),
+        "dynamic_transmission_error_um": (np.abs(response.dynamic_transmission_error[mesh]).T / UM).tolist(),
+        "mesh_force_n": np.abs(response.mesh_force[mesh]).T.tolist(),
+        "least_mesh_force_n": response.least_mesh_force[mesh].tolist(),
+        "excitation_difference": response.excitation_difference[mesh].tolist(),
     }
 
 

@@ -22,7 +22,7 @@ _HEAD = ("gear", "root", "stress MPa", "position", "tangent deg", "face mm")
 _SERIES = ("tension_mpa", "compression_mpa", "at_tension_peak_mpa", "at_compression_peak_mpa")
 
 
-def root_stress_figure(found: Json) -> Figure:
+def root_stress_figure(stresses: Json) -> Figure:
     """Draw the passages of both gears: extremes of both roots, and the stress where the peaks are."""
     return Figure(
         key="root_stress",
@@ -30,10 +30,10 @@ def root_stress_figure(found: Json) -> Figure:
         caption="Solid: the largest principal stress anywhere in the root beside the loaded flank, and the "
         "smallest one in the other root. Dashed: the stress along the profile at the two places where the "
         "peaks occur; its range is what fatigue counts. The vertical line is the tension peak.",
-        alternative=f"At {number(found['torque_n_m'], 4)} N m the largest stress is "
-        f"{_said(found['pinion']['tension'])} on the pinion and "
-        f"{_said(found['wheel']['tension'])} on the wheel.",
-        content=tuple(_passage(gear, found[gear]) for gear in GEARS),
+        alternative=f"At {number(stresses['torque_n_m'], 4)} N m the largest stress is "
+        f"{_said(stresses['pinion']['tension'])} on the pinion and "
+        f"{_said(stresses['wheel']['tension'])} on the wheel.",
+        content=tuple(_passage(gear, stresses[gear]) for gear in GEARS),
     )
 
 
@@ -55,7 +55,7 @@ def _said(peak: Json) -> str:
     return f"{number(peak['stress_mpa'])} MPa at the {number(peak['tangent_angle_deg'], 2)} degree tangent"
 
 
-def peak_table(found: Json) -> Table:
+def peak_table(stresses: Json) -> Table:
     """Return the stress of every root with its error, and where it is."""
     rows = tuple(
         (
@@ -68,31 +68,31 @@ def peak_table(found: Json) -> Table:
         )
         for gear in GEARS
         for root in ("tension", "compression")
-        for peak in (found[gear][root],)
+        for peak in (stresses[gear][root],)
     )
     return Table("Tooth-root stress", _HEAD, rows)
 
 
-def passage_table(found: Json) -> Table:
+def passage_table(stresses: Json) -> Table:
     """Return what one tooth of each gear meets."""
     rows = []
     for gear in GEARS:
-        passage = found[gear]["passage"]
+        passage = stresses[gear]["passage"]
         columns = (passage[name] for name in _SERIES)
-        for place, *values in zip(passage["position"], *columns, strict=True):
-            rows.append((gear, repr(place), *(f"{value:.6g}" for value in values)))
+        for position, *values in zip(passage["position"], *columns, strict=True):
+            rows.append((gear, repr(position), *(f"{value:.6g}" for value in values)))
     return Table("Passage of one tooth", ("gear", "position", *_SERIES), tuple(rows))
 
 
-def page(found: Json) -> Page:
+def page(stresses: Json) -> Page:
     """Return the page of the root stress."""
-    heads = tuple(_headline(gear, found[gear]["tension"]) for gear in GEARS)
-    cost = {name: value for name, value in found["receipt"].items() if name != "plan"}
+    heads = tuple(_headline(gear, stresses[gear]["tension"]) for gear in GEARS)
+    cost = {name: value for name, value in stresses["receipt"].items() if name != "plan"}
     sections = (
-        Section("Tooth roots", "", (root_stress_figure(found),), (peak_table(found),)),
+        Section("Tooth roots", "", (root_stress_figure(stresses),), (peak_table(stresses),)),
         Section("Cost of the root stress", tables=(facts("Cost", cost),)),
     )
-    return Page("Tooth-root stress", _point(found), heads, sections)
+    return Page("Tooth-root stress", _point(stresses), heads, sections)
 
 
 def _headline(gear: str, peak: Json) -> Headline:
@@ -101,20 +101,20 @@ def _headline(gear: str, peak: Json) -> Headline:
     return Headline(f"largest root stress, {gear}", value, error)
 
 
-def _point(found: Json) -> str:
+def _point(stresses: Json) -> str:
     """Say load and alignment."""
     return (
-        f"torque {found['torque_n_m']:.6g} N m, normal force {found['normal_force_n']:.6g} N, "
-        f"misalignment {found['misalignment_um']:.4g} um"
+        f"torque {stresses['torque_n_m']:.6g} N m, normal force {stresses['normal_force_n']:.6g} N, "
+        f"misalignment {stresses['misalignment_um']:.4g} um"
     )
 
 
-def text(found: Json) -> Iterator[Table | str]:
+def text(stresses: Json) -> Iterator[Table | str]:
     """Yield the peaks for people."""
-    yield peak_table(found)
-    yield f"\n{_point(found)}"
-    yield from assumption_lines(found["receipt"])
-    yield f"cost {found['receipt']['cpu_seconds']:.3g} CPU s"
+    yield peak_table(stresses)
+    yield f"\n{_point(stresses)}"
+    yield from assumption_lines(stresses["receipt"])
+    yield f"cost {stresses['receipt']['cpu_seconds']:.3g} CPU s"
 
 
 PAGE = Presentation(root_stress_figure, page, text, series=passage_table)

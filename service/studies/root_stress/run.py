@@ -34,15 +34,15 @@ def root_stress_of(case: Case, _inputs: Inputs, means: Means) -> Json:
     """
     run = Run(cache=means.home / "compliance", progress=means.report)
     with boundary_errors():
-        found = root_stress(gear_pair(case), operating_point(case), analysis_options(case), run)
+        stress = root_stress(gear_pair(case), operating_point(case), analysis_options(case), run)
     return {
-        "torque_n_m": found.torque,
-        "normal_force_n": found.normal_force,
-        "misalignment_um": found.misalignment / UM,
-        "center_distance_change_mm": found.center_distance_change / MM,
-        **{gear: _gear_json(getattr(found, gear)) for gear in GEARS},
-        "receipt": found.receipt,
-        "warnings": phrased_for(case, found.warnings),
+        "torque_n_m": stress.torque,
+        "normal_force_n": stress.normal_force,
+        "misalignment_um": stress.misalignment / UM,
+        "center_distance_change_mm": stress.center_distance_change / MM,
+        **{gear: _gear_json(getattr(stress, gear)) for gear in GEARS},
+        "receipt": stress.receipt,
+        "warnings": phrased_for(case, stress.warnings),
     }
 
 
@@ -76,11 +76,11 @@ def _peak_json(peak: RootPeak) -> Json:
 
 RUN = Computation(
     root_stress_of,
-    lambda found: found,
+    lambda stresses: stresses,
     lambda file: json.loads(file.read_text(encoding="utf-8")),
     marks=dict.fromkeys(("pinion", "wheel", "receipt")),
     narrowed=case_at,
     check=lambda case, _inputs: check_case(case),
     normalized=lambda _case, _inputs: {},
-    warnings=lambda found: found["warnings"],
+    warnings=lambda stresses: stresses["warnings"],
 )

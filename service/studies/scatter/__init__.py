@@ -1,4 +1,4 @@
-"""What a tolerance Monte Carlo draws from, and how many pairs."""
+"""Inputs of a tolerance Monte Carlo: what it draws from, and how many pairs."""
 
 from __future__ import annotations
 

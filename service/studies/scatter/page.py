@@ -1,4 +1,4 @@
-"""How peak-to-peak transmission error is distributed within tolerances."""
+"""Distribution of peak-to-peak transmission error within tolerances."""
 
 from __future__ import annotations
 
@@ -17,100 +17,100 @@ from service.units import UM
 _STEPS = 400
 
 
-def scatter_figure(found: ToleranceStudy) -> Figure:
+def scatter_figure(study: ToleranceStudy) -> Figure:
     """Draw the distribution at every torque, and its quantiles over torque."""
-    count = found.peak_to_peak.shape[0]
+    count = study.peak_to_peak.shape[0]
     return Figure(
         key="scatter",
         title="Peak-to-peak transmission error within tolerances",
         caption=f"{count} pairs drawn within their tolerances. Above: part of all up to a ripple. "
-        f"Lower: quantiles with bounds of {100 * found.confidence:g} % confidence (dotted), and the "
+        f"Lower: quantiles with bounds of {100 * study.confidence:g} % confidence (dotted), and the "
         "pair as designed (dashed).",
-        alternative=_words(found),
-        content=(_distribution(found), _over_torque(found)),
-        table=quantile_table(found),
+        alternative=_words(study),
+        content=(_distribution(study), _over_torque(study)),
+        table=quantile_table(study),
     )
 
 
-def _distribution(found: ToleranceStudy) -> Panel:
+def _distribution(study: ToleranceStudy) -> Panel:
     """One curve per torque: the empirical distribution."""
     lines = []
-    for k, name in enumerate(thousands(found.torque.tolist())):
-        ordered = np.sort(found.peak_to_peak[:, k]) / UM
+    for k, name in enumerate(thousands(study.torque.tolist())):
+        ordered = np.sort(study.peak_to_peak[:, k]) / UM
         part = np.arange(1, ordered.size + 1) / ordered.size
         kept = np.unique(np.linspace(0, ordered.size - 1, min(_STEPS, ordered.size)).astype(int))
-        color = palette.ordered(k, found.torque.size)
+        color = palette.ordered(k, study.torque.size)
         lines.append(Line(f"{name} N m", ordered[kept], part[kept], color))
     return Panel(Axis("peak to peak, µm"), Axis("part of all pairs"), tuple(lines), title="Distribution")
 
 
-def _over_torque(found: ToleranceStudy) -> Panel:
+def _over_torque(study: ToleranceStudy) -> Panel:
     """Draw quantiles over torque."""
     lines = []
-    for k, one in enumerate(found.quantiles):
-        color, name = palette.category(k), f"{100 * one.fraction:g} %"
-        lines.append(Line(name, found.torque, one.value / UM, color, markers=True))
-        for what, bound in (("lower", one.low), ("upper", one.high)):
+    for k, quantile in enumerate(study.quantiles):
+        color, name = palette.category(k), f"{100 * quantile.fraction:g} %"
+        lines.append(Line(name, study.torque, quantile.value / UM, color, markers=True))
+        for side, bound in (("lower", quantile.low), ("upper", quantile.high)):
             if bound.all() and np.isfinite(bound).all():
-                lines.append(Line(f"{name}, {what}", found.torque, bound / UM, color, "dot", 1.0))
-    lines.append(Line("as designed", found.torque, found.nominal / UM, palette.INK, "dash", markers=True))
+                lines.append(Line(f"{name}, {side}", study.torque, bound / UM, color, "dot", 1.0))
+    lines.append(Line("as designed", study.torque, study.nominal / UM, palette.INK, "dash", markers=True))
     across = Axis("torque on the driving gear, N m")
     return Panel(across, Axis("peak to peak, µm"), tuple(lines), title="Quantiles")
 
 
-def quantile_table(found: ToleranceStudy) -> Table:
+def quantile_table(study: ToleranceStudy) -> Table:
     """Return mean and quantiles at every torque."""
     head = ["torque, N m", "as designed, µm", "± µm", "mean, µm", "± µm (1 s)"]
-    for one in found.quantiles:
-        head += [f"{100 * one.fraction:g} %, µm", "bounds, µm", "first order, µm"]
+    for quantile in study.quantiles:
+        head += [f"{100 * quantile.fraction:g} %, µm", "bounds, µm", "first order, µm"]
     rows = []
-    for k, name in enumerate(thousands(found.torque.tolist())):
+    for k, name in enumerate(thousands(study.torque.tolist())):
         row = [name]
         for values, digits in (
-            (found.nominal, 3), (found.error, 2), (found.mean, 3), (found.mean_error, 2),
+            (study.nominal, 3), (study.error, 2), (study.mean, 3), (study.mean_error, 2),
         ):  # fmt: skip
             row.append(number(float(values[k]) / UM, digits))
-        for one in found.quantiles:
-            low, high = float(one.low[k]), float(one.high[k])
+        for quantile in study.quantiles:
+            low, high = float(quantile.low[k]), float(quantile.high[k])
             ends = (number(low / UM, 3) if low else "none", number(high / UM, 3))
-            at_once = float(np.quantile(found.first_order[:, k], one.fraction))
-            row += [number(float(one.value[k]) / UM, 3), " to ".join(ends), number(at_once / UM, 3)]
+            at_once = float(np.quantile(study.first_order[:, k], quantile.fraction))
+            row += [number(float(quantile.value[k]) / UM, 3), " to ".join(ends), number(at_once / UM, 3)]
         rows.append(tuple(row))
-    count = found.peak_to_peak.shape[0]
+    count = study.peak_to_peak.shape[0]
     caption = f"Peak to peak of {count} pairs; to first order by the derivatives of the curves as designed"
     return Table(caption, tuple(head), tuple(rows))
 
 
-def influence_table(found: ToleranceStudy) -> Table:
+def influence_table(study: ToleranceStudy) -> Table:
     """Return the rank correlation of each deviation, the strongest at the highest load first."""
-    head = ("deviation", *(f"{name} N m" for name in thousands(found.torque.tolist())))
-    order = np.argsort(-np.abs(found.influence[:, -1]), kind="stable")
+    head = ("deviation", *(f"{name} N m" for name in thousands(study.torque.tolist())))
+    order = np.argsort(-np.abs(study.influence[:, -1]), kind="stable")
     rows = tuple(
-        (boundary_name(found.names[i]), *(f"{value:+.2f}" for value in found.influence[i])) for i in order
+        (boundary_name(study.names[i]), *(f"{value:+.2f}" for value in study.influence[i])) for i in order
     )
     return Table("Influence: rank correlation of a deviation, or of its size, with peak to peak", head, rows)
 
 
-def page(found: ToleranceStudy) -> Page:
+def page(study: ToleranceStudy) -> Page:
     """Return the page of a study."""
-    last = found.quantiles[-1]
+    last = study.quantiles[-1]
     heads = (
-        Headline("as designed", f"{number(found.nominal[-1] / UM, 3)} µm", "at the highest torque"),
-        Headline("mean", f"{number(found.mean[-1] / UM, 3)} µm"),
+        Headline("as designed", f"{number(study.nominal[-1] / UM, 3)} µm", "at the highest torque"),
+        Headline("mean", f"{number(study.mean[-1] / UM, 3)} µm"),
         Headline(f"{100 * last.fraction:g} % of all pairs below", f"{number(last.value[-1] / UM, 3)} µm"),
     )
-    tables = (quantile_table(found), influence_table(found))
-    section = Section("Distribution", "", (replace(scatter_figure(found), table=None),), tables)
-    lead = f"{found.peak_to_peak.shape[0]} pairs drawn within their tolerances"
+    tables = (quantile_table(study), influence_table(study))
+    section = Section("Distribution", "", (replace(scatter_figure(study), table=None),), tables)
+    lead = f"{study.peak_to_peak.shape[0]} pairs drawn within their tolerances"
     return Page("Transmission error within tolerances", lead, heads, (section,))
 
 
-def _words(found: ToleranceStudy) -> str:
+def _words(study: ToleranceStudy) -> str:
     """Say the last quantile at the highest torque."""
-    last = found.quantiles[-1]
+    last = study.quantiles[-1]
     part, size = f"{100 * last.fraction:g} %", number(last.value[-1] / UM, 3)
-    designed = number(found.nominal[-1] / UM, 3)
+    designed = number(study.nominal[-1] / UM, 3)
     return f"At the highest torque {part} of all pairs stay below {size} µm; as designed {designed} µm."
 
 
-PAGE = Presentation(scatter_figure, page, lambda found: (quantile_table(found), influence_table(found)))
+PAGE = Presentation(scatter_figure, page, lambda study: (quantile_table(study), influence_table(study)))

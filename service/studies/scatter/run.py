@@ -79,16 +79,16 @@ def _drawn(case: Case, inputs: Inputs) -> Json:
     }
 
 
-def facts(found: ToleranceStudy) -> Json:
+def facts(study: ToleranceStudy) -> Json:
     """Return a study with lengths in um."""
-    plain: Json = in_um(found.to_json())
-    widths = found.asked["tolerances"]
+    plain: Json = in_um(study.to_json())
+    widths = study.asked["tolerances"]
     plain["asked"]["tolerances"] = {
         "misalignment_um": widths["misalignment_m"] / UM,
         **{boundary_name(name): width / UM for name, width in widths["modification_m"].items()},
         "distribution": widths["distribution"],
     }
-    return plain | {"names": [boundary_name(name) for name in found.names]}
+    return plain | {"names": [boundary_name(name) for name in study.names]}
 
 
 def read(file: Path) -> ToleranceStudy:
@@ -101,7 +101,7 @@ def read(file: Path) -> ToleranceStudy:
         _lengths(content["peak_to_peak_um"]),
         _lengths(content["nominal_um"]),
         _lengths(content["error_um"]),
-        tuple(_quantile(one, len(content["torque_n_m"])) for one in content["quantiles"]),
+        tuple(_quantile(row, len(content["torque_n_m"])) for row in content["quantiles"]),
         _lengths(content["first_order_um"]),
         content["confidence"],
         content["cost"],
@@ -110,7 +110,7 @@ def read(file: Path) -> ToleranceStudy:
 
 
 def _lengths(values: list[float] | list[list[float]]) -> NDArray[np.float64]:
-    """From um to m."""
+    """Convert um to m."""
     return np.asarray(values, dtype=float) * UM
 
 

@@ -73,7 +73,7 @@ def check_study(case: Case, inputs: Inputs) -> None:
 
 def joined(studies: Mapping[str, Studies]) -> Studies:
     """Return the studies of several cases as one, under the names of their files."""
-    return tuple(replace(study, name=name) for name, found in studies.items() for study in found)
+    return tuple(replace(study, name=name) for name, group in studies.items() for study in group)
 
 
 def _highest_force(case: Case, pair: ParallelAxes) -> float:

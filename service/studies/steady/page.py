@@ -20,37 +20,37 @@ MARKED = 80  # sweeps of more motions are drawn as lines
 _SWEEPS = ((UP, "rising speed", palette.BLUE), (DOWN, "falling speed", palette.ORANGE))
 
 
-def steady_figure(found: SteadyStates, mesh: int = 0) -> Figure:
+def steady_figure(states: SteadyStates, mesh: int = 0) -> Figure:
     """Draw one mesh: stable motions of the branch solid, unstable ones dashed, both sweeps as points."""
-    name = f" of {found.mesh[mesh]}" if len(found.mesh) > 1 else ""
-    swept = found.speed[found.curve != BRANCH] / RPM
+    name = f" of {states.mesh[mesh]}" if len(states.mesh) > 1 else ""
+    swept = states.speed[states.curve != BRANCH] / RPM
     ends = (float(swept.min()), float(swept.max()))
-    x = Axis(f"speed of {found.facts['leading_shaft']}, rpm", limits=ends if ends[1] > ends[0] else None)
+    x = Axis(f"speed of {states.facts['leading_shaft']}, rpm", limits=ends if ends[1] > ends[0] else None)
     quantities = [
-        (f"rms of the transmission error{name}, µm", 1e6 * found.rms_error[:, mesh]),
-        (f"peak to peak{name}, µm", 1e6 * found.peak_to_peak_error[:, mesh]),
-        (f"largest mesh force{name}, N", found.largest_force[:, mesh]),
+        (f"rms of the transmission error{name}, µm", 1e6 * states.rms_error[:, mesh]),
+        (f"peak to peak{name}, µm", 1e6 * states.peak_to_peak_error[:, mesh]),
+        (f"largest mesh force{name}, N", states.largest_force[:, mesh]),
     ]
-    if np.nanmax(found.parted[:, mesh], initial=0.0) > 0.0:
-        quantities.append((f"driving flank parted{name}, % of the period", 100.0 * found.parted[:, mesh]))
-    if np.nanmax(found.coasting[:, mesh], initial=0.0) > 0.0:
-        quantities.append((f"coast flank touching{name}, % of the period", 100.0 * found.coasting[:, mesh]))
-    marks = tuple(Reference(f"fold {number(speed, 5)}", speed) for speed in _folds(found, ends))
-    panels = tuple(Panel(x, Axis(label), tuple(_lines(found, values)), marks) for label, values in quantities)
+    if np.nanmax(states.parted[:, mesh], initial=0.0) > 0.0:
+        quantities.append((f"driving flank parted{name}, % of the period", 100.0 * states.parted[:, mesh]))
+    if np.nanmax(states.coasting[:, mesh], initial=0.0) > 0.0:
+        quantities.append((f"coast flank touching{name}, % of the period", 100.0 * states.coasting[:, mesh]))
+    marks = tuple(Reference(f"fold {number(speed, 5)}", speed) for speed in _folds(states, ends))
+    panels = tuple(Panel(x, Axis(label), tuple(_lines(states, shown)), marks) for label, shown in quantities)
     return Figure(
         key="steady",
         title="Periodic steady states over speed",
         caption="Motions at constant speed by shooting. Line: the branch, solid where stable, dashed where "
         "not. Points: what slow rising and falling speeds settle on. Error: alternating part.",
-        alternative=_words(found),
+        alternative=_words(states),
         content=panels,
-        table=steady_table(found),
+        table=steady_table(states),
     )
 
 
-def _folds(found: SteadyStates, ends: tuple[float, float]) -> list[float]:
+def _folds(states: SteadyStates, ends: tuple[float, float]) -> list[float]:
     """Return the folds in rpm that lie apart: corners come in clusters, of which the outermost counts."""
-    folds = found.bifurcation_speed[found.bifurcation_kind == KINDS.index("fold")] / RPM
+    folds = states.bifurcation_speed[states.bifurcation_kind == KINDS.index("fold")] / RPM
     kept: list[float] = []
     if folds.size:
         middle = 0.5 * (folds.min() + folds.max())
@@ -60,34 +60,34 @@ def _folds(found: SteadyStates, ends: tuple[float, float]) -> list[float]:
     return kept
 
 
-def _lines(found: SteadyStates, values: FloatArray) -> Iterator[Line]:
+def _lines(states: SteadyStates, values: FloatArray) -> Iterator[Line]:
     """Yield the branch in its stable and unstable parts, and the sweeps."""
-    on = np.flatnonzero(found.curve == BRANCH)
+    on = np.flatnonzero(states.curve == BRANCH)
     for stable, name, dash in ((True, "branch, stable", "solid"), (False, "branch, unstable", "dash")):
-        here = (found.instability[on] == 0) == stable
+        here = (states.instability[on] == 0) == stable
         if not np.any(here):
             continue
         shown = here | (np.append(here[1:], False) if not stable else False)
         shown = shown | (np.append(False, here[:-1]) if not stable else False)
         style: Dash = "solid" if dash == "solid" else "dash"
         line = np.where(shown, values[on], np.nan)
-        yield Line(name, found.speed[on] / RPM, line, palette.INK, style, 1.3)
+        yield Line(name, states.speed[on] / RPM, line, palette.INK, style, 1.3)
     for curve, name, color in _SWEEPS:
-        there = np.flatnonzero(found.curve == curve)
+        there = np.flatnonzero(states.curve == curve)
         if there.size:
             few = there.size <= MARKED
             yield Line(
-                name, found.speed[there] / RPM, values[there], color, width=0.0 if few else 1.4, markers=few
+                name, states.speed[there] / RPM, values[there], color, width=0.0 if few else 1.4, markers=few
             )
 
 
-def steady_table(found: SteadyStates) -> Table:
+def steady_table(states: SteadyStates) -> Table:
     """List both sweeps, one line per speed and mesh."""
     rows = [
-        _row(found, int(index), mesh)
+        _row(states, int(index), mesh)
         for curve in (UP, DOWN)
-        for index in np.flatnonzero(found.curve == curve)
-        for mesh in range(len(found.mesh))
+        for index in np.flatnonzero(states.curve == curve)
+        for mesh in range(len(states.mesh))
     ]
     head = (
         "sweep",
@@ -105,26 +105,26 @@ def steady_table(found: SteadyStates) -> Table:
     return Table("Periodic steady states", head, tuple(rows))
 
 
-def _row(found: SteadyStates, index: int, mesh: int) -> tuple[str, ...]:
+def _row(states: SteadyStates, index: int, mesh: int) -> tuple[str, ...]:
     """One line of the table; of a motion that was not found how far the search came."""
     start = (
-        "up" if found.curve[index] == UP else "down",
-        number(float(found.speed[index]) / RPM, 5),
-        found.mesh[mesh],
+        "up" if states.curve[index] == UP else "down",
+        number(float(states.speed[index]) / RPM, 5),
+        states.mesh[mesh],
     )
-    if found.status[index]:
-        left = f"{status_name(int(found.status[index]))}, {1e6 * float(found.residual[index]):.2g} µm left"
+    if states.status[index]:
+        left = f"{status_name(int(states.status[index]))}, {1e6 * float(states.residual[index]):.2g} µm left"
         return (*start, left, *("none",) * 7)
     return (
         *start,
-        KINDS[int(found.instability[index])],
-        number(float(np.abs(found.multiplier[index, 0])), 4),
-        number(1e6 * float(found.rms_error[index, mesh]), 4),
-        number(1e6 * float(found.peak_to_peak_error[index, mesh]), 4),
-        number(float(found.least_force[index, mesh]), 4),
-        number(float(found.largest_force[index, mesh]), 4),
-        contact_name(float(found.parted[index, mesh]), float(found.coasting[index, mesh])),
-        number(1e9 * float(found.step_error[index]), 2),
+        KINDS[int(states.instability[index])],
+        number(float(np.abs(states.multiplier[index, 0])), 4),
+        number(1e6 * float(states.rms_error[index, mesh]), 4),
+        number(1e6 * float(states.peak_to_peak_error[index, mesh]), 4),
+        number(float(states.least_force[index, mesh]), 4),
+        number(float(states.largest_force[index, mesh]), 4),
+        contact_name(float(states.parted[index, mesh]), float(states.coasting[index, mesh])),
+        number(1e9 * float(states.step_error[index]), 2),
     )
 
 
@@ -135,37 +135,37 @@ def contact_name(parted: float, coasting: float) -> str:
     return f"parts, {100.0 * parted:.0f} %" if parted > 0.0 else "driving flank"
 
 
-def _words(found: SteadyStates) -> str:
+def _words(states: SteadyStates) -> str:
     """Say the largest motion, and the jumps."""
-    if not np.any(np.isfinite(found.rms_error)):
+    if not np.any(np.isfinite(states.rms_error)):
         return "No periodic motion was found."
-    index, mesh = np.unravel_index(int(np.nanargmax(found.rms_error)), found.rms_error.shape)
+    index, mesh = np.unravel_index(int(np.nanargmax(states.rms_error)), states.rms_error.shape)
     text = (
-        f"Largest rms: {number(1e6 * float(found.rms_error[index, mesh]), 3)} µm at "
-        f"{number(float(found.speed[index]) / RPM, 4)} rpm."
+        f"Largest rms: {number(1e6 * float(states.rms_error[index, mesh]), 3)} µm at "
+        f"{number(float(states.speed[index]) / RPM, 4)} rpm."
     )
-    for curve, (before, behind) in zip(found.jump_curve, found.jump_speed / RPM, strict=True):
+    for curve, (before, behind) in zip(states.jump_curve, states.jump_speed / RPM, strict=True):
         sweep = "Rising" if curve == UP else "Falling"
         text += f" {sweep} speeds jump between {number(float(before), 5)} and {number(float(behind), 5)} rpm."
     return text
 
 
-def _text(found: SteadyStates) -> Iterator[Table | str]:
+def _text(states: SteadyStates) -> Iterator[Table | str]:
     """Both sweeps, jumps, and what the branch came to."""
-    yield steady_table(found)
-    answer = facts(found)
+    yield steady_table(states)
+    answer = facts(states)
     for jump in answer["jumps"]:
         before, behind = jump["between_rpm"]
         sense = "rising" if jump["sweep"] == "up" else "falling"
         yield f"{sense} speeds jump between {before:.6g} and {behind:.6g} rpm"
     if answer["branch"]["status"] != "none":
-        branch, places = answer["branch"], answer["bifurcations"]
-        turns = ", ".join(f"{place['kind']} at {place['speed_rpm']:.6g} rpm" for place in places)
+        branch, points = answer["branch"], answer["bifurcations"]
+        turns = ", ".join(f"{point['kind']} at {point['speed_rpm']:.6g} rpm" for point in points)
         yield f"branch {branch['status']}, {len(branch['points'])} motions; {turns or 'no bifurcation'}"
-    yield f"cost {sum(found.facts['seconds'].values()):.3g} CPU s"
-    yield from run_lines(found.facts)
+    yield f"cost {sum(states.facts['seconds'].values()):.3g} CPU s"
+    yield from run_lines(states.facts)
 
 
 PAGE = Presentation(
-    steady_figure, lambda found: dynamics_page("Steady states", (steady_figure(found),)), _text
+    steady_figure, lambda states: dynamics_page("Steady states", (steady_figure(states),)), _text
 )

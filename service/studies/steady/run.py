@@ -37,11 +37,11 @@ def status_name(status: int) -> str:
     return OrbitStatus(status).name.lower().replace("_", " ")
 
 
-def facts(found: SteadyStates) -> Json:
+def facts(states: SteadyStates) -> Json:
     """Return the motions of both sweeps and of the branch, jumps and bifurcations."""
-    about = found.facts
+    about = states.facts
     points: dict[str, list[Json]] = {
-        name: [_point(found, int(index)) for index in np.flatnonzero(found.curve == curve)]
+        name: [_point(states, int(index)) for index in np.flatnonzero(states.curve == curve)]
         for curve, name in enumerate(CURVES)
     }
     return {
@@ -55,11 +55,11 @@ def facts(found: SteadyStates) -> Json:
         },
         "bifurcations": [
             {"kind": KINDS[int(kind)], "speed_rpm": float(speed) / RPM}
-            for kind, speed in zip(found.bifurcation_kind, found.bifurcation_speed, strict=True)
+            for kind, speed in zip(states.bifurcation_kind, states.bifurcation_speed, strict=True)
         ],
         "jumps": [
             {"sweep": "up" if curve == UP else "down", "between_rpm": (ends / RPM).tolist()}
-            for curve, ends in zip(found.jump_curve, found.jump_speed, strict=True)
+            for curve, ends in zip(states.jump_curve, states.jump_speed, strict=True)
         ],
         "steps_per_period": about["steps_per_period"],
         "cpu_seconds": about["seconds"],
@@ -67,52 +67,52 @@ def facts(found: SteadyStates) -> Json:
     }
 
 
-def _point(found: SteadyStates, index: int) -> Json:
+def _point(states: SteadyStates, index: int) -> Json:
     """One motion; of one that was not found only how the search ended."""
     point: Json = {
-        "speed_rpm": float(found.speed[index]) / RPM,
-        "status": status_name(int(found.status[index])),
-        "iterations": int(found.iterations[index]),
+        "speed_rpm": float(states.speed[index]) / RPM,
+        "status": status_name(int(states.status[index])),
+        "iterations": int(states.iterations[index]),
     }
-    for name, value in (("residual_um", found.residual[index]), ("step_error_um", found.step_error[index])):
+    for name, value in (("residual_um", states.residual[index]), ("step_error_um", states.step_error[index])):
         if np.isfinite(value):
             point[name] = float(value) / UM
-    if found.status[index] != OrbitStatus.CONVERGED:
+    if states.status[index] != OrbitStatus.CONVERGED:
         return point
-    largest = found.multiplier[index, 0]
+    largest = states.multiplier[index, 0]
     return point | {
-        "stability": KINDS[int(found.instability[index])],
+        "stability": KINDS[int(states.instability[index])],
         "largest_multiplier": [float(largest.real), float(largest.imag)],
-        "meshes": {name: _mesh(found, index, mesh) for mesh, name in enumerate(found.mesh)},
+        "meshes": {name: _mesh(states, index, mesh) for mesh, name in enumerate(states.mesh)},
         "bearings": {
-            name: {"rms_force_n": float(found.rms_bearing_force[index, bearing])}
-            for bearing, name in enumerate(found.bearing)
+            name: {"rms_force_n": float(states.rms_bearing_force[index, bearing])}
+            for bearing, name in enumerate(states.bearing)
         },
     }
 
 
-def _mesh(found: SteadyStates, index: int, mesh: int) -> Json:
+def _mesh(states: SteadyStates, index: int, mesh: int) -> Json:
     """One mesh of one motion."""
     return {
-        "mean_error_um": float(found.mean_error[index, mesh]) / UM,
-        "rms_error_um": float(found.rms_error[index, mesh]) / UM,
-        "peak_to_peak_error_um": float(found.peak_to_peak_error[index, mesh]) / UM,
-        "least_force_n": float(found.least_force[index, mesh]),
-        "largest_force_n": float(found.largest_force[index, mesh]),
-        "parted": float(found.parted[index, mesh]),
-        "coasting": float(found.coasting[index, mesh]),
+        "mean_error_um": float(states.mean_error[index, mesh]) / UM,
+        "rms_error_um": float(states.rms_error[index, mesh]) / UM,
+        "peak_to_peak_error_um": float(states.peak_to_peak_error[index, mesh]) / UM,
+        "least_force_n": float(states.least_force[index, mesh]),
+        "largest_force_n": float(states.largest_force[index, mesh]),
+        "parted": float(states.parted[index, mesh]),
+        "coasting": float(states.coasting[index, mesh]),
     }
 
 
-def not_found(found: SteadyStates) -> str:
+def not_found(states: SteadyStates) -> str:
     """Say at how many speeds a sweep found no motion."""
-    missing = (found.status != 0) & (found.curve != BRANCH)
+    missing = (states.status != 0) & (states.curve != BRANCH)
     if not missing.any():
         return ""
-    speeds = sorted({f"{speed / RPM:.6g}" for speed in found.speed[missing]})
+    speeds = sorted({f"{speed / RPM:.6g}" for speed in states.speed[missing]})
     shown = ", ".join(speeds[:5]) + (" ..." if len(speeds) > 5 else "")
     return (
-        f"{int(missing.sum())} of {int((found.curve != BRANCH).sum())} motions were not found, at {shown} "
+        f"{int(missing.sum())} of {int((states.curve != BRANCH).sum())} motions were not found, at {shown} "
         "rpm. They may repeat after more periods (--repeat 2), or never."
     )
 
