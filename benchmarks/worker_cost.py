@@ -60,6 +60,7 @@ def orders() -> Iterator[tuple[str, str, dict[str, Any]]]:
     yield "analyze, helical, three dimensions", "analyze", {"case": helical}
     yield "analyze, the same gears with a tip relief", "analyze", {"case": relieved}
     yield "flank, the same", "flank", {"case": relieved}
+    yield "root stress, spur", "root-stress", {"case": spur}
     yield (
         "sensitivity, the same, 2 x 2 deviations",
         "sensitivity",

@@ -125,7 +125,7 @@ def test_an_analysis_survives_a_reload_in_mid_job(
 @pytest.mark.parametrize(
     ("name", "said"),
     [
-        (f"database={'0' * 64}", "There is no database"),
+        (f"database={'0' * 64}", "There is no result"),
         (f"frontier={NOWHERE}", "does not know it"),
         ("database=none", "no such address"),
         ("nothing", "no such address"),

@@ -170,7 +170,7 @@ def _workers_of(service: int) -> list[int]:
     for place in Path("/proc").glob("[0-9]*"):
         with suppress(OSError):
             parent = int((place / "stat").read_text().rpartition(")")[2].split()[1])
-            if parent == service and b"live_child" in (place / "cmdline").read_bytes():
+            if parent == service and b"live.child" in (place / "cmdline").read_bytes():
                 found.append(int(place.name))
     return found
 
