@@ -12,7 +12,7 @@ from dynamics.effects.loaded_meshes import LoadedTrain
 from dynamics.effects.loaded_rotors import loaded_rotors
 from dynamics.errors import InputError
 from dynamics.mechanism.columns import mass_terms
-from dynamics.mechanism.connections import Connections, gather_connections
+from dynamics.mechanism.connections import gather_connections
 from dynamics.mechanism.flanks import Flanks, flank_laws
 from dynamics.mechanism.freedoms import Freedoms, find_freedoms
 from dynamics.mechanism.mechanism import GIVE_INERTIA, Mechanism
@@ -20,23 +20,14 @@ from dynamics.mechanism.rotor import Rotor
 
 
 @dataclass(frozen=True)
-class Model:
-    """A mechanism with its effects decided.
+class Model(LoadedTrain):
+    """A mechanism with its effects decided; its flanks have the force laws as resolved.
 
     Attributes
     ----------
-    mechanism : Mechanism
-    freedoms : Freedoms
-    connections : Connections
-    flanks : Flanks
-        Force laws as resolved: nominal forces, damping, tables.
     ledger : EffectLedger
     """
 
-    mechanism: Mechanism
-    freedoms: Freedoms
-    connections: Connections
-    flanks: Flanks
     ledger: EffectLedger
 
 

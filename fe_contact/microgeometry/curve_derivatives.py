@@ -137,10 +137,6 @@ def curve_derivatives(
     misalignment, center_distance_change : float
         m.
 
-    Returns
-    -------
-    CurveDerivatives
-
     Raises
     ------
     InputError
@@ -173,18 +169,9 @@ def curve_derivatives(
     curves, period = solution.deflection.T, checked.model.period
     weights = np.stack([quantity_derivatives(curve, period) for curve in curves], axis=-1)
     changes = np.einsum("qpf,apf->aqf", weights, derivatives)
-    return CurveDerivatives(
-        names,
-        loads,
-        problem.candidates.position,
-        solution.deflection,
-        derivatives,
-        changes[:, MEAN],
-        changes[:, PEAK_TO_PEAK],
-        changes[:, FIRST_HARMONIC:],
-        strips,
-        weights,
-    )
+    of_quantities = changes[:, MEAN], changes[:, PEAK_TO_PEAK], changes[:, FIRST_HARMONIC:]
+    position, ste = problem.candidates.position, solution.deflection
+    return CurveDerivatives(names, loads, position, ste, derivatives, *of_quantities, strips, weights)
 
 
 def _all_names(pair: ParallelAxes, checked: Checked) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ from fe_contact.errors import DatabaseError
 from fe_contact.ste.curve_errors import AT_NODES, SOURCES
 from fe_contact.ste.facts import SCHEMA_VERSION, Metadata, PairFacts
 from fe_contact.ste.fields import CURVE_ERROR, DIMENSIONS, RESIDUALS, SteFields
-from fe_contact.ste.netcdf_file import digest, read_variables, write_dataset
+from fe_contact.ste.netcdf_file import FileFormat, digest, json_attribute, write_dataset
 from fe_contact.types import Json, Status
 
 if TYPE_CHECKING:
@@ -23,6 +23,7 @@ FORMAT = "lineofaction STE database"
 _COORDINATES = ("position", "force", "misalignment", "center_distance_change", "pair", "support_force")
 WARNINGS = "warnings"
 _JSON_ATTRIBUTES = ("case", "effect_ledger", "receipt", "software_versions")
+FILES = FileFormat(FORMAT, "STE database", SCHEMA_VERSION, tuple(DIMENSIONS), optional=("curve_error",))
 
 # units and long names; "1" is CF's dimensionless
 ATTRIBUTES: dict[str, tuple[str, str]] = {
@@ -86,27 +87,13 @@ def read(path: Path) -> dict[str, Any]:
     DatabaseError
         If the file is missing, no netCDF-4, no STE database, of a newer schema, or damaged.
     """
-    arrays, attributes = read_variables(path)
-    if attributes.get("format") != FORMAT:
-        raise DatabaseError(f"{path}: a netCDF file, but no STE database")
-    version = attributes.get("schema_version")
-    if not isinstance(version, int | np.integer) or version > SCHEMA_VERSION or version < 1:
-        raise DatabaseError(
-            f"{path}: schema version {version}, but this release reads 1 to {SCHEMA_VERSION}: update it"
-        )
-    missing = sorted(set(DIMENSIONS) - set(arrays))
-    if missing:
-        raise DatabaseError(f"{path}: damaged, without {', '.join(missing)}")
-    content = {name: arrays[name] for name in (*DIMENSIONS, "curve_error") if name in arrays}
-    period = _period(path, attributes)
-    if attributes.get("data_sha256") != _digest(content, period):
-        raise DatabaseError(f"{path}: damaged, its arrays do not match their checksum")
+    content, attributes = FILES.read(path, lambda attributes: _before(_period(path, attributes)))
     if content.get("curve_error", np.empty(0)).shape[0] == len(SOURCES) - 1:  # of schema version 1
         content["curve_error"] = np.insert(content["curve_error"], AT_NODES.index("model"), 0.0, axis=0)
     return content | {
         "facts": _facts(path, attributes),
         "metadata": _metadata(path, attributes),
-        "period": period,
+        "period": _period(path, attributes),
     }
 
 
@@ -133,7 +120,7 @@ def _global_attributes(database: SteFields) -> Json:
         "period": np.int64(database.period),
         "facts": json.dumps(database.facts.to_json()),
         **{name: json.dumps(metadata[name]) for name in (*_JSON_ATTRIBUTES, WARNINGS)},
-        "data_sha256": _digest(_stored(database), database.period),
+        "data_sha256": digest(_stored(database), _before(database.period)),
     }
 
 
@@ -151,14 +138,14 @@ def _period(path: Path, attributes: Json) -> int:
     return int(period)
 
 
-def _digest(arrays: dict[str, Any], period: int) -> str:
-    """SHA-256 over the arrays, and over the period if it is not 1."""
-    return digest(arrays, f"period {period};" if period != 1 else "")
+def _before(period: int) -> str:
+    """Return what the checksum of the arrays begins with: the period if it is not 1."""
+    return f"period {period};" if period != 1 else ""
 
 
 def _facts(path: Path, attributes: Json) -> PairFacts:
     """Read the pair facts of a file."""
-    content = _document(path, attributes, "facts")
+    content = json_attribute(path, attributes, "facts")
     if not isinstance(content, dict):
         raise DatabaseError(f"{path}: damaged, its facts are no JSON object")
     return PairFacts.from_json(content)
@@ -166,18 +153,10 @@ def _facts(path: Path, attributes: Json) -> PairFacts:
 
 def _metadata(path: Path, attributes: Json) -> Metadata:
     """Read the metadata of a file."""
-    documents = {name: _document(path, attributes, name) for name in _JSON_ATTRIBUTES}
+    documents = {name: json_attribute(path, attributes, name) for name in _JSON_ATTRIBUTES}
     return Metadata(
         content_hash=str(attributes.get("content_hash", "")),
         schema_version=int(attributes["schema_version"]),
-        warnings=_document(path, {WARNINGS: "[]", **attributes}, WARNINGS),  # older files hold none
+        warnings=json_attribute(path, {WARNINGS: "[]", **attributes}, WARNINGS),  # older files hold none
         **documents,
     )
-
-
-def _document(path: Path, attributes: Json, name: str) -> Any:
-    """One JSON attribute."""
-    try:
-        return json.loads(attributes[name])
-    except (KeyError, TypeError, ValueError) as error:
-        raise DatabaseError(f"{path}: damaged, its {name} is not readable JSON ({error})") from error

@@ -11,9 +11,8 @@ import numpy as np
 
 from fe_contact.analysis.flanks.contact_pattern import contact_pattern
 from fe_contact.analysis.flanks.flank_scene import FlankScene
-from fe_contact.errors import DatabaseError
 from fe_contact.ste import Metadata
-from fe_contact.ste.netcdf_file import digest, read_variables, write_dataset
+from fe_contact.ste.netcdf_file import FileFormat, digest, json_attribute, write_dataset
 from fe_contact.types import Json
 
 if TYPE_CHECKING:
@@ -25,7 +24,7 @@ FORMAT = "lineofaction flank results"
 SCHEMA_VERSION = 1
 _GRID = ("position", "pair", "face_position")
 _GEARS: tuple[Literal["pinion"], Literal["wheel"]] = ("pinion", "wheel")
-_SCALARS = ("slice_width", "base_helix_angle")
+_SCALARS, _DOCUMENTS = ("slice_width", "base_helix_angle"), ("scene", "metadata")
 
 # dimensions, units and long name of what is read back
 STORED: dict[str, tuple[tuple[str, ...], str, str]] = {
@@ -41,6 +40,7 @@ STORED: dict[str, tuple[tuple[str, ...], str, str]] = {
     "pressure": (_GRID, "Pa", "peak Hertz pressure"),
     "gap": (_GRID, "m", "gap between the loaded flanks, infinite where they cannot touch"),
 }
+FILES = FileFormat(FORMAT, "flank results", SCHEMA_VERSION, tuple(STORED), (*_SCALARS, *_DOCUMENTS))
 
 
 def to_dataset(results: LoadDistribution) -> xarray.Dataset:
@@ -77,22 +77,8 @@ def read(path: Path) -> dict[str, Any]:
     DatabaseError
         The file is missing, no netCDF-4, of another kind, of a newer schema, or damaged.
     """
-    arrays, attributes = read_variables(path)
-    if attributes.get("format") != FORMAT:
-        raise DatabaseError(f"{path}: a netCDF file, but no flank results")
-    version = attributes.get("schema_version")
-    if not isinstance(version, int | np.integer) or not 1 <= version <= SCHEMA_VERSION:
-        raise DatabaseError(f"{path}: schema version {version}, but this release reads 1: update it")
-    missing = sorted((set(STORED) - set(arrays)) | ({*_SCALARS, "scene", "metadata"} - set(attributes)))
-    if missing:
-        raise DatabaseError(f"{path}: damaged, without {', '.join(missing)}")
-    content = {name: arrays[name] for name in STORED}
-    if attributes.get("data_sha256") != digest(content):
-        raise DatabaseError(f"{path}: damaged, its arrays do not match their checksum")
-    try:
-        scene, metadata = json.loads(attributes["scene"]), json.loads(attributes["metadata"])
-    except (TypeError, ValueError) as error:
-        raise DatabaseError(f"{path}: damaged, a document in it is no JSON ({error})") from error
+    content, attributes = FILES.read(path)
+    scene, metadata = (json_attribute(path, attributes, name) for name in _DOCUMENTS)
     return content | {
         "on_path": content["on_path"].astype(bool),
         "scene": FlankScene.from_json(scene),

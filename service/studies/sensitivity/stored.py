@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 from fe_contact.analysis.studies.sensitivity import RippleCurve, Sensitivity
-from fe_contact.errors import DatabaseError
-from fe_contact.ste.netcdf_file import digest, read_variables, write_dataset
+from fe_contact.ste.netcdf_file import FileFormat, digest, json_attribute, write_dataset
 
 FORMAT = "lineofaction sensitivity study"
 SCHEMA_VERSION = 1
@@ -34,6 +33,7 @@ STORED: dict[str, tuple[tuple[str, ...], str, str]] = {
         )
     },
 }
+FILES = FileFormat(FORMAT, "sensitivity study", SCHEMA_VERSION, tuple(STORED))
 
 
 @dataclass(frozen=True)
@@ -83,22 +83,8 @@ def read_studies(path: Path) -> tuple[PairStudy, ...]:
     DatabaseError
         The file is missing, no netCDF-4, of another kind, of a newer schema, or damaged.
     """
-    arrays, attributes = read_variables(path)
-    if attributes.get("format") != FORMAT:
-        raise DatabaseError(f"{path}: a netCDF file, but no sensitivity study")
-    version = attributes.get("schema_version")
-    if not isinstance(version, int | np.integer) or not 1 <= version <= SCHEMA_VERSION:
-        raise DatabaseError(f"{path}: schema version {version}, but this release reads 1: update it")
-    missing = sorted(set(STORED) - set(arrays))
-    if missing:
-        raise DatabaseError(f"{path}: damaged, without {', '.join(missing)}")
-    content = {name: arrays[name] for name in STORED}
-    if attributes.get("data_sha256") != digest(content):
-        raise DatabaseError(f"{path}: damaged, its arrays do not match their checksum")
-    try:
-        names = json.loads(attributes["names"])
-    except (KeyError, TypeError, ValueError) as error:
-        raise DatabaseError(f"{path}: damaged, its names are no JSON ({error})") from error
+    content, attributes = FILES.read(path)
+    names = json_attribute(path, attributes, "names")
     return tuple(_study(str(name), content, index) for index, name in enumerate(names))
 
 

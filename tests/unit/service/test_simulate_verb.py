@@ -38,9 +38,9 @@ def test_ctrl_c_keeps_what_was_computed_and_resume_goes_on(tmp_path):
 
 def test_a_second_interrupt_is_not_held_back():
     before = signal.getsignal(signal.SIGINT)
-    with pytest.raises(KeyboardInterrupt), until_interrupted() as asked:
+    with pytest.raises(KeyboardInterrupt), until_interrupted() as cancelled:
         signal.raise_signal(signal.SIGINT)
-        assert asked()
+        assert cancelled()
         signal.raise_signal(signal.SIGINT)
     assert signal.getsignal(signal.SIGINT) is before
 

@@ -170,15 +170,6 @@ def run_up(rate: float = 5000.0, duration: float = 2.0, top_rpm: float = 900.0) 
     static = 6e-6 + 1e-6 * np.cos(phase)
     force = np.zeros((2, 3, time.size))
     force[1, 1] = -1000 + 10 * np.cos(phase) + 20 * np.sin(2 * phase)
-    case = {
-        "meshes": [{"name": "mesh", "driver": "pinion", "driven": "wheel"}],
-        "shafts": [{"name": "output"}, {"name": "input"}],
-        "gears": [
-            {"name": "pinion", "shaft": "input", "teeth": 20},
-            {"name": "wheel", "shaft": "output", "teeth": 20},
-        ],
-        "outputs": {"sample_rate": rate},
-    }
     return RunResult(
         time=time,
         mesh=("mesh",),
@@ -213,21 +204,39 @@ def run_up(rate: float = 5000.0, duration: float = 2.0, top_rpm: float = 900.0) 
         effect_ledger={
             "entries": [{"effect": "lateral", "part": "input", "on": True, "reason": "r", "worth": 1e-6}]
         },
-        receipt={
-            "seconds": {"integration": 0.5},
-            "error": {"time_step": {"rms": 1e-9, "source": "step control"}},
-            "sampling": {
-                "rate": rate,
-                "chosen": "sample_rate of the scene",
-                "pass_frequency": rate / 2.56,
-                "stop_frequency": rate - rate / 2.56,
-                "stop_band": 80.0,
-                "edge": 12.0 / rate,
-            },
-            "peaks": {"mesh_force": {"mesh": {"peak": 2660.0, "rms": 2660.0}}},
-        },
-        case=case,
+        receipt=_receipt(rate),
+        case=_scene(rate),
     )
+
+
+def _scene(rate: float) -> dict[str, Any]:
+    """Return what a run keeps of its scene."""
+    return {
+        "meshes": [{"name": "mesh", "driver": "pinion", "driven": "wheel"}],
+        "shafts": [{"name": "output"}, {"name": "input"}],
+        "gears": [
+            {"name": "pinion", "shaft": "input", "teeth": 20},
+            {"name": "wheel", "shaft": "output", "teeth": 20},
+        ],
+        "outputs": {"sample_rate": rate},
+    }
+
+
+def _receipt(rate: float) -> dict[str, Any]:
+    """Return what a run says of its cost, its error and its sampling."""
+    return {
+        "seconds": {"integration": 0.5},
+        "error": {"time_step": {"rms": 1e-9, "source": "step control"}},
+        "sampling": {
+            "rate": rate,
+            "chosen": "sample_rate of the scene",
+            "pass_frequency": rate / 2.56,
+            "stop_frequency": rate - rate / 2.56,
+            "stop_band": 80.0,
+            "edge": 12.0 / rate,
+        },
+        "peaks": {"mesh_force": {"mesh": {"peak": 2660.0, "rms": 2660.0}}},
+    }
 
 
 @pytest.fixture
