@@ -32,6 +32,7 @@ from benchmarks import (
     reference_errors,
     run_up,
     service_queries,
+    shared_table,
     solvers_3d,
     static_table,
     tolerance_kept,
@@ -70,6 +71,7 @@ SUBJECTS = (
     page_redraw,
     service_queries,
     worker_cost,
+    shared_table,
 )
 
 

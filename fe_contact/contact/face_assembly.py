@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_contact.compliance import FlankCompliance3D
-from fe_contact.contact.face_patch import FaceGrid, FaceLoads, add_compliance, face_loads, responses
+from fe_contact.contact.face_patch import FaceGrid, FaceLoads, add_compliance, face_loads
 from fe_contact.contact.patch import Patches
 from fe_contact.contact.problem import Candidates, ContactProblem
 from fe_contact.types import BoolArray, FloatArray, IntArray
@@ -46,7 +46,7 @@ def face_contact_problem(
         low, high = along - 0.5 * slices.slice_width, along + 0.5 * slices.slice_width
         bounds = (np.maximum(low, flank.z[0]), np.minimum(high, flank.z[-1]))
         key = KeyedFlanks(flank.key_rows, flank.key_core, couple_teeth)
-        _add_gear(grid, responses(reach), key, patches, lever, teeth, bounds, slices.present, compliance)
+        _add_gear(grid, reach, key, patches, lever, teeth, bounds, slices.present, compliance)
     first, second = (flank.contact_modulus for flank in compliances)
     contact_modulus = 1.0 / (1.0 / first + 1.0 / second)
     return ContactProblem(
@@ -75,7 +75,7 @@ class KeyedFlanks(NamedTuple):
 
 def _add_gear(
     grid: FaceGrid,
-    response: FloatArray,
+    blocks: FloatArray,
     key: KeyedFlanks,
     patches: Patches,
     lever: FloatArray,
@@ -95,7 +95,7 @@ def _add_gear(
             high[here],
         )
         local = np.zeros((here.size, here.size))
-        add_compliance(response, teeth[here], loads, lever[p, here], local)
+        add_compliance(blocks, teeth[here], loads, lever[p, here], local)
         if len(key.rows):
             local += key.compliance(teeth[here], loads) * np.outer(lever[p, here], lever[p, here])
         out[p][np.ix_(here, here)] += local

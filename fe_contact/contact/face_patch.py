@@ -198,24 +198,9 @@ def _add_face(
     return count
 
 
-def responses(blocks: FloatArray) -> FloatArray:
-    """Displacements by force: row a of entry r + m is what a unit force at a on tooth j moves on tooth j + m.
-
-    Parameters
-    ----------
-    blocks : ndarray, shape (r + 1, f, f)
-        blocks[m]: displacement on tooth j + m per force on tooth j; its transpose for -m.
-
-    Returns
-    -------
-    ndarray, shape (2 r + 1, f, f)
-    """
-    return np.ascontiguousarray(np.concatenate([blocks[:0:-1], blocks.transpose(0, 2, 1)]))
-
-
 @njit(cache=True)
 def add_compliance(
-    response: FloatArray,
+    blocks: FloatArray,
     tooth: IntArray,
     loads: FaceLoads,
     lever: FloatArray,
@@ -225,27 +210,32 @@ def add_compliance(
 
     Parameters
     ----------
-    response : ndarray, shape (2 r + 1, f, f)
-        See `responses`.
+    blocks : ndarray, shape (r + 1, f, f)
+        blocks[m]: displacement on tooth j + m per force on tooth j; its transpose for -m.
     tooth : ndarray of int, shape (n,)
         Tooth of each patch, counted counter-clockwise; patches of one tooth stand together.
     loads : FaceLoads
     lever : ndarray, shape (n,)
+
+    Notes
+    -----
+    Patch i is the one on the tooth ahead: then its forces weigh whole rows of a block, which lie together in
+    memory, and nothing is transposed.
     """
-    reach = response.shape[0] // 2
-    moved = np.zeros(response.shape[1])
-    needed = np.zeros(response.shape[1], dtype=np.int64)
-    for j in range(tooth.size):
-        for i in range(j, tooth.size):
+    moved = np.zeros(blocks.shape[1])
+    needed = np.zeros(blocks.shape[1], dtype=np.int64)
+    for i in range(tooth.size):
+        for j in range(tooth.size):
             apart = tooth[i] - tooth[j]
-            if abs(apart) > reach:
+            if apart < 0 or apart >= blocks.shape[0] or (apart == 0 and j < i):
                 continue
-            if i == j or tooth[i] != tooth[i - 1]:
-                count = _needed(tooth, loads, i, needed)
-                _displace(response[reach + apart], loads, j, needed[:count], moved)
+            begins = j == 0 or tooth[j] != tooth[j - 1]
+            if begins or i == j:
+                count = _needed(tooth, loads, j, needed)
+                _weigh_rows(blocks[apart], loads, i, needed[:count], moved)
             value = 0.0
-            for p in range(loads.used[i]):
-                value += moved[loads.nodes[i, p]] * loads.forces[i, p]
+            for p in range(loads.used[j]):
+                value += moved[loads.nodes[j, p]] * loads.forces[j, p]
             value *= lever[i] * lever[j]
             out[i, j] += value
             if i != j:
@@ -270,12 +260,12 @@ def _needed(tooth: IntArray, loads: FaceLoads, first: int, out: IntArray) -> int
 
 
 @njit(cache=True)
-def _displace(response: FloatArray, loads: FaceLoads, j: int, needed: IntArray, moved: FloatArray) -> None:
-    """Displacement of the freedoms `needed` under patch j."""
+def _weigh_rows(block: FloatArray, loads: FaceLoads, i: int, needed: IntArray, moved: FloatArray) -> None:
+    """Sum the rows of a block by the forces of patch i, in the columns `needed`."""
     for a in needed:
         moved[a] = 0.0
-    for q in range(loads.used[j]):
-        row = response[loads.nodes[j, q]]
-        force = loads.forces[j, q]
+    for q in range(loads.used[i]):
+        row = block[loads.nodes[i, q]]
+        force = loads.forces[i, q]
         for a in needed:
             moved[a] += row[a] * force
