@@ -8,6 +8,7 @@ from datetime import date
 from pathlib import Path
 
 from benchmarks import (
+    cold_start,
     corrected_plane,
     derivatives,
     dynamic_influence_estimates,
@@ -72,6 +73,7 @@ SUBJECTS = (
     service_queries,
     worker_cost,
     shared_table,
+    cold_start,
 )
 
 
