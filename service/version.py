@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from importlib.metadata import PackageNotFoundError, version
 
 
+@lru_cache(maxsize=1)
 def solver_version() -> str:
     """Return the version of the installed project; code that runs uninstalled says so."""
     try:
