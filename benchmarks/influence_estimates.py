@@ -28,7 +28,8 @@ from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis import check_request
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.studies.ablation import EffectAblation, ablate
-from fe_contact.effects import FaceLoadDistribution, FiniteWidth
+from fe_contact.effects.face_load_distribution import FaceLoadDistribution
+from fe_contact.effects.finite_width import FiniteWidth
 from fe_contact.effects.influence import EstimatedInfluence, estimate_influences
 from fe_contact.options import Run
 

@@ -11,8 +11,8 @@ NM = 1e-9
 FIDELITIES: tuple[Fidelity, ...] = (
     QuasiStatic(),
     LinearResponse(),
-    TimeIntegration("torsion", "torsion only", "model", effects=BY_TORSION),
-    TimeIntegration("in_plane", "torsion and lateral motion", "model", effects=IN_PLANE),
+    TimeIntegration("torsion", "torsion only", "model", additions=BY_TORSION),
+    TimeIntegration("in_plane", "torsion and lateral motion", "model", additions=IN_PLANE),
     TimeIntegration("table_quarter", "every fourth position node", "table", every=4),
     TimeIntegration("table_half", "every second position node", "table", every=2),
     TimeIntegration("100_nm", "tolerance 100 nm", "steps", tolerance=100 * NM),

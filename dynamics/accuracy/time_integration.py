@@ -12,12 +12,13 @@ from dynamics.assembly.decimated_tables import with_decimated_tables
 from dynamics.effects import EFFECTS
 from dynamics.errors import SolveError
 from dynamics.integrators import Trajectory, integrate, static_equilibrium
+from dynamics.mechanism.additions import COAST_FLANKS
 from dynamics.motion.observation import observe
 from dynamics.scene import Outputs, Scene
 from dynamics.types import FloatArray
 
-BY_TORSION = ("backlash",)
-IN_PLANE = ("backlash", "lateral")
+BY_TORSION = (COAST_FLANKS,)
+IN_PLANE = (COAST_FLANKS, "x", "y")
 
 
 @dataclass(frozen=True)
@@ -31,8 +32,8 @@ class TimeIntegration:
         m; None: the scene's own.
     every : int
         Position nodes of the tables that are kept: every one, every second ...
-    effects : tuple of str or None
-        Those that may be on, as the scene has them; None: all.
+    additions : tuple of str or None
+        What effects may add; those that add something else, or nothing, are off. None: all.
     """
 
     name: str
@@ -40,13 +41,13 @@ class TimeIntegration:
     family: str
     tolerance: float | None = None
     every: int = 1
-    effects: tuple[str, ...] | None = None
+    additions: tuple[str, ...] | None = None
 
     def refusal(self, scene: Scene) -> str | None:
         """Say that fewer effects change nothing, or that a fixed step knows no tolerance."""
         if self.tolerance is not None and scene.integration.fixed_step is not None:
             return "the scene has a fixed step"
-        if self.effects is None:
+        if self.additions is None:
             return None
         here, there = _decided(scene), _decided(self.as_run(scene))
         return "the scene has no more effects than these" if here == there else None
@@ -56,9 +57,9 @@ class TimeIntegration:
         integration, effects = scene.integration, dict(scene.effects)
         if self.tolerance is not None:
             integration = replace(integration, tolerance=self.tolerance)
-        if self.effects is not None:
-            names = [effect.name for effect in EFFECTS]
-            effects |= {name: "off" for name in names if name not in self.effects}
+        if self.additions is not None:
+            kept = [effect for effect in EFFECTS if effect.adds and {*effect.adds} <= {*self.additions}]
+            effects |= {effect.name: "off" for effect in EFFECTS if effect not in kept}
         outputs = Outputs(scene.outputs.sample_rate, energy_audit=False, receipt="minimal", anti_alias=False)
         return replace(scene, integration=integration, effects=effects, outputs=outputs)
 

@@ -14,7 +14,7 @@ from dynamics.assembly.force_elements import force_elements
 from dynamics.assembly.model import Model, decide_model
 from dynamics.assembly.system_arrays import system_arrays
 from dynamics.effects import EFFECTS, EffectLedger
-from dynamics.effects.bearing_clearance import BearingClearance
+from dynamics.mechanism.additions import BEARING_LAWS
 from dynamics.mechanism.base_pitches import Corrections
 from dynamics.mechanism.bearing_elements import BearingElement
 from dynamics.mechanism.connections import forces_on_ground
@@ -23,7 +23,6 @@ from dynamics.mechanism.flanks import Flanks
 from dynamics.mechanism.freedoms import Freedoms
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.line_of_action import LineOfAction
-from dynamics.mechanism.mechanism import gather_mechanism
 from dynamics.mechanism.rotor import Rotor
 from dynamics.mechanism.sampling import Sampling, choose_sampling, top_mode
 from dynamics.mechanism.seats import Seats
@@ -118,23 +117,23 @@ class System:
 
 
 def assemble(scene: Scene) -> System:
-    """Assemble `scene`; without the effect `bearing_clearance`, bearings by their tangents at the load.
+    """Assemble `scene`; where no effect may add the laws of bearings, by their tangents at the load.
 
     Raises
     ------
     InputError
         If parts do not fit each other, or a free direction has no inertia.
     """
-    system = _assemble(scene)
-    if not system.bearings or scene.effects.get(BearingClearance.name) != "off":
+    model = decide_model(scene, EFFECTS)
+    system = _assemble(model)
+    if not system.bearings or BEARING_LAWS in model.mechanism.additions.possible:
         return system
-    linear = _assemble(_with_linear_bearings(system))
+    linear = _assemble(decide_model(_with_linear_bearings(system), EFFECTS))
     return replace(linear, ledger=system.ledger, corrected=system.corrected)
 
 
-def _assemble(scene: Scene) -> System:
-    """Assemble `scene` as it is."""
-    model = decide_model(gather_mechanism(scene), EFFECTS)
+def _assemble(model: Model) -> System:
+    """Assemble `model` as it is."""
     elements, laws = force_elements(model)
     return _put_together(model, elements, system_arrays(model, elements, laws))
 

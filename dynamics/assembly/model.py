@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from bounds import above
 from dynamics.effects import Effect, EffectLedger, MeshEffect, RotorEffect
-from dynamics.effects.ledger import check_choices
 from dynamics.effects.loaded_meshes import LoadedTrain
 from dynamics.effects.loaded_rotors import loaded_rotors
+from dynamics.effects.mechanism_of import mechanism_of
 from dynamics.errors import InputError
 from dynamics.mechanism.columns import mass_terms
 from dynamics.mechanism.connections import gather_connections
@@ -17,6 +17,7 @@ from dynamics.mechanism.flanks import Flanks, flank_laws
 from dynamics.mechanism.freedoms import Freedoms, find_freedoms
 from dynamics.mechanism.mechanism import GIVE_INERTIA, Mechanism
 from dynamics.mechanism.rotor import Rotor
+from dynamics.scene.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -31,15 +32,15 @@ class Model(LoadedTrain):
     ledger: EffectLedger
 
 
-def decide_model(mechanism: Mechanism, registry: Sequence[Effect]) -> Model:
+def decide_model(scene: Scene, registry: Sequence[Effect]) -> Model:
     """Decide the effects of rotors, which give the freedoms, and then those of meshes, which look at them.
 
     Raises
     ------
     InputError
-        If a choice is unknown, a free direction has no inertia, or a table does not fit its mesh.
+        If a choice is unknown, parts do not fit each other, or a free direction has no inertia.
     """
-    check_choices(mechanism.scene.effects, registry)
+    mechanism = mechanism_of(scene, registry)
     flanks = _flanks(mechanism)
     mechanism, ledger = _on_rotors(mechanism, flanks, [e for e in registry if isinstance(e, RotorEffect)])
     added = [ledger.on_rotor(rotor.shaft.name) for rotor in mechanism.rotors]

@@ -2,8 +2,16 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from dynamics.effects.effect import RotorEffect, Verdict
 from dynamics.effects.loaded_rotors import LoadedRotor
+from dynamics.errors import InputError
+from dynamics.mechanism.mechanism import Mechanism
+from dynamics.mechanism.rotor import Rotor
+
+BALANCED = 1e-6
+"""Part of the single thrusts below which those on a shaft cancel: lines of action are known to rounding."""
 
 
 class Axial(RotorEffect):
@@ -22,3 +30,41 @@ class Axial(RotorEffect):
         if influence == 0.0:
             return Verdict(False, True, "spur: no force along the axis", 0.0)
         return Verdict(True, True, "a helical mesh pushes along the axis", influence)
+
+    def check(self, mechanism: Mechanism) -> None:
+        """Refuse a shaft that helical meshes push along its axis and that nothing holds there.
+
+        Idlers, planets between sun and ring and double helical gears balance themselves. Three choices hold a
+        shaft rigidly: the effect "off", a drive at rest, and no bearing on the shaft at all.
+
+        Raises
+        ------
+        InputError
+        """
+        gears = mechanism.scene.gears
+        for rotor, sense in zip(mechanism.rotors, mechanism.kinematics.sense, strict=True):
+            floats = rotor.radial_stiffness > 0.0 and rotor.axial_stiffness == 0.0
+            pushes = _thrusts(mechanism, rotor)
+            if sense and floats and abs(sum(pushes)) > BALANCED * sum(map(abs, pushes)):
+                index, gear = next(
+                    (i, gear)
+                    for i, gear in enumerate(gears)
+                    if gear.shaft == rotor.shaft.name and gear.base_helix_angle != 0.0
+                )
+                bound = f'on a shaft that something holds along its axis: nothing holds "{rotor.shaft.name}"'
+                switch = f'set the effect "{self.name}" to "off".'
+                advice = f"Give one of its bearings axial stiffness, or {switch}"
+                raise InputError(f"gears[{index}]", gear.name, bound, advice)
+
+
+def _thrusts(mechanism: Mechanism, rotor: Rotor) -> list[float]:
+    """Return the axial forces of the meshes on a rotor, N; of unit mesh forces where there is no load."""
+    scene, force = mechanism.scene, mechanism.nominal_force
+    own = {gear.name for gear in scene.gears if gear.shaft == rotor.shaft.name}
+    size = np.where(force > 0.0, force, 1.0)
+    return [
+        sign * float(force * line.force[2])
+        for mesh, line, force in zip(scene.meshes, mechanism.lines, size, strict=True)
+        for name, sign in ((mesh.driver, -1.0), (mesh.driven, 1.0))
+        if name in own
+    ]

@@ -17,6 +17,7 @@ from dynamics.forces.gear_mesh import GearMesh
 from dynamics.forces.packed_tables import pack_tables
 from dynamics.forces.table_lookup import table_deflection
 from dynamics.forces.technique import PlainTable, table_at
+from dynamics.mechanism.additions import COAST_FLANKS
 from dynamics.mechanism.flanks import Flanks, mesh_mobility, with_technique
 
 
@@ -24,6 +25,7 @@ class Backlash(MeshEffect):
     """One force element per mesh: the coast flank."""
 
     name = "backlash"
+    adds = (COAST_FLANKS,)
     cost = "one table look-up per mesh and stage"
     linear = False
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dynamics.effects.effect import RotorEffect, Verdict
 from dynamics.effects.loaded_rotors import LoadedRotor
+from dynamics.mechanism.additions import BEARING_LAWS
 from dynamics.mechanism.bearing_elements import nonlinear_influences
 
 
@@ -11,6 +12,7 @@ class BearingClearance(RotorEffect):
     """One force element per rolling contact and per curve."""
 
     name = "bearing_clearance"
+    adds = (BEARING_LAWS,)
     cost = "one force element of one or two rows per law"
     linear = False
 

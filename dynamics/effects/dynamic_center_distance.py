@@ -7,6 +7,7 @@ import numpy as np
 from dynamics.effects.effect import MeshEffect, Verdict
 from dynamics.effects.flank_terms import CENTER_DISTANCE, FlankInSpace, FlankTerms
 from dynamics.effects.loaded_meshes import LoadedMesh
+from dynamics.mechanism.additions import CENTER_DISTANCE_CHANGE
 from dynamics.mechanism.flank_gradients import distance_gradient
 
 
@@ -14,6 +15,7 @@ class DynamicCenterDistance(MeshEffect):
     """One more local coordinate of the flank."""
 
     name = "dynamic_center_distance"
+    adds = (CENTER_DISTANCE_CHANGE,)
     cost = "a table look-up over one more axis, twice the numbers"
 
     def called_for(self, mesh: LoadedMesh) -> Verdict:

@@ -7,6 +7,7 @@ import numpy as np
 from dynamics.effects.effect import MeshEffect, Verdict
 from dynamics.effects.flank_terms import MISALIGNMENT, FlankInSpace, FlankTerms
 from dynamics.effects.loaded_meshes import LoadedMesh
+from dynamics.mechanism import additions
 from dynamics.mechanism.flank_gradients import misalignment_gradient
 
 
@@ -14,6 +15,7 @@ class DynamicMisalignment(MeshEffect):
     """One more local coordinate of the flank."""
 
     name = "dynamic_misalignment"
+    adds = (additions.MISALIGNMENT,)
     cost = "a table look-up over one more axis, twice the numbers"
 
     def called_for(self, mesh: LoadedMesh) -> Verdict:

@@ -50,25 +50,28 @@ class Effect:
         What a scene calls it.
     cost : str
         What it costs, in words.
+    adds : tuple of str
+        What it adds to the model: names of `FREEDOMS` that it gives a rotor, names of `additions`.
     linear : bool
         Whether linear theory estimates its influence; False: of impacts it says nothing.
     """
 
     name: ClassVar[str]
     cost: ClassVar[str]
+    adds: ClassVar[tuple[str, ...]] = ()
     linear: ClassVar[bool] = True
+
+    def check(self, mechanism: Mechanism) -> None:
+        """Refuse a mechanism that the effect, if it is not switched off, cannot do with.
+
+        Raises
+        ------
+        InputError
+        """
 
 
 class RotorEffect(Effect):
-    """An effect of rotors.
-
-    Attributes
-    ----------
-    adds : tuple of str
-        Names of the freedoms that it gives a rotor.
-    """
-
-    adds: ClassVar[tuple[str, ...]] = ()
+    """An effect of rotors."""
 
     def called_for(self, rotor: LoadedRotor) -> Verdict:
         """Decide for one rotor."""

@@ -10,6 +10,7 @@ import numpy as np
 from dynamics.effects.effect import RotorEffect, Verdict
 from dynamics.effects.frame_term import FrameTerm, frame_lever
 from dynamics.effects.loaded_rotors import LoadedRotor
+from dynamics.mechanism.additions import SPEED_DEPENDENCE
 from dynamics.mechanism.columns import column_count
 from dynamics.mechanism.connections import Connections
 from dynamics.mechanism.mechanism import Mechanism
@@ -26,6 +27,7 @@ class Gyroscopic(RotorEffect):
     """One force element of two rows per tilting shaft, and one or more per member of a planetary set."""
 
     name = "gyroscopic"
+    adds = (SPEED_DEPENDENCE,)
     cost = "a force element of two rows per tilting shaft; in rotating frames one or more per member"
 
     def called_for(self, rotor: LoadedRotor) -> Verdict:

@@ -124,6 +124,18 @@ class EffectLedger:
         """Whether an effect is on for a part."""
         return any(entry.on and entry.part == part for entry in self.of(effect))
 
+    def adding(self, addition: str) -> list[LedgerEntry]:
+        """Return the decisions on the effect that adds `addition`, one per part."""
+        return [entry for entry in self.entries if addition in entry.decided.adds]
+
+    def adds(self, addition: str, part: str | None = None) -> bool:
+        """Whether `addition` is in the model of a part; None: of any."""
+        return any(entry.on and part in (None, entry.part) for entry in self.adding(addition))
+
+    def effect_adding(self, addition: str) -> str:
+        """Return the name of the effect that adds `addition`; empty where there is none."""
+        return next((entry.effect for entry in self.adding(addition)), "")
+
     def to_json(self) -> Json:
         """Return plain lists and dictionaries."""
         entries = [entry.to_json() for entry in self.entries]

@@ -9,6 +9,7 @@ import numpy as np
 from dynamics.effects.effect import MeshEffect, Verdict
 from dynamics.effects.flank_terms import MISALIGNMENT, FlankInSpace, FlankTerms
 from dynamics.effects.loaded_meshes import LoadedMesh
+from dynamics.mechanism.additions import LOAD_CENTROID
 from dynamics.mechanism.flank_gradients import common_face_width, misalignment_gradient
 
 CENTERED = 1e-9  # of the face width
@@ -18,6 +19,7 @@ class MovingApplicationPoint(MeshEffect):
     """A moment of the mesh force in the plane of action."""
 
     name = "moving_application_point"
+    adds = (LOAD_CENTROID,)
     cost = "one more row per flank and four numbers more per look-up"
 
     def called_for(self, mesh: LoadedMesh) -> Verdict:

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.effects.gyroscopic import Gyroscopic
 from dynamics.influence.operating_conditions import OperatingCondition
 from dynamics.linearize.harmonic_response import HarmonicResponse, extremes
 from dynamics.linearize.modes import natural_modes
 from dynamics.linearize.parametric_response import parametric_response
 from dynamics.linearize.speeds import mesh_frequencies
 from dynamics.linearize.steady_vibration import Excited, excited
+from dynamics.mechanism.additions import SPEED_DEPENDENCE
 from dynamics.types import FloatArray
 
 ORDERS = 24
@@ -64,14 +64,14 @@ def linear_figures(system: System, conditions: Sequence[OperatingCondition]) -> 
     SolveError
         If there is no static equilibrium.
     """
-    on = {entry.effect for entry in system.ledger.entries if entry.on}
+    rotating = system.ledger.adds(SPEED_DEPENDENCE)
     meshes, bearings = len(system.scene.meshes), len(system.supports.name)
     mean, low, high = np.zeros(meshes), np.full(meshes, np.inf), np.full(meshes, -np.inf)
     amplitude, parted = np.zeros((bearings, 3, COMPARED)), np.zeros(meshes)
     for some in conditions:
         at = excited(system, some.time, ORDERS, POSITIONS)
         condition = some.passing(resonances(at)) if some.speed.size > 1 else some
-        answer = parametric_response(at, condition.speed, condition.rate, ORDERS, Gyroscopic.name in on)
+        answer = parametric_response(at, condition.speed, condition.rate, ORDERS, rotating)
         harmonics, static = answer.harmonics, [float(np.mean(cycle.static_error)) for cycle in at.cycles]
         rest = np.array(static)[:, None] + answer.mean_shift
         least, most = extremes(harmonics.dynamic_transmission_error, harmonics.order)

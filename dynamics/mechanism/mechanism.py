@@ -9,6 +9,7 @@ import numpy as np
 
 from bounds import above
 from dynamics.errors import InputError
+from dynamics.mechanism.additions import COAST_FLANKS, Additions
 from dynamics.mechanism.base_pitches import Corrections, with_common_base_pitches
 from dynamics.mechanism.bearing_elements import (
     BearingElement,
@@ -23,7 +24,6 @@ from dynamics.mechanism.nominal_forces import nominal_forces
 from dynamics.mechanism.planets import kinematic_vectors, rotational_inertia
 from dynamics.mechanism.rotor import Rotor, build_rotor
 from dynamics.mechanism.supports import gather_supports
-from dynamics.mechanism.thrust_check import check_thrust
 from dynamics.scene.scene import Scene
 from dynamics.types import BoolArray, FloatArray
 
@@ -48,6 +48,10 @@ class Mechanism:
         What each bearing typically carries, N.
     bearings : tuple of BearingElement
         Where the laws of bearings act that are not linear.
+    corrected : dict
+        Base radii of gears as given and as used, m.
+    additions : Additions
+        What the effects may add.
     """
 
     scene: Scene
@@ -58,6 +62,7 @@ class Mechanism:
     bearing_load: dict[str, float]
     bearings: tuple[BearingElement, ...]
     corrected: Corrections
+    additions: Additions
 
     @property
     def polar_inertia(self) -> list[float]:
@@ -86,26 +91,25 @@ class Mechanism:
         return kinematic_vectors(self.rotors, self.kinematics)
 
 
-def gather_mechanism(scene: Scene) -> Mechanism:
-    """Gather bodies, kinematic motion and loads of `scene`.
+def gather_mechanism(scene: Scene, additions: Additions) -> Mechanism:
+    """Gather bodies, kinematic motion and loads of `scene`, to which effects may make `additions`.
 
     Raises
     ------
     InputError
-        If parts do not fit each other, a shaft free to turn has no moment of inertia, or nothing holds one
-        along its axis that helical gears push.
+        If parts do not fit each other, or a shaft free to turn has no moment of inertia.
     """
     scene, corrected = with_common_base_pitches(scene)
     kinematics = solve_kinematics(scene)
     rotors = tuple(build_rotor(scene, shaft) for shaft in scene.shafts)
     lines = tuple(line_of_action(scene, index, sense) for index, sense in enumerate(kinematics.mesh_sense))
-    forces = nominal_forces(scene, kinematics, rotational_inertia(rotors))
+    coasts = COAST_FLANKS in additions.possible
+    forces = nominal_forces(scene, kinematics, rotational_inertia(rotors), coasts=coasts)
     loads = bearing_loads(scene, rotors, forces)
     bearings, rotors = _with_bearings(scene, rotors, loads)
     rotors = with_couplings(scene, rotors)
     _check_rotation(rotors, kinematics)
-    check_thrust(scene, kinematics, rotors, lines, forces)
-    return Mechanism(scene, kinematics, rotors, lines, forces, loads, bearings, corrected)
+    return Mechanism(scene, kinematics, rotors, lines, forces, loads, bearings, corrected, additions)
 
 
 def _with_bearings(

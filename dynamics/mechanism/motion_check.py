@@ -6,7 +6,6 @@ from dynamics.errors import InputError
 from dynamics.mechanism.base_pitches import with_common_base_pitches
 from dynamics.mechanism.kinematics import Kinematics, solve_kinematics
 from dynamics.mechanism.line_of_action import line_of_action
-from dynamics.mechanism.mechanism import gather_mechanism
 from dynamics.scene.scene import Scene
 
 
@@ -27,16 +26,6 @@ def check_motion(scene: Scene) -> Kinematics:
         line_of_action(scene, index, sense)
     check_loads(scene, kinematics)
     return kinematics
-
-
-def check_load_flow(scene: Scene) -> None:
-    """Refuse a scene with all its planets whose loads do not press its flanks, or whose shafts are not held.
-
-    Raises
-    ------
-    InputError
-    """
-    gather_mechanism(scene)
 
 
 def check_loads(scene: Scene, kinematics: Kinematics) -> None:

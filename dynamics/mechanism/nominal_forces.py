@@ -14,11 +14,12 @@ from dynamics.types import FloatArray
 BETWEEN_KNOTS = 8  # moments at which a law is looked at between two of its knots
 
 
-def nominal_forces(scene: Scene, kinematics: Kinematics, inertia: FloatArray) -> FloatArray:
+def nominal_forces(scene: Scene, kinematics: Kinematics, inertia: FloatArray, *, coasts: bool) -> FloatArray:
     """Return the transverse force of each mesh, N: as given, or what balances the load torques at t = 0.
 
     `inertia` (shafts,) in kg m^2 is that of each shaft about its axis and, on a carrier, of the planets about
-    the carrier's: a train without a drive accelerates where its torques do not balance.
+    the carrier's: a train without a drive accelerates where its torques do not balance. `coasts`: whether the
+    coast flanks that are given carry load.
 
     Raises
     ------
@@ -29,11 +30,11 @@ def nominal_forces(scene: Scene, kinematics: Kinematics, inertia: FloatArray) ->
     stated = [mesh.nominal_force for mesh in scene.meshes]
     if all(force is not None for force in stated):
         return np.array(stated, dtype=float)
-    balanced = _balance(scene, kinematics, inertia)
+    balanced = _balance(scene, kinematics, inertia, coasts)
     return np.array([b if g is None else g for g, b in zip(stated, balanced, strict=True)], dtype=float)
 
 
-def _balance(scene: Scene, kinematics: Kinematics, inertia: FloatArray) -> FloatArray:
+def _balance(scene: Scene, kinematics: Kinematics, inertia: FloatArray, coasts: bool) -> FloatArray:
     """Solve the torque balance of all shafts but those of drives.
 
     Planets that share a load on equal terms share it equally: the solution of least squares.
@@ -47,7 +48,7 @@ def _balance(scene: Scene, kinematics: Kinematics, inertia: FloatArray) -> Float
     if rank < lever.shape[1] and all(shaft.frame is None for shaft in scene.shafts):
         raise InputError("meshes", len(scene.meshes), "loaded in one way only by the torques", suggestion)
     force = force[: len(scene.meshes)]
-    driving_only = [mesh.coast is None or scene.effects.get("backlash") == "off" for mesh in scene.meshes]
+    driving_only = [mesh.coast is None or not coasts for mesh in scene.meshes]
     for index, value in enumerate(force):
         if value < -1e-9 * np.max(np.abs(force)) and driving_only[index]:
             bound, suggestion = "loaded on its driving flank", "Turn the load, or give it its coast flank."

@@ -47,7 +47,7 @@ def elastic_of(mechanism: Mechanism, index: int) -> ElasticShaft:
     return elastic_shaft(
         shaft.sections,
         discs,
-        _points_of_application(scene, rotor, _bends(scene, rotor), _stretches(scene, rotor)),
+        _points_of_application(scene, rotor, _bends(mechanism, rotor), _stretches(mechanism, rotor)),
         _highest(mechanism),
         shaft.damping_ratio,
         None if drive is None else rotor.on_shaft(drive.position),
@@ -61,19 +61,20 @@ def _highest(mechanism: Mechanism) -> float:
     return scene.highest_frequency or 0.5 * rate
 
 
-def _bends(scene: Scene, rotor: Rotor) -> bool:
+def _bends(mechanism: Mechanism, rotor: Rotor) -> bool:
     """Whether the shaft is held across and in tilt, and free to move."""
     held = rotor.radial_stiffness > 0.0 and rotor.tilt_stiffness > 0.0
-    return held and scene.effects.get("lateral") != "off" and scene.effects.get("tilt") != "off"
+    return held and {"x", "tilt_x"} <= mechanism.additions.possible
 
 
-def _stretches(scene: Scene, rotor: Rotor) -> bool:
-    """Whether the shaft has the freedom along its axis: the verdict of the effect `axial`."""
-    choice = scene.effects.get("axial", "auto")
+def _stretches(mechanism: Mechanism, rotor: Rotor) -> bool:
+    """Whether the shaft has the freedom along its axis: requested, or possible and called for."""
+    scene, additions = mechanism.scene, mechanism.additions
     gears = {gear.name: gear for gear in scene.gears if gear.shaft == rotor.shaft.name}
     meshing = [name for mesh in scene.meshes for name in (mesh.driver, mesh.driven) if name in gears]
     helical = any(gears[name].base_helix_angle != 0.0 for name in meshing)
-    return rotor.axial_stiffness > 0.0 and choice != "off" and (helical or choice == "on")
+    wanted = helical or "z" in additions.requested
+    return rotor.axial_stiffness > 0.0 and "z" in additions.possible and wanted
 
 
 def _points_of_application(

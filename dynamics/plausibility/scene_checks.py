@@ -10,8 +10,9 @@ import numpy as np
 
 from bounds import Finding
 from dynamics.bodies import GearBody, Inertia, Shaft
+from dynamics.effects.mechanism_of import mechanism_of
 from dynamics.joints import Bushing, PlanetBearing
-from dynamics.mechanism.mechanism import Mechanism, gather_mechanism
+from dynamics.mechanism.mechanism import Mechanism
 from dynamics.plausibility.check import CHECKS, assessed
 from dynamics.scene import Scene
 from dynamics.types import FloatArray
@@ -28,7 +29,7 @@ def scene_findings(scene: Scene) -> tuple[Finding, ...]:
     InputError
         The parts of the scene do not fit each other.
     """
-    mechanism = gather_mechanism(scene)
+    mechanism = mechanism_of(scene)
     return (
         *assessed("duration", "duration", scene.duration, "s", skip_zero=True),
         *_speeds(mechanism),
@@ -143,8 +144,8 @@ def _gyration(check: str, path: str, inertia: Inertia, size: float) -> Iterator[
 
 def _supports(mechanism: Mechanism) -> Iterator[Finding]:
     """Check that something carries the shafts that mesh forces push aside, where there are bearings."""
-    scene, rotors = mechanism.scene, mechanism.rotors
-    if scene.effects.get("lateral") == "off" or not any(rotor.radial_stiffness for rotor in rotors):
+    rotors = mechanism.rotors
+    if "x" not in mechanism.additions.possible or not any(rotor.radial_stiffness for rotor in rotors):
         return
     for index, rotor in enumerate(rotors):
         push, whole = _push(mechanism, index)

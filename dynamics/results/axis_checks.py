@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.results.axis_series import EFFECTS, FIELDS, axis_rows
+from dynamics.results.axis_series import FIELDS, axis_rows
 from dynamics.types import Json
 
 WHAT = ("tilt", "center distance")
@@ -51,7 +51,7 @@ class AxisChecks:
         if farthest > 0.0:
             reason = f"{WHAT[axis]} beyond the axis: {span}; the last value was held. Compute a wider axis"
         return {
-            "effect": EFFECTS[axis],
+            "effect": self._system.ledger.effect_adding(FIELDS[axis]),
             "assumption": f"{WHAT[axis]} inside the table",
             "part": self._system.scene.meshes[mesh].name,
             "holds": farthest <= 0.0,

@@ -6,11 +6,12 @@ import numpy as np
 
 from dynamics.assembly.assemble import System
 from dynamics.forces.element_laws import SPATIAL_FLANK
+from dynamics.mechanism.additions import CENTER_DISTANCE_CHANGE, LOAD_CENTROID, MISALIGNMENT
 from dynamics.mechanism.flank_gradients import common_face_width, table_sense
 from dynamics.types import FloatArray
 
-FIELDS = ("misalignment", "center_distance_change")
-EFFECTS = ("dynamic_misalignment", "dynamic_center_distance")
+FIELDS = (MISALIGNMENT, CENTER_DISTANCE_CHANGE)
+"""Axes of tables, as meshes and effects name them."""
 
 
 def axis_series(system: System, coordinate: FloatArray, force: FloatArray) -> dict[str, FloatArray]:
@@ -20,20 +21,20 @@ def axis_series(system: System, coordinate: FloatArray, force: FloatArray) -> di
     """
     meshes, samples = len(system.scene.meshes), force.shape[1]
     series = {}
-    for axis, (field, effect) in enumerate(zip(FIELDS, EFFECTS, strict=True)):
+    for axis, field in enumerate(FIELDS):
         fixed = np.array([getattr(mesh, field) for mesh in system.scene.meshes])
         values = np.repeat(fixed[:, None], samples, axis=1)
         for mesh, row in axis_rows(system, axis, follows=True).items():
             values[mesh] = coordinate[row]
-        series[field] = values if _anywhere(system, effect) else np.empty((0, samples))
-    centroid = np.zeros((meshes if _anywhere(system, "moving_application_point") else 0, samples))
+        series[field] = values if system.ledger.adds(field) else np.empty((0, samples))
+    centroid = np.zeros((meshes if system.ledger.adds(LOAD_CENTROID) else 0, samples))
     if centroid.size:
         for mesh, row in axis_rows(system, 0, follows=False).items():
             pushed = force[system.driving_rows[mesh]]
             lever = -force[row] / np.where(pushed > 0.0, pushed, 1.0)
             sense = table_sense(system.scene, mesh, system.kinematics.mesh_sense[mesh])
             centroid[mesh] = -sense * common_face_width(system.scene, mesh) * lever
-    return {**series, "load_centroid": centroid}
+    return {**series, LOAD_CENTROID: centroid}
 
 
 def axis_rows(system: System, axis: int, *, follows: bool) -> dict[int, int]:
@@ -47,8 +48,3 @@ def axis_rows(system: System, axis: int, *, follows: bool) -> dict[int, int]:
         if row > 0 and (laws.follows[elements.entry[mesh], axis] == 1 or not follows):
             rows[mesh] = int(elements.first[mesh] + row)
     return rows
-
-
-def _anywhere(system: System, effect: str) -> bool:
-    """Whether the effect is on in any mesh."""
-    return any(system.ledger.on(effect, mesh.name) for mesh in system.scene.meshes)

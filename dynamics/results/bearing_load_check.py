@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.effects.bearing_clearance import BearingClearance
+from dynamics.mechanism.additions import BEARING_LAWS
 from dynamics.types import FloatArray, Json
 
 LIGHT = 1e-3
@@ -18,7 +18,8 @@ class BearingLoadChecks:
     def __init__(self, system: System) -> None:
         scene = system.scene
         laws = {law.bushing for law in scene.rolling_contacts} | {c.bushing for c in scene.spring_curves}
-        off = scene.effects.get(BearingClearance.name) == "off"
+        self._effect = system.ledger.effect_adding(BEARING_LAWS)
+        off = scene.effects.get(self._effect) == "off"
         self._name = system.supports.name
         self._watched = [i for i, name in enumerate(self._name) if off or name not in laws]
         self._has_law = [self._name[i] in laws for i in self._watched]
@@ -56,7 +57,7 @@ class BearingLoadChecks:
             advice = "switch the effect on" if self._has_law[row] else "give the bearing its clearance"
             reason = f"the load reversed in {100.0 * share:.3g} % of the run: {advice}"
         return {
-            "effect": BearingClearance.name,
+            "effect": self._effect,
             "assumption": "linear bearing stays loaded",
             "part": self._name[index],
             "holds": share == 0.0,

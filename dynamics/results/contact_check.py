@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from dynamics.assembly.assemble import System
+from dynamics.mechanism.additions import COAST_FLANKS
 from dynamics.motion.observation import static_deflections
 from dynamics.types import FloatArray, Json
 
@@ -15,7 +16,9 @@ class ContactChecks:
     def __init__(self, system: System) -> None:
         meshes = system.scene.meshes
         self._system, self._samples = system, 0
-        self._watched = [i for i, mesh in enumerate(meshes) if not system.ledger.on("backlash", mesh.name)]
+        self._watched = [
+            i for i, mesh in enumerate(meshes) if not system.ledger.adds(COAST_FLANKS, mesh.name)
+        ]
         self._parted = np.zeros(len(meshes), dtype=np.int64)
         self._gap = np.zeros(len(meshes))
         self._first = np.full(len(meshes), -1, dtype=np.int64)
@@ -51,7 +54,7 @@ class ContactChecks:
         first = int(self._first[index])
         room = mesh.coast.backlash if mesh.coast is not None else 0.0
         return {
-            "effect": "backlash",
+            "effect": self._system.ledger.effect_adding(COAST_FLANKS),
             "assumption": "coast flanks are not reached",
             "part": mesh.name,
             "holds": bool(gap <= room),

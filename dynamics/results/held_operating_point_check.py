@@ -9,9 +9,10 @@ import numpy as np
 from dynamics.assembly.assemble import System
 from dynamics.forces import GearMesh
 from dynamics.forces.operating_point_table import table_at_operating_point
+from dynamics.mechanism.additions import MISALIGNMENT
 from dynamics.mechanism.flank_gradients import distance_gradient, misalignment_gradient
 from dynamics.results.axis_checks import WHAT
-from dynamics.results.axis_series import EFFECTS, FIELDS
+from dynamics.results.axis_series import FIELDS
 from dynamics.types import FloatArray, Json
 
 USUAL_TOLERANCE = 0.01
@@ -32,12 +33,13 @@ class HeldOperatingPointChecks:
 
     def __init__(self, system: System) -> None:
         self._system = system
-        able = {(row.effect, row.part) for row in system.ledger.entries if row.possible and not row.on}
         self._watched = [
             _Watched(axis, index, _gradient(system, axis, index))
-            for axis, effect in enumerate(EFFECTS)
+            for axis, field in enumerate(FIELDS)
             for index, mesh in enumerate(system.scene.meshes)
-            if (effect, mesh.name) in able
+            if any(
+                row.possible and not row.on for row in system.ledger.adding(field) if row.part == mesh.name
+            )
         ]
         self._range = [(0.0, 0.0)] * len(self._watched)
 
@@ -64,7 +66,7 @@ class HeldOperatingPointChecks:
         change = _change(mesh, force, watched.axis, farthest)
         reported = f"bodies moved by up to {farthest:.3g} m, which changes the mean by {100.0 * change:.2g} %"
         return {
-            "effect": EFFECTS[watched.axis],
+            "effect": system.ledger.effect_adding(FIELDS[watched.axis]),
             "assumption": f"{quantity} stays where the table is read",
             "part": mesh.name,
             "holds": abs(change) <= (system.scene.tolerance or USUAL_TOLERANCE),
@@ -88,7 +90,7 @@ def _change(mesh: GearMesh, force: float, axis: int, moved: float) -> float:
 def _gradient(system: System, axis: int, index: int) -> FloatArray:
     """Return the derivative of a mesh's operating point on an axis in the free freedoms, (n,)."""
     scene, rotors, line = system.scene, system.rotors, system.lines[index]
-    if FIELDS[axis] == "misalignment":
+    if FIELDS[axis] == MISALIGNMENT:
         sense = system.kinematics.mesh_sense[index]
         return system.freedoms.keep(misalignment_gradient(scene, rotors, index, line, sense))
     return system.freedoms.keep(distance_gradient(scene, rotors, index, line))

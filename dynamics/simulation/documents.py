@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.effects.gyroscopic import Gyroscopic
 from dynamics.errors import SolveError
 from dynamics.influence import Decided, Influence, estimate_influences
 from dynamics.integrators.march import Ending
@@ -19,6 +18,7 @@ from dynamics.linearize import natural_modes
 from dynamics.linearize.campbell import whirl_branches
 from dynamics.linearize.linear_system import LinearSystem, linearize
 from dynamics.linearize.speeds import leading_law, mesh_frequencies
+from dynamics.mechanism.additions import SPEED_DEPENDENCE
 from dynamics.motion.observation import observe
 from dynamics.motion.sampled_states import States
 from dynamics.plausibility import scene_findings
@@ -104,9 +104,8 @@ def _modes(system: System) -> Json:
         return {}
     modes = natural_modes(linear)
     most = np.argmax(modes.kinetic_energy, axis=1) if modes.frequency.size else []
-    rotating = any(part.speed.extreme != 0.0 for part in system.scene.references) and any(
-        entry.effect == Gyroscopic.name and entry.on for entry in system.ledger.entries
-    )
+    turning = any(part.speed.extreme != 0.0 for part in system.scene.references)
+    rotating = turning and system.ledger.adds(SPEED_DEPENDENCE)
     return {
         "frequency": [float(value) for value in modes.frequency],
         "damping_ratio": [float(value) for value in modes.damping_ratio],

@@ -21,6 +21,7 @@ class CornerContact(Effect):
     """Tip edges on the mating flanks, with exact rigid gaps and the edge law of `hertz.edge_contact`."""
 
     name: ClassVar[str] = "corner_contact"
+    brings: ClassVar[str] = "corner_contact"
     needs: ClassVar[tuple[str, ...]] = ("position", "load", "curvature")
     adds: ClassVar[tuple[str, ...]] = ("candidates", "gap")
     cost: ClassVar[str] = "two more candidates a position; no finite-element work"

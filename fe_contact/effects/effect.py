@@ -89,7 +89,8 @@ class Effect:
 
     Class attributes: `name`; `needs` and `adds` (terms such as "position", "load", "gap", "coupling",
     "candidates", "table axis"); `cost` in words; `sources`; `valid_for`, the range in which it may be used;
-    `of_bodies`, whether finite elements have it.
+    `of_bodies`, whether finite elements have it; `brings`, what it alone brings and the rest of the model may
+    ask for: a field of `ContactModel`, figures of the flanks by direction, an axis of the table.
     """
 
     name: ClassVar[str]
@@ -99,6 +100,7 @@ class Effect:
     sources: ClassVar[tuple[str, ...]]
     valid_for: ClassVar[str]
     of_bodies: ClassVar[bool] = False
+    brings: ClassVar[str] = ""
 
     def called_for(self, scene: ContactScene) -> Verdict:
         """Assess whether `scene` needs this effect, and why."""
@@ -130,3 +132,8 @@ class Effect:
     def estimable(self, scene: ContactScene) -> bool:
         """Whether springs for teeth can tell its influence."""
         return True
+
+
+def named(registry: Sequence[Effect], brings: str) -> str:
+    """Return the name of the effect that brings something; empty where there is none."""
+    return next((effect.name for effect in registry if effect.brings == brings), "")

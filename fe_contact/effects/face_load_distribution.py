@@ -15,6 +15,7 @@ class FaceLoadDistribution(Effect):
     """Finite face width with free ends, contact in slices, load distributed among them."""
 
     name: ClassVar[str] = "face_load_distribution"
+    brings: ClassVar[str] = "across_face"
     needs: ClassVar[tuple[str, ...]] = ("face position", "load")
     adds: ClassVar[tuple[str, ...]] = ("compliance", "candidates")
     cost: ClassVar[str] = "1 to 5 CPU s of finite elements instead of about 0.5; 90 candidates a pair"

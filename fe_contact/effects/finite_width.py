@@ -15,6 +15,7 @@ class FiniteWidth(Effect):
     """Compliance of the free ends under even loads, from a coarse solid, added to that of plane strain."""
 
     name: ClassVar[str] = "finite_width"
+    brings: ClassVar[str] = "finite_width"
     needs: ClassVar[tuple[str, ...]] = ("position",)
     adds: ClassVar[tuple[str, ...]] = ("compliance",)
     cost: ClassVar[str] = "0.2 to 0.5 CPU s of finite elements for two gears; no more candidates"

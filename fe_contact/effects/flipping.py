@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
-from fe_contact.effects.face_load_distribution import FaceLoadDistribution
-from fe_contact.effects.finite_width import FiniteWidth
+from fe_contact.effects.effect import Effect, named
 
 
-def flipped(decided: Mapping[str, str], name: str, choice: str) -> dict[str, str]:
+def flipped(registry: Sequence[Effect], decided: Mapping[str, str], name: str, choice: str) -> dict[str, str]:
     """Return the choices with `name` on or off.
 
     The plane that stands in for three dimensions is corrected for its finite width where it can be, and three
@@ -16,13 +15,15 @@ def flipped(decided: Mapping[str, str], name: str, choice: str) -> dict[str, str
 
     Parameters
     ----------
+    registry : sequence of Effect
     decided : mapping of str to str
         Every effect "on" or "off".
     name, choice : str
     """
     choices = {**decided, name: choice}
-    if name == FaceLoadDistribution.name:
-        choices[FiniteWidth.name] = "auto" if choice == "off" else "off"
-    if name == FiniteWidth.name and choice == "on":
-        choices[FaceLoadDistribution.name] = "off"
+    face, width = named(registry, "across_face"), named(registry, "finite_width")
+    if name == face:
+        choices[width] = "auto" if choice == "off" else "off"
+    if name == width and choice == "on":
+        choices[face] = "off"
     return choices

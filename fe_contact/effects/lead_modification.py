@@ -15,6 +15,7 @@ class LeadModification(Effect):
     """Designed deviations of either flank that differ over its face."""
 
     name: ClassVar[str] = "lead_modification"
+    brings: ClassVar[str] = "face"
     needs: ClassVar[tuple[str, ...]] = ("face position",)
     adds: ClassVar[tuple[str, ...]] = ("gap",)
     cost: ClassVar[str] = "none beside the three-dimensional model; twist: a search for touching points"

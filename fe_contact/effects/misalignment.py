@@ -36,6 +36,7 @@ class Misalignment(Effect):
     """Contributes the gap of the scene's single misalignment value; the table runs over its axis."""
 
     name: ClassVar[str] = "misalignment"
+    brings: ClassVar[str] = "misalignment"
     needs: ClassVar[tuple[str, ...]] = ("face position",)
     adds: ClassVar[tuple[str, ...]] = ("gap", "table axis")
     cost: ClassVar[str] = "one more contact sweep per value; no finite-element work"

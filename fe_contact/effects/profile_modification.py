@@ -15,6 +15,7 @@ class ProfileModification(Effect):
     """Designed deviations of either flank from the involute."""
 
     name: ClassVar[str] = "profile_modification"
+    brings: ClassVar[str] = "profile"
     needs: ClassVar[tuple[str, ...]] = ("position",)
     adds: ClassVar[tuple[str, ...]] = ("gap",)
     cost: ClassVar[str] = "a search for the touching point of every candidate; no finite-element work"

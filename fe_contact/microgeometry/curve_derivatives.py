@@ -15,7 +15,7 @@ import numpy as np
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.request.request import Checked
 from fe_contact.contact import CarryingStrips, ContactSolution, adjoint
-from fe_contact.effects.misalignment import Misalignment, MisalignmentGap
+from fe_contact.effects.misalignment import MisalignmentGap
 from fe_contact.effects.modification_gap import ModificationGap
 from fe_contact.errors import InputError, SolveError
 from fe_contact.flank.modification import UNMODIFIED
@@ -189,9 +189,10 @@ def _acts(name: str, checked: Checked) -> bool:
     """Whether a figure has an effect in the model of the bodies."""
     if name in (TORQUE, CENTER_DISTANCE):
         return True
-    effect = Misalignment.name if name == MISALIGNMENT else effect_of(name)
+    request = checked.request
+    effect = request.named(name) or effect_of(name, request.registry)
     across = name == MISALIGNMENT or name.partition(".")[2] in ACROSS_FACE
-    return checked.request.choices.get(effect) != "off" and (checked.model.across_face or not across)
+    return request.choices.get(effect) != "off" and (checked.model.across_face or not across)
 
 
 def _check_name(name: str, pair: ParallelAxes, checked: Checked) -> None:

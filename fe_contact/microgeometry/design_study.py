@@ -15,7 +15,6 @@ from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_asked, check_request
 from fe_contact.checks import increasing, integer, within
-from fe_contact.effects.misalignment import Misalignment
 from fe_contact.errors import InputError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.evaluator import Evaluator
@@ -150,9 +149,10 @@ def _on_one_mesh(checked: Checked, cache: Path | None) -> Decided:
 
 def _refuse_off(checked: Checked, varied: Mapping[str, float], scatter: Scatter) -> None:
     """Refuse to vary what an effect that is off would hide."""
-    shown = {name: effect_of(name) for name in (*varied, *scatter.modification)}
+    request = checked.request
+    shown = {name: effect_of(name, request.registry) for name in (*varied, *scatter.modification)}
     if scatter.misalignment:
-        shown[MISALIGNMENT] = Misalignment.name
+        shown[MISALIGNMENT] = request.named(MISALIGNMENT)
     for name, effect in shown.items():
         if checked.decided[effect] == "off":
             bound = f'"on" or "auto" where {name} is varied'

@@ -8,8 +8,7 @@ from functools import reduce
 
 from bounds import Direction, Kind, SiNote, Text, above, at_least
 from fe_contact.checks import finite
-from fe_contact.effects.lead_modification import LeadModification
-from fe_contact.effects.profile_modification import ProfileModification
+from fe_contact.effects import Effect, named
 from fe_contact.errors import InputError
 from fe_contact.flank.modification import FLANK_FIELDS, fields_of
 from fe_contact.geometry import ParallelAxes
@@ -88,10 +87,9 @@ def gear_and_quantity(field: str, name: str) -> tuple[str, str]:
     return gear, quantity
 
 
-def effect_of(name: str) -> str:
+def effect_of(name: str, registry: Sequence[Effect]) -> str:
     """Return the effect by which a figure of a modification acts."""
-    across = name.partition(".")[2] in ACROSS_FACE
-    return LeadModification.name if across else ProfileModification.name
+    return named(registry, "face" if name.partition(".")[2] in ACROSS_FACE else "profile")
 
 
 def check_variables(pair: ParallelAxes, variables: Sequence[DesignVariable]) -> None:

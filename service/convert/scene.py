@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from dynamics.bodies import AngleLaw, GearBody, Inertia, SpeedCurve, TimeLaw, hollow_cylinder
+from dynamics.effects.mechanism_of import mechanism_of
 from dynamics.forces import (
     CoastFlank,
     GearMesh,
@@ -16,7 +17,7 @@ from dynamics.forces import (
 )
 from dynamics.joints import Coupling, FreeRotation, Housing, ImposedRotation
 from dynamics.mechanism import with_planets
-from dynamics.mechanism.motion_check import check_load_flow, check_motion
+from dynamics.mechanism.motion_check import check_motion
 from dynamics.scene import Integration, Outputs, Scene
 from fe_contact.ste import PairFacts, SteDatabase
 from service.convert.bearings import (
@@ -89,7 +90,7 @@ def _moving(scene: SceneInput, facts: Mapping[str, PairFacts], tables: Mapping[s
         check_motion(one_of_each)
     whole = _with_all_planets(scene, one_of_each)
     with named(""):
-        check_load_flow(whole)
+        mechanism_of(whole)
     return whole
 
 

@@ -14,9 +14,7 @@ from fe_contact.analysis.pairs.operating_points import OperatingPoint, Operating
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.tables.solved_table import SolvedTable
 from fe_contact.contact import ContactProblem, ContactSolution
-from fe_contact.effects import FaceLoadDistribution, FiniteWidth
 from fe_contact.effects.across_face import across_face
-from fe_contact.effects.corner_contact import CornerContact
 from fe_contact.effects.influence import EstimatedInfluence, estimate_influence
 from fe_contact.effects.misalignment import MisalignmentGap
 from fe_contact.geometry.printed_data import backlash_rounding
@@ -119,7 +117,8 @@ def _tip_edges(run: SolvedRun, size: FloatArray) -> Iterator[Assumption]:
     is at most how far the deflection exceeds the gap, over `size` (L, places) in m.
     """
     request = run.checked.request
-    if run.checked.model.corner_contact or CornerContact.name in request.neglected:
+    effect = request.named("corner_contact")
+    if run.checked.model.corner_contact or effect in request.neglected:
         return
     assemble_edges(run.places, run.solved)
     pairs = zip(run.places.places, run.solved, strict=True)
@@ -129,9 +128,7 @@ def _tip_edges(run: SolvedRun, size: FloatArray) -> Iterator[Assumption]:
     reason = "the gaps at the tip edges stay open"
     if deepest > 0.0:
         reason = f"teeth bend {deepest:.2g} um beyond the gap at a tip edge"
-    yield Assumption(
-        CornerContact.name, "tip edges stay clear", change <= allowed(run).relative, change, reason
-    )
+    yield Assumption(effect, "tip edges stay clear", change <= allowed(run).relative, change, reason)
 
 
 def _neglected(run: SolvedTable) -> Iterator[Assumption]:
@@ -160,13 +157,13 @@ def _plane(run: SolvedRun) -> Iterator[Assumption]:
         return
     reasons = across_face(request.scene)
     reason = "; ".join(reasons) if reasons else "nothing in the scene acts across it"
-    name = FaceLoadDistribution.name
-    yield Assumption(name, "load even over the face", not reasons, float("nan"), reason)
+    face, width = request.model_effects
+    yield Assumption(face, "load even over the face", not reasons, float("nan"), reason)
     missing = left_out(run.places.places[0].contact.pair, run.plan.discretization)
     if missing:
         reason = f"the finite width changes about {100 * missing:.2g} % of the mean"
         holds = missing <= allowed(run).relative
-        yield Assumption(FiniteWidth.name, "plane strain stands for the whole face", holds, missing, reason)
+        yield Assumption(width, "plane strain stands for the whole face", holds, missing, reason)
 
 
 def _coast_flanks(run: SolvedRun) -> Iterator[Assumption]:

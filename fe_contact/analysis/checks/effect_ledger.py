@@ -120,9 +120,10 @@ def toggled(checked: Checked, name: str, choice: str) -> Checked:
         The model cannot be had, as a plane with what acts across the face.
     """
     request = checked.request
-    choices = flipped(checked.decided, name, choice)
+    choices = flipped(request.registry, checked.decided, name, choice)
+    face, _ = request.model_effects
     # choices of every effect are explicit now, so that an explicit model has no say about them any more
-    plane_stress = request.options.model == "plane_stress" and choices["face_load_distribution"] == "off"
+    plane_stress = request.options.model == "plane_stress" and choices[face] == "off"
     options = replace(request.options, model="plane_stress" if plane_stress else "auto", effects=choices)
     neglected = {other: reason for other, reason in request.neglected.items() if other != name}
     return check_asked(replace(request, options=options, neglected=neglected, turned_on={}), spare=False)

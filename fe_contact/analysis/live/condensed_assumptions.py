@@ -9,7 +9,6 @@ from fe_contact.analysis.checks.assumptions import Assumption, SolvedRun, check_
 from fe_contact.analysis.pairs.operating_points import OperatingPoints
 from fe_contact.analysis.request.request import Checked
 from fe_contact.contact import ContactProblem, ContactSolution
-from fe_contact.effects.corner_contact import CornerContact
 from fe_contact.planning import Plan
 
 
@@ -44,7 +43,8 @@ def _edges(run: SolvedRun) -> Iterator[Assumption]:
     """Without corner contact: edges would have to be laid out, which assembles another compliance."""
     if not run.checked.model.corner_contact:
         reason = "not checked: corner contact is switched off by the case"
-        yield Assumption(CornerContact.name, "tip edges stay clear", None, float("nan"), reason)
+        effect = run.checked.request.named("corner_contact")
+        yield Assumption(effect, "tip edges stay clear", None, float("nan"), reason)
 
 
 def _neglected(neglected: Mapping[str, str]) -> Iterator[Assumption]:

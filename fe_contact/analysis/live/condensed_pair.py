@@ -27,7 +27,6 @@ from fe_contact.analysis.request.request_check import check_asked
 from fe_contact.analysis.tables.position_nodes import PositionNodes, unmeasured_nodes
 from fe_contact.analysis.tables.solved_table import assembled_table
 from fe_contact.contact import ContactProblem, ContactSolution
-from fe_contact.effects.corner_contact import CornerContact
 from fe_contact.errors import InputError
 from fe_contact.geometry import FlankModification, ParallelAxes
 from fe_contact.options import TableAxes
@@ -183,10 +182,11 @@ class CondensedPair:
     def _checked(self, pair: ParallelAxes, axes: TableAxes) -> Checked:
         """Compose the model of other flanks on the bodies there are."""
         request = self.checked.request
-        choice = request.options.effects.get(CornerContact.name, "auto")
+        name = request.named("corner_contact")
+        choice = request.options.effects.get(name, "auto")
         # always on: what a tip edge does is then in every curve, and one compliance serves them all
         corners = "on" if choice == "auto" else choice
-        effects = {**request.options.effects, CornerContact.name: corners}
+        effects = {**request.options.effects, name: corners}
         return check_asked(
             replace(
                 request,

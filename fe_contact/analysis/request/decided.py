@@ -7,7 +7,6 @@ from pathlib import Path
 
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.ripple import expected_curves
-from fe_contact.effects import FaceLoadDistribution, FiniteWidth
 from fe_contact.planning import (
     FaceDiscretization,
     MeshChoice,
@@ -21,9 +20,6 @@ from fe_contact.planning import (
 )
 from fe_contact.planning.effort import effort
 from fe_contact.types import Json
-
-FACE, WIDTH = FaceLoadDistribution.name, FiniteWidth.name
-"""The effects that tell the models apart."""
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from fe_contact.analysis.request.decided import FACE, WIDTH, Decided, model_name
+from fe_contact.analysis.request.decided import Decided, model_name
 from fe_contact.analysis.request.request import Checked, Request
 from fe_contact.analysis.request.request_check import check_asked
 from fe_contact.analysis.request.ripple import expected_curves
@@ -19,7 +19,6 @@ from fe_contact.effects.influence import estimate_influence
 from fe_contact.options import LEVELS, AnalysisOptions
 from fe_contact.planning import ExpectedCurves, MeshChoice, chosen_mesh, make_plan
 
-_TELL = (FACE, WIDTH)
 WIDTH_SHARE = 0.8
 """Part of the tolerance up to which the finite width may be estimated: estimates of its change of
 peak-to-peak read 0.8 of what is measured in the median (docs/effects/influence.md)."""
@@ -111,12 +110,13 @@ def _wishes(checked: Checked) -> bool:
 def alternatives(checked: Checked) -> list[Checked]:
     """Return the request with every model that may stand in for its own; itself where it is bound."""
     request = checked.request
-    chosen = {name for name in _TELL if request.asked_choices.get(name, "auto") != "auto"}
-    decided = set(_TELL) & {*request.neglected, *request.turned_on}
+    face, width = request.model_effects
+    chosen = {name for name in request.model_effects if request.asked_choices.get(name, "auto") != "auto"}
+    decided = set(request.model_effects) & {*request.neglected, *request.turned_on}
     if not _wishes(checked) or chosen or decided or checked.model.across_face:
         return [checked]
-    plain = replace(request, neglected={**request.neglected, WIDTH: "left out"})
-    solid = replace(request, turned_on={**request.turned_on, FACE: "taken"})
+    plain = replace(request, neglected={**request.neglected, width: "left out"})
+    solid = replace(request, turned_on={**request.turned_on, face: "taken"})
     flat = [_again(plain)] if _width_is_small(checked) else []
     return [*flat, checked, _again(solid)]
 
@@ -126,12 +126,13 @@ def next_model(checked: Checked) -> Decided | None:
 
     None where there is none, or where the caller chose the model or one of the effects that tell it.
     """
-    request = checked.request
-    if checked.model.across_face or any(request.asked_choices.get(name, "auto") != "auto" for name in _TELL):
+    request, tell = checked.request, checked.request.model_effects
+    if checked.model.across_face or any(request.asked_choices.get(name, "auto") != "auto" for name in tell):
         return None
-    neglected = {name: reason for name, reason in request.neglected.items() if name not in _TELL}
-    kept = {name: reason for name, reason in request.turned_on.items() if name not in _TELL}
-    effects = (WIDTH, FACE) if WIDTH in request.neglected else (FACE,)
+    neglected = {name: reason for name, reason in request.neglected.items() if name not in tell}
+    kept = {name: reason for name, reason in request.turned_on.items() if name not in tell}
+    face, width = tell
+    effects = (width, face) if width in request.neglected else (face,)
     models = [
         _again(replace(request, neglected=neglected, turned_on={**kept, name: "taken"})) for name in effects
     ]
@@ -149,7 +150,8 @@ def _width_is_small(checked: Checked) -> bool:
     tolerance = checked.request.options.tolerance
     if tolerance is None:
         return True
-    influence = estimate_influence(*checked.assessing(WIDTH), WIDTH, tolerance.least_scale)
+    _, width = checked.request.model_effects
+    influence = estimate_influence(*checked.assessing(width), width, tolerance.least_scale)
     return influence is not None and influence.largest <= WIDTH_SHARE * tolerance.relative
 
 
@@ -186,7 +188,7 @@ def _said(choice: tuple[Checked, MeshChoice]) -> tuple[Checked, MeshChoice]:
     request, error = checked.request, mesh.option.error
     parts = f"{100.0 * error.total:.2g} %, of which the model {100.0 * error.model:.2g} %"
     neglected, turned_on = (
-        {name: _reason(name, text, parts) for name, text in overrides.items()}
+        {name: _reason(name in request.model_effects, text, parts) for name, text in overrides.items()}
         for overrides in (request.neglected, request.turned_on)
     )
     if (neglected, turned_on) == (dict(request.neglected), dict(request.turned_on)):
@@ -194,9 +196,9 @@ def _said(choice: tuple[Checked, MeshChoice]) -> tuple[Checked, MeshChoice]:
     return _again(replace(request, neglected=neglected, turned_on=turned_on)), mesh
 
 
-def _reason(name: str, text: str, parts: str) -> str:
-    """Say why one of the two effects was turned here; reasons of others stay."""
-    mine = name in _TELL and text in ("taken", "left out")
+def _reason(tells: bool, text: str, parts: str) -> str:
+    """Say why an effect that tells the models apart was turned here; reasons of others stay."""
+    mine = tells and text in ("taken", "left out")
     return f"{text} for the asked accuracy: expected error {parts}" if mine else text
 
 

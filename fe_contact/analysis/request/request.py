@@ -12,10 +12,9 @@ from fe_contact.effects import (
     EFFECTS,
     ContactScene,
     Effect,
-    FaceLoadDistribution,
-    FiniteWidth,
     LedgerEntry,
     compose,
+    named,
 )
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, TableAxes
@@ -94,14 +93,24 @@ class Request:
             scene = scene.effect(name).without(scene) or scene
         return scene
 
+    def named(self, brings: str) -> str:
+        """Return the name of the effect that brings something; empty where there is none."""
+        return named(self.registry, brings)
+
+    @property
+    def model_effects(self) -> tuple[str, str]:
+        """Names of the effects that tell the models apart: the face, and the finite width of a plane."""
+        return self.named("across_face"), self.named("finite_width")
+
     @property
     def asked_choices(self) -> dict[str, str]:
         """Choice of each effect; an explicit model decides about the face and its finite width."""
-        face = {"3d": "on", "plane_strain": "off", "plane_stress": "off"}.get(self.options.model)
-        if face is not None:
-            return dict(self.options.effects) | {FaceLoadDistribution.name: face, FiniteWidth.name: "off"}
-        if self.options.effects.get(FaceLoadDistribution.name) == "on":
-            return dict(self.options.effects) | {FiniteWidth.name: "off"}
+        face, width = self.model_effects
+        chosen = {"3d": "on", "plane_strain": "off", "plane_stress": "off"}.get(self.options.model)
+        if chosen is not None:
+            return dict(self.options.effects) | {face: chosen, width: "off"}
+        if self.options.effects.get(face) == "on":
+            return dict(self.options.effects) | {width: "off"}
         return dict(self.options.effects)
 
     @property

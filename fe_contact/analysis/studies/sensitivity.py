@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fe_contact.analysis.analyze import ste_database
-from fe_contact.effects.corner_contact import CornerContact
+from fe_contact.effects import EFFECTS, named
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.ste import SteDatabase
@@ -87,7 +87,7 @@ def study_sensitivity(
 
 def _with_corners(options: AnalysisOptions, choice: str) -> AnalysisOptions:
     """Return the options with corner contact on or off."""
-    return replace(options, effects={**options.effects, CornerContact.name: choice})
+    return replace(options, effects={**options.effects, named(EFFECTS, "corner_contact"): choice})
 
 
 def _curves(

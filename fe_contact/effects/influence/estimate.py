@@ -8,9 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fe_contact.effects.composer import compose
-from fe_contact.effects.effect import ContactScene, Effect
-from fe_contact.effects.face_load_distribution import FaceLoadDistribution
-from fe_contact.effects.finite_width import FiniteWidth
+from fe_contact.effects.effect import ContactScene, Effect, named
 from fe_contact.effects.flipping import flipped
 from fe_contact.effects.influence.slice_model import EstimatedCurve, Springs
 from fe_contact.types import FloatArray
@@ -72,6 +70,8 @@ def estimate_influences(
     """Estimate several effects; parameters of `estimate_influence`."""
     known: dict[tuple[tuple[str, str], ...], list[EstimatedCurve]] = {}
     springs = Springs(scene.pair)
+    face, width = named(scene.registry, "across_face"), named(scene.registry, "finite_width")
+    uncorrected = decided.get(face) == "off" and decided.get(width) == "off"
 
     def curves(choices: Mapping[str, str]) -> list[EstimatedCurve]:
         key = tuple(sorted(choices.items()))
@@ -82,23 +82,22 @@ def estimate_influences(
     def influence_of(effect: Effect) -> EstimatedInfluence | None:
         if not effect.estimable(scene):
             return None
-        if effect.name == FaceLoadDistribution.name and _uncorrected(decided):
-            return influence_of(scene.effect(FiniteWidth.name))
-        if effect.name == FaceLoadDistribution.name or effect.called_for(scene).neutral:
+        if effect.name == face and uncorrected:
+            return influence_of(scene.effect(width))
+        if effect.name == face or effect.called_for(scene).neutral:
             # with nothing across the face the corrected plane stands in for three dimensions
             return _compared(curves(decided), curves(decided), least)
         with_it, without = (
-            curves(decided if decided[effect.name] == choice else flipped(decided, effect.name, choice))
+            curves(
+                decided
+                if decided[effect.name] == choice
+                else flipped(scene.registry, decided, effect.name, choice)
+            )
             for choice in ("on", "off")
         )
         return _compared(with_it, without, least)
 
     return {effect.name: influence_of(effect) for effect in scene.registry if effect.name in names}
-
-
-def _uncorrected(decided: Mapping[str, str]) -> bool:
-    """Whether a plane stands for the whole face without the correction for its finite width."""
-    return decided[FaceLoadDistribution.name] == "off" and decided.get(FiniteWidth.name) == "off"
 
 
 def _curves(scene: ContactScene, choices: Mapping[str, str], springs: Springs) -> list[EstimatedCurve]:

@@ -8,7 +8,6 @@ from fe_contact.analysis.database.compute_database import compute_database
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_asked
-from fe_contact.effects import FaceLoadDistribution, FiniteWidth
 from fe_contact.errors import InputError
 from fe_contact.options import Run
 from fe_contact.planning.discretization import PLANE_REFINEMENT
@@ -60,10 +59,10 @@ class FiniteElementFidelity:
     def as_computed(self, checked: Checked) -> Checked:
         """Return the request with this model and mesh; explicit choices of other effects stay."""
         request = checked.request
-        own = (FaceLoadDistribution.name, FiniteWidth.name)
+        own = face, width = request.model_effects
         effects = {name: choice for name, choice in request.options.effects.items() if name not in own}
         if self.model == "auto":
-            effects |= {FaceLoadDistribution.name: "off", FiniteWidth.name: "on"}
+            effects |= {face: "off", width: "on"}
         options = request.options.at_level(self.level)
         options = replace(options, model=self.model, effects=effects, receipt="full")
         return check_asked(replace(request, options=options))

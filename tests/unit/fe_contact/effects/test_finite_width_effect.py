@@ -10,7 +10,9 @@ from analysis_requests import table_request
 
 from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.analysis import check_request
-from fe_contact.effects import EFFECTS, ContactScene, FaceLoadDistribution, FiniteWidth
+from fe_contact.effects import EFFECTS, ContactScene
+from fe_contact.effects.face_load_distribution import FaceLoadDistribution
+from fe_contact.effects.finite_width import FiniteWidth
 from fe_contact.geometry.finite_width import finite_width_excess
 from fe_contact.material import Material
 from fe_contact.planning import make_plan

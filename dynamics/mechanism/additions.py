@@ -1,0 +1,30 @@
+"""What effects may add to a mechanism, by name: freedoms, laws, what follows the motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+COAST_FLANKS = "coast_flanks"
+BEARING_LAWS = "bearing_laws"
+"""Laws of bearings that are not linear; without them their tangents at the load."""
+SPEED_DEPENDENCE = "speed_dependence"
+"""Terms of the linear system that change with the speed."""
+LOAD_CENTROID = "load_centroid"
+MISALIGNMENT = "misalignment"
+CENTER_DISTANCE_CHANGE = "center_distance_change"
+
+
+@dataclass(frozen=True)
+class Additions:
+    """What the effects of a scene may add.
+
+    Attributes
+    ----------
+    possible : frozenset of str
+        Names of `FREEDOMS` and of this module that an effect adds which is not switched off.
+    requested : frozenset of str
+        Those of effects that are switched on.
+    """
+
+    possible: frozenset[str]
+    requested: frozenset[str]
