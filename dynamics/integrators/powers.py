@@ -63,15 +63,22 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
 
 @inner
 def _by_frame_speed(system: SystemArrays, work: Workspace, e: int) -> float:
-    """Return what a changing speed W of a frame stores in the load l W^2 of element `e`, -2 W W' l y, W."""
+    """Return what changing speeds w of a shaft and W of its frame store in element `e`, W.
+
+    Of the term (c_3 w W + c_4 W^2) y^2/2 and of the load -W^2 l y.
+    """
     if system.elements.law[e] != ROTATING_FRAME:
         return 0.0
-    entry, row, gain = system.elements.entry[e], system.elements.first[e], 0.0
+    entry, row, spin_rate, frame_rate = system.elements.entry[e], system.elements.first[e], 0.0, 0.0
     for k in range(work.motion.shape[0]):
-        gain += system.elements.speed[e, 1, k] * work.motion[k, ACCELERATION]
-    load, y = system.elements.laws.rotating_frame.load, work.local.coordinate
+        spin_rate += system.elements.speed[e, 0, k] * work.motion[k, ACCELERATION]
+        frame_rate += system.elements.speed[e, 1, k] * work.motion[k, ACCELERATION]
+    spin, frame = work.local.speed[e, 0], work.local.speed[e, 1]
+    laws, y = system.elements.laws.rotating_frame, work.local.coordinate
+    c, load = laws.factor, laws.load
+    stiffer = c[entry, 2] * (spin_rate * frame + spin * frame_rate) + 2.0 * c[entry, 3] * frame * frame_rate
     pulled = load[entry, 0] * y[row] + load[entry, 1] * y[row + 1]
-    return float(-2.0 * work.local.speed[e, 1] * gain * pulled)
+    return float(0.5 * stiffer * (y[row] ** 2 + y[row + 1] ** 2) - 2.0 * frame * frame_rate * pulled)
 
 
 @inner

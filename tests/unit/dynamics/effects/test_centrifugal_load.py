@@ -11,10 +11,11 @@ from planetary_scenes import driven_scene, planetary_scene, published_set
 
 from dynamics.assembly.assemble import assemble
 from dynamics.bodies import Inertia, Shaft, TimeLaw
-from dynamics.integrators import static_equilibrium
+from dynamics.integrators import integrate, static_equilibrium
 from dynamics.joints import FreeRotation, ImposedRotation, PlanetBearing
 from dynamics.motion.observation import local_state
-from dynamics.scene import Outputs
+from dynamics.results import EnergyAudit
+from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate
 
 MASS, STIFFNESS, SPEED = 2.0, 1e7, 300.0
@@ -96,6 +97,20 @@ def test_the_load_grows_with_the_square_of_the_speed_in_a_run_up():
     exact = MASS * np.hypot(*ARM) * rising(result.time) ** 2
     np.testing.assert_allclose((OUTWARDS @ force)[late], exact[late], rtol=2e-2)
     assert abs(result.energy.residual) < 1e-9 * abs(result.energy.stored_bushings)
+
+
+@pytest.mark.parametrize("load", ["off", "on"])
+def test_the_audit_closes_where_a_carrier_with_gyroscopic_terms_speeds_up(load):
+    """The centripetal term stores -m W^2 u^2/2 in a mass that is already away from its place."""
+    scene = turntable(gyroscopic="on", centrifugal_load=load, lateral="on", backlash="off")
+    rising = TimeLaw.ramp(0.0, SPEED, 0.05)
+    drives = (scene.drives[0], replace(scene.drives[1], speed=rising))
+    system = assemble(replace(scene, drives=drives, duration=0.05))
+    start, velocity = static_equilibrium(system), np.zeros(len(system.freedoms.name))
+    velocity[system.freedoms.name.index("planet.x")] = 0.1
+    run = integrate(system, start, Integration(tolerance=1e-11), velocity=velocity)
+    audit = EnergyAudit.from_arrays(run.work, run.stored)
+    assert abs(audit.residual) < 1e-7 * 0.5 * MASS * 0.1**2
 
 
 def test_it_is_on_where_it_is_a_hundredth_of_what_meshes_push():
