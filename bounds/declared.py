@@ -32,6 +32,11 @@ class Kind(StrEnum):
     """A table of its own."""
     STIFFNESS = auto()
     """A force, traction or stress per displacement or strain."""
+    DAMPING = auto()
+    """A force or moment per rate."""
+    INERTIA = auto()
+    """A mass, a density, a moment of inertia."""
+    SPEED = auto()
     RATIO = auto()
 
 
@@ -63,6 +68,8 @@ class Declared:
         A usual value, in SI.
     along : Direction
         Directions along which it acts.
+    written : str
+        Symbol of the unit in which it is usually written, where that is not the usual one of its SI unit.
     """
 
     kind: Kind
@@ -71,6 +78,7 @@ class Declared:
     description: str
     example: Any = None
     along: Direction = Direction.NONE
+    written: str = ""
 
 
 def declared(default: Any, declaration: Declared) -> Any:

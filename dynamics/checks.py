@@ -17,6 +17,7 @@ integer = _CHECKS.integer
 one_of = _CHECKS.one_of
 increasing = _CHECKS.increasing
 chosen = _CHECKS.chosen
+declared_fields = _CHECKS.declared_fields
 
 
 def distinct(field: str, names: Sequence[str]) -> None:

@@ -14,19 +14,22 @@ from bounds import Choice
 from service.convert.vocabulary import DECLARED
 from service.schemas.declared import Figure, figures
 
-KINDS = {kind.__name__: kind for kind in DECLARED}
-TABLE = re.compile(r"(<!-- fields of (\w+) -->\n).*?(<!-- end of fields -->)", re.DOTALL)
+KINDS = {f"{kind.__module__.partition('.')[0]}.{kind.__name__}": kind for kind in DECLARED}
+TABLE = re.compile(r"(<!-- fields of ([\w.]+) -->\n)(.*?)(<!-- end of fields -->)", re.DOTALL)
 HEAD = "| field | meaning | accepted | default |\n|---|---|---|---|\n"
 
 
 def page(text: str) -> str:
     """Return the page with its tables anew."""
-    return TABLE.sub(lambda found: f"{found[1]}{table(KINDS[found[2]])}{found[3]}", text)
+    return TABLE.sub(lambda found: f"{found[1]}{table(KINDS[found[2]], found[3])}{found[4]}", text)
 
 
-def table(kind: type) -> str:
-    """Return the table of the declared fields of a dataclass."""
-    return HEAD + "".join(f"{row(figure)}\n" for figure in figures(kind))
+def table(kind: type, before: str = "") -> str:
+    """Return the table of the declared fields of a dataclass, after the rows of others that it had before."""
+    own = {f"| `{figure.field}`" for figure in figures(kind)}
+    lines = before.splitlines(keepends=True)
+    others = [line for line in lines if line.startswith("| `") and line.partition(" | ")[0] not in own]
+    return HEAD + "".join((*others, *(f"{row(figure)}\n" for figure in figures(kind))))
 
 
 def row(figure: Figure) -> str:

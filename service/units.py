@@ -30,14 +30,29 @@ BY_SUFFIX: dict[str, Unit] = {
     "_rpm": Unit("rpm", RPM, "rad/s"),
 }
 
-_OF_SI = {"m": "_mm", "rad": "_deg", "Pa": "_gpa", "N/m": "_n_per_um", "N/m^3": "_n_per_mm3"}
-"""The unit of a declared field; depths are in um."""
+_OF_SI = {
+    "m": "_mm",
+    "rad": "_deg",
+    "rad/s": "_rpm",
+    "Pa": "_gpa",
+    "N/m": "_n_per_m",
+    "N/m^3": "_n_per_mm3",
+    "N s/m": "_n_s_per_m",
+    "N m/rad": "_n_m_per_rad",
+    "N m s/rad": "_n_m_s_per_rad",
+    "kg": "_kg",
+    "kg m^2": "_kg_m2",
+    "kg/m^3": "_kg_per_m3",
+}
+"""The ending of a declared field by its unit; depths are in um."""
 
 _IN_WORDS = ("_n_per_mm3", "_gpa", "_deg", "_rpm")
 
 
 def suffix_of(declaration: Declared) -> str:
     """Return how the boundary's name of a declared field ends."""
+    if declaration.written:
+        return next(suffix for suffix, unit in BY_SUFFIX.items() if unit.name == declaration.written)
     return "_um" if declaration.kind in DEPTHS else _OF_SI.get(declaration.unit, "")
 
 

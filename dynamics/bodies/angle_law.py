@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from dynamics.checks import finite, increasing
 from dynamics.errors import InputError
@@ -49,6 +48,8 @@ class AngleLaw:
 
     def polynomials(self) -> tuple[FloatArray, FloatArray]:
         """Return start times and ascending coefficients of the speed, as `TimeLaw.polynomials` does."""
+        from scipy.interpolate import CubicSpline  # noqa: PLC0415 (start-up time)
+
         time = np.asarray(self.time)
         spline = CubicSpline(time, np.asarray(self.angle))
         speed = spline.derivative()

@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import eigh
 
 from dynamics.checks import positive
 from dynamics.errors import InputError
@@ -55,6 +54,8 @@ def craig_bampton(
     InputError
         If the interface repeats freedoms or does not hold the body, or `highest` is not above zero.
     """
+    from scipy.linalg import eigh  # noqa: PLC0415 (start-up time)
+
     held = np.asarray(interface, dtype=np.int64)
     if np.unique(held).size != held.size:
         raise InputError("interface", held.tolist(), "without repeats")

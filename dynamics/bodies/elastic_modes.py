@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import eigh, null_space
 
 from dynamics.bodies.craig_bampton import ReducedBody, craig_bampton
 from dynamics.types import FloatArray, IntArray
@@ -102,6 +101,8 @@ def elastic_modes(
 
 def free_frequencies(mass: FloatArray, stiffness: FloatArray, rigid: int, held: int = -1) -> FloatArray:
     """Return the elastic natural frequencies of a whole family of `rigid` motions without strain, Hz."""
+    from scipy.linalg import eigh  # noqa: PLC0415 (start-up time)
+
     kept = np.delete(np.arange(mass.shape[0]), held) if held >= 0 else np.arange(mass.shape[0])
     own = np.ix_(kept, kept)
     square = eigh(stiffness[own], mass[own], eigvals_only=True)
@@ -134,6 +135,8 @@ def _split(
     mass: FloatArray, stiffness: FloatArray, rigid: FloatArray, held: int
 ) -> tuple[FloatArray, FloatArray]:
     """Squared circular frequencies and shapes of unit modal mass of the elastic motions."""
+    from scipy.linalg import eigh, null_space  # noqa: PLC0415 (start-up time)
+
     basis = np.delete(np.eye(mass.shape[0]), held, axis=1) if held >= 0 else null_space(rigid.T @ mass)
     if basis.shape[1] == 0:
         return np.zeros(0), basis

@@ -5,40 +5,29 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from bounds import SiNote
+from bounds import Declared, Kind, SiNote, between, described
 from dynamics.bodies.inertia import Inertia
-from dynamics.checks import finite, integer, positive, within
+from dynamics.checks import declared_fields, integer, positive, within
+
+_POSITION = Declared(
+    Kind.LENGTH, "m", between(-1000.0, 1000.0), "Mid-face along the shaft, from its left end", 0.1
+)
 
 
+@described
 @dataclass(frozen=True)
 class GearBody:
-    """An involute gear, rigid, concentric with its shaft.
+    """An involute gear, rigid, concentric with its `shaft`, its `name` unique among the gears.
 
-    Attributes
-    ----------
-    name : str
-        Unique among the gears.
-    shaft : str
-        The shaft that carries it.
-    position : float
-        Of mid-face along the shaft, m from the shaft's left end.
-    teeth : int
-        Number of teeth.
-    base_radius : float
-        m. Meshing gears have the same transverse base pitch ``2 pi base_radius / teeth``.
-    face_width : float
-        m.
-    base_helix_angle : float
-        rad; > 0: right hand, < 0: left hand, 0: spur.
-    inertia : Inertia
-        Of the gear alone, about its own center at mid-face.
-    internal : bool
-        True: a ring gear, its teeth point inwards. All numbers stay positive.
+    Meshing gears have the same transverse base pitch ``2 pi base_radius / teeth``; `base_radius` and
+    `face_width` in m. `base_helix_angle` in rad is > 0 for right hand, < 0 for left hand, 0 for spur.
+    `inertia` is that of the gear alone, about its own center at mid-face. The teeth of a ring gear
+    (`internal`) point inwards; all numbers stay positive.
     """
 
     name: str
     shaft: str
-    position: float
+    position: float = field(metadata={Declared: _POSITION})
     teeth: int
     base_radius: float
     face_width: float
@@ -47,7 +36,7 @@ class GearBody:
     internal: bool = False
 
     def __post_init__(self) -> None:
-        finite("position", self.position)
+        declared_fields(self)
         integer("teeth", self.teeth, 1, 100_000)
         positive("base_radius", self.base_radius)
         positive("face_width", self.face_width)

@@ -5,33 +5,39 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from bounds import below
+from bounds import Declared, Kind, below, between, declarations, declared, described
 from dynamics.bodies.steel import STEEL_DENSITY
 from dynamics.checks import not_negative, positive
 from dynamics.errors import InputError
 
+_MASS = Declared(Kind.INERTIA, "kg", between(0.0, 1e9), "Mass", 2.0)
+_POLAR = Declared(
+    Kind.INERTIA, "kg m^2", between(0.0, 1e12), "Moment of inertia about the axis of rotation", 4e-4
+)
+_TRANSVERSE = Declared(
+    Kind.INERTIA,
+    "kg m^2",
+    between(0.0, 1e12),
+    "Moment of inertia across the axis, through the center of mass",
+    7e-3,
+)
 
+
+@described
 @dataclass(frozen=True)
 class Inertia:
     """Inertia of a body of revolution about its own center of mass.
 
-    Attributes
-    ----------
-    mass : float
-        kg, >= 0.
-    polar : float
-        Moment of inertia about the axis of rotation, kg m^2, >= 0.
-    transverse : float
-        Moment of inertia about any axis across it, through the center of mass, kg m^2, >= 0.
+    Of several bodies together it may be above the upper bounds of one.
     """
 
-    mass: float = 0.0
-    polar: float = 0.0
-    transverse: float = 0.0
+    mass: float = declared(0.0, _MASS)
+    polar: float = declared(0.0, _POLAR)
+    transverse: float = declared(0.0, _TRANSVERSE)
 
     def __post_init__(self) -> None:
-        for name in ("mass", "polar", "transverse"):
-            not_negative(f"inertia.{name}", getattr(self, name))
+        for name in declarations(Inertia):
+            not_negative(name, getattr(self, name))
 
 
 def hollow_cylinder(

@@ -6,53 +6,46 @@ import math
 from dataclasses import dataclass, field
 from itertools import accumulate
 
-from bounds import Quantity, Text
+from bounds import Declared, Kind, Quantity, Text, between, declared, described, required, up_to
 from dynamics.bodies.inertia import Inertia, hollow_cylinder
 from dynamics.bodies.shaft_position import SAME_POSITION
 from dynamics.bodies.timoshenko_beam import BeamSection
-from dynamics.checks import finite, not_negative, positive
+from dynamics.checks import declared_fields, finite
 from dynamics.errors import InputError
 
-DEFAULT_DAMPING_RATIO = 0.005
+_LENGTH = Declared(Kind.LENGTH, "m", up_to(1000.0), "Length, from the left end towards +z", 0.2)
+_DAMPING = Declared(
+    Kind.RATIO,
+    "",
+    between(0.0, 1.0),
+    "Damping ratio of the material, in every elastic natural motion of the free shaft",
+    0.005,
+)
 
 
+@described
 @dataclass(frozen=True)
 class Shaft:
     """A shaft, its axis parallel to the fixed z axis.
 
-    Attributes
-    ----------
-    name : str
-        Unique among the shafts.
-    length : float
-        m, from the left end towards +z.
-    origin : tuple of three floats
-        The axis point at the left end, m, in the fixed frame (x, y, z).
-    frame : str or None
-        The carrier's shaft in whose rotating frame this shaft's origin and displacements are described: that
-        of all members of a planetary set (sun, ring, planets and the carrier itself, which names itself).
-        `origin` is then the position at t = 0. None: the fixed frame.
-    inertia : Inertia
-        Of the bare shaft, its center of mass at mid-length; the gears on it are added. Left out where
-        `sections` are given.
-    sections : tuple of BeamSection
-        From the left end, together as long as the shaft: for the effect ``"flexible_shafts"``, and for the
-        inertia. Empty: the shaft is rigid.
-    damping_ratio : float
-        Of the material: of every elastic natural motion of the free shaft.
+    Its `name` is unique among the shafts. `origin` is the axis point at the left end, m, in the fixed frame
+    (x, y, z). `frame` is the carrier's shaft in whose rotating frame origin and displacements are described:
+    that of all members of a planetary set (sun, ring, planets and the carrier itself, which names itself);
+    `origin` is then the position at t = 0. None: the fixed frame. `inertia` is that of the bare shaft, its
+    center of mass at mid-length; the gears on it are added. It is left out where `sections` are given: from
+    the left end, together as long as the shaft, for the effect ``"flexible_shafts"`` and for the inertia.
     """
 
     name: str
-    length: float
+    length: float = required(_LENGTH)
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
     inertia: Inertia = field(default_factory=Inertia)
     frame: str | None = None
     sections: tuple[BeamSection, ...] = ()
-    damping_ratio: float = DEFAULT_DAMPING_RATIO
+    damping_ratio: float = declared(0.005, _DAMPING)
 
     def __post_init__(self) -> None:
-        positive("length", self.length)
-        not_negative("damping_ratio", self.damping_ratio)
+        declared_fields(self)
         if self.sections:
             self._check_sections()
         for axis, value in zip("xyz", self.origin, strict=True):

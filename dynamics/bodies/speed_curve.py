@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from dynamics.checks import finite, increasing, positive
 from dynamics.errors import InputError
@@ -47,6 +46,8 @@ class SpeedCurve:
     @classmethod
     def table(cls, speed: Sequence[float], torque: Sequence[float]) -> SpeedCurve:
         """Return the curve through a table: no overshoot (Fritsch and Carlson), constant beyond the ends."""
+        from scipy.interpolate import PchipInterpolator  # noqa: PLC0415 (start-up time)
+
         speeds = increasing("speed", speed)
         if len(torque) != speeds.size or speeds.size < 2:
             raise InputError("torque", len(torque), f"as many values as speeds ({speeds.size}), at least 2")

@@ -9,42 +9,39 @@ from itertools import pairwise
 
 import numpy as np
 
-from bounds import Text, above, below, between
+from bounds import Declared, Kind, Text, above, below, between, declared, described, required, up_to
 from dynamics.bodies.shaft_position import SAME_POSITION, nearest_on, on_length
 from dynamics.bodies.steel import STEEL_DENSITY, STEEL_POISSON_RATIO, STEEL_YOUNGS_MODULUS
-from dynamics.checks import finite, not_negative, positive, within
+from dynamics.checks import declared_fields, finite
 from dynamics.errors import InputError
 from dynamics.types import FloatArray, IntArray
 
 PER_NODE = 6
 """Freedoms of a node: x, y, z, tilt_x, tilt_y, rotation about z."""
 
+_LENGTH = Declared(Kind.LENGTH, "m", up_to(1000.0), "Length", 0.08)
+_OUTER = Declared(Kind.LENGTH, "m", up_to(100.0), "Outer diameter", 0.04)
+_BORE = Declared(Kind.LENGTH, "m", between(0.0, 100.0), "Bore; 0: solid", 0.01)
+_YOUNG = Declared(Kind.STIFFNESS, "Pa", up_to(1e18), "Young's modulus", 210e9)
+_POISSON = Declared(Kind.RATIO, "", between(0.0, 0.499), "Poisson's ratio", 0.3)
+_DENSITY = Declared(Kind.INERTIA, "kg/m^3", up_to(1e6), "Density", 7850.0)
 
+
+@described
 @dataclass(frozen=True)
 class BeamSection:
-    """A cylindrical piece of a shaft.
+    """A cylindrical piece of a shaft, of steel unless its material is given."""
 
-    Attributes
-    ----------
-    length, outer_diameter, bore_diameter : float
-        m; bore 0: solid.
-    youngs_modulus, density : float
-        Pa, kg/m^3; steel unless given.
-    poisson_ratio : float
-    """
-
-    length: float
-    outer_diameter: float
-    bore_diameter: float = 0.0
-    youngs_modulus: float = STEEL_YOUNGS_MODULUS
-    poisson_ratio: float = STEEL_POISSON_RATIO
-    density: float = STEEL_DENSITY
+    length: float = required(_LENGTH)
+    outer_diameter: float = required(_OUTER)
+    bore_diameter: float = declared(0.0, _BORE)
+    youngs_modulus: float = declared(STEEL_YOUNGS_MODULUS, _YOUNG)
+    poissons_ratio: float = declared(STEEL_POISSON_RATIO, _POISSON)
+    density: float = declared(STEEL_DENSITY, _DENSITY)
 
     def __post_init__(self) -> None:
-        for name in ("length", "outer_diameter", "youngs_modulus", "density"):
-            positive(name, getattr(self, name))
-        within("poisson_ratio", self.poisson_ratio, 0.0, 0.499)
-        if not_negative("bore_diameter", self.bore_diameter) >= self.outer_diameter:
+        declared_fields(self)
+        if self.bore_diameter >= self.outer_diameter:
             bound = below(self.outer_diameter, "m", "the outer diameter")
             raise InputError("bore_diameter", self.bore_diameter, bound)
 
@@ -61,12 +58,12 @@ class BeamSection:
     @property
     def shear_modulus(self) -> float:
         """Pa."""
-        return self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
+        return self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
 
     @property
     def shear_coefficient(self) -> float:
         """Share of the area that carries shear: Cowper, J. Appl. Mech. 33 (1966) 335-340, hollow circle."""
-        nu, square = self.poisson_ratio, (self.bore_diameter / self.outer_diameter) ** 2
+        nu, square = self.poissons_ratio, (self.bore_diameter / self.outer_diameter) ** 2
         whole = (1.0 + square) ** 2
         return 6.0 * (1.0 + nu) * whole / ((7.0 + 6.0 * nu) * whole + (20.0 + 12.0 * nu) * square)
 

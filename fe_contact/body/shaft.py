@@ -18,7 +18,12 @@ _POSITION = Declared(
     0.06,
 )
 _STIFFNESS = Declared(
-    Kind.STIFFNESS, "N/m", up_to(1e15), "Radial stiffness of each bearing; left out: rigid", 4e8
+    Kind.STIFFNESS,
+    "N/m",
+    up_to(1e15),
+    "Radial stiffness of each bearing; left out: rigid",
+    4e8,
+    written="N/um",
 )
 
 

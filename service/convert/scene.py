@@ -27,6 +27,7 @@ from service.convert.bearings import (
     spring_curves_of,
 )
 from service.convert.case import boundary_errors
+from service.convert.declared import declared_part, in_si
 from service.convert.errors import named
 from service.convert.shafts import has_bent_shafts, shaft_of
 from service.convert.topology import Teeth, check_center_distances, teeth_of
@@ -35,7 +36,6 @@ from service.schemas.scene_bodies import (
     CouplingInput,
     GearBodyInput,
     HousingInput,
-    InertiaInput,
 )
 from service.schemas.scene_motion import DriveInput, FreeRotationInput, LoadTorqueInput, SpeedTorqueInput
 from service.units import DEGREE, MM, NM, RPM, UM
@@ -123,28 +123,22 @@ def _assembled(scene: SceneInput, facts: Mapping[str, PairFacts], meshes: tuple[
         )
 
 
-def _inertia(inertia: InertiaInput) -> Inertia:
-    """Inertia as given."""
-    return Inertia(inertia.mass_kg, inertia.polar_kg_m2, inertia.transverse_kg_m2)
-
-
 def _gear(index: int, gear: GearBodyInput, teeth: Teeth) -> GearBody:
     """Return a gear with the teeth of its mesh."""
     with named(f"gears[{index}]"):
-        if gear.inertia is None:
+        inertia = declared_part(Inertia, gear.inertia, "inertia")
+        if inertia is None:
             inertia = hollow_cylinder(teeth.pitch_diameter, teeth.face_width, gear.bore_diameter_mm * MM)
-        else:
-            inertia = _inertia(gear.inertia)
         return GearBody(
             name=gear.name,
             shaft=gear.shaft,
-            position=gear.position_mm * MM,
             teeth=teeth.teeth,
             base_radius=teeth.base_radius,
             face_width=teeth.face_width,
             base_helix_angle=teeth.base_helix_angle,
             inertia=inertia,
             internal=teeth.internal,
+            **in_si(GearBody, gear),
         )
 
 

@@ -6,12 +6,10 @@ from collections.abc import Mapping
 
 from dynamics.bodies import BeamSection, Inertia, Shaft
 from fe_contact.ste import SteDatabase
+from service.convert.declared import declared_part, in_si
 from service.convert.errors import named
-from service.schemas.scene_bodies import InertiaInput
-from service.schemas.scene_shafts import SectionInput, ShaftInput
+from service.schemas.scene_shafts import ShaftInput
 from service.units import MM
-
-GPA = 1e9
 
 
 def shaft_of(index: int, shaft: ShaftInput) -> Shaft:
@@ -20,19 +18,13 @@ def shaft_of(index: int, shaft: ShaftInput) -> Shaft:
     sections = _sections(index, shaft)
     with named(f"shafts[{index}]"):
         return Shaft(
-            shaft.name,
-            shaft.length_mm * MM,
-            (x * MM, y * MM, z * MM),
-            _inertia(shaft.inertia),
-            shaft.frame,
-            sections,
-            shaft.damping_ratio,
+            name=shaft.name,
+            origin=(x * MM, y * MM, z * MM),
+            inertia=declared_part(Inertia, shaft.inertia, "inertia") or Inertia(),
+            frame=shaft.frame,
+            sections=sections,
+            **in_si(Shaft, shaft),
         )
-
-
-def _inertia(part: InertiaInput | None) -> Inertia:
-    """Return the inertia of a rigid shaft."""
-    return Inertia() if part is None else Inertia(part.mass_kg, part.polar_kg_m2, part.transverse_kg_m2)
 
 
 def _sections(index: int, shaft: ShaftInput) -> tuple[BeamSection, ...]:
@@ -44,20 +36,9 @@ def _sections(index: int, shaft: ShaftInput) -> tuple[BeamSection, ...]:
     sections = []
     for number, part in enumerate(parts):
         with named(f"shafts[{index}].sections[{number}]"):
-            sections.append(_section(part, part.length_mm * (shaft.length_mm / together) * MM))
+            length = part.length_mm * (shaft.length_mm / together) * MM
+            sections.append(BeamSection(**in_si(BeamSection, part) | {"length": length}))
     return tuple(sections)
-
-
-def _section(section: SectionInput, length: float) -> BeamSection:
-    """Return a piece of the `length` (m)."""
-    return BeamSection(
-        length,
-        section.outer_diameter_mm * MM,
-        section.bore_diameter_mm * MM,
-        section.youngs_modulus_gpa * GPA,
-        section.poissons_ratio,
-        section.density_kg_per_m3,
-    )
 
 
 def has_bent_shafts(database: SteDatabase) -> bool:

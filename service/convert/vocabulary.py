@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from dynamics.bodies.gear_body import GearBody
+from dynamics.bodies.inertia import Inertia
+from dynamics.bodies.shaft import Shaft as TurningShaft
+from dynamics.bodies.timoshenko_beam import BeamSection
 from fe_contact.body.bore_seat import BoreSeat, Key
 from fe_contact.body.gear_blank import GearBlank
 from fe_contact.body.shaft import Shaft
@@ -30,7 +34,10 @@ _CASE = {
     "on_violation": "accuracy.on_violation",
 }
 
-DECLARED = (FlankModification, Material, GearBlank, Key, BoreSeat, Shaft)
+DECLARED = (
+    *(FlankModification, Material, GearBlank, Key, BoreSeat, Shaft),
+    *(GearBody, Inertia, TurningShaft, BeamSection),
+)
 """What declares its fields."""
 
 _LAST = {figure.name: figure.field for kind in DECLARED for figure in figures(kind)} | {
@@ -47,7 +54,6 @@ _LAST = {figure.name: figure.field for kind in DECLARED for figure in figures(ki
     "reference_diameter": "reference_diameter_mm",
     # scene
     "duration": "duration_s",
-    "outer_diameter": "diameter_mm",
     "base_radius": "base_radius_mm",
     "radial_stiffness": "radial_stiffness_n_per_m",
     "axial_stiffness": "axial_stiffness_n_per_m",
@@ -57,9 +63,6 @@ _LAST = {figure.name: figure.field for kind in DECLARED for figure in figures(ki
     "nominal_force": "nominal_force_n",
     "misalignment": "misalignment_um",
     "center_distance_change": "center_distance_change_mm",
-    "mass": "mass_kg",
-    "polar": "polar_kg_m2",
-    "transverse": "transverse_kg_m2",
     "torsional_stiffness": "torsional_stiffness_n_m_per_rad",
     "torsional_damping": "torsional_damping_n_m_s_per_rad",
     "initial_speed": "initial_speed_rpm",
@@ -74,7 +77,6 @@ _LAST = {figure.name: figure.field for kind in DECLARED for figure in figures(ki
     "largest_step": "largest_step_s",
     "radial_clearance": "radial_clearance_um",
     "backlash": "backlash_um",
-    "density": "density_kg_per_m3",
     # results
     "max_pressure": "max_pressure_gpa",
     "root_stress": "root_stress_gpa",

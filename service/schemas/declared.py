@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import MISSING, dataclass, fields
+from dataclasses import MISSING, dataclass, fields, replace
 from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import Field, create_model
@@ -73,7 +73,8 @@ class Figure:
     def with_unit(self, text: str) -> str:
         """Return words with the unit before the first semicolon."""
         head, semicolon, rest = text.partition(";")
-        return f"{head}, in {self.unit.name}{semicolon}{rest}" if self.unit.name else text
+        unit = self.unit.name or self.what.unit
+        return f"{head}, in {unit}{semicolon}{rest}" if unit else text
 
     def as_field(self) -> tuple[Any, Any]:
         """Return type and field of a model that has it with its default."""
@@ -97,9 +98,10 @@ def figures(kind: type[Any], *kinds: Kind) -> tuple[Figure, ...]:
     )
 
 
-def declared_in(kind: type[Any]) -> Fields:
-    """Return the declared numbers and names of a dataclass as fields of a model."""
-    return {figure.field: figure.as_field() for figure in figures(kind)}
+def declared_in(kind: type[Any], *, all_given: bool = False) -> Fields:
+    """Return the declared numbers and names of a dataclass as fields of a model; `all_given`: no defaults."""
+    own = (replace(each, default=MISSING) if all_given else each for each in figures(kind))
+    return {figure.field: figure.as_field() for figure in own}
 
 
 def with_fields(further: Fields) -> Callable[[type[Model]], type[Model]]:

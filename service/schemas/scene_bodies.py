@@ -7,28 +7,24 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, Strict, model_validator
 
+from dynamics.bodies.gear_body import GearBody
+from dynamics.bodies.inertia import Inertia
+from service.schemas.declared import declared_in, with_fields
 from service.schemas.model import BoundaryModel, refuse
 from service.schemas.scene_types import Coordinate, MatrixRows, Name, Number, Rows
 
 
+@with_fields(declared_in(Inertia, all_given=True))
 class InertiaInput(BoundaryModel):
     """Inertia of a body of revolution about its own center of mass."""
 
-    mass_kg: float = Field(ge=0.0, le=1e9, description="Mass in kg", examples=[2.0])
-    polar_kg_m2: float = Field(
-        ge=0.0, le=1e12, description="Moment of inertia about the axis of rotation in kg m^2", examples=[4e-4]
-    )
-    transverse_kg_m2: float = Field(
-        ge=0.0, le=1e12, description="Moment of inertia across the axis in kg m^2", examples=[7e-3]
-    )
 
-
+@with_fields(declared_in(GearBody))
 class GearBodyInput(BoundaryModel):
     """A gear on a shaft; its teeth, base radius, helix and face width come from the mesh it takes part in."""
 
     name: Name = Field(description="Name of the gear", examples=["pinion"])
     shaft: Name = Field(description="The shaft that carries it", examples=["input"])
-    position_mm: Coordinate = Field(description="Mid-face along the shaft in mm", examples=[100.0])
     bore_diameter_mm: float = Field(
         default=0.0,
         ge=0.0,

@@ -272,7 +272,10 @@ def test_a_table_in_a_list_is_told_both_ends_and_what_the_field_is() -> None:
     table["shafts"][0]["sections"][1]["length_mm"] = -1.0
     fault = refusal(table)
     assert fault is not None
-    assert (fault.bound, fault.suggestion) == ("above 0 and at most 1e+06", "Length in mm. For example 80.0.")
+    assert (fault.bound, fault.suggestion) == (
+        "above 0 and at most 1e+06",
+        "Length, in mm. For example 80.0.",
+    )
 
 
 def test_a_thin_web_is_told_its_bound_in_mm() -> None:

@@ -23,7 +23,7 @@ def shaft_of_table():
 
 def shaft_of_run():
     section = BeamSection(length=0.2, outer_diameter=0.03)
-    return in_si(section.youngs_modulus, section.poisson_ratio, section.density)
+    return in_si(section.youngs_modulus, section.poissons_ratio, section.density)
 
 
 def section_of_scene_file():

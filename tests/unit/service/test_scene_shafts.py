@@ -46,7 +46,7 @@ def test_sections_are_in_si_and_torques_act_at_their_places() -> None:
     assert [s.length for s in sections] == pytest.approx([0.06, 0.065, 0.055])
     assert [s.outer_diameter for s in sections] == pytest.approx([0.032, 0.045, 0.04])
     assert [s.bore_diameter for s in sections] == pytest.approx([0.0, 0.012, 0.0])
-    assert {(s.youngs_modulus, s.poisson_ratio, s.density) for s in sections} == {
+    assert {(s.youngs_modulus, s.poissons_ratio, s.density) for s in sections} == {
         (STEEL.youngs_modulus, STEEL.poissons_ratio, STEEL.density)
     }
     assert (found.drives[0].position, found.loads[0].position) == pytest.approx((0.0, 0.26))

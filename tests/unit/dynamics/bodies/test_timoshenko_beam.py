@@ -207,7 +207,7 @@ def test_what_is_no_beam_is_named():
     cases = {
         "length": lambda: BeamSection(0.0, 0.04),
         "bore_diameter": lambda: BeamSection(0.1, 0.04, 0.04),
-        "poisson_ratio": lambda: BeamSection(0.1, 0.04, poisson_ratio=0.5),
+        "poissons_ratio": lambda: BeamSection(0.1, 0.04, poissons_ratio=0.5),
         "sections": lambda: timoshenko_beam([]),
         "stations[0]": lambda: timoshenko_beam([STUBBY], stations=[0.4]),
         "longest": lambda: timoshenko_beam([STUBBY], longest=0.0),
