@@ -28,6 +28,8 @@ class Kind(StrEnum):
     ANGLE = auto()
     SHAPE = auto()
     """A law by its name."""
+    CHOICE = auto()
+    """One of several, by its name."""
     SURFACE = auto()
     """A table of its own."""
     STIFFNESS = auto()

@@ -6,12 +6,23 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bounds import above
-from dynamics.checks import finite, not_negative
+from bounds import Declared, Kind, above, between, declared, described, required
+from dynamics.checks import declared_fields
 from dynamics.errors import InputError
 from dynamics.joints.matrix import Matrix, check_matrix
 
+_STIFFNESS = Declared(Kind.STIFFNESS, "N m/rad", between(0.0, 1e15), "Torsional stiffness", 5e4)
+_DAMPING = Declared(Kind.DAMPING, "N m s/rad", between(0.0, 1e12), "Torsional damping", 5.0)
+_POSITION = Declared(
+    Kind.LENGTH,
+    "m",
+    between(-1000.0, 1000.0),
+    "Place along the first shaft, from its left end, for the matrices and for torsion of flexible shafts",
+    0.2,
+)
 
+
+@described
 @dataclass(frozen=True)
 class Coupling:
     """A massless spring and damper between a point of one shaft and the same point of another.
@@ -19,35 +30,23 @@ class Coupling:
     Both shafts turn at the same mean speed. The force on `second` is -K (motion of second - motion of first),
     with the motion (x, y, z, tilt_x, tilt_y, rotation) of both rigid shafts at the coupling.
 
-    Attributes
-    ----------
-    name : str
-        Unique among the couplings.
-    first, second : str
-        The shafts.
-    torsional_stiffness, torsional_damping : float
-        N m/rad, N m s/rad about the axis; >= 0.
-    position : float
-        Of the coupling along the first shaft, m from its left end; for the matrices.
-    stiffness, damping : 6 by 6 matrices or None
-        Added to the torsional ones: symmetric, positive semidefinite, in N, m, rad, s; for coaxial shafts. In
-        a carrier's frame, and between shafts of different frames, they must be the same in all directions
-        across the axis. Rates across frames are those seen in the fixed one, or in that of `first`.
+    The 6 by 6 matrices `stiffness` and `damping` are added to the torsional ones: symmetric, positive
+    semidefinite, in N, m, rad, s; for coaxial shafts. In a carrier's frame, and between shafts of different
+    frames, they must be the same in all directions across the axis. Rates across frames are those seen in the
+    fixed one, or in that of `first`.
     """
 
     name: str
     first: str
     second: str
-    torsional_stiffness: float
-    torsional_damping: float = 0.0
-    position: float = 0.0
+    torsional_stiffness: float = required(_STIFFNESS)
+    torsional_damping: float = declared(0.0, _DAMPING)
+    position: float = declared(0.0, _POSITION)
     stiffness: Matrix | None = None
     damping: Matrix | None = None
 
     def __post_init__(self) -> None:
-        not_negative("torsional_stiffness", self.torsional_stiffness)
-        not_negative("torsional_damping", self.torsional_damping)
-        finite("position", self.position)
+        declared_fields(self)
         for name in ("stiffness", "damping"):
             if getattr(self, name) is not None:
                 check_matrix(name, np.asarray(getattr(self, name), dtype=float), (6,))

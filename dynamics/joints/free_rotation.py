@@ -2,39 +2,46 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
+from bounds import Declared, Kind, between, declared, described, one_of
 from dynamics.bodies.time_law import TimeLaw
-from dynamics.checks import finite, one_of
+from dynamics.checks import declared_fields
 from dynamics.errors import InputError
 
+_FASTEST = 1e7 * math.pi / 30.0
+_SPEED = Declared(
+    Kind.SPEED,
+    "rad/s",
+    between(-_FASTEST, _FASTEST),
+    "Speed at the start, about the fixed +z axis; after that it turns as torques make it",
+    105.0,
+)
+_SENSE = Declared(
+    Kind.CHOICE,
+    "",
+    one_of(("+z", "-z")),
+    "Where it turns if it starts from rest; it sets the driving flanks",
+    "+z",
+)
 
+
+@described
 @dataclass(frozen=True)
 class FreeRotation:
     """A shaft that starts at a given speed and then turns as torques make it.
 
-    All shafts geared to it and to no drive turn freely with it, without limit.
-
-    Attributes
-    ----------
-    name : str
-        Unique among the free rotations.
-    shaft : str
-        Any one shaft of the train.
-    initial_speed : float
-        rad/s about the fixed +z axis.
-    sense : str
-        ``"+z"`` or ``"-z"``: where it will turn if the initial speed is 0; it sets the driving flanks.
+    All shafts geared to it and to no drive turn freely with it, without limit; `shaft` is any one of them.
     """
 
     name: str
     shaft: str
-    initial_speed: float = 0.0
-    sense: str = "+z"
+    initial_speed: float = declared(0.0, _SPEED)
+    sense: str = declared("+z", _SENSE)
 
     def __post_init__(self) -> None:
-        finite("initial_speed", self.initial_speed)
-        one_of("sense", self.sense, ("+z", "-z"))
+        declared_fields(self)
         if self.initial_speed * self.forward < 0.0:
             raise InputError("sense", self.sense, "that of the initial speed", "Turn one of them.")
 

@@ -4,45 +4,46 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from bounds import Declared, Kind, between, declared, described, up_to
 from dynamics.bodies.angle_law import AngleLaw
 from dynamics.bodies.time_law import TimeLaw
-from dynamics.checks import finite, not_negative, positive
+from dynamics.checks import declared_fields
+
+_STIFFNESS = Declared(
+    Kind.STIFFNESS,
+    "N m/rad",
+    up_to(1e15),
+    "Torsional spring to the imposed rotation, such as the support of a held ring gear; left out: rigid",
+    1e7,
+)
+_DAMPING = Declared(Kind.DAMPING, "N m s/rad", between(0.0, 1e12), "Damping beside that spring", 0.0)
+_POSITION = Declared(
+    Kind.LENGTH,
+    "m",
+    between(-1000.0, 1000.0),
+    "Where along a flexible shaft the motion is imposed, from its left end",
+    0.0,
+)
 
 
+@described
 @dataclass(frozen=True)
 class ImposedRotation:
     """A drive: a shaft turns by a given law, whatever torque that takes.
 
-    Attributes
-    ----------
-    name : str
-        Unique among the drives.
-    shaft : str
-        The driven shaft.
-    speed : TimeLaw or AngleLaw
-        rad/s about the fixed +z axis; 0: held. The angle is its exact integral from t = 0, where it is 0. An
-        `AngleLaw` gives it by the angle over time.
-    stiffness : float or None
-        N m/rad of a torsional spring between the imposed motion and the shaft, e.g. the torsional support
-        of a held ring gear. None: rigid.
-    damping : float
-        N m s/rad beside the spring.
-    position : float
-        Where along a flexible shaft the motion is imposed, m from its left end.
+    `speed` is in rad/s about the fixed +z axis; 0: held. The angle is its exact integral from t = 0, where it
+    is 0. An `AngleLaw` gives it by the angle over time.
     """
 
     name: str
     shaft: str
     speed: TimeLaw | AngleLaw
-    stiffness: float | None = None
-    damping: float = 0.0
-    position: float = 0.0
+    stiffness: float | None = declared(None, _STIFFNESS)
+    damping: float = declared(0.0, _DAMPING)
+    position: float = declared(0.0, _POSITION)
 
     def __post_init__(self) -> None:
-        if self.stiffness is not None:
-            positive("stiffness", self.stiffness, "Leave it out for a rigid drive.")
-        not_negative("damping", self.damping)
-        finite("position", self.position)
+        declared_fields(self)
 
     @property
     def rigid(self) -> bool:

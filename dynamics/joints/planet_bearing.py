@@ -4,13 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from dynamics.checks import finite
+from bounds import Declared, Kind, between, declared, described, required
+from dynamics.joints import seat
 from dynamics.joints.matrix import Matrix
-from dynamics.joints.seat import DEFAULT_DAMPING_RATIO, Seat
+
+_RADIAL = Declared(
+    Kind.SLOPE, "m", between(-1e-2, 1e-2), "Pin off its place, away from the carrier's axis", 0.0
+)
+_TANGENTIAL = Declared(Kind.SLOPE, "m", between(-1e-2, 1e-2), "Pin off its place, about +z", 20e-6)
 
 
+@described
 @dataclass(frozen=True)
-class PlanetBearing(Seat):
+class PlanetBearing(seat.Seat):
     """A linear bearing between a point of a planet's axis and the pin in the carrier.
 
     The pin moves with the carrier as a rigid body: u_pin = u_carrier + r_carrier x lever. The bearing pushes
@@ -18,45 +24,25 @@ class PlanetBearing(Seat):
     of the pin and its error. Matrices and preload count x away from the carrier's axis and y along
     z x (away), so that they are the same for all planets of a set.
 
-    Attributes
-    ----------
-    name : str
-        Unique among the planet bearings and bushings.
-    shaft : str
-        The planet's, its displacements described in the frame of `carrier`.
-    carrier : str
-        The carrier's shaft.
-    position : float
-        Along the planet's shaft, m from its left end.
-    radial_stiffness, axial_stiffness : float
-        N/m, >= 0; `radial_stiffness` across the axis in all directions.
-    radial_damping, axial_damping : float or None
-        N s/m. None: ``2 damping_ratio sqrt(stiffness * mass)`` with the planet's mass divided by
-        the number of its bearings.
-    damping_ratio : float
-        Used where a damping is None.
-    radial_error, tangential_error : float
-        m; how far the pin is off its nominal position: away from the carrier's axis, and along z x (away).
-    stiffness, damping, preload
-        As of a `Bushing`, in N, m, rad: tilt stiffness, cross terms; a pin that yields more in one direction.
+    Its `name` is unique among the planet bearings and bushings; `shaft` is the planet's, its displacements
+    described in the frame of `carrier`, the carrier's shaft. A damping that is None follows from the ratio
+    and the planet's mass divided by the number of its bearings. Matrices and `preload` are as of a `Bushing`.
     """
 
     name: str
     shaft: str
     carrier: str
-    position: float
-    radial_stiffness: float = 0.0
-    axial_stiffness: float = 0.0
-    radial_damping: float | None = None
-    axial_damping: float | None = None
-    damping_ratio: float = DEFAULT_DAMPING_RATIO
-    radial_error: float = 0.0
-    tangential_error: float = 0.0
+    position: float = required(seat.POSITION)
+    radial_stiffness: float = declared(0.0, seat.RADIAL_STIFFNESS)
+    axial_stiffness: float = declared(0.0, seat.AXIAL_STIFFNESS)
+    radial_damping: float | None = declared(None, seat.RADIAL_DAMPING)
+    axial_damping: float | None = declared(None, seat.AXIAL_DAMPING)
+    damping_ratio: float = declared(seat.DEFAULT_DAMPING_RATIO, seat.DAMPING_RATIO)
+    radial_error: float = declared(0.0, _RADIAL)
+    tangential_error: float = declared(0.0, _TANGENTIAL)
     stiffness: Matrix | None = None
     damping: Matrix | None = None
     preload: tuple[float, ...] | None = None
 
     def __post_init__(self) -> None:
-        for name in ("position", "radial_error", "tangential_error"):
-            finite(name, getattr(self, name))
         self.check_seat()

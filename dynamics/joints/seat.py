@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from dynamics.checks import finite, not_negative
+from bounds import Declared, Kind, between
+from dynamics.checks import declared_fields, finite
 from dynamics.errors import InputError
 from dynamics.joints.matrix import PRECISION, Matrix, check_matrix
 from dynamics.types import FloatArray
@@ -12,6 +13,27 @@ from dynamics.types import FloatArray
 DEFAULT_DAMPING_RATIO = 0.05
 SEAT = 5
 """Directions in which a bearing holds a shaft: x, y, z, tilt_x, tilt_y."""
+
+POSITION = Declared(
+    Kind.LENGTH, "m", between(-1000.0, 1000.0), "Place along the shaft, from its left end", 0.0
+)
+RADIAL_STIFFNESS = Declared(
+    Kind.STIFFNESS, "N/m", between(0.0, 1e15), "Radial stiffness; in all directions across the axis", 1e8
+)
+AXIAL_STIFFNESS = Declared(Kind.STIFFNESS, "N/m", between(0.0, 1e15), "Axial stiffness", 1e8)
+RADIAL_DAMPING = Declared(
+    Kind.DAMPING, "N s/m", between(0.0, 1e12), "Radial damping; left out: from damping_ratio", 1e3
+)
+AXIAL_DAMPING = Declared(
+    Kind.DAMPING, "N s/m", between(0.0, 1e12), "Axial damping; left out: from damping_ratio", 1e3
+)
+DAMPING_RATIO = Declared(
+    Kind.RATIO,
+    "",
+    between(0.0, 10.0),
+    "Damping ratio of the shaft bouncing on its bearings, where a damping is left out",
+    0.05,
+)
 
 
 class Seat:
@@ -34,11 +56,7 @@ class Seat:
 
     def check_seat(self) -> None:
         """Refuse what is no linear bearing."""
-        for name in ("radial_stiffness", "axial_stiffness", "damping_ratio"):
-            not_negative(name, getattr(self, name))
-        for name in ("radial_damping", "axial_damping"):
-            if getattr(self, name) is not None:
-                not_negative(name, getattr(self, name))
+        declared_fields(self)
         for name in ("stiffness", "damping"):
             if getattr(self, name) is not None:
                 _check_matrix(name, np.asarray(getattr(self, name), dtype=float))

@@ -6,10 +6,11 @@ from collections.abc import Iterator
 
 from dynamics.forces import RollingContact, SpringCurve
 from dynamics.joints import Bushing, PlanetBearing
+from service.convert.declared import in_si
 from service.convert.errors import named
 from service.schemas.scene import SceneInput
 from service.schemas.scene_bodies import BearingInput, BushingInput, PlanetBearingInput
-from service.units import MM, MRAD, UM
+from service.units import MRAD, UM
 
 
 def bushing_of(index: int, bushing: BushingInput) -> Bushing:
@@ -18,15 +19,10 @@ def bushing_of(index: int, bushing: BushingInput) -> Bushing:
         return Bushing(
             name=bushing.name,
             shaft=bushing.shaft,
-            position=bushing.position_mm * MM,
-            radial_stiffness=bushing.radial_stiffness_n_per_m,
-            axial_stiffness=bushing.axial_stiffness_n_per_m,
-            radial_damping=bushing.radial_damping_n_s_per_m,
-            axial_damping=bushing.axial_damping_n_s_per_m,
-            damping_ratio=bushing.damping_ratio,
             stiffness=bushing.stiffness_matrix,
             damping=bushing.damping_matrix,
             preload=_preload(bushing),
+            **in_si(Bushing, bushing),
         )
 
 
@@ -72,16 +68,9 @@ def planet_bearing_of(index: int, bearing: PlanetBearingInput) -> PlanetBearing:
             name=bearing.name,
             shaft=bearing.shaft,
             carrier=bearing.carrier,
-            position=bearing.position_mm * MM,
-            radial_stiffness=bearing.radial_stiffness_n_per_m,
-            axial_stiffness=bearing.axial_stiffness_n_per_m,
-            radial_damping=bearing.radial_damping_n_s_per_m,
-            axial_damping=bearing.axial_damping_n_s_per_m,
-            damping_ratio=bearing.damping_ratio,
-            radial_error=bearing.radial_error_um * UM,
-            tangential_error=bearing.tangential_error_um * UM,
             stiffness=bearing.stiffness_matrix,
             damping=bearing.damping_matrix,
+            **in_si(PlanetBearing, bearing),
         )
 
 

@@ -152,14 +152,12 @@ def _coupling(index: int, coupling: CouplingInput) -> Coupling:
     """Return a coupling."""
     with named(f"couplings[{index}]"):
         return Coupling(
-            coupling.name,
-            coupling.first,
-            coupling.second,
-            coupling.torsional_stiffness_n_m_per_rad,
-            coupling.torsional_damping_n_m_s_per_rad,
-            coupling.position_mm * MM,
-            coupling.stiffness_matrix,
-            coupling.damping_matrix,
+            name=coupling.name,
+            first=coupling.first,
+            second=coupling.second,
+            stiffness=coupling.stiffness_matrix,
+            damping=coupling.damping_matrix,
+            **in_si(Coupling, coupling),
         )
 
 
@@ -215,20 +213,13 @@ def _drive(index: int, drive: DriveInput) -> ImposedRotation:
             law = AngleLaw(drive.time_s, tuple(value * DEGREE for value in drive.angle_deg))
         else:
             law = TimeLaw(drive.time_s, tuple(v * RPM for v in drive.speed_rpm or ()), drive.course)
-        return ImposedRotation(
-            drive.name,
-            drive.shaft,
-            law,
-            drive.stiffness_n_m_per_rad,
-            drive.damping_n_m_s_per_rad,
-            drive.position_mm * MM,
-        )
+        return ImposedRotation(drive.name, drive.shaft, law, **in_si(ImposedRotation, drive))
 
 
 def _free_rotation(index: int, rotation: FreeRotationInput) -> FreeRotation:
     """Return a free rotation."""
     with named(f"free_rotations[{index}]"):
-        return FreeRotation(rotation.name, rotation.shaft, rotation.initial_speed_rpm * RPM, rotation.sense)
+        return FreeRotation(rotation.name, rotation.shaft, **in_si(FreeRotation, rotation))
 
 
 def _load(index: int, load: LoadTorqueInput) -> LoadTorque:

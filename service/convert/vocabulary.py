@@ -6,6 +6,11 @@ from dynamics.bodies.gear_body import GearBody
 from dynamics.bodies.inertia import Inertia
 from dynamics.bodies.shaft import Shaft as TurningShaft
 from dynamics.bodies.timoshenko_beam import BeamSection
+from dynamics.joints.bushing import Bushing
+from dynamics.joints.coupling import Coupling
+from dynamics.joints.free_rotation import FreeRotation
+from dynamics.joints.imposed_rotation import ImposedRotation
+from dynamics.joints.planet_bearing import PlanetBearing
 from fe_contact.body.bore_seat import BoreSeat, Key
 from fe_contact.body.gear_blank import GearBlank
 from fe_contact.body.shaft import Shaft
@@ -34,13 +39,23 @@ _CASE = {
     "on_violation": "accuracy.on_violation",
 }
 
-DECLARED = (
+_ANYWHERE = (
     *(FlankModification, Material, GearBlank, Key, BoreSeat, Shaft),
     *(GearBody, Inertia, TurningShaft, BeamSection),
+    *(Bushing, PlanetBearing, Coupling, FreeRotation),
 )
-"""What declares its fields."""
+"""What declares its fields, by names that mean the same in every table."""
+_OF_TABLE = {"drives": ImposedRotation}
+"""What declares fields whose names mean something else in other tables."""
+DECLARED = (*_ANYWHERE, *_OF_TABLE.values())
 
-_LAST = {figure.name: figure.field for kind in DECLARED for figure in figures(kind)} | {
+
+def _fields_of(*kinds: type) -> dict[str, str]:
+    """Return the boundary's names of declared fields."""
+    return {figure.name: figure.field for kind in kinds for figure in figures(kind)}
+
+
+_LAST = _fields_of(*_ANYWHERE) | {
     # gear
     "face_width": "face_width_mm",
     "bore_diameter": "bore_diameter_mm",
@@ -55,17 +70,10 @@ _LAST = {figure.name: figure.field for kind in DECLARED for figure in figures(ki
     # scene
     "duration": "duration_s",
     "base_radius": "base_radius_mm",
-    "radial_stiffness": "radial_stiffness_n_per_m",
-    "axial_stiffness": "axial_stiffness_n_per_m",
-    "radial_damping": "radial_damping_n_s_per_m",
-    "axial_damping": "axial_damping_n_s_per_m",
     "damping": "damping_n_s_per_m",
     "nominal_force": "nominal_force_n",
     "misalignment": "misalignment_um",
     "center_distance_change": "center_distance_change_mm",
-    "torsional_stiffness": "torsional_stiffness_n_m_per_rad",
-    "torsional_damping": "torsional_damping_n_m_s_per_rad",
-    "initial_speed": "initial_speed_rpm",
     "angles": "angles_deg",
     "fade": "speed_rpm",
     "speed": "speed_rpm",
@@ -107,6 +115,9 @@ def scene_field(name: str) -> str:
     """Return the scene file's name of a field of dynamics, e.g. ``bushings[0].radial_stiffness_n_per_m``."""
     parts = name.split(".")
     head, index = _split_index(parts[-1])
+    table = _OF_TABLE.get(_split_index(parts[0])[0])
+    if len(parts) == 2 and table and head in (own := _fields_of(table)):
+        return f"{parts[0]}.{own[head]}"
     if len(parts) == 1 and head == "duration":
         return "run.duration_s"
     if (

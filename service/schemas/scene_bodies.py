@@ -9,7 +9,10 @@ from pydantic import Field, Strict, model_validator
 
 from dynamics.bodies.gear_body import GearBody
 from dynamics.bodies.inertia import Inertia
-from service.schemas.declared import declared_in, with_fields
+from dynamics.joints.bushing import Bushing
+from dynamics.joints.coupling import Coupling
+from dynamics.joints.planet_bearing import PlanetBearing
+from service.schemas.declared import declared_in, figures, with_fields
 from service.schemas.model import BoundaryModel, refuse
 from service.schemas.scene_types import Coordinate, MatrixRows, Name, Number, Rows
 
@@ -127,32 +130,6 @@ class BearingInput(BoundaryModel):
 
     name: Name = Field(description="Name of the bushing", examples=["input left"])
     shaft: Name = Field(description="The shaft it carries", examples=["input"])
-    position_mm: Coordinate = Field(description="Place along the shaft in mm", examples=[0.0])
-    radial_stiffness_n_per_m: float = Field(
-        default=0.0,
-        ge=0.0,
-        le=1e15,
-        description="Radial stiffness in N/m, beside a stiffness_matrix if there is one",
-        examples=[1e8],
-    )
-    axial_stiffness_n_per_m: float = Field(
-        default=0.0, ge=0.0, le=1e15, description="Axial stiffness in N/m", examples=[1e8]
-    )
-    radial_damping_n_s_per_m: float | None = Field(
-        default=None,
-        ge=0.0,
-        le=1e12,
-        description="Radial damping in N s/m; left out: from damping_ratio",
-        examples=[1e3],
-    )
-    axial_damping_n_s_per_m: float | None = Field(
-        default=None,
-        ge=0.0,
-        le=1e12,
-        description="Axial damping in N s/m; left out: from damping_ratio",
-        examples=[1e3],
-    )
-    damping_ratio: float = Field(default=0.05, ge=0.0, le=10.0, description="Damping ratio", examples=[0.05])
     stiffness_matrix: MatrixRows | None = Field(
         default=None,
         min_length=5,
@@ -190,6 +167,7 @@ class BearingInput(BoundaryModel):
         return self
 
 
+@with_fields(declared_in(Bushing))
 class BushingInput(BearingInput):
     """A linear bearing between a shaft and the ground."""
 
@@ -230,34 +208,21 @@ class HousingInput(BoundaryModel):
     )
 
 
+@with_fields(declared_in(PlanetBearing))
 class PlanetBearingInput(BearingInput):
     """A linear bearing between a planet and its pin in the carrier."""
 
     shaft: Name = Field(description="The planet's shaft", examples=["planet"])
     carrier: Name = Field(description="The carrier's shaft", examples=["carrier"])
-    radial_error_um: float = Field(
-        default=0.0, ge=-1e4, le=1e4, description="Pin off its place, outwards, in um", examples=[0.0]
-    )
-    tangential_error_um: float = Field(
-        default=0.0, ge=-1e4, le=1e4, description="Pin off its place, about +z, in um", examples=[20.0]
-    )
 
 
+@with_fields(declared_in(Coupling))
 class CouplingInput(BoundaryModel):
     """A flexible coupling between two shafts of the same speed."""
 
     name: Name = Field(description="Name of the coupling", examples=["joint"])
     first: Name = Field(description="One shaft", examples=["output"])
     second: Name = Field(description="The other shaft", examples=["machine"])
-    torsional_stiffness_n_m_per_rad: float = Field(
-        ge=0.0, le=1e15, description="Torsional stiffness in N m/rad", examples=[5e4]
-    )
-    torsional_damping_n_m_s_per_rad: float = Field(
-        default=0.0, ge=0.0, le=1e12, description="Torsional damping in N m s/rad", examples=[5.0]
-    )
-    position_mm: Coordinate = Field(
-        default=0.0, description="Place along the first shaft in mm, for the matrices", examples=[200.0]
-    )
     stiffness_matrix: Rows | None = Field(
         default=None,
         min_length=6,
@@ -267,6 +232,10 @@ class CouplingInput(BoundaryModel):
     damping_matrix: Rows | None = Field(
         default=None, min_length=6, max_length=6, description="Added: the same for rates; N, m, rad, s"
     )
+
+
+_PIN = next(figure for figure in figures(PlanetBearing) if figure.name == "radial_error")
+PinErrors = Annotated[tuple[Annotated[float, Field(**_PIN.limits)], ...], Strict(False)]
 
 
 class PlanetsInput(BoundaryModel):
@@ -279,10 +248,10 @@ class PlanetsInput(BoundaryModel):
         description="Angles from the first planet about +z in degrees; left out: equally spaced",
         examples=[[0.0, 120.0, 240.0]],
     )
-    radial_errors_um: Annotated[tuple[Coordinate, ...], Strict(False)] | None = Field(
+    radial_errors_um: PinErrors | None = Field(
         default=None, description="Of all pins, outwards, in um", examples=[[0.0, 0.0, 0.0]]
     )
-    tangential_errors_um: Annotated[tuple[Coordinate, ...], Strict(False)] | None = Field(
+    tangential_errors_um: PinErrors | None = Field(
         default=None, description="Of all pins, about +z, in um", examples=[[20.0, 0.0, 0.0]]
     )
 

@@ -7,6 +7,9 @@ from typing import Any, Literal, Self
 
 from pydantic import Field, model_validator
 
+from dynamics.joints.free_rotation import FreeRotation
+from dynamics.joints.imposed_rotation import ImposedRotation
+from service.schemas.declared import declared_in, with_fields
 from service.schemas.model import BoundaryModel, refuse
 from service.schemas.scene_types import Coordinate, Course, Name, Numbers, Times
 
@@ -17,12 +20,12 @@ def place_of(subject: str) -> Any:
     return Field(default=0.0, description=text, examples=[0.0])
 
 
+@with_fields(declared_in(ImposedRotation))
 class DriveInput(BoundaryModel):
     """A shaft whose speed or angle is imposed over time."""
 
     name: Name = Field(description="Name of the drive", examples=["motor"])
     shaft: Name = Field(description="The driven shaft", examples=["input"])
-    position_mm: Coordinate = place_of("the motion is imposed")
     time_s: Times = Field(
         default=(0.0,), min_length=1, max_length=100_000, description="Times in s", examples=[[0.0, 5.0]]
     )
@@ -41,16 +44,6 @@ class DriveInput(BoundaryModel):
         examples=[[0.0, 1.0, 2.1, 3.0]],
     )
     course: Course = Field(default="linear", description="Course between the times", examples=["linear"])
-    stiffness_n_m_per_rad: float | None = Field(
-        default=None,
-        gt=0.0,
-        le=1e15,
-        description="Torsional spring to the imposed rotation in N m/rad; left out: rigid",
-        examples=[1e7],
-    )
-    damping_n_m_s_per_rad: float = Field(
-        default=0.0, ge=0.0, le=1e12, description="Damping beside that spring in N m s/rad", examples=[0.0]
-    )
 
     @model_validator(mode="after")
     def _law(self) -> Self:
@@ -64,17 +57,12 @@ class DriveInput(BoundaryModel):
         return self
 
 
+@with_fields(declared_in(FreeRotation))
 class FreeRotationInput(BoundaryModel):
     """A train that no drive moves: it starts at a speed and turns as torques make it."""
 
     name: Name = Field(description="Name of the free rotation", examples=["train"])
     shaft: Name = Field(description="Any one shaft of the train", examples=["input"])
-    initial_speed_rpm: float = Field(
-        default=0.0, ge=-1e7, le=1e7, description="Speed at the start in rpm", examples=[1000.0]
-    )
-    sense: Literal["+z", "-z"] = Field(
-        default="+z", description="Where it turns if it starts from rest", examples=["+z"]
-    )
 
 
 class LoadTorqueInput(BoundaryModel):
