@@ -14,7 +14,7 @@ from dynamics.bodies import TimeLaw
 from dynamics.forces.coast_flank import CoastFlank
 from dynamics.forces.mesh_table import MeshTable
 from dynamics.forces.technique import PlainTable
-from dynamics.scene.scene import Outputs, Scene
+from dynamics.scene import Outputs, Scene
 from dynamics.simulation import simulate
 from fe_contact.ste import SteDatabase
 

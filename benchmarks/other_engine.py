@@ -41,7 +41,7 @@ from dynamics.engines.exudyn_scene import run_in_exudyn
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.simulation import simulate
 from dynamics.assembly.assemble import assemble
-from dynamics.scene.scene import Integration
+from dynamics.scene import Integration
 from fe_contact.ste import SteDatabase
 scene = constant_speed_scene(SteDatabase.from_netcdf({table!r}), 900.0, {seconds})
 

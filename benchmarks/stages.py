@@ -8,7 +8,7 @@ from dynamics.bodies import GearBody, Shaft, TimeLaw, hollow_cylinder
 from dynamics.forces import GearMesh, LoadTorque
 from dynamics.forces.mesh_table import MeshTable
 from dynamics.joints import Bushing, Coupling, ImposedRotation
-from dynamics.scene.scene import Outputs, Scene
+from dynamics.scene import Outputs, Scene
 
 TEETH, RADIUS, FACE, LENGTH, GAP = 20, 0.040, 0.025, 0.2, 0.05
 BASE_RADIUS = RADIUS * math.cos(math.radians(20.0))

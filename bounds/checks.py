@@ -88,6 +88,8 @@ class Checks:
                 continue
             if isinstance(fact.bound, Choice):
                 self.one_of(field, value, fact.bound.names)
+            elif isinstance(fact.bound, Bound) and fact.bound.integer:
+                self.integer(field, value, int(fact.bound.low or 0), int(fact.bound.high or 0))
             elif isinstance(fact.bound, Bound):
                 self.in_bound(field, value, fact.bound, advice if fact.unit else "")
 

@@ -39,6 +39,12 @@ class Kind(StrEnum):
     INERTIA = auto()
     """A mass, a density, a moment of inertia."""
     SPEED = auto()
+    TIME = auto()
+    FREQUENCY = auto()
+    COUNT = auto()
+    """An integer."""
+    SWITCH = auto()
+    """True or false."""
     RATIO = auto()
 
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from dynamics.bodies import TimeLaw
 from dynamics.engines.exudyn_scene import run_in_exudyn
-from dynamics.scene.scene import Outputs, Scene
+from dynamics.scene import Outputs, Scene
 from dynamics.simulation import simulate
 from fe_contact.ste import SteDatabase
 from service.client.portable import scene_of

@@ -46,6 +46,8 @@ def row(figure: Figure) -> str:
 def accepted(figure: Figure) -> str:
     """Say what is accepted."""
     bound, limits = figure.what.bound, figure.limits
+    if bound is None:
+        return "`true`, `false`"
     if isinstance(bound, Choice):
         return ", ".join(f'`"{name}"`' for name in bound.names)
     low = f"above {limits['gt']:.7g}, up" if "gt" in limits else f"{limits['ge']:.7g}"
@@ -59,7 +61,9 @@ def written(figure: Figure) -> str:
     if figure.default is None:
         return "left out"
     default = figure.own(figure.default)
-    return f"{default:.7g}" if isinstance(default, float) else f'`"{default}"`'
+    if isinstance(default, bool):
+        return f"`{str(default).lower()}`"
+    return f'`"{default}"`' if isinstance(default, str) else f"{default:.7g}"
 
 
 if __name__ == "__main__":

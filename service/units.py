@@ -34,6 +34,8 @@ _OF_SI = {
     "m": "_mm",
     "rad": "_deg",
     "rad/s": "_rpm",
+    "s": "_s",
+    "Hz": "_hz",
     "Pa": "_gpa",
     "N/m": "_n_per_m",
     "N/m^3": "_n_per_mm3",

@@ -2,7 +2,8 @@
 
 from dynamics.scene.pair_scene import pair_scene
 from dynamics.scene.planetary_set import PlanetaryParts, PlanetarySet, ring_phase
-from dynamics.scene.scene import Integration, Outputs, Scene
+from dynamics.scene.scene import Scene
+from dynamics.settings import Integration, Outputs
 
 __all__ = [
     "Integration",

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from bounds import above, at_most
+from bounds import at_most
 from dynamics.bodies import AngleLaw, GearBody, Shaft, TimeLaw
-from dynamics.checks import distinct, integer, not_negative, one_of, positive, within
+from dynamics.checks import distinct, not_negative, one_of, positive, within
 from dynamics.errors import InputError
 from dynamics.forces import GearMesh, LoadTorque, RollingContact, SpeedTorque, SpringCurve
 from dynamics.joints import Bushing, Coupling, FreeRotation, Housing, ImposedRotation, PlanetBearing
@@ -17,98 +17,12 @@ from dynamics.scene.bearing_check import check_bearing_laws
 from dynamics.scene.frame_check import check_couplings, check_frames
 from dynamics.scene.housing_check import check_housings
 from dynamics.scene.position_check import check_positions
+from dynamics.settings import Integration, Outputs
 
-METHODS = ("implicit", "explicit")
 ON_VIOLATION = ("repeat", "fail", "report")
-RECEIPTS = ("full", "minimal")
 TOLERANCES = (1e-6, 0.5)
 SAMPLE_LIMIT = 2e7  # a run's states are held in memory
-MOST_ORDERS = 1000
 LEAST_RATE = 1000.0  # Hz, of an output whose rate is chosen
-
-
-@dataclass(frozen=True)
-class Outputs:
-    """The outputs that a run stores.
-
-    Attributes
-    ----------
-    sample_rate : float or None
-        Hz of the uniform output grid; None: what the mesh orders and the highest resolved mode need.
-    mesh_orders : int
-        Multiples of the mesh frequency that the output is to hold at the highest speed of the run.
-    anti_alias : bool
-        Filter what is stored, so that nothing above half the rate folds into the output (see `Sampling`).
-        False: points of the motion.
-    bearing_forces : bool
-        Store the force of every bearing, and its moment where a bearing holds tilt.
-    displacements : bool
-        Store displacement and velocity of every freedom.
-    accelerations : bool
-        Store the acceleration of the shaft at every bearing, and of every freedom if displacements are.
-    energy_audit : bool
-        Integrate the powers and close the balance at the end: a third to three quarters more time, more with
-        more levels in the tables.
-    receipt : str
-        ``"full"``: measure the errors of time steps and tables in windows of the run (6 to 21 % more time).
-        ``"minimal"``: state the tolerance only.
-    """
-
-    sample_rate: float | None = None
-    bearing_forces: bool = True
-    displacements: bool = False
-    energy_audit: bool = True
-    accelerations: bool = False
-    receipt: str = "full"
-    mesh_orders: int = 10
-    anti_alias: bool = True
-
-    def __post_init__(self) -> None:
-        if self.sample_rate is not None:
-            positive("sample_rate", self.sample_rate)
-        integer("mesh_orders", self.mesh_orders, 1, MOST_ORDERS)
-        one_of("receipt", self.receipt, RECEIPTS)
-
-
-@dataclass(frozen=True)
-class Integration:
-    """Method and tolerances of the time integration.
-
-    Attributes
-    ----------
-    method : str
-        ``"implicit"``: singly diagonally implicit Runge-Kutta of order 4, L-stable. ``"explicit"``:
-        Dormand-Prince of order 5, its check.
-    tolerance : float
-        Step error of the displacements wanted over the run, m rms (rotations times base radius).
-    fixed_step : float or None
-        s; None: chosen by error control.
-    smallest_step, largest_step : float
-        s; bounds of the error control.
-    step_limit : int
-        Number of steps after which a run ends as `RunStatus.STEP_LIMIT`.
-    estimate_error : bool
-        Run again at a tenth of the tolerance and report the difference of the transmission errors.
-    """
-
-    method: str = "implicit"
-    tolerance: float = 1e-9
-    fixed_step: float | None = None
-    smallest_step: float = 1e-12
-    largest_step: float = 1e-3
-    step_limit: int = 100_000_000
-    estimate_error: bool = False
-
-    def __post_init__(self) -> None:
-        one_of("method", self.method, METHODS)
-        positive("tolerance", self.tolerance)
-        positive("smallest_step", self.smallest_step)
-        if self.largest_step <= self.smallest_step:
-            bound = above(self.smallest_step, name="smallest_step")
-            raise InputError("largest_step", self.largest_step, bound)
-        if self.fixed_step is not None:
-            positive("fixed_step", self.fixed_step)
-        integer("step_limit", self.step_limit, 1, 2**62)
 
 
 class _Named(Protocol):
@@ -171,8 +85,8 @@ class Scene:
     rolling_contacts: tuple[RollingContact, ...] = ()
     spring_curves: tuple[SpringCurve, ...] = ()
     effects: Mapping[str, str] = field(default_factory=dict)
-    outputs: Outputs = Outputs()
-    integration: Integration = Integration()
+    outputs: Outputs = field(default_factory=Outputs)
+    integration: Integration = field(default_factory=Integration)
     on_violation: str = "repeat"
     tolerance: float | None = None
     highest_frequency: float | None = None

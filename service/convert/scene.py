@@ -38,9 +38,8 @@ from service.schemas.scene_bodies import (
     HousingInput,
 )
 from service.schemas.scene_motion import DriveInput, FreeRotationInput, LoadTorqueInput, SpeedTorqueInput
-from service.units import DEGREE, MM, NM, RPM, UM
+from service.units import DEGREE, MM, RPM, UM
 
-_SMALLEST_STEP_S = 1e-12
 ANY_STIFFNESS = 1e8  # N/m; checks that need no table do not read it
 
 
@@ -99,6 +98,10 @@ def _assembled(scene: SceneInput, facts: Mapping[str, PairFacts], meshes: tuple[
     teeth = teeth_of(scene, facts)
     check_center_distances(scene, facts)
     gears = tuple(_gear(i, gear, teeth[gear.name]) for i, gear in enumerate(scene.gears))
+    with named("outputs"):
+        outputs = Outputs(**in_si(Outputs, scene.outputs))
+    with named("integration"):
+        integration = Integration(**in_si(Integration, scene.integration))
     with named(""):
         return Scene(
             shafts=tuple(shaft_of(i, shaft) for i, shaft in enumerate(scene.shafts)),
@@ -116,8 +119,8 @@ def _assembled(scene: SceneInput, facts: Mapping[str, PairFacts], meshes: tuple[
             loads=tuple(_load(i, load) for i, load in enumerate(scene.loads)),
             duration=scene.run.duration_s,
             effects=dict(scene.effects),
-            outputs=_outputs(scene),
-            integration=_integration(scene),
+            outputs=outputs,
+            integration=integration,
             on_violation=scene.run.on_violation,
             tolerance=scene.accuracy.tolerance,
         )
@@ -240,31 +243,3 @@ def _speed_torque(index: int, torque: SpeedTorqueInput) -> SpeedTorque:
         else:
             curve = SpeedCurve.constant(torque.torque_n_m[0], speed[0])
         return SpeedTorque(torque.name, torque.shaft, curve, torque.position_mm * MM)
-
-
-def _outputs(scene: SceneInput) -> Outputs:
-    """Return what to store."""
-    outputs = scene.outputs
-    with named("outputs"):
-        return Outputs(
-            outputs.sample_rate_hz,
-            outputs.bearing_forces,
-            outputs.displacements,
-            accelerations=outputs.accelerations,
-            receipt=outputs.receipt,
-            mesh_orders=outputs.mesh_orders,
-            anti_alias=outputs.anti_alias,
-        )
-
-
-def _integration(scene: SceneInput) -> Integration:
-    """Return how to integrate."""
-    integration = scene.integration
-    with named("integration"):
-        return Integration(
-            method=integration.method,
-            tolerance=integration.tolerance_nm * NM,
-            fixed_step=integration.fixed_step_s,
-            smallest_step=_SMALLEST_STEP_S,
-            largest_step=integration.largest_step_s,
-        )

@@ -11,6 +11,8 @@ from dynamics.joints.coupling import Coupling
 from dynamics.joints.free_rotation import FreeRotation
 from dynamics.joints.imposed_rotation import ImposedRotation
 from dynamics.joints.planet_bearing import PlanetBearing
+from dynamics.settings.integration import Integration
+from dynamics.settings.outputs import Outputs
 from fe_contact.body.bore_seat import BoreSeat, Key
 from fe_contact.body.gear_blank import GearBlank
 from fe_contact.body.shaft import Shaft
@@ -42,10 +44,11 @@ _CASE = {
 _ANYWHERE = (
     *(FlankModification, Material, GearBlank, Key, BoreSeat, Shaft),
     *(GearBody, Inertia, TurningShaft, BeamSection),
+    Outputs,
     *(Bushing, PlanetBearing, Coupling, FreeRotation),
 )
 """What declares its fields, by names that mean the same in every table."""
-_OF_TABLE = {"drives": ImposedRotation}
+_OF_TABLE = {"drives": ImposedRotation, "integration": Integration}
 """What declares fields whose names mean something else in other tables."""
 DECLARED = (*_ANYWHERE, *_OF_TABLE.values())
 
@@ -78,11 +81,7 @@ _LAST = _fields_of(*_ANYWHERE) | {
     "fade": "speed_rpm",
     "speed": "speed_rpm",
     "torque": "torque_n_m",
-    "sample_rate": "sample_rate_hz",
     "highest_frequency": "highest_frequency_hz",
-    "fixed_step": "fixed_step_s",
-    "smallest_step": "smallest_step_s",
-    "largest_step": "largest_step_s",
     "radial_clearance": "radial_clearance_um",
     "backlash": "backlash_um",
     # results

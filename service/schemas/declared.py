@@ -56,14 +56,18 @@ class Figure:
             return {}
         low = {"gt" if bound.low_open else "ge": bound.low}
         ends = low | {"lt" if bound.high_open else "le": bound.high}
-        return {name: self.own(float(end)) for name, end in ends.items() if end is not None}
+        number = int if bound.integer else float
+        return {name: self.own(number(end)) for name, end in ends.items() if end is not None}
 
     @property
     def accepted(self) -> Any:
         """The type with its bounds."""
         if isinstance(self.what.bound, Choice):
             return Literal[self.what.bound.names]
-        number = Annotated[float, Field(**self.limits)]
+        if self.what.kind is Kind.SWITCH:
+            return bool
+        plain: Any = int if self.what.kind is Kind.COUNT else float
+        number = Annotated[plain, Field(**self.limits)]
         return number | None if self.default is None else number
 
     def own(self, value: Any) -> Any:
@@ -94,7 +98,7 @@ def figures(kind: type[Any], *kinds: Kind) -> tuple[Figure, ...]:
     return tuple(
         Figure(name, fact, defaults[name])
         for name, fact in declarations(kind).items()
-        if fact.bound is not None and (not kinds or fact.kind in kinds)
+        if fact.kind is not Kind.SURFACE and (not kinds or fact.kind in kinds)
     )
 
 

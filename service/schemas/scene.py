@@ -7,7 +7,10 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, Strict, model_validator
 
 from dynamics.parts import KINDS, ON_A_SHAFT
+from dynamics.settings.integration import Integration
+from dynamics.settings.outputs import Outputs
 from service.schemas.case import Case, EffectName, Switch
+from service.schemas.declared import declared_in, with_fields
 from service.schemas.model import BoundaryModel, refuse
 from service.schemas.scene_bodies import (
     BushingInput,
@@ -142,63 +145,14 @@ class SceneAccuracyInput(BoundaryModel):
     )
 
 
+@with_fields(declared_in(Outputs))
 class OutputsInput(BoundaryModel):
     """The outputs to store."""
 
-    sample_rate_hz: float | None = Field(
-        default=None,
-        gt=0.0,
-        le=1e7,
-        description="Samples per second; left out: what the mesh orders and the highest mode that the meshes "
-        "excite need",
-        examples=[20000.0],
-    )
-    mesh_orders: int = Field(
-        default=10,
-        ge=1,
-        le=1000,
-        description="Multiples of the mesh frequency that the output holds at the highest speed",
-        examples=[10],
-    )
-    anti_alias: bool = Field(
-        default=True,
-        description="Filter the output, so that nothing above half the rate folds into it; false: points of "
-        "the motion",
-        examples=[True],
-    )
-    bearing_forces: bool = Field(
-        default=True, description="Store forces and moments of every bearing", examples=[True]
-    )
-    displacements: bool = Field(default=False, description="Store every freedom", examples=[False])
-    accelerations: bool = Field(
-        default=False, description="Store the acceleration of the shaft at every bearing", examples=[False]
-    )
-    receipt: Literal["full", "minimal"] = Field(
-        default="full",
-        description="Measure the errors of steps and tables in windows of the run, or state the tolerance",
-        examples=["full"],
-    )
 
-
+@with_fields(declared_in(Integration))
 class IntegrationInput(BoundaryModel):
     """Method and tolerances of the time integration."""
-
-    method: Literal["implicit", "explicit"] = Field(
-        default="implicit", description="Integrator", examples=["implicit"]
-    )
-    tolerance_nm: float = Field(
-        default=1.0, gt=0.0, le=1e6, description="Step error of the displacements in nm rms", examples=[1.0]
-    )
-    fixed_step_s: float | None = Field(
-        default=None,
-        gt=0.0,
-        le=1.0,
-        description="Step in s; left out: chosen by error control",
-        examples=[1e-5],
-    )
-    largest_step_s: float = Field(
-        default=1e-3, gt=1e-12, le=1.0, description="Largest step in s", examples=[1e-3]
-    )
 
 
 class SceneInput(BoundaryModel):

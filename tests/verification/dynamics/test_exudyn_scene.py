@@ -11,7 +11,7 @@ from geared_scenes import RPM, gear_pair_scene, spring_table, with_bushings, wit
 from dynamics.bodies import TimeLaw
 from dynamics.engines.exudyn_scene import run_in_exudyn
 from dynamics.errors import InputError
-from dynamics.scene.scene import Integration, Outputs
+from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate
 
 pytest.importorskip("exudyn", reason="Exudyn is not installed: pip install lineofaction[exudyn]")

@@ -17,7 +17,7 @@ from dynamics.forces.coast_flank import CoastFlank, mirrored
 from dynamics.forces.flank_force import FlankLaws, flank_force
 from dynamics.forces.packed_tables import pack_tables
 from dynamics.forces.technique import table_at
-from dynamics.scene.scene import Outputs
+from dynamics.scene import Outputs
 from dynamics.simulation import simulate
 
 
