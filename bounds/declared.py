@@ -32,6 +32,8 @@ class Kind(StrEnum):
     """One of several, by its name."""
     SURFACE = auto()
     """A table of its own."""
+    PART = auto()
+    """A part of declared fields."""
     STIFFNESS = auto()
     """A force, traction or stress per displacement or strain."""
     DAMPING = auto()
@@ -78,6 +80,8 @@ class Declared:
         Directions along which it acts.
     written : str
         Symbol of the unit in which it is usually written, where that is not the usual one of its SI unit.
+    part : type, optional
+        The dataclass of a part; its value is None, or the dataclass's own default, where it is left out.
     """
 
     kind: Kind
@@ -87,6 +91,7 @@ class Declared:
     example: Any = None
     along: Direction = Direction.NONE
     written: str = ""
+    part: type | None = None
 
 
 def declared(default: Any, declaration: Declared) -> Any:
@@ -108,6 +113,8 @@ def described(kind: type[Thing]) -> type[Thing]:
 
 def _unit(declaration: Declared) -> str:
     """Write the unit of a field, or what it is in place of one."""
+    if declaration.part is not None:
+        return declaration.part.__name__
     return declaration.unit or ("name" if isinstance(declaration.bound, Choice) else "1")
 
 

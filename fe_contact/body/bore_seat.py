@@ -26,6 +26,7 @@ def _foundation(direction: str, example: float) -> Declared:
 _ACROSS = "Width along the circumference"
 _ANGLE = "Angle of its middle, counter-clockwise from the center line of the reference tooth at mid-face"
 _WIDTH = "Axial length of the seat, 0.02 face widths or more; left out: the face width"
+_KEYED = "A key; the tangential foundation is then its own"
 _OFFSET = "Middle of the seat towards +z from mid-face; the seat stays within the face"
 
 
@@ -67,7 +68,7 @@ class BoreSeat:
     axial_foundation: float | None = declared(None, _foundation("Axial", 1e13))
     width: float | None = declared(None, Declared(Kind.LENGTH, "m", up_to(5.0), _WIDTH, 0.02))
     offset: float = declared(0.0, Declared(Kind.LENGTH, "m", between(-5.0, 5.0), _OFFSET, 0.002))
-    key: Key | None = None
+    key: Key | None = declared(None, Declared(Kind.PART, "", None, _KEYED, part=Key))
 
     def __post_init__(self) -> None:
         declared_fields(self)

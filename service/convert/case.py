@@ -4,21 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any
 
 from bounds import inside
 from fe_contact.allowed_error import AllowedError
+from fe_contact.body.parts import PARTS
 from fe_contact.errors import FeContactError
 from fe_contact.geometry import (
-    BoreSeat,
     FlankGrid,
     FlankModification,
     Gear,
-    GearBlank,
     GearPair,
     InternalGearPair,
-    Key,
     ParallelAxes,
     PitchDeviation,
     RingGear,
@@ -26,12 +24,11 @@ from fe_contact.geometry import (
 )
 from fe_contact.material import Material
 from fe_contact.options import AnalysisOptions, OperatingPoint, TableAxes
-from service.convert.declared import declared_part, in_si
+from service.convert.declared import declared_part, in_si, parts_in_si
 from service.convert.errors import translated
 from service.problems import BadInput
 from service.schemas import (
     AccuracyInput,
-    BoreSeatInput,
     Case,
     ErrorsInput,
     LoadInput,
@@ -88,8 +85,7 @@ def _gear(name: str, pair: PairInput, material: MaterialInput, hand: float) -> G
     with inside(name):
         return Gear(
             bore_diameter=gear.bore_diameter_mm * MM,
-            blank=declared_part(GearBlank, gear.blank, "blank"),
-            seat=_seat(gear.seat),
+            **_parts(Gear, gear),
             **_toothing(gear, pair, material, hand),
         )
 
@@ -102,8 +98,15 @@ def _ring_gear(pair: PairInput, material: MaterialInput) -> RingGear:
             rim_diameter=(wheel.rim_diameter_mm or 0.0) * MM,
             cutter_teeth=wheel.cutter_teeth or 0,
             cutter_profile_shift_coefficient=wheel.cutter_profile_shift_coefficient or 0.0,
+            **_parts(RingGear, wheel),
             **_toothing(wheel, pair, material, +1.0),
         )
+
+
+def _parts(kind: type, gear: ToothingInput) -> Json:
+    """Return the parts of a gear's body that gears of its kind have."""
+    own = {entry.name for entry in fields(kind)}
+    return parts_in_si({name: fact for name, fact in PARTS.items() if name in own}, gear)
 
 
 def _toothing(toothing: ToothingInput, pair: PairInput, material: MaterialInput, hand: float) -> Json:
@@ -122,14 +125,6 @@ def _toothing(toothing: ToothingInput, pair: PairInput, material: MaterialInput,
         "pitch_deviation": PitchDeviation(tuple(value * UM for value in toothing.pitch_deviation_um)),
         **{coefficient: getattr(toothing, coefficient) for coefficient in _COEFFICIENTS},
     }
-
-
-def _seat(seat: BoreSeatInput | None) -> BoreSeat:
-    """Return the seat of the bore; without one it is fixed."""
-    if seat is None:
-        return BoreSeat()
-    with inside("seat"):
-        return BoreSeat(**in_si(BoreSeat, seat), key=declared_part(Key, seat.key, "key"))
 
 
 def _shaft(name: str, gear: ToothingInput) -> Shaft | None:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+
+from bounds import Declared
 from dynamics.bodies.gear_body import GearBody
 from dynamics.bodies.inertia import Inertia
 from dynamics.bodies.shaft import Shaft as TurningShaft
@@ -13,12 +16,11 @@ from dynamics.joints.imposed_rotation import ImposedRotation
 from dynamics.joints.planet_bearing import PlanetBearing
 from dynamics.settings.integration import Integration
 from dynamics.settings.outputs import Outputs
-from fe_contact.body.bore_seat import BoreSeat, Key
-from fe_contact.body.gear_blank import GearBlank
+from fe_contact.body.parts import PARTS
 from fe_contact.body.shaft import Shaft
 from fe_contact.flank.modification import FlankModification
 from fe_contact.material import Material
-from service.schemas.declared import figures
+from service.schemas.declared import figures, parts_of
 
 # Fields of a case, by the library's name (see fe_contact.geometry and fe_contact.planning).
 _CASE = {
@@ -41,8 +43,16 @@ _CASE = {
     "on_violation": "accuracy.on_violation",
 }
 
+
+def _with_parts(parts: Mapping[str, Declared]) -> Iterator[type]:
+    """Yield the dataclasses of parts, and of their parts."""
+    for kind in (fact.part for fact in parts.values() if fact.part is not None):
+        yield kind
+        yield from _with_parts(parts_of(kind))
+
+
 _ANYWHERE = (
-    *(FlankModification, Material, GearBlank, Key, BoreSeat, Shaft),
+    *(FlankModification, Material, Shaft, *_with_parts(PARTS)),
     *(GearBody, Inertia, TurningShaft, BeamSection),
     Outputs,
     *(Bushing, PlanetBearing, Coupling, FreeRotation),

@@ -2,13 +2,12 @@
 
 from service.schemas.case import AccuracyInput, Case, ErrorsInput, LoadInput, PairInput
 from service.schemas.gear import GearInput, ToothingInput
-from service.schemas.gear_body import BoreSeatInput, MaterialInput
+from service.schemas.gear_body import MaterialInput
 from service.schemas.reading import read_model, read_table, validated
 from service.schemas.wheel import WheelInput
 
 __all__ = [
     "AccuracyInput",
-    "BoreSeatInput",
     "Case",
     "ErrorsInput",
     "GearInput",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, dataclass, fields, replace
+from functools import cache
 from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import Field, create_model
@@ -98,14 +99,44 @@ def figures(kind: type[Any], *kinds: Kind) -> tuple[Figure, ...]:
     return tuple(
         Figure(name, fact, defaults[name])
         for name, fact in declarations(kind).items()
-        if fact.kind is not Kind.SURFACE and (not kinds or fact.kind in kinds)
+        if fact.kind not in (Kind.SURFACE, Kind.PART) and (not kinds or fact.kind in kinds)
     )
 
 
 def declared_in(kind: type[Any], *, all_given: bool = False) -> Fields:
-    """Return the declared numbers and names of a dataclass as fields of a model; `all_given`: no defaults."""
+    """Return the declared fields of a dataclass as those of a model; `all_given`: numbers have no default."""
     own = (replace(each, default=MISSING) if all_given else each for each in figures(kind))
-    return {figure.field: figure.as_field() for figure in own}
+    return {**{figure.field: figure.as_field() for figure in own}, **parts_in(parts_of(kind))}
+
+
+def parts_of(kind: type[Any]) -> Mapping[str, Declared]:
+    """Return the declared parts of a dataclass by name."""
+    return {name: fact for name, fact in declarations(kind).items() if fact.part is not None}
+
+
+def parts_in(parts: Mapping[str, Declared]) -> Fields:
+    """Return parts as fields of a model, tables that may be left out."""
+    return {
+        name: (
+            _model_of(fact.part) | None,
+            Field(default=None, description=fact.description, examples=[_example(fact.part)]),
+        )
+        for name, fact in parts.items()
+        if fact.part is not None
+    }
+
+
+@cache
+def _model_of(part: Any) -> Any:
+    """Return the model of a part."""
+    name, doc = f"{part.__name__}Input", str(part.__doc__).partition("\n")[0]
+    facts: Any = declared_in(part)
+    return create_model(name, __base__=BoundaryModel, __module__=__name__, __doc__=doc, **facts)
+
+
+def _example(part: type) -> dict[str, Any]:
+    """Return a usual part."""
+    return {figure.field: figure.own(figure.what.example) for figure in figures(part)}
 
 
 def with_fields(further: Fields) -> Callable[[type[Model]], type[Model]]:

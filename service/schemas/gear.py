@@ -6,9 +6,10 @@ from typing import Annotated, Self
 
 from pydantic import Field, Strict, model_validator
 
+from fe_contact.body.parts import PARTS
 from fe_contact.flank.modification import FlankModification
-from service.schemas.declared import declared_in, with_fields
-from service.schemas.gear_body import BoreSeatInput, GearBlankInput, GearShaftInput, MaterialInput
+from service.schemas.declared import declared_in, parts_in, with_fields
+from service.schemas.gear_body import GearShaftInput, MaterialInput
 from service.schemas.model import BoundaryModel, refuse
 
 GridAxis = Annotated[
@@ -43,7 +44,7 @@ class FlankGridInput(BoundaryModel):
     )
 
 
-@with_fields(declared_in(FlankModification))
+@with_fields({**declared_in(FlankModification), **parts_in(PARTS)})
 class ToothingInput(BoundaryModel):
     """Fields of all gears. Modifications: > 0 is material removed, normal to the involute, transverse."""
 
@@ -108,16 +109,6 @@ class ToothingInput(BoundaryModel):
         default=None,
         description="Steel shaft that bends under the tooth forces; left out: rigid",
         examples=[{"length_mm": 200.0, "diameter_mm": 40.0, "position_mm": 60.0}],
-    )
-    blank: GearBlankInput | None = Field(
-        default=None,
-        description="Rim, web and hub; left out: a solid body",
-        examples=[{"rim_thickness_mm": 12.0, "web_thickness_mm": 10.0, "hub_diameter_mm": 60.0}],
-    )
-    seat: BoreSeatInput | None = Field(
-        default=None,
-        description="Seat of the bore; left out: the whole bore is fixed",
-        examples=[{"tangential_foundation_n_per_mm3": 10_000.0, "width_mm": 20.0}],
     )
     material: MaterialInput | None = Field(
         default=None,
