@@ -10,7 +10,7 @@ from fastapi import APIRouter, Header, Query, Response
 
 from service.queue.caller import Caller
 from service.queue.delivery import Delivery, delivery
-from service.registry import JSON
+from service.registry import NETCDF
 from service.routes.context import Context, Ctx, From
 from service.routes.cursor import Limit
 from service.routes.errors import documented
@@ -26,7 +26,6 @@ from service.schemas.ogc import (
     ProcessSummary,
     StatusInfo,
 )
-from service.schemas.result_kinds import RESULT_KINDS
 from service.store import now
 from service.worker.process import Process, Registry
 
@@ -84,8 +83,7 @@ def _unknown(registry: Registry) -> Any:
 
 def _add_execution(router: APIRouter, process: Process) -> None:
     """Add the execution route of one process."""
-    media_type = RESULT_KINDS[process.kind].media_type
-    body = execute_model(process.id, process.inputs, process.output, media_type)
+    body = execute_model(process.id, process.inputs, process.output)
 
     def execute(
         request: Any,
@@ -97,7 +95,7 @@ def _add_execution(router: APIRouter, process: Process) -> None:
         """Check the inputs and enter a job; equal work is shared, stored results are used."""
         output = getattr(request.outputs, process.output)
         field = f"outputs.{process.output}.transmissionMode"
-        form = delivery(request.response, output and output.transmissionMode, media_type, field)
+        form = delivery(request.response, output and output.transmissionMode, field)
         inputs = process.prepare(cast(BoundaryModel, request.inputs), context.store)
         status = _submit(context, process, inputs, caller, form)
         response.headers["Location"] = f"/v1/jobs/{status.jobID}"
@@ -180,8 +178,6 @@ def _description(process: Process) -> ProcessDescription:
         }
         for name, field in process.inputs.model_fields.items()
     }
-    media_type = RESULT_KINDS[process.kind].media_type
-    value = {"type": "object"} if media_type == JSON else {"type": "string", "contentEncoding": "binary"}
-    output = {**value, "contentMediaType": media_type}
+    output = {"type": "string", "contentEncoding": "binary", "contentMediaType": NETCDF}
     outputs = {process.output: {"title": process.output, "description": process.title, "schema": output}}
     return ProcessDescription(**_summary(process), inputs=inputs, outputs=outputs)

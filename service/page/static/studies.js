@@ -58,7 +58,7 @@ function fieldOf([name, schema]) {
 
 /** Show a result of any kind but a table; `take` is given the flanks of an optimization. */
 export async function showResult(target, reference, { take, signal }) {
-  if (reference.kind === "optimisation") await showOptimization(target, reference, { take, signal });
+  if (reference.kind === "optimization") await showOptimization(target, reference, { take, signal });
   else await showReport(target, reference, { signal });
 }
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 
 from bounds.types import Json
 from dynamics.accuracy import Frontier as SceneFrontier
@@ -22,6 +20,7 @@ from service.schemas import Case
 from service.schemas.scene import SceneInput
 from service.studies.computation import Computation, Means
 from service.studies.frontier import Inputs
+from service.studies.result_file import record_file
 
 LEAST = 2
 
@@ -82,17 +81,10 @@ def normalized(subject: Case | SceneInput, inputs: Inputs) -> Json:
     return {"rungs": requested(inputs.rungs, of_scene=not isinstance(subject, Case)), **beside}
 
 
-def read(file: Path) -> Frontier | SceneFrontier:
-    """Return the study in a file of `Frontier.to_json` of either library."""
-    content = json.loads(file.read_text(encoding="utf-8"))
-    return (Frontier if "solves" in content else SceneFrontier).from_json(content)
-
-
 RUN = Computation(
     frontier_of,
     lambda study: study.to_json(),
-    read,
-    marks=dict.fromkeys(("rungs", "knee", "chosen")),
+    record_file(("accuracy study of a case", Frontier), ("accuracy study of a scene", SceneFrontier)),
     check=check,
     normalized=normalized,
 )

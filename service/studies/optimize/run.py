@@ -31,7 +31,7 @@ from service.convert.vocabulary import boundary_name
 from service.schemas import Case
 from service.studies.computation import Computation, Means
 from service.studies.optimize import GearScatterInput, GearVariablesInput, Inputs, ScatterInput, SearchInput
-from service.studies.optimize.stored import read
+from service.studies.result_file import record_file
 from service.units import UM, factor, in_um
 
 Json = dict[str, Any]
@@ -216,8 +216,7 @@ def write_values(result: Optimization, target: Path) -> None:
 RUN = Computation(
     optimization_of,
     optimization_json,
-    read,
-    marks=dict.fromkeys(("start", "optimum", "variables")),
+    record_file(("optimization", Optimization)),
     check=check,
     interruptible=True,
     writers={".toml": write_values},

@@ -15,6 +15,7 @@ from service.convert.case import boundary_errors, gear_pair, study_options
 from service.schemas import Case
 from service.stages import TABLE_STAGES, overall
 from service.studies.computation import Computation, Means
+from service.studies.result_file import ResultFile
 from service.studies.sensitivity import Inputs
 from service.studies.sensitivity.stored import FORMAT, PairStudy, read_studies, write_studies
 from service.units import MM, UM
@@ -132,9 +133,7 @@ def _ripple_json(curve: RippleCurve) -> Json:
 RUN = Computation(
     study_case,
     studies_json,
-    read_studies,
-    marks={"format": FORMAT},
-    write=write_studies,
+    ResultFile("format", (FORMAT,), write_studies, read_studies),
     check=check_study,
     joined=joined,
     resumed=True,
