@@ -48,6 +48,7 @@ class Studies(JobClient):
         progress: Watch | None = None,
         *,
         rungs: Sequence[str] | None = ...,
+        up_to: Literal["corrected_fine", "3d_draft", "3d_standard", "3d_fine"] = ...,
         full_contact: int | None = ...,
     ) -> dict[str, Any]: ...
     def frontier_file(
@@ -56,6 +57,7 @@ class Studies(JobClient):
         progress: Watch | None = None,
         *,
         rungs: Sequence[str] | None = ...,
+        up_to: Literal["corrected_fine", "3d_draft", "3d_standard", "3d_fine"] = ...,
         full_contact: int | None = ...,
     ) -> Path: ...
     def sensitivity(

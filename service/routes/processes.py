@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cache
 from typing import Annotated, Any, cast
 
 import structlog
 from fastapi import APIRouter, Header, Query, Response
+from pydantic import BaseModel
 
 from service.queue.caller import Caller
 from service.queue.delivery import Delivery, delivery
@@ -32,6 +34,7 @@ from service.worker.process import Process, Registry
 logger = structlog.get_logger(__name__)
 
 After = Annotated[str, Query(max_length=64, description="Last process of the page before")]
+_SUBJECTS = ("case", "scene")
 Prefer = Annotated[str, Header(description="Jobs are always asynchronous (RFC 7240)", max_length=1000)]
 
 
@@ -160,11 +163,20 @@ def _card(action: str, inputs: type[BoundaryModel]) -> AdditionalParameters:
     """Return what a page needs to offer a study; nothing of what has no action."""
     if not action:
         return AdditionalParameters(parameters=[])
-    schemas = inputs.model_json_schema()["properties"]
-    fields = {name: schemas[name] for name, field in inputs.model_fields.items() if field.title}
-    subjects: list[Any] = [name for name in ("case", "scene") if name in schemas]
-    parts = {"action": [action], "subjects": subjects, "fields": [fields]}
+    subjects: list[Any] = [name for name in _SUBJECTS if name in inputs.model_fields]
+    parts = {"action": [action], "subjects": subjects, "fields": [dict(_titled(inputs))]}
     return AdditionalParameters(parameters=[Parameter(name=name, value=parts[name]) for name in parts])
+
+
+def _titled(inputs: type[BaseModel], within: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield names and schemas of the fields that have a title, those of tables by their path."""
+    schemas = inputs.model_json_schema()["properties"]
+    for name, field in inputs.model_fields.items():
+        kind = field.annotation
+        if field.title:
+            yield f"{within}{name}", schemas[name]
+        elif name not in _SUBJECTS and isinstance(kind, type) and issubclass(kind, BaseModel):
+            yield from _titled(kind, f"{within}{name}.")
 
 
 def _description(process: Process) -> ProcessDescription:

@@ -137,6 +137,14 @@ def test_equal_questions_in_other_words_are_one_result() -> None:
     assert keys[0] == keys[1] == keys[2] != keys[3]
 
 
+def test_up_to_a_fidelity_is_all_before_it_in_the_order_of_cost() -> None:
+    names = [fidelity.name for fidelity in FIDELITIES]
+    for last in ("corrected_fine", "3d_draft", "3d_fine"):
+        asked = prepared(FRONTIER, case=CASE, up_to=last)
+        assert asked["rungs"] == names[: names.index(last) + 1]
+    assert prepared(FRONTIER, case=CASE, up_to="3d_draft", rungs=["3d_fine", *CLOSED])["rungs"] == CLOSED
+
+
 @pytest.mark.parametrize(
     ("inputs", "field"),
     [

@@ -87,6 +87,18 @@ def test_the_optimization_is_that_of_python(served: Served, data: Path) -> None:
     assert client.optimize_file(CASE, STUDY).suffix == ".nc"
 
 
+@pytest.mark.parametrize(("model", "crowned"), [("plane_strain", False), ("3d", True)])
+def test_without_variables_the_tip_relief_of_both_gears_is_free(model: str, crowned: bool) -> None:
+    case = CASE | {"accuracy": CASE["accuracy"] | {"model": model}}
+    asked = {"case": case, "variables": {"most_tip_relief_um": 25.0}}
+    given = OPTIMISE.inputs.model_validate_json(json.dumps(asked))
+    variables = OPTIMISE.prepare(given, None)["variables"]  # type: ignore[arg-type]  # needs no store
+    free = {gear: {k: v for k, v in variables[gear].items() if v is not None} for gear in ("pinion", "wheel")}
+    relief = {"tip_relief_um": [0.0, 25.0], "tip_relief_length_mm": pytest.approx([0.6, 3.2])}
+    assert free["wheel"] == relief
+    assert free["pinion"] == relief | ({"helix_crowning_um": [0.0, 30.0]} if crowned else {})
+
+
 def test_defaults_written_out_are_the_same_question() -> None:
     def key(study: dict[str, Any]) -> str:
         given = OPTIMISE.inputs.model_validate_json(json.dumps({"case": CASE, **study}))
@@ -99,7 +111,7 @@ def test_defaults_written_out_are_the_same_question() -> None:
 @pytest.mark.parametrize(
     ("further", "field"),
     [
-        ({"variables": {}}, "variables"),
+        ({"variables": {"most_tip_relief_um": 0.0}}, "variables.most_tip_relief_um"),
         ({"variables": {"pinion": {"tip_relief_um": [40.0, 0.0]}}}, "variables.pinion.tip_relief_um"),
         ({"variables": {"pinion": {"tip_relief_um": [-1.0, 5.0]}}}, "variables.pinion.tip_relief_um"),
         ({"variables": {"pinion": {"tip_relief_um": [0.0, 40.0]}}}, "variables.pinion.tip_relief"),

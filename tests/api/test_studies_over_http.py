@@ -99,6 +99,17 @@ def test_a_study_comes_with_all_its_curves(served: tuple[LineOfActionClient, Tes
     assert pair["curves"][0]["misalignment"]["misalignment_um"] == pytest.approx([0.0, 20.0])
 
 
+def test_a_sensitivity_across_the_face_takes_a_case_of_the_plane_there() -> None:
+    process = default_registry()["sensitivity"]
+
+    def asked(case: dict[str, Any]) -> dict[str, Any]:
+        model = process.inputs.model_validate_json(json.dumps({"case": case}))
+        return process.prepare(model, None)  # type: ignore[arg-type]  # needs no store
+
+    assert asked(PLANE)["case"]["accuracy"]["model"] == "3d"
+    assert asked(CASE)["case"]["accuracy"]["model"] == "auto"
+
+
 def test_the_root_stress_is_that_of_python(served: tuple[LineOfActionClient, TestClient], data: Path) -> None:
     client, http = served
     found = client.root_stress(PLANE, torque_n_m=30.0)

@@ -19,7 +19,7 @@ STUDIES = {
     "ablate": ("Effects", "Toggle every effect", {}, ["ablation"]),
     "frontier": (
         "Accuracy frontier", "Run the accuracy study",
-        {"Up to": "2-D finite elements; with a helix draft 3-D"}, ["frontier"],
+        {"Up to": "corrected fine"}, ["frontier"],
     ),
     "sensitivity": (
         "Sensitivity", "Study the sensitivity",

@@ -58,6 +58,13 @@ def _table_by_table(report: Progress) -> Progress:
     return part
 
 
+def across_face(case: Case, _inputs: Inputs) -> Case:
+    """Return a case in three dimensions: no model of the plane knows a misalignment."""
+    if case.accuracy.model not in ("plane_strain", "plane_stress"):
+        return case
+    return case.model_copy(update={"accuracy": case.accuracy.model_copy(update={"model": "3d"})})
+
+
 def check_study(case: Case, inputs: Inputs) -> None:
     """Refuse what a study cannot compute, without computing anything.
 
@@ -134,6 +141,7 @@ RUN = Computation(
     study_case,
     studies_json,
     ResultFile("format", (FORMAT,), write_studies, read_studies),
+    narrowed=across_face,
     check=check_study,
     joined=joined,
     resumed=True,
