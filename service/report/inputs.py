@@ -73,12 +73,12 @@ def read_inputs(files: Sequence[Path]) -> Inputs:
 def _kind(file: Path) -> tuple[Study | None, str]:
     """Return the study that made a file, if one did, and the kind of the file."""
     attributes = _attributes(file)
-    if (study := stored_study(attributes)) is not None:
+    for kind, ((name, value), _) in _READERS.items():
+        if attributes.get(name) == value:
+            return None, kind
+    if (study := stored_study(attributes)) is not None:  # loads what computes studies
         return study, study.kind
-    kinds = [kind for kind, ((name, value), _) in _READERS.items() if attributes.get(name) == value]
-    if not kinds:
-        raise BadInput.of("file", str(file), _BOUND, "It is a netCDF file of another kind.")
-    return None, kinds[0]
+    raise BadInput.of("file", str(file), _BOUND, "It is a netCDF file of another kind.")
 
 
 def _attributes(file: Path) -> dict[str, str]:
