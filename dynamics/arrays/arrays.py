@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from dynamics.arrays.sparse_rows import SparseMatrices
 from dynamics.forces.element_laws import Elements
 from dynamics.types import FloatArray, IntArray
 
@@ -117,15 +118,13 @@ class SystemArrays(NamedTuple):
     ----------
     mass, damping, stiffness : (n, n) arrays
         M, C, K; symmetric.
-    block : (n, 2) int array
-        First and end column of each row's diagonal block, shared by M, C and K: only elements couple them.
     direction : (R, n) array
         G: derivative of the elements' local coordinates in q. The first m elements are the driving flanks,
         whose first coordinate is the transmission error.
-    reach : (R, 2) int array
-        First and end freedom of the blocks that each row of G enters: beyond them it moves nothing.
     turn : (m + f, n) array
         Derivative of the meshes' positions in q, base pitches; 0.
+    sparse : SparseMatrices
+        The same by their entries.
     constant : (n,) array
         External force that never changes: of pins off their nominal position, of preloaded bearings.
     inertial : (k, n) array
@@ -145,10 +144,9 @@ class SystemArrays(NamedTuple):
     mass: FloatArray
     damping: FloatArray
     stiffness: FloatArray
-    block: IntArray
     direction: FloatArray
-    reach: IntArray
     turn: FloatArray
+    sparse: SparseMatrices
     constant: FloatArray
     inertial: FloatArray
     total_inertia: FloatArray

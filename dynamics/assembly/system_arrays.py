@@ -9,6 +9,7 @@ import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.arrays.elements import Element, gradients, pack_elements
+from dynamics.arrays.sparse_rows import sparse_matrices
 from dynamics.assembly.frame_couplings import frame_turns
 from dynamics.assembly.model import Model
 from dynamics.assembly.references import drive_springs, lay_out_drives, lay_out_loads, lay_out_reference
@@ -16,7 +17,7 @@ from dynamics.forces.by_address import by_address
 from dynamics.forces.element_laws import ElementLaws
 from dynamics.mechanism.columns import column_count, times_mass, turn_row
 from dynamics.mechanism.connections import elastic_matrices, linear_matrices
-from dynamics.mechanism.freedoms import FREEDOMS, ROTATION, Freedoms, row_reach, shared_blocks
+from dynamics.mechanism.freedoms import FREEDOMS, ROTATION, Freedoms
 from dynamics.mechanism.kinematics import Kinematics, mesh_shafts
 from dynamics.mechanism.rotor import Rotor
 from dynamics.scene.scene import Scene
@@ -37,19 +38,18 @@ def system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) 
     mass = freedoms.motion.T @ np.ascontiguousarray(times_mass(rotors, freedoms.motion.T).T)
     gradient = gradients(elements, column_count(rotors))
     scale, direction = _scales(scene, rotors, freedoms), freedoms.keep(gradient)
+    turn = freedoms.keep(_turns(scene, rotors, kinematics))
     packed = pack_elements(elements, laws, len(scene.references))
     along = direction[packed.first[: len(scene.meshes)]]
     held = np.diag(stiffness) + model.flanks.mean_stiffness @ along**2
     held += packed.stiffness @ direction**2
-    block = shared_blocks([mass, damping, stiffness])
     arrays = SystemArrays(
         np.ascontiguousarray(mass),
         damping,
         stiffness,
-        block,
         direction,
-        row_reach(direction, block),
-        freedoms.keep(_turns(scene, rotors, kinematics)),
+        turn,
+        sparse_matrices(mass, damping, stiffness, direction, turn),
         constant,
         freedoms.keep(-times_mass(rotors, vectors)),
         np.ascontiguousarray(times_mass(rotors, vectors) @ vectors.T),

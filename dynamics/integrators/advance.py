@@ -68,7 +68,7 @@ def advance(
             count[Count.LEVEL] = level
             jump = next_jump(system.reference.speed, work.time[0])
             level = step_to_jump(system, work, level, jump)
-        landing = level == work.step_sizes.size - 2
+        landing = level == work.step_sizes.size - 1
         if control.implicit:
             solved = implicit_step(system, work, level, control.force_tolerance, control.audit)
         else:
@@ -90,7 +90,7 @@ def advance(
             continue
         count[Count.REJECTED] += 1
         count[Count.NEWTON_FAILED] += 0 if solved else 1
-        below_smallest = count[Count.LEVEL] > work.step_sizes.size - 3
+        below_smallest = count[Count.LEVEL] > work.step_sizes.size - 2
         if below_smallest or not control.adaptive:
             return NOT_FINITE if diverged else STEP_FLOOR
     return COMPLETED
@@ -120,7 +120,7 @@ def _accept(system: SystemArrays, work: Workspace, control: Control, level: int,
         _watch_losses(work)
     _move_on(work, control.implicit, step, end)
     work.counts[Count.ACCEPTED] += 1
-    if level < work.step_sizes.size - 2:
+    if level < work.step_sizes.size - 1:
         work.counts[Count.SMALLEST_LEVEL] = min(work.counts[Count.SMALLEST_LEVEL], level)
         work.counts[Count.LARGEST_LEVEL] = max(work.counts[Count.LARGEST_LEVEL], level)
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dynamics.arrays.arrays import SystemArrays
+from dynamics.arrays.sparse_rows import row_product, subtract_columns
 from dynamics.forces.element_laws import evaluate
 from dynamics.forces.routine import routine
 from dynamics.integrators.powers import write_powers
-from dynamics.integrators.stage import finish_step, set_motion
-from dynamics.integrators.step_level import prepare_level, row_product
+from dynamics.integrators.stage import add_stages, finish_step, set_motion
 from dynamics.integrators.tableaus import (
     EXPLICIT_EMBEDDED,
     EXPLICIT_NODES,
@@ -28,12 +28,10 @@ def explicit_step(system: SystemArrays, work: Workspace, level: int, audit: bool
         work.stage_v[0, i], work.stage_a[0, i] = work.v[i], work.a[i]
     for stage in range(1, STAGE_COUNT):
         for i in range(size):
-            displacement, rate = 0.0, 0.0
-            for s in range(stage):
-                displacement += EXPLICIT_STAGES[stage, s] * work.stage_v[s, i]
-                rate += EXPLICIT_STAGES[stage, s] * work.stage_a[s, i]
-            work.q_new[i] = work.q[i] + step * displacement
-            work.v_new[i] = work.v[i] + step * rate
+            work.q_new[i], work.v_new[i] = work.q[i], work.v[i]
+        add_stages(EXPLICIT_STAGES, stage, step, work.stage_v, work.q_new)
+        add_stages(EXPLICIT_STAGES, stage, step, work.stage_a, work.v_new)
+        for i in range(size):
             work.stage_v[stage, i] = work.v_new[i]
         time = work.time[0] + EXPLICIT_NODES[stage] * step
         accelerate(system, work, time, stage)
@@ -49,23 +47,19 @@ def explicit_step(system: SystemArrays, work: Workspace, level: int, audit: bool
 def accelerate(system: SystemArrays, work: Workspace, time: float, stage: int) -> None:
     """Write the accelerations in the state ``q_new``, ``v_new`` at `time` into row `stage` of ``stage_a``.
 
-    The local state goes into `work`. The last level's step is 0, so its matrix is M alone.
+    The local state goes into `work`.
     """
     q, v, acceleration = work.q_new, work.v_new, work.stage_a[stage]
-    level = work.step_sizes.size - 1
-    if not work.ready[level]:
-        prepare_level(system, work, level, 0.0)
-    local = work.local
+    local, sparse = work.local, system.sparse
     set_motion(system, work, time, local.position)
     add_motion(system, q, v, local.position, local.coordinate, local.rate)
-    for i in range(q.size):
-        work.external[i] -= row_product(system.damping, system.block, v, i)
-        work.external[i] -= row_product(system.stiffness, system.block, q, i)
-    for i in range(q.size):
-        acceleration[i] = row_product(work.inverse[level], system.block, work.external, i)
     for e in range(system.elements.law.size):
         evaluate(system.elements, local, e)
     for r in range(work.force.size):
         work.force[r] = local.force[r]
-        for i in range(system.reach[r, 0], system.reach[r, 1]):
-            acceleration[i] -= work.response[level, r, i] * work.force[r]
+    subtract_columns(sparse.direction, work.force, work.external)
+    for i in range(q.size):
+        work.external[i] -= row_product(sparse.damping, sparse.damping.weight, i, v)
+        work.external[i] -= row_product(sparse.stiffness, sparse.stiffness.weight, i, q)
+    for i in range(q.size):
+        acceleration[i] = row_product(sparse.mobility, sparse.mobility.weight, i, work.external)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dynamics.arrays.arrays import SystemArrays
-from dynamics.forces.compiled import inner
+from dynamics.arrays.sparse_rows import row_product, subtract_columns
 from dynamics.forces.routine import routine
 from dynamics.integrators.local_newton import solve_local_forces
 from dynamics.integrators.powers import write_powers
-from dynamics.integrators.stage import finish_step, set_motion
-from dynamics.integrators.step_level import prepare_level, row_product
+from dynamics.integrators.stage import add_stages, finish_step, set_motion
+from dynamics.integrators.step_level import prepare_level
 from dynamics.integrators.tableaus import (
     IMPLICIT_DIAGONAL,
     IMPLICIT_EMBEDDED,
@@ -59,37 +59,27 @@ def solve_stage(system: SystemArrays, work: Workspace, level: int, stage: int, t
     set_motion(system, work, work.time[0] + IMPLICIT_NODES[stage] * step, work.free_position)
     q, v = work.q_new, work.v_new
     for i in range(size):
-        displacement, rate = 0.0, 0.0
-        for s in range(stage):
-            displacement += IMPLICIT_STAGES[stage, s] * work.stage_v[s, i]
-            rate += IMPLICIT_STAGES[stage, s] * work.stage_a[s, i]
-        v[i] = work.v[i] + step * rate
-        q[i] = work.q[i] + step * displacement + span * v[i]
+        q[i], v[i] = work.q[i], work.v[i]
+    add_stages(IMPLICIT_STAGES, stage, step, work.stage_v, q)
+    add_stages(IMPLICIT_STAGES, stage, step, work.stage_a, v)
     for i in range(size):
-        work.external[i] -= row_product(system.damping, system.block, v, i)
-        work.external[i] -= row_product(system.stiffness, system.block, q, i)
+        q[i] += span * v[i]
+    sparse, inverse, linear = system.sparse, work.inverse[level], work.linear
     for i in range(size):
-        work.linear[i] = row_product(work.inverse[level], system.block, work.external, i)
+        work.external[i] -= row_product(sparse.damping, sparse.damping.weight, i, v)
+        work.external[i] -= row_product(sparse.stiffness, sparse.stiffness.weight, i, q)
     for i in range(size):
-        v[i] += span * work.linear[i]
-        q[i] += span * span * work.linear[i]
+        linear[i] = row_product(sparse.coupling, inverse, i, work.external)
+    for i in range(size):
+        v[i] += span * linear[i]
+        q[i] += span * span * linear[i]
+        work.external[i] = 0.0  # it has done its part
     add_motion(system, q, v, work.free_position, work.free, work.free_rate)
-    iterations = solve_local_forces(system, work, level, span, tolerance)
-    add_local_forces(system, work, level, stage, span)
+    iterations = solve_local_forces(system, work, level, span, tolerance, stage == 1)
+    subtract_columns(sparse.direction, work.force, work.external)
+    for i in range(size):
+        pushed = row_product(sparse.coupling, inverse, i, work.external)
+        q[i] += span * span * pushed
+        v[i] += span * pushed
+        work.stage_a[stage, i], work.stage_v[stage, i] = linear[i] + pushed, v[i]
     return iterations
-
-
-@inner
-def add_local_forces(system: SystemArrays, work: Workspace, level: int, stage: int, span: float) -> None:
-    """Let the forces found push the freedoms within their reach; fill the stage's rates and accelerations."""
-    pushed = work.external  # it has done its part in this stage
-    for i in range(pushed.size):
-        pushed[i] = 0.0
-    for r in range(work.force.size):
-        for i in range(system.reach[r, 0], system.reach[r, 1]):
-            pushed[i] += work.response[level, r, i] * work.force[r]
-    for i in range(pushed.size):
-        work.stage_a[stage, i] = work.linear[i] - pushed[i]
-        work.v_new[i] -= span * pushed[i]
-        work.q_new[i] -= span * span * pushed[i]
-        work.stage_v[stage, i] = work.v_new[i]

@@ -41,7 +41,7 @@ def step_to_jump(system: SystemArrays, work: Workspace, level: int, jump: float)
     step = jump * (1.0 - ROUNDING) - work.time[0]
     if not 0.0 < step <= work.step_sizes[level]:
         return level
-    landing = int(work.step_sizes.size - 2)
+    landing = int(work.step_sizes.size - 1)
     work.step_sizes[landing] = step
     work.ready[landing] = False
     return landing

@@ -1,123 +1,150 @@
 """Compiled Newton's method for the local forces of one implicit stage.
 
 Everything but the elements is linear, and each acts along its few constant directions, so the stage's n
-equations reduce to one scalar unknown per row: its local force.
+equations reduce to one scalar unknown per row: its local force. Stages of one step share the inverse of the
+equations' matrix, made from the tangents at its first stage, and rows that hardly feel their own force are
+iterated instead of solved for. Where that converges slowly, the matrix is made anew in every iteration.
 """
 
 from __future__ import annotations
+
+import math
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.forces.compiled import inner
 from dynamics.forces.element_laws import evaluate
 from dynamics.integrators.workspace import Workspace
-from dynamics.types import FloatArray
 
 ITERATION_LIMIT = 25
+WEAK = 0.01
+"""Change of a row's law with its own force, below which the row is iterated."""
+SLOW = 0.1
+"""Part of the last update that is left, above which the equations are made anew."""
 
 
 @inner
 def solve_local_forces(
-    system: SystemArrays, work: Workspace, level: int, span: float, tolerance: float
+    system: SystemArrays, work: Workspace, level: int, span: float, tolerance: float, first: bool
 ) -> int:
     """Find ``work.force`` such that each force is its law's at the motion it causes; return the iterations.
 
     On entry ``work.free``, ``free_rate`` and ``free_position`` hold the motion without local forces, and
-    ``work.force`` is a first guess; on exit ``work.local`` holds the motion with them. The change of the
-    positions with the forces is followed but left out of the Jacobian: it is of the order of a deflection
-    over a base pitch. Returns -1 if the last update was not below `tolerance` (N).
+    ``work.force`` is a first guess; on exit ``work.local`` holds the motion with them. `first` says whether
+    this is the first stage of its step. The change of the positions with the forces is followed but left out
+    of the equations: it is of the order of a deflection over a base pitch. An update leaves the part of
+    itself that it was of the one before; returns -1 if that did not fall to `tolerance` (N).
     """
-    elements = system.elements
+    fresh, last, left = first, math.inf, 1.0
     for iteration in range(ITERATION_LIMIT):
-        for m in range(work.free_position.size):
-            _move_position(work, level, span, m)
-        for e in range(elements.law.size):
-            first, end = elements.first[e], elements.first[e + 1]
-            for k in range(first, end):
-                _move_row(work, level, span, k)
-            evaluate(elements, work.local, e)
-            _linearize(work, level, span, first, end)
-        if update_forces(work.jacobian, work.force) <= tolerance:
-            _settle(work, level, span)
+        _move(work, level, span)
+        for e in range(system.elements.law.size):
+            evaluate(system.elements, work.local, e)
+        if fresh:
+            _invert_equations(system, work, level, span)
+        size = _update_forces(work)
+        if iteration > 0:
+            left = size / last
+        if min(left, 1.0) * size <= tolerance:
+            _move(work, level, span)
             return iteration + 1
+        fresh = iteration > 0 and not left <= SLOW
+        last = size
     return -1
 
 
 @inner
-def _settle(work: Workspace, level: int, span: float) -> None:
-    """Let the forces found act on all coordinates, rates and positions."""
+def _move(work: Workspace, level: int, span: float) -> None:
+    """Let the forces act: they move coordinates and positions by -span^2 approach f, rates by -span ..."""
+    response, local, rows = work.response, work.local, work.force.size
+    for k in range(response.size):
+        response[k] = 0.0
+    for r in range(rows):
+        force = work.force[r]
+        if force != 0.0:
+            for k in range(response.size):
+                response[k] += work.approach[level, r, k] * force
+    for k in range(rows):
+        local.coordinate[k] = work.free[k] - span * span * response[k]
+        local.rate[k] = work.free_rate[k] - span * response[k]
     for m in range(work.free_position.size):
-        _move_position(work, level, span, m)
-    for k in range(work.force.size):
-        _move_row(work, level, span, k)
+        local.position[m] = work.free_position[m] - span * span * response[rows + m]
 
 
 @inner
-def _move_row(work: Workspace, level: int, span: float, k: int) -> None:
-    """Let the forces act: force r changes coordinate k by -span^2 approach[k, r], its rate by -span ..."""
-    moved = 0.0
-    for r in range(work.force.size):
-        moved += work.approach[level, k, r] * work.force[r]
-    work.local.coordinate[k] = work.free[k] - span * span * moved
-    work.local.rate[k] = work.free_rate[k] - span * moved
+def _gain(work: Workspace, span: float, k: int, j: int) -> float:
+    """Return how the law of row k changes with what moves the coordinate j of its own element."""
+    return float(span * (span * work.local.tangent[k, j] + work.local.viscous[k, j]))
 
 
 @inner
-def _move_position(work: Workspace, level: int, span: float, m: int) -> None:
-    """Let the forces turn the driver of mesh m."""
-    turned = 0.0
-    for r in range(work.force.size):
-        turned += work.position_response[level, m, r] * work.force[r]
-    work.local.position[m] = work.free_position[m] - span * span * turned
+def _invert_equations(system: SystemArrays, work: Workspace, level: int, span: float) -> None:
+    """List the rows whose law changes by more than WEAK with their own force, and invert their equations.
 
-
-@inner
-def _linearize(work: Workspace, level: int, span: float, first: int, end: int) -> None:
-    """Write the equations of one element's rows: I + (span^2 df/dy + span df/dy') approach | law - force."""
-    rows, local = work.force.size, work.local
-    if end - first == 1:  # most elements: no sum over an element's own coordinates
-        gain = span * (span * local.tangent[first, 0] + local.viscous[first, 0])
-        for r in range(rows):
-            work.jacobian[first, r] = gain * work.approach[level, first, r]
-    else:
-        _chain(work, level, span, first, end)
-    for k in range(first, end):
-        work.jacobian[k, k] += 1.0
-        work.jacobian[k, rows] = local.force[k] - work.force[k]
-
-
-@inner
-def _chain(work: Workspace, level: int, span: float, first: int, end: int) -> None:
-    """Write (span^2 df/dy + span df/dy') approach for an element of several rows."""
-    for k in range(first, end):
-        for r in range(work.force.size):
-            total = 0.0
+    These are I + (span^2 df/dy + span df/dy') approach, transposed: then columns of the inverse lie along
+    rows in memory.
+    """
+    size, approach = 0, work.approach
+    for e in range(system.elements.law.size):
+        first, end = system.elements.first[e], system.elements.first[e + 1]
+        for k in range(first, end):
+            change = 0.0
             for j in range(end - first):
-                gain = span * (span * work.local.tangent[k, j] + work.local.viscous[k, j])
-                total += gain * work.approach[level, first + j, r]
-            work.jacobian[k, r] = total
+                change += abs(_gain(work, span, k, j)) * approach[level, first + j, first + j]
+            if change > WEAK:
+                work.solved[size] = k
+                size += 1
+    work.solved[size] = -1
+    for e in range(system.elements.law.size):
+        first, end = system.elements.first[e], system.elements.first[e + 1]
+        for b in range(size):
+            k = work.solved[b]
+            if not first <= k < end:
+                continue
+            for a in range(size):
+                total = 1.0 if a == b else 0.0
+                for j in range(end - first):
+                    total += _gain(work, span, k, j) * approach[level, first + j, work.solved[a]]
+                work.jacobian[a, b] = total
+                work.jacobian[a, size + b] = 1.0 if a == b else 0.0
+    _invert(work, size)
 
 
 @inner
-def update_forces(jacobian: FloatArray, force: FloatArray) -> float:
-    """Solve the augmented system (R, R + 1) with row pivoting, add to `force`, return the largest update."""
-    size, largest = force.size, 0.0
+def _invert(work: Workspace, size: int) -> None:
+    """Turn [A, I] in the first `size` rows into [I, inverse], with row pivoting (Gauss and Jordan)."""
+    matrix = work.jacobian
     for p in range(size):
         best = p
         for i in range(p + 1, size):
-            if abs(jacobian[i, p]) > abs(jacobian[best, p]):
+            if abs(matrix[i, p]) > abs(matrix[best, p]):
                 best = i
-        for j in range(p, size + 1):
-            jacobian[p, j], jacobian[best, j] = jacobian[best, j], jacobian[p, j]
-        for i in range(p + 1, size):
-            factor = jacobian[i, p] / jacobian[p, p]
-            if factor == 0.0:  # an element out of contact: its row is that of the identity
-                continue
-            for j in range(p + 1, size + 1):
-                jacobian[i, j] -= factor * jacobian[p, j]
-    for p in range(size - 1, -1, -1):
-        for j in range(p + 1, size):
-            jacobian[p, size] -= jacobian[p, j] * jacobian[j, size]
-        jacobian[p, size] /= jacobian[p, p]
-        force[p] += jacobian[p, size]
-        largest = max(largest, abs(jacobian[p, size]))
+        pivot = 1.0 / matrix[best, p]
+        for j in range(2 * size):
+            matrix[best, j], matrix[p, j] = matrix[p, j], matrix[best, j] * pivot
+        for i in range(size):
+            factor = matrix[i, p]
+            if i != p and factor != 0.0:
+                for j in range(2 * size):
+                    matrix[i, j] -= factor * matrix[p, j]
+
+
+@inner
+def _update_forces(work: Workspace) -> float:
+    """Add the update that the equations give to ``work.force``, and return the largest one."""
+    update, solved, size = work.update, work.correction, 0
+    for r in range(update.size):
+        update[r] = work.local.force[r] - work.force[r]
+    while work.solved[size] >= 0:
+        solved[size] = 0.0
+        size += 1
+    for b in range(size):
+        value = update[work.solved[b]]
+        for a in range(size):
+            solved[a] += work.jacobian[b, size + a] * value
+    for a in range(size):
+        update[work.solved[a]] = solved[a]
+    largest = 0.0
+    for r in range(update.size):
+        work.force[r] += update[r]
+        largest = max(largest, abs(update[r]))
     return largest

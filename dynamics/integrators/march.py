@@ -222,7 +222,7 @@ def now() -> float:
 def _step_sizes(integration: Integration) -> FloatArray:
     """Step sizes: geometric, or the one fixed step."""
     if integration.fixed_step is not None:
-        return np.array([integration.fixed_step, 0.0, 0.0])
+        return np.array([integration.fixed_step, 0.0])
     return geometric_steps(integration.largest_step, integration.smallest_step)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dynamics.arrays.arrays import SystemArrays
+from dynamics.arrays.sparse_rows import row_product
 from dynamics.forces.compiled import inner
 from dynamics.forces.element_laws import (
     FLANK,
@@ -14,7 +15,6 @@ from dynamics.forces.element_laws import (
     slides,
 )
 from dynamics.forces.routine import routine
-from dynamics.integrators.step_level import row_product
 from dynamics.integrators.workspace import Power, Workspace
 from dynamics.motion.motion import ACCELERATION, SPEED, law_value
 from dynamics.types import FloatArray
@@ -46,8 +46,9 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
     bushing = lost_in_bearings
     loads += supplied
     drives -= kept
+    damping = system.sparse.damping
     for i in range(velocity.size):
-        bushing += velocity[i] * row_product(system.damping, system.block, velocity, i)
+        bushing += velocity[i] * row_product(damping, damping.weight, i, velocity)
     axes, position = 0.0, 0.0
     for e in range(system.elements.law.size):
         axes -= power_along_axes(system.elements, work.local, e)

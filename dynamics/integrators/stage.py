@@ -19,11 +19,22 @@ def set_motion(system: SystemArrays, work: Workspace, time: float, position: Flo
 
 
 @inner
+def add_stages(weights: FloatArray, stage: int, step: float, rates: FloatArray, values: FloatArray) -> None:
+    """Add what the stages before `stage` contribute by their `rates` (stages, n) to `values` (n,)."""
+    for s in range(stage):
+        share = step * weights[stage, s]
+        for i in range(values.size):
+            values[i] += share * rates[s, i]
+
+
+@inner
 def finish_step(work: Workspace, step: float, weights: FloatArray, embedded: FloatArray) -> None:
     """Write the embedded error estimates of displacements and rates."""
-    for i in range(work.q.size):
-        work.q_error[i], work.v_error[i] = 0.0, 0.0
-        for stage in range(weights.size):
-            difference = step * (weights[stage] - embedded[stage])
-            work.q_error[i] += difference * work.stage_v[stage, i]
-            work.v_error[i] += difference * work.stage_a[stage, i]
+    q_error, v_error = work.q_error, work.v_error
+    for i in range(q_error.size):
+        q_error[i], v_error[i] = 0.0, 0.0
+    for stage in range(weights.size):
+        difference = step * (weights[stage] - embedded[stage])
+        for i in range(q_error.size):
+            q_error[i] += difference * work.stage_v[stage, i]
+            v_error[i] += difference * work.stage_a[stage, i]

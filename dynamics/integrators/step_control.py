@@ -78,7 +78,7 @@ def slow_enough(system: SystemArrays, work: Workspace, level: int) -> int:
             per_turn = reference.numerator[m, k] / reference.denominator[m, k]
             moving += law_speed(reference, k, work.motion, work.v) / (2.0 * math.pi) * per_turn
         rate = max(rate, abs(moving))
-    while rate * work.step_sizes[level] > POSITION_LIMIT and level < work.step_sizes.size - 3:
+    while rate * work.step_sizes[level] > POSITION_LIMIT and level < work.step_sizes.size - 2:
         level += 1
     return level
 
@@ -98,7 +98,7 @@ def next_level(work: Workspace, control: Control, error: float, accepted: bool) 
         octaves = min(SAFETY - exponent * log_error, 0.0)
     rise = math.floor(LEVELS_PER_OCTAVE * min(max(octaves, FALL_LIMIT), RISE_LIMIT))
     level = work.counts[Count.LEVEL] - int(rise)
-    smallest = work.step_sizes.size - 3
+    smallest = work.step_sizes.size - 2
     if not accepted:
         level = max(level, work.counts[Count.LEVEL] + 1)
         smallest += 1  # below the smallest: the caller ends there

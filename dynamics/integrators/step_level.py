@@ -3,67 +3,55 @@
 from __future__ import annotations
 
 from dynamics.arrays.arrays import SystemArrays
+from dynamics.arrays.sparse_rows import row_product
 from dynamics.forces.compiled import compiled, inner
 from dynamics.integrators.workspace import Workspace
-from dynamics.types import FloatArray, IntArray
+from dynamics.types import FloatArray
 
 
 @inner
 def prepare_level(system: SystemArrays, work: Workspace, level: int, diagonal: float) -> None:
-    """Fill the matrices of `level` for the stage weight `diagonal` (0: an explicit method, M alone)."""
-    span = diagonal * work.step_sizes[level]
-    rows, size = work.force.size, work.q.size
-    matrix = work.matrix
+    """Fill the matrices of `level` for the stage weight `diagonal`."""
+    span, size, rows = diagonal * work.step_sizes[level], work.q.size, work.force.size
+    matrix, along, coupling = work.matrix, system.sparse.direction, system.sparse.coupling
     for i in range(size):
         for j in range(size):
             matrix[i, j] = system.mass[i, j] + span * (system.damping[i, j] + span * system.stiffness[i, j])
-            work.inverse[level, i, j] = 0.0
-    invert_blocks(matrix, system.block, work.inverse[level])
+    invert(matrix)
+    for i in range(size):
+        for entry in range(coupling.first[i], coupling.first[i + 1]):
+            work.inverse[level, entry] = matrix[i, coupling.column[entry]]
+    pushed, turn = work.external, system.sparse.turn
     for r in range(rows):
         for i in range(size):
-            total = 0.0
-            for j in range(size):
-                total += work.inverse[level, i, j] * system.direction[r, j]
-            work.response[level, r, i] = total
-    for r in range(rows):
+            pushed[i] = 0.0
+        for entry in range(along.first[r], along.first[r + 1]):
+            for i in range(size):
+                pushed[i] += along.weight[entry] * matrix[i, along.column[entry]]
         for k in range(rows):
-            work.approach[level, k, r] = 0.0
-        for m in range(system.turn.shape[0]):
-            work.position_response[level, m, r] = 0.0
-        for i in range(size):
-            for k in range(rows):
-                work.approach[level, k, r] += system.direction[k, i] * work.response[level, r, i]
-            for m in range(system.turn.shape[0]):
-                work.position_response[level, m, r] += system.turn[m, i] * work.response[level, r, i]
+            work.approach[level, r, k] = row_product(along, along.weight, k, pushed)
+        for m in range(work.free_position.size):
+            work.approach[level, r, rows + m] = row_product(turn, turn.weight, m, pushed)
     work.ready[level] = True
 
 
 @compiled
-def invert_blocks(matrix: FloatArray, block: IntArray, inverse: FloatArray) -> None:
-    """Invert a symmetric positive definite block-diagonal matrix; it is destroyed.
+def invert(matrix: FloatArray) -> None:
+    """Invert a symmetric positive definite matrix in place.
 
-    Gauss and Jordan without pivoting: stable for positive definite matrices.
+    Gauss and Jordan without pivoting: stable for positive definite matrices. Freedoms that nothing couples
+    stay apart: their entries are and remain 0.
     """
-    for p in range(block.shape[0]):
-        inverse[p, p] = 1.0
-    for p in range(block.shape[0]):
+    size = matrix.shape[0]
+    for p in range(size):
         pivot = 1.0 / matrix[p, p]
-        first, end = block[p, 0], block[p, 1]
-        for j in range(first, end):
+        matrix[p, p] = 1.0
+        for j in range(size):
             matrix[p, j] *= pivot
-            inverse[p, j] *= pivot
-        for i in range(first, end):
-            if i != p:
-                factor = matrix[i, p]
-                for j in range(first, end):
-                    matrix[i, j] -= factor * matrix[p, j]
-                    inverse[i, j] -= factor * inverse[p, j]
-
-
-@inner
-def row_product(matrix: FloatArray, block: IntArray, vector: FloatArray, row: int) -> float:
-    """Return one row of a block-diagonal matrix times a vector."""
-    total = 0.0
-    for j in range(block[row, 0], block[row, 1]):
-        total += matrix[row, j] * vector[j]
-    return total
+        for i in range(size):
+            factor = matrix[i, p]
+            if i == p or factor == 0.0:
+                continue
+            matrix[i, p] = 0.0
+            for j in range(size):
+                matrix[i, j] -= factor * matrix[p, j]

@@ -73,7 +73,7 @@ class Workspace(NamedTuple):
     """State and scratch of a run with n freedoms, m meshes and R local coordinates of elements.
 
     The step sizes are geometric, LEVELS_PER_OCTAVE to a factor of 2, so that the matrices of the
-    implicit stages are inverted once per level and run.
+    implicit stages are inverted once per level and run. L = entries of ``SparseMatrices.coupling``.
 
     Attributes
     ----------
@@ -97,12 +97,18 @@ class Workspace(NamedTuple):
         Local coordinates and their rates without the elements' forces.
     free_position : (m,) array
         Positions without them.
+    response : (R + m,) array
+        Scratch: accelerations of coordinates and positions by local forces.
     motion : (k, 4) array
         Of the laws at the current stage.
     moved : (k,) int array
         Quanta of a revolution by which each free train's own rotation was moved into the reference.
-    jacobian : (R, R + 1) array
-        Scratch of Newton's method.
+    update, correction : (R,) arrays
+        Scratch of Newton's method, N.
+    solved : (R + 1,) int array
+        Rows that Newton's method solves for in the current step, ended by -1.
+    jacobian : (R, 2 R) array
+        Its equations in these rows, transposed, and their inverse.
     power : (STAGES, 7) array
         Per stage; columns `Power`.
     work : (7,) array
@@ -112,20 +118,15 @@ class Workspace(NamedTuple):
     counts : int array
         See `Count`.
     step_sizes : (r,) array
-        Step sizes, falling, s; then the one that lands on a law's knot, and 0, for the matrices of an
-        explicit evaluation.
+        Step sizes, falling, s; then the one that lands on a law's knot.
     matrix : (n, n) array
         Scratch: the matrix to invert.
     ready : (r,) bool array
         Whether the matrices of a level are there.
-    inverse : (r, n, n) array
-        Of M + h g C + (h g)^2 K.
-    response : (r, R, n) array
-        inverse times the rows' directions.
-    approach : (r, R, R) array
-        Local coordinate k per response to local force r.
-    position_response : (r, m, R) array
-        Position of each mesh per response to local force r.
+    inverse : (r, L) array
+        Entries of the inverse of M + h g C + (h g)^2 K.
+    approach : (r, R, R + m) array
+        Accelerations of local coordinates, then of positions, per local force.
     """
 
     time: FloatArray
@@ -151,8 +152,12 @@ class Workspace(NamedTuple):
     free: FloatArray
     free_rate: FloatArray
     free_position: FloatArray
+    response: FloatArray
     motion: FloatArray
     moved: IntArray
+    update: FloatArray
+    correction: FloatArray
+    solved: IntArray
     jacobian: FloatArray
     power: FloatArray
     work: FloatArray
@@ -163,18 +168,16 @@ class Workspace(NamedTuple):
     matrix: FloatArray
     ready: BoolArray
     inverse: FloatArray
-    response: FloatArray
     approach: FloatArray
-    position_response: FloatArray
 
 
 def geometric_steps(largest: float, smallest: float) -> FloatArray:
-    """Return step sizes falling from `largest` to at most `smallest` by equal factors, and two more entries.
+    """Return step sizes falling from `largest` to at most `smallest` by equal factors, and one more entry.
 
     See ``Workspace.step_sizes``.
     """
     levels = int(np.ceil(LEVELS_PER_OCTAVE * np.log2(largest / smallest))) + 1
-    return np.append(largest * 2.0 ** (-np.arange(levels) / LEVELS_PER_OCTAVE), [0.0, 0.0])
+    return np.append(largest * 2.0 ** (-np.arange(levels) / LEVELS_PER_OCTAVE), 0.0)
 
 
 def make_workspace(
@@ -184,7 +187,7 @@ def make_workspace(
     n, rows, meshes, r = q.size, system.direction.shape[0], system.turn.shape[0], step_sizes.size
     laws = system.inertial.shape[0]
     counts = np.zeros(len(Count), dtype=np.int64)
-    counts[Count.LEVEL] = min(int(np.searchsorted(-step_sizes, -first_step)), r - 3)
+    counts[Count.LEVEL] = min(int(np.searchsorted(-step_sizes, -first_step)), r - 2)
     counts[Count.SMALLEST_LEVEL] = r - 1
     per_freedom = ("v", "v_rest", "a", "q_new", "v_new", "a_new", "q_error", "v_error", "external", "linear")
     return Workspace(
@@ -195,14 +198,16 @@ def make_workspace(
         **{name: np.zeros(n) for name in per_freedom},
         stage_v=np.zeros((STAGES, n)),
         stage_a=np.zeros((STAGES, n)),
-        **{name: np.zeros(rows) for name in ("force", "free", "free_rate")},
+        **{name: np.zeros(rows) for name in ("force", "free", "free_rate", "update", "correction")},
         local=make_local(system.elements, meshes),
         before=_step_end(meshes, rows, laws),
         after=_step_end(meshes, rows, laws),
         free_position=np.zeros(meshes),
+        response=np.zeros(rows + meshes),
         motion=np.zeros((laws, MOTION_COLUMNS)),
         moved=np.zeros(laws, dtype=np.int64),
-        jacobian=np.zeros((rows, rows + 1)),
+        solved=np.full(rows + 1, -1, dtype=np.int64),
+        jacobian=np.zeros((rows, 2 * rows)),
         power=np.zeros((STAGES, len(Power))),
         work=np.zeros(len(Power)),
         highest=np.zeros(len(LOSSES)),
@@ -211,10 +216,8 @@ def make_workspace(
         step_sizes=step_sizes,
         matrix=np.zeros((n, n)),
         ready=np.zeros(r, dtype=np.bool_),
-        inverse=np.zeros((r, n, n)),
-        response=np.zeros((r, rows, n)),
-        approach=np.zeros((r, rows, rows)),
-        position_response=np.zeros((r, meshes, rows)),
+        inverse=np.zeros((r, system.sparse.coupling.column.size)),
+        approach=np.zeros((r, rows, rows + meshes)),
     )
 
 

@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
+from dynamics.arrays.sparse_rows import sparse_rows
 from dynamics.assembly.assemble import System
 from dynamics.forces.by_address import by_address
 from dynamics.forces.local_state import LocalState
 from dynamics.linearize.linear_system import LinearSystem
-from dynamics.mechanism.freedoms import row_reach
 from dynamics.motion.observation import Watch, local_state, observe, static_deflections
 from dynamics.types import FloatArray
 
@@ -91,11 +91,11 @@ def averaged(
 def _by_coordinates(arrays: SystemArrays) -> SystemArrays:
     """Return arrays whose freedoms are the R local coordinates and the m positions themselves."""
     rows, meshes = arrays.direction.shape[0], arrays.turn.shape[0]
-    direction, each = np.eye(rows, rows + meshes), np.arange(rows + meshes)
+    direction, turn = np.eye(rows, rows + meshes), np.eye(meshes, rows + meshes, rows)
     return arrays._replace(
         direction=direction,
-        reach=row_reach(direction, np.column_stack([each, each + 1])),
-        turn=np.ascontiguousarray(np.eye(meshes, rows + meshes, rows)),
+        turn=np.ascontiguousarray(turn),
+        sparse=arrays.sparse._replace(direction=sparse_rows(direction), turn=sparse_rows(turn)),
         elements=arrays.elements._replace(offset=np.zeros(rows)),
     )
 

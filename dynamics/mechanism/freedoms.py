@@ -74,28 +74,3 @@ def find_freedoms(
         np.ascontiguousarray(motion),
         np.array([part[2] for part in freedoms], dtype=np.bool_),
     )
-
-
-def shared_blocks(matrices: Sequence[FloatArray]) -> IntArray:
-    """Return (n, 2): first and end column of each row's block, the finest that all `matrices` share."""
-    size = matrices[0].shape[0]
-    coupled = np.any([matrix != 0.0 for matrix in matrices], axis=0)
-    starts, reach = [], 0
-    for i in range(size):
-        if i >= reach:
-            starts.append(i)
-        linked = np.flatnonzero(coupled[i])
-        reach = max([reach, i + 1, *(linked + 1).tolist()])
-    ends = [*starts[1:], size]
-    spans = [[start, end] for start, end in zip(starts, ends, strict=True) for _ in range(start, end)]
-    return np.array(spans, dtype=np.int64).reshape(-1, 2)
-
-
-def row_reach(direction: FloatArray, block: IntArray) -> IntArray:
-    """Return (R, 2): first and end freedom of the blocks that each row enters; an empty range for zeros."""
-    reach = np.zeros((direction.shape[0], 2), dtype=np.int64)
-    for row, along in enumerate(direction):
-        entered = np.flatnonzero(along)
-        if entered.size:
-            reach[row] = block[entered[0], 0], block[entered[-1], 1]
-    return reach

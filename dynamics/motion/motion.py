@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from dynamics.arrays.arrays import LawArrays, Reference, SystemArrays
+from dynamics.arrays.sparse_rows import row_product
 from dynamics.forces.compiled import compiled, inner
 from dynamics.forces.element_laws import ROTATING_FRAME, Elements
 from dynamics.forces.local_state import LocalState
@@ -107,15 +108,12 @@ def add_motion(
     rate: FloatArray,
 ) -> None:
     """Add `q` to the positions, and write the elements' local coordinates and their rates."""
+    direction, turn = system.sparse.direction, system.sparse.turn
     for r in range(coordinate.size):
-        moved, moving = system.elements.offset[r], 0.0
-        for i in range(system.reach[r, 0], system.reach[r, 1]):
-            moved += system.direction[r, i] * q[i]
-            moving += system.direction[r, i] * v[i]
-        coordinate[r], rate[r] = moved, moving
+        coordinate[r] = system.elements.offset[r] + row_product(direction, direction.weight, r, q)
+        rate[r] = row_product(direction, direction.weight, r, v)
     for m in range(position.size):
-        for i in range(q.size):
-            position[m] += system.turn[m, i] * q[i]
+        position[m] += row_product(turn, turn.weight, m, q)
 
 
 @inner

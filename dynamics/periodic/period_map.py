@@ -158,7 +158,7 @@ class PeriodMap:
     @cached_property
     def _work(self) -> Workspace:
         sizes = self.problem.grid.size[:-1] * self.problem.period.duration(self.speed)
-        step_sizes = np.append(np.outer(sizes, 0.5 ** np.arange(HALVINGS + 1)).ravel(), 0.0)
+        step_sizes = np.outer(sizes, 0.5 ** np.arange(HALVINGS + 1)).ravel()
         n = self.arrays.mass.shape[0]
         work = by_address(make_workspace(self.arrays, step_sizes, np.zeros(n), float(step_sizes[0])))
         implicit = self.problem.system.scene.integration.method == "implicit"

@@ -75,8 +75,8 @@ def test_a_matrix_holds_the_shafts_together_in_all_directions():
     assert stiffness[machine, machine] == pytest.approx(radial + 1e3)
     assert stiffness[machine, output] == pytest.approx(-radial)
     np.testing.assert_allclose(stiffness, stiffness.T)
-    start, end = system.arrays.block[machine]
-    assert start <= output < end
+    joined = system.arrays.sparse.coupling
+    assert output in joined.column[joined.first[machine] : joined.first[machine + 1]]
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from dynamics.integrators.step_control import Control, next_level
 from dynamics.integrators.workspace import Count, geometric_steps
 
 STEP_SIZES = geometric_steps(1e-3, 1e-8)
-SMALLEST = STEP_SIZES.size - 3  # behind it the step that lands on a law's knot, and 0
+SMALLEST = STEP_SIZES.size - 2  # behind it the step that lands on a law's knot
 CONTROL = Control(True, True, False, 3, 1e-9, 1e-4, 100)
 
 
