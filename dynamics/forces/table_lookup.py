@@ -80,12 +80,19 @@ def table_force(
         return table.level[level + 1] + stiffness * (deflection - high), stiffness, k
     span = high - low
     w = (deflection - low) / span
-    rise = span * cubic(table.row, row + k, 4, u)
-    fall = span * cubic(table.row, row + k + 1, 4, u)
-    step = table.level[level + 1] - table.level[level]
-    c2, c3 = 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step
+    rise, c2, c3 = force_cubic(table, row + k, level, u, span)
     force = table.level[level] + w * (rise + w * (c2 + w * c3))
     return force, (rise + w * (2.0 * c2 + 3.0 * w * c3)) / span, k
+
+
+@inner
+def force_cubic(
+    table: PackedTables, row: int, level: int, u: float, span: float
+) -> tuple[float, float, float]:
+    """Return the coefficients of w, w^2, w^3 in the force on a level interval of the width `span` (m)."""
+    rise, fall = span * cubic(table.row, row, 4, u), span * cubic(table.row, row + 1, 4, u)
+    step = table.level[level + 1] - table.level[level]
+    return rise, 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step
 
 
 @compiled
@@ -102,17 +109,19 @@ def table_deflection(table: PackedTables, flank: int, position: float, force: fl
     if force >= table.level[first + k + 1]:
         return float(high + (force - table.level[first + k + 1]) / cubic(table.row, row + k + 1, 4, u))
     # Newton, kept inside the bracket: the cubic is monotone on its interval, so bisection can always step in.
-    deflection = 0.5 * (low + high)
+    rise, c2, c3 = force_cubic(table, row + k, first + k, u, high - low)
+    wanted = force - table.level[first + k]
+    w, least, most = wanted / (rise + c2 + c3), 0.0, 1.0
     for _ in range(100):
-        trial, stiffness, _ = table_force(table, flank, position, deflection, k)
-        if trial < force:
-            low = deflection
+        trial = w * (rise + w * (c2 + w * c3))
+        if trial < wanted:
+            least = w
         else:
-            high = deflection
-        step = (force - trial) / stiffness
-        if not low <= deflection + step <= high:
-            step = 0.5 * (low + high) - deflection
-        deflection += step
-        if abs(step) <= 1e-15 * abs(high):
+            most = w
+        step = (wanted - trial) / (rise + w * (2.0 * c2 + 3.0 * w * c3))
+        if not least <= w + step <= most:
+            step = 0.5 * (least + most) - w
+        w += step
+        if abs(step) <= 1e-15:
             break
-    return deflection
+    return low + w * (high - low)

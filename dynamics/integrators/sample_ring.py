@@ -80,6 +80,8 @@ class SampleRing(NamedTuple):
     removed, folded : (C,) arrays
         Sums over the output samples of the squares of what the filter took away, and of the content near
         half the inner rate.
+    high : (C,) array
+        Scratch: that content at one output sample.
     """
 
     point: FloatArray
@@ -91,6 +93,7 @@ class SampleRing(NamedTuple):
     peaks: Peaks
     removed: FloatArray
     folded: FloatArray
+    high: FloatArray
 
 
 def make_sampler(system: System) -> Sampler:
@@ -114,6 +117,7 @@ def make_ring(arrays: SystemArrays, sampler: Sampler) -> SampleRing:
         np.zeros((laws, MOTION_COLUMNS)),
         np.zeros(laws, dtype=np.int64),
         Peaks(np.zeros((2, signals)), *(np.zeros(signals) for _ in range(3))),
+        np.zeros(channels),
         np.zeros(channels),
         np.zeros(channels),
     )

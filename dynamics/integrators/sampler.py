@@ -8,6 +8,8 @@ output trails the integration by half the filter, and its delay is compensated.
 
 from __future__ import annotations
 
+import numpy as np
+
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.forces.compiled import compiled, inner
 from dynamics.forces.element_laws import evaluate
@@ -24,10 +26,10 @@ from dynamics.motion.motion import (
     write_motion,
 )
 from dynamics.motion.sampled_states import States
+from dynamics.types import FloatArray
 
-HIGH_PASS = (1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0)
-"""Sixth difference: 64 at half the rate, sin^6 below."""
-HIGH_PASS_GAIN = 64.0
+HIGH_PASS = np.array([1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0]) / 64.0
+"""Sixth difference: 1 at half the rate, sin^6 below."""
 
 
 @routine
@@ -176,15 +178,12 @@ def _store_if_due(work: Workspace, sampler: Sampler, ring: SampleRing, point: in
     row = counts[Count.OUTPUT] - counts[Count.FIRST_ROW]
     if middle < 0 or middle % sampler.factor != 0 or row >= out.q.shape[0]:
         return
-    taps, channels = sampler.taps.size, ring.point.shape[1]
+    taps, filtered = sampler.taps.size, out.filtered[row]
     oldest = (point + 1) % taps
-    filtered = out.filtered[row]
-    for c in range(channels):
+    for c in range(filtered.size):
         filtered[c] = 0.0
     for t in range(taps):
-        at, weight = (oldest + t) % taps, sampler.taps[t]
-        for c in range(channels):
-            filtered[c] += weight * ring.point[at, c]
+        _add_point(ring, oldest + t, sampler.taps[t], filtered)
     center = middle % taps
     rows, n = ring.local.force.size, ring.q.size
     for i in range(n):
@@ -201,25 +200,36 @@ def _see_extremes(ring: SampleRing, factor: int, center: int, out: States, row: 
     """Store least and largest local forces over the points nearest to the output sample."""
     taps = ring.point.shape[0]
     half = min((factor + 1) // 2, taps // 2)
-    for r in range(ring.local.force.size):
-        least, largest = ring.point[center, r], ring.point[center, r]
-        for step in range(-half, half + 1):
-            value = ring.point[(center + step) % taps, r]
-            least, largest = min(least, value), max(largest, value)
-        out.least[row, r], out.largest[row, r] = least, largest
+    least, largest = out.least[row], out.largest[row]
+    for r in range(least.size):
+        least[r], largest[r] = ring.point[center, r], ring.point[center, r]
+    for step in range(-half, half + 1):
+        near = ring.point[(center + step) % taps]
+        for r in range(least.size):
+            least[r], largest[r] = min(least[r], near[r]), max(largest[r], near[r])
 
 
 @inner
 def _see_removed(ring: SampleRing, center: int, point: int, out: States, row: int) -> None:
     """Add up the squares of what the filter took away and of what lies near half the inner rate."""
-    taps = ring.point.shape[0]
-    for c in range(ring.point.shape[1]):
+    taps, high = ring.point.shape[0], ring.high
+    for c in range(high.size):
         removed = ring.point[center, c] - out.filtered[row, c]
         ring.removed[c] += removed * removed
+        high[c] = 0.0
     if point < taps:
         return
-    for c in range(ring.point.shape[1]):
-        high = 0.0
-        for t in range(len(HIGH_PASS)):
-            high += HIGH_PASS[t] * ring.point[(point - t) % taps, c]
-        ring.folded[c] += (high / HIGH_PASS_GAIN) ** 2
+    latest = point % taps + taps
+    for t in range(HIGH_PASS.size):
+        _add_point(ring, latest - t, HIGH_PASS[t], high)
+    for c in range(high.size):
+        ring.folded[c] += high[c] * high[c]
+
+
+@inner
+def _add_point(ring: SampleRing, index: int, weight: float, total: FloatArray) -> None:
+    """Add `weight` times the point `index`, at most one turn of the ring beyond its rows, to `total` (C,)."""
+    taps = ring.point.shape[0]
+    point = ring.point[index - taps if index >= taps else index]
+    for c in range(total.size):
+        total[c] += weight * point[c]
