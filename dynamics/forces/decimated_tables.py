@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from dynamics.forces.energy_below import energy_below
 from dynamics.forces.grid_tables import GridTables
 from dynamics.forces.packed_tables import PackedTables, bucket_starts
 from dynamics.types import FloatArray, IntArray
@@ -21,12 +22,14 @@ def decimated(tables: PackedTables, every: int = 2) -> PackedTables:
     offset = tables.offset.copy()
     for flank, part in enumerate(parts):
         offset[flank, :4] = starts[0][flank], starts[1][flank], len(part[1]), starts[2][flank]
+    row = np.ascontiguousarray(np.concatenate([*(part[2] for part in parts), np.empty((0, 8))]))
     return tables._replace(
         offset=offset,
         density=np.array([float(len(part[1])) for part in parts]) / tables.period,
         knot=np.concatenate([*(part[0] for part in parts), np.empty(0)]),
         bucket=np.concatenate([*(part[1] for part in parts), np.empty(0, dtype=np.int64)]),
-        row=np.ascontiguousarray(np.concatenate([*(part[2] for part in parts), np.empty((0, 8))])),
+        row=row,
+        energy=energy_below(row, offset, tables.level),
     )
 
 

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dynamics.forces.by_address import by_address
+from dynamics.forces.energy_below import energy_below
 from dynamics.forces.mesh_table import MeshTable
 from dynamics.types import FloatArray, IntArray
 
@@ -36,6 +37,8 @@ class PackedTables(NamedTuple):
         in the local coordinate 0..1: one cache line each.
     level : flat array
         Forces, N.
+    energy : (sum of P L, 10) array
+        See `energy_below`.
     """
 
     offset: IntArray
@@ -46,6 +49,7 @@ class PackedTables(NamedTuple):
     bucket: IntArray
     row: FloatArray
     level: FloatArray
+    energy: FloatArray
 
 
 def pack_tables(tables: Sequence[MeshTable]) -> PackedTables:
@@ -61,15 +65,19 @@ def pack_tables(tables: Sequence[MeshTable]) -> PackedTables:
         for f in range(len(tables))
     ]
     period = np.array([float(table.period) for table in tables])
+    places = np.array(offset, dtype=np.int64).reshape(-1, 6)
+    row = np.ascontiguousarray(np.concatenate([*rows, np.empty((0, 8))]))
+    level = np.concatenate([*levels, np.empty(0)])
     packed = PackedTables(
-        np.array(offset, dtype=np.int64).reshape(-1, 6),
+        places,
         np.array([knot[0] for knot in knots]),
         period,
         np.array([float(bucket.size) for bucket in buckets]) / period,
         np.concatenate([*relative, np.empty(0)]),
         np.concatenate([*buckets, np.empty(0, dtype=np.int64)]),
-        np.ascontiguousarray(np.concatenate([*rows, np.empty((0, 8))])),
-        np.concatenate([*levels, np.empty(0)]),
+        row,
+        level,
+        energy_below(row, places, level),
     )
     return by_address(packed)
 

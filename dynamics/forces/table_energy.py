@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dynamics.forces.compiled import compiled, inner
+from dynamics.forces.energy_below import ORDER
 from dynamics.forces.packed_tables import PackedTables
 from dynamics.forces.table_lookup import cubic, level_interval, position_interval
 from dynamics.types import FloatArray
@@ -22,14 +23,13 @@ def table_energy(
 ) -> tuple[float, float]:
     """Return V = integral of the force over the deflection from lift-off, J, and dV/dx, J per base pitch.
 
-    With levels F_k at deflections d_k(x) and stiffness K_k(x), a whole interval of width h holds
-    h (F_k + F_k+1)/2 + h^2 (K_k - K_k+1)/12; the last one is integrated up to `deflection`.
+    The intervals below hold ``PackedTables.energy``; the last one is integrated up to `deflection`.
     """
     row, u, per_width = position_interval(table, flank, position)
     k, low, high = level_interval(table, flank, row, u, deflection, hint)
     if deflection < low:
         return 0.0, 0.0
-    energy, slope = _whole_intervals(table, flank, row, k, u)
+    energy, slope = _energy_below(table, row + k, u)
     low_slope = cubic_slope(table.row, row + k, 0, u)
     high_slope = cubic_slope(table.row, row + k + 1, 0, u)
     span, span_slope = high - low, high_slope - low_slope
@@ -47,19 +47,12 @@ def table_energy(
 
 
 @inner
-def _whole_intervals(table: PackedTables, flank: int, row: int, count: int, u: float) -> tuple[float, float]:
-    """Energy and its derivative in u of the first `count` level intervals."""
-    energy, slope, level = 0.0, 0.0, table.offset[flank, 4]
-    low, low_slope = cubic(table.row, row, 0, u), cubic_slope(table.row, row, 0, u)
-    stiff, stiff_slope = cubic(table.row, row, 4, u), cubic_slope(table.row, row, 4, u)
-    for j in range(count):
-        high, high_slope = cubic(table.row, row + j + 1, 0, u), cubic_slope(table.row, row + j + 1, 0, u)
-        end, end_slope = cubic(table.row, row + j + 1, 4, u), cubic_slope(table.row, row + j + 1, 4, u)
-        span, span_slope = high - low, high_slope - low_slope
-        mean, bend = 0.5 * (table.level[level + j] + table.level[level + j + 1]), (stiff - end) / 12.0
-        energy += span * (mean + span * bend)
-        slope += span_slope * (mean + 2.0 * span * bend) + span * span * (stiff_slope - end_slope) / 12.0
-        low, low_slope, stiff, stiff_slope = high, high_slope, end, end_slope
+def _energy_below(table: PackedTables, row: int, u: float) -> tuple[float, float]:
+    """Return the energy of the level intervals below `row` and its derivative in u."""
+    energy, slope = table.energy[row, ORDER], 0.0
+    for power in range(ORDER - 1, -1, -1):
+        slope = slope * u + energy
+        energy = energy * u + table.energy[row, power]
     return energy, slope
 
 

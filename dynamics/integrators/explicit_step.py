@@ -35,7 +35,7 @@ def explicit_step(system: SystemArrays, work: Workspace, level: int, audit: bool
             work.stage_v[stage, i] = work.v_new[i]
         time = work.time[0] + EXPLICIT_NODES[stage] * step
         accelerate(system, work, time, stage)
-        if audit:
+        if audit and (EXPLICIT_WEIGHTS[stage] != 0.0 or stage == STAGE_COUNT - 1):
             write_powers(system, work, stage, time)
     for i in range(size):
         work.a_new[i] = work.stage_a[STAGE_COUNT - 1, i]

@@ -39,7 +39,7 @@ def implicit_step(system: SystemArrays, work: Workspace, level: int, tolerance: 
             return False
         work.counts[Count.NEWTON_TOTAL] += iterations
         work.counts[Count.NEWTON_MOST] = max(work.counts[Count.NEWTON_MOST], iterations)
-        if audit:
+        if audit and (IMPLICIT_WEIGHTS[stage] != 0.0 or stage == STAGE_COUNT - 1):
             write_powers(system, work, stage, work.time[0] + IMPLICIT_NODES[stage] * step)
     for i in range(work.q.size):
         work.v_new[i], work.a_new[i] = work.stage_v[STAGE_COUNT - 1, i], work.stage_a[STAGE_COUNT - 1, i]
