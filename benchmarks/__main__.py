@@ -36,6 +36,7 @@ from benchmarks import (
     shared_table,
     solvers_3d,
     static_table,
+    step_cost,
     tolerance_kept,
     worker_cost,
 )
@@ -56,6 +57,7 @@ SUBJECTS = (
     other_engine,
     corrected_plane,
     dynamics_cost,
+    step_cost,
     solvers_3d,
     predictions,
     predicted_errors,

@@ -17,6 +17,7 @@ from dynamics.assembly.assemble import assemble
 from dynamics.checks import chosen
 from dynamics.errors import InputError, SolveError
 from dynamics.integrators import integrate, static_equilibrium
+from dynamics.integrators.method_choice import EVALUATIONS
 from dynamics.scene import Scene
 from dynamics.types import FloatArray, Json
 from model_studies import Outcome, Progress, against_finest, in_unit, knee_above, run_fidelities, silent
@@ -141,8 +142,8 @@ def _warm_up(scene: Scene, fidelities: Sequence[Fidelity], blocks: Blocks) -> No
     short = replace(scene, duration=min(WARM_UP, scene.duration))
     system = assemble(TimeIntegration("warm_up", "", "steps").as_run(short))
     start = static_equilibrium(system)
-    if start.status.usable:
-        integrate(system, start, system.scene.integration)
+    for method in EVALUATIONS if start.status.usable else ():
+        integrate(system, start, replace(system.scene.integration, method=method))
     for fidelity in fidelities:
         if not isinstance(fidelity, TimeIntegration):
             with suppress(InputError, SolveError):

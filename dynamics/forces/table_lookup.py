@@ -124,4 +124,4 @@ def table_deflection(table: PackedTables, flank: int, position: float, force: fl
         w += step
         if abs(step) <= 1e-15:
             break
-    return low + w * (high - low)
+    return float(low + w * (high - low))

@@ -14,6 +14,7 @@ from dynamics.assembly.assemble import System
 from dynamics.forces.by_address import by_address, by_value
 from dynamics.integrators.advance import advance, prepare_samples, prepare_steps
 from dynamics.integrators.energy import stored_energy
+from dynamics.integrators.method_choice import choose_method
 from dynamics.integrators.sample_figures import SampleFigures, sample_figures
 from dynamics.integrators.sample_ring import Sampler, SampleRing, make_ring, make_sampler
 from dynamics.integrators.sampler import continue_past_the_end, sample_start
@@ -123,6 +124,8 @@ def start_march(
     system: System, start: StaticSolution, integration: Integration, velocity: FloatArray | None = None
 ) -> March:
     """Start at t = 0 from `start`, at rest or with the `velocity` (n,)."""
+    if integration.method == "auto":
+        integration = choose_method(system, start.displacement, integration).settings(integration)
     step_sizes = _step_sizes(integration)
     work = make_workspace(system.arrays, step_sizes, start.displacement, integration.fixed_step or FIRST_STEP)
     if velocity is not None:

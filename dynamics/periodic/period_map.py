@@ -120,7 +120,7 @@ def _highest(system: System, frequency: FloatArray) -> float:
     springs do.
     """
     interest = [rotor.elastic.highest for rotor in system.rotors if rotor.elastic is not None]
-    if not interest or system.scene.integration.method != "implicit":
+    if not interest or system.scene.integration.method == "explicit":
         return float(frequency[-1])
     return float(np.max(frequency[frequency <= max(interest)], initial=0.0))
 
@@ -161,7 +161,7 @@ class PeriodMap:
         step_sizes = np.outer(sizes, 0.5 ** np.arange(HALVINGS + 1)).ravel()
         n = self.arrays.mass.shape[0]
         work = by_address(make_workspace(self.arrays, step_sizes, np.zeros(n), float(step_sizes[0])))
-        implicit = self.problem.system.scene.integration.method == "implicit"
+        implicit = self.problem.system.scene.integration.method != "explicit"
         prepare_steps(self.arrays, work, implicit, False)
         return work
 
@@ -206,7 +206,7 @@ class PeriodMap:
         solved = march(
             self.arrays,
             work,
-            problem.system.scene.integration.method == "implicit",
+            problem.system.scene.integration.method != "explicit",
             problem.force_tolerance,
             self.times,
             problem.grid.level,

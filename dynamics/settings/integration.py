@@ -11,10 +11,10 @@ from dynamics.errors import InputError
 _METHOD = Declared(
     Kind.CHOICE,
     "",
-    one_of(("implicit", "explicit")),
-    "implicit: singly diagonally implicit Runge-Kutta of order 4, L-stable; explicit: its check, "
-    "Dormand-Prince of order 5",
-    "implicit",
+    one_of(("auto", "implicit", "explicit")),
+    "implicit: singly diagonally implicit Runge-Kutta of order 4, L-stable; explicit: Dormand-Prince of "
+    "order 5; auto: explicit, unless the fastest motion would shorten its steps",
+    "auto",
 )
 _TOLERANCE = Declared(
     Kind.LENGTH,
@@ -40,7 +40,7 @@ class Integration:
     difference of the transmission errors.
     """
 
-    method: str = declared("implicit", _METHOD)
+    method: str = declared("auto", _METHOD)
     tolerance: float = declared(1e-9, _TOLERANCE)
     fixed_step: float | None = declared(None, _FIXED)
     smallest_step: float = 1e-12

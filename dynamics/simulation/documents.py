@@ -13,6 +13,7 @@ from dynamics.assembly.assemble import System
 from dynamics.errors import SolveError
 from dynamics.influence import Decided, Influence, estimate_influences
 from dynamics.integrators.march import Ending
+from dynamics.integrators.method_choice import MethodChoice
 from dynamics.integrators.workspace import Count
 from dynamics.linearize import natural_modes
 from dynamics.linearize.campbell import whirl_branches
@@ -47,8 +48,12 @@ def documents(
     error: Json,
     decided: Decided,
     before: EarlierRun = FIRST,
+    choice: MethodChoice | None = None,
 ) -> dict[str, Any]:
-    """Return the fields of `RunResult` that are no series; `before` is the run that this one repeats."""
+    """Return the fields of `RunResult` that are no series.
+
+    `before` is the run that this one repeats, `choice` that of its method; None: it never started.
+    """
     automatic = {**decided.automatic, **before.reasons}
     began = clock.process_time()
     influences = {
@@ -70,6 +75,7 @@ def documents(
             "sampling": system.sampling.to_json(),
             "peaks": end.figures.to_json(system),
         }
+        | _method(choice, end)
         | before.to_json()
         | system.corrections,
         "case": resolved_case(system),
@@ -94,6 +100,14 @@ def series_of(system: System, time: FloatArray, states: States) -> tuple[dict[st
     if system.sampling.stop_band == 0.0:
         return raw, raw
     return histories(system, time, states, seen, filtered(system, states)), raw
+
+
+def _method(choice: MethodChoice | None, end: Ending) -> Json:
+    """Return what a receipt says of the method."""
+    steps = int(end.count[Count.ACCEPTED] + end.count[Count.REJECTED])
+    if choice is None or steps == 0:
+        return {}
+    return {"method": choice.to_json(end.end / steps, end.seconds)}
 
 
 def _modes(system: System) -> Json:

@@ -16,6 +16,7 @@ from dynamics.influence import Decided, decide_effects
 from dynamics.influence.neglected_check import NeglectedChecks
 from dynamics.integrators import Cancel, Progress, StaticSolution, Trajectory, integrate, static_equilibrium
 from dynamics.integrators import march as marching
+from dynamics.integrators.method_choice import MethodChoice, choose_method
 from dynamics.integrators.start_value import Trail
 from dynamics.integrators.state_sink import MemorySink, blocks
 from dynamics.motion.sampled_states import States
@@ -116,17 +117,18 @@ def _run(
     start = static_equilibrium(system)
     seconds = {"assembly_and_equilibrium": clock.perf_counter() - began}
     require_equilibrium(system, start, seconds, decided)
-    system, trail = with_static_reference(system, start.displacement), Trail(system)
+    choice = choose_method(system, start.displacement, scene.integration)
+    system, trail = choice.of(with_static_reference(system, start.displacement)), Trail(system)
     taken = None
     if earlier is not None:
         taken = taken_over(earlier.result.effect_ledger, earlier.trail, earlier.states, system)
         before = before if taken is None else replace(before, since=taken.at.time)
     trajectory = integrate(
-        system, start, scene.integration, progress, cancel=cancel, trail=trail, taken=taken
+        system, start, system.scene.integration, progress, cancel=cancel, trail=trail, taken=taken
     )
     seconds["integration"] = trajectory.seconds
     error = _error_estimate(system, start, trajectory, progress)
-    result = _result(system, trajectory, seconds, error, decided, before)
+    result = _result(system, trajectory, seconds, error, decided, before, choice)
     if not trajectory.status.usable:
         reached = f"at {trajectory.end:.6g} s of {scene.duration:g} s"
         raise SolveError(f"run ended early, {trajectory.status.name.lower()} {reached}", result)
@@ -155,6 +157,7 @@ def _result(
     error: Json,
     decided: Decided,
     before: EarlierRun = FIRST,
+    choice: MethodChoice | None = None,
 ) -> RunResult:
     """Put the result together."""
     began = clock.perf_counter()
@@ -166,7 +169,7 @@ def _result(
         parts.append(series)
         checks.see(raw, states)
     seconds = {**seconds, "outputs": clock.perf_counter() - began}
-    about = documents(system, trajectory, checks, seconds, error, decided, before)
+    about = documents(system, trajectory, checks, seconds, error, decided, before, choice)
     return RunResult(**_joined(parts), **about)
 
 

@@ -20,6 +20,7 @@ from dynamics.influence import Decided, decide_effects
 from dynamics.influence.neglected_check import NeglectedChecks
 from dynamics.integrators import Cancel, Progress, static_equilibrium
 from dynamics.integrators.march import Ending
+from dynamics.integrators.method_choice import MethodChoice, choose_method
 from dynamics.integrators.start_value import Trail
 from dynamics.integrators.state_sink import blocks
 from dynamics.motion.sampled_states import States
@@ -147,24 +148,26 @@ def _run_to_file(
     start = static_equilibrium(system)
     seconds = {"assembly_and_equilibrium": clock.perf_counter() - began}
     require_equilibrium(system, start, seconds, decided)
-    system, trail = with_static_reference(system, start.displacement), Trail(system)
+    choice = choose_method(system, start.displacement, scene.integration)
+    system, trail = choice.of(with_static_reference(system, start.displacement)), Trail(system)
+    integration = system.scene.integration
     folder = interrupted_run(path)
     folder.mkdir(exist_ok=True)
     going = (how.progress, how.cancel, how.checkpoint_every)
     with ExitStack() as stack:
-        leg = Leg(stack, folder / "run", system, start, scene.integration, how.resume, earlier)
+        leg = Leg(stack, folder / "run", system, start, integration, how.resume, earlier)
         before = replace(before, since=leg.since)
         end = leg.go(*going, trail)
-        error = requested_error(scene.integration)
+        error = requested_error(integration)
         if end.status.usable:
             error = error_by_source(system, leg.spool.states, end.samples)
-        if scene.integration.estimate_error and end.status.usable:
-            check = Leg(stack, folder / "check", system, start, finer(scene.integration), how.resume)
+        if integration.estimate_error and end.status.usable:
+            check = Leg(stack, folder / "check", system, start, finer(integration), how.resume)
             other = check.go(*going)
             end = replace(end, status=other.status)
             error = error | (_difference(system, leg, check, other) if other.status.usable else {})
         seconds["integration"] = end.seconds
-        ledger = _write(path, system, leg, end, seconds, error, decided, before)
+        ledger = _write(path, leg, end, choice, seconds, error, decided, before)
     return MadeRun(end.status, ledger, sum(seconds.values()), trail, leg.march.widths)
 
 
@@ -191,23 +194,23 @@ def _difference(system: System, leg: Leg, check: Leg, end: Ending) -> Json:
 
 def _write(
     path: Path,
-    system: System,
     leg: Leg,
     end: Ending,
+    choice: MethodChoice,
     seconds: dict[str, float],
     error: Json,
     decided: Decided,
     before: EarlierRun,
 ) -> Json:
     """Make the series from the states, block by block, into the file; return the effect ledger."""
-    began = clock.perf_counter()
+    began, system = clock.perf_counter(), leg.march.system
     checks = RunChecks(system, [NeglectedChecks(decided)])
     with RunFile(path) as file:
         for series, raw, states in _series(system, leg, end.samples):
             checks.see(raw, states)
             file.append(series)
         seconds["outputs"] = clock.perf_counter() - began
-        about = documents(system, end, checks, seconds, error, decided, before)
+        about = documents(system, end, checks, seconds, error, decided, before, choice)
         file.publish(attributes(about))
     return dict(about["effect_ledger"])
 

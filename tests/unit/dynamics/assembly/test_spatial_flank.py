@@ -155,7 +155,7 @@ def jolted(table, on):
     return replace(
         scene,
         loads=(replace(scene.loads[0], torque=jolt),),
-        integration=Integration(tolerance=1e-10),
+        integration=Integration("implicit", tolerance=1e-10),
     )
 
 
