@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from dynamics.forces.compiled import compiled
 from dynamics.types import FloatArray, IntArray
 
 ORDER = 9
@@ -17,20 +18,25 @@ def energy_below(row: FloatArray, offset: IntArray, level: FloatArray) -> FloatA
     h (F_k + F_k+1)/2 + h^2 (K_k - K_k+1)/12; row k has the sum over the intervals below level k.
     """
     energy = np.zeros((row.shape[0], ORDER + 1))
-    for flank, (first, first_level, levels) in enumerate(offset[:, 3:]):
-        end = offset[flank + 1, 3] if flank + 1 < len(offset) else len(row)
-        cubics = row[first:end].reshape(-1, levels, 2, 4)
-        width, bend = np.diff(cubics[:, :, 0], axis=1), -np.diff(cubics[:, :, 1], axis=1) / 12.0
-        forces = level[first_level : first_level + levels]
-        whole = _product(_product(width, width), bend)
-        whole[..., :4] += 0.5 * (forces[:-1] + forces[1:])[:, None] * width
-        energy[first:end].reshape(-1, levels, ORDER + 1)[:, 1:] = np.cumsum(whole, axis=1)
+    ends = np.append(offset[1:, 3], row.shape[0])[: len(offset)]
+    for (first, first_level, levels), end in zip(offset[:, 3:], ends, strict=True):
+        _add_intervals(row[first:end], level[first_level : first_level + levels], energy[first:end])
     return energy
 
 
-def _product(one: FloatArray, other: FloatArray) -> FloatArray:
-    """Multiply polynomials along the last axis."""
-    product = np.zeros((*one.shape[:-1], one.shape[-1] + other.shape[-1] - 1))
-    for power in range(one.shape[-1]):
-        product[..., power : power + other.shape[-1]] += one[..., power, None] * other
-    return product
+@compiled
+def _add_intervals(row: FloatArray, level: FloatArray, energy: FloatArray) -> None:
+    """Fill the coefficients of one table; its rows run through the levels position by position."""
+    levels = level.size
+    for start in range(0, row.shape[0], levels):
+        for k in range(levels - 1):
+            low, high, mean = start + k, start + k + 1, 0.5 * (level[k] + level[k + 1])
+            for power in range(energy.shape[1]):
+                energy[high, power] = energy[low, power]
+            for a in range(4):
+                width = row[high, a] - row[low, a]
+                energy[high, a] += mean * width
+                for b in range(4):
+                    square = width * (row[high, b] - row[low, b]) / 12.0
+                    for c in range(4):
+                        energy[high, a + b + c] += square * (row[low, 4 + c] - row[high, 4 + c])
