@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from dynamics.arrays.sparse_rows import SparseMatrices
+from dynamics.arrays.sparse_rows import SparseMatrices, sparse_matrices
 from dynamics.forces.element_laws import Elements
 from dynamics.types import FloatArray, IntArray
 
@@ -124,7 +124,7 @@ class SystemArrays(NamedTuple):
     turn : (m + f, n) array
         Derivative of the meshes' positions in q, base pitches; 0.
     sparse : SparseMatrices
-        The same by their entries.
+        M, C, K, G and `turn` by their entries: who changes them takes `with_matrices`.
     constant : (n,) array
         External force that never changes: of pins off their nominal position, of preloaded bearings.
     inertial : (k, n) array
@@ -156,3 +156,11 @@ class SystemArrays(NamedTuple):
     elements: Elements
     reference: Reference
     load: Loads
+
+    def with_matrices(self, **matrices: FloatArray) -> SystemArrays:
+        """Return these arrays with others of the matrices that `sparse` holds, and their entries."""
+        changed = self._replace(**matrices)
+        sparse = sparse_matrices(
+            changed.mass, changed.damping, changed.stiffness, changed.direction, changed.turn
+        )
+        return changed._replace(sparse=sparse)

@@ -61,4 +61,4 @@ def oscillator(frequency, periods=260):
         integration=Integration(tolerance=1e-6, largest_step=1.0),
     )
     system = assemble(scene)
-    return replace(system, arrays=system.arrays._replace(damping=np.array([[2.0 * ZETA]])))
+    return replace(system, arrays=system.arrays.with_matrices(damping=np.array([[2.0 * ZETA]])))

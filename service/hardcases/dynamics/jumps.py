@@ -121,7 +121,7 @@ def _oscillator(frequency: float, method: str = "implicit") -> System:
         integration=Integration(method, tolerance=1e-6, largest_step=1.0),
     )
     system = assemble(scene)
-    return replace(system, arrays=system.arrays._replace(damping=np.array([[2.0 * _ZETA]])))
+    return replace(system, arrays=system.arrays.with_matrices(damping=np.array([[2.0 * _ZETA]])))
 
 
 BOTH_SWEEPS = HardScene(

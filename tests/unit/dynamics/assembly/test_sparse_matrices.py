@@ -47,3 +47,9 @@ def test_entries_grow_in_proportion_to_the_stages():
     few, many = (_arrays(count).sparse for count in (3, 6))
     for rows in ("direction", "stiffness", "mobility"):
         assert getattr(many, rows).column.size <= 2 * getattr(few, rows).column.size + 8
+
+
+def test_changed_matrices_take_their_entries_along():
+    arrays = _arrays(1)
+    changed = arrays.with_matrices(damping=2.0 * arrays.damping)
+    np.testing.assert_array_equal(_dense(changed.sparse.damping, arrays.mass.shape[0]), 2.0 * arrays.damping)
