@@ -102,11 +102,13 @@ class Elements(NamedTuple):
 
 def make_local(elements: Elements, meshes: int) -> LocalState:
     """Allocate for `elements` of that many meshes."""
-    rows, count = elements.offset.size, elements.law.size
+    rows, count, laws = elements.offset.size, elements.law.size, elements.drift.shape[1]
     most = int(np.max(np.diff(elements.first), initial=1))
     return LocalState(
         np.zeros(meshes),
         np.zeros(meshes),
+        np.full(laws, np.nan),
+        np.zeros((meshes, laws)),
         np.zeros(rows),
         np.zeros(rows),
         np.zeros(rows),

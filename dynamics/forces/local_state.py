@@ -16,6 +16,10 @@ class LocalState(NamedTuple):
         Of the meshes, base pitches; then how far frames have turned against each other, revolutions.
     pace : (m + f,) array
         Their rates in the kinematic motion, per second.
+    whole : (k,) array
+        Whole revolutions of the laws when `whole_part` was written; NaN: never.
+    whole_part : (m + f, k) array
+        What they add to the positions.
     coordinate, rate : (R,) arrays
         y (m) and y' (m/s), those of the deviations from the kinematic motion.
     drift : (R,) array
@@ -32,6 +36,8 @@ class LocalState(NamedTuple):
 
     position: FloatArray
     pace: FloatArray
+    whole: FloatArray
+    whole_part: FloatArray
     coordinate: FloatArray
     rate: FloatArray
     drift: FloatArray

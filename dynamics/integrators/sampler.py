@@ -129,7 +129,7 @@ def _look(
     """Write the channels of the state in the ring's `q` and `v` at `time` into its point `row`."""
     local, q, v = ring.local, ring.q, ring.v
     write_motion(system.reference, time, work.moved, ring.motion)
-    set_phases(system.reference, ring.motion, local.position, local.pace)
+    set_phases(system.reference, ring.motion, local.position, local)
     set_drift(system.elements, ring.motion, local)
     add_motion(system, q, v, local.position, local.coordinate, local.rate)
     for e in range(system.elements.law.size):

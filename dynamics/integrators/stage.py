@@ -14,7 +14,7 @@ def set_motion(system: SystemArrays, work: Workspace, time: float, position: Flo
     """Write the laws' motion, external force, and the meshes' phases into `position`, at `time`."""
     write_motion(system.reference, time, work.moved, work.motion)
     external_force(system, time, work.motion, work.external)
-    set_phases(system.reference, work.motion, position, work.local.pace)
+    set_phases(system.reference, work.motion, position, work.local)
     set_drift(system.elements, work.motion, work.local)
 
 

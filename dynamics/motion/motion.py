@@ -65,21 +65,38 @@ def flank_phase(reference: Reference, mesh: int, motion: FloatArray) -> float:
     """
     phase = reference.offset[mesh]
     for k in range(motion.shape[0]):
-        numerator, denominator = reference.numerator[mesh, k], reference.denominator[mesh, k]
-        cycle = denominator * reference.period[mesh]
-        remainder = (int(motion[k, WHOLE]) % cycle) * numerator % cycle
-        phase += remainder / denominator + motion[k, FRACTION] * numerator / denominator
+        phase += _whole_part(reference, mesh, k, motion[k, WHOLE])
+        phase += motion[k, FRACTION] * reference.numerator[mesh, k] / reference.denominator[mesh, k]
     return wrapped(phase, float(reference.period[mesh]))
 
 
 @inner
-def set_phases(reference: Reference, motion: FloatArray, position: FloatArray, pace: FloatArray) -> None:
-    """Write the meshes' positions (base pitches) and their rates (per second) in the kinematic motion."""
+def _whole_part(reference: Reference, mesh: int, law: int, whole: float) -> float:
+    """Return what `whole` revolutions of a law add to a mesh's position, less whole periods."""
+    cycle = reference.denominator[mesh, law] * reference.period[mesh]
+    remainder = (int(whole) % cycle) * reference.numerator[mesh, law] % cycle
+    return float(remainder / reference.denominator[mesh, law])
+
+
+@inner
+def set_phases(reference: Reference, motion: FloatArray, position: FloatArray, local: LocalState) -> None:
+    """Write the meshes' positions (base pitches) and their rates (per second) in the kinematic motion.
+
+    What whole revolutions add takes divisions of integers; it stays in `local` until a revolution is over.
+    """
+    for k in range(motion.shape[0]):
+        if local.whole[k] != motion[k, WHOLE]:
+            local.whole[k] = motion[k, WHOLE]
+            for m in range(position.size):
+                local.whole_part[m, k] = _whole_part(reference, m, k, motion[k, WHOLE])
     for m in range(position.size):
-        position[m] = flank_phase(reference, m, motion)
-        pace[m] = 0.0
+        phase, pace = reference.offset[m], 0.0
         for k in range(motion.shape[0]):
-            pace[m] += reference.per_radian[m, k] * motion[k, SPEED]
+            phase += local.whole_part[m, k]
+            phase += motion[k, FRACTION] * reference.numerator[m, k] / reference.denominator[m, k]
+            pace += reference.per_radian[m, k] * motion[k, SPEED]
+        position[m] = wrapped(phase, float(reference.period[m]))
+        local.pace[m] = pace
 
 
 @inner

@@ -102,7 +102,7 @@ def _observe(
     """Fill `seen`."""
     for k in range(time.size):
         write_motion(system.reference, time[k], moved[k], motion)
-        set_phases(system.reference, motion, local.position, local.pace)
+        set_phases(system.reference, motion, local.position, local)
         set_drift(system.elements, motion, local)
         add_motion(system, q[k], v[k], local.position, local.coordinate, local.rate)
         for e in range(system.elements.law.size):
