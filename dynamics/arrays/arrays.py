@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from dynamics.arrays.sparse_rows import SparseMatrices, sparse_matrices
 from dynamics.forces.element_laws import Elements
@@ -157,7 +157,7 @@ class SystemArrays(NamedTuple):
     reference: Reference
     load: Loads
 
-    def with_matrices(self, **matrices: FloatArray) -> SystemArrays:
+    def with_matrices(self, **matrices: Any) -> SystemArrays:
         """Return these arrays with others of the matrices that `sparse` holds, and their entries."""
         changed = self._replace(**matrices)
         sparse = sparse_matrices(
