@@ -95,3 +95,9 @@ class Studies(JobClient):
         repeat: int = ...,
         settling_periods: int = ...,
     ) -> Path: ...
+    def study_file(
+        self,
+        scene: SceneLike,
+        study: Mapping[str, Any],
+        progress: Watch | None = None,
+    ) -> Path: ...
