@@ -92,13 +92,18 @@ class Response:
         order = f", order {self.order}" if self.order else ""
         return f"{self.kind.title}{f' of {self.part}' if self.part else ''}{order}"
 
-    def of(self, window: Window) -> Value:
-        """Return its value in a window of a run; of several parts the largest one."""
-        run = window.run
+    def rows(self, run: RunResult) -> tuple[int, ...]:
+        """Return which meshes or bearings of a run it is of; one of the whole run has one row."""
         names = {"mesh": run.mesh, "bearing": run.bearing, "": ("",)}[self.kind.of]
         if not names:
             raise InputError("outputs.bearing_forces", False, "true", "The responses of bearings need them.")
-        rows = [names.index(one_of(self.kind.of, self.part, names))] if self.part else range(len(names))
+        if not self.part:
+            return tuple(range(len(names)))
+        return (names.index(one_of(self.kind.of, self.part, names)),)
+
+    def of(self, window: Window) -> Value:
+        """Return its value in a window of a run; of several parts the largest one."""
+        run, rows = window.run, self.rows(window.run)
         mesh = run.mesh.index(one_of("mesh", self.mesh, run.mesh)) if self.mesh else 0
         seen = window if self.kind.of == "mesh" else window.along(mesh)
         return max((self.kind.take(seen, row, self.order) for row in rows), key=lambda value: value.value)
@@ -114,14 +119,16 @@ def responses_of(
     InputError
         No such part, an order that the output does not hold, or a `start` behind the end.
     """
-    window = Window.of(run, start, max((response.order for response in responses), default=0))
+    bearings = {row for each in responses if each.kind.of == "bearing" for row in each.rows(run)}
+    highest = max((response.order for response in responses), default=0)
+    window = Window.of(run, start, highest, tuple(sorted(bearings)))
     values = [response.of(window) for response in responses]
     return [value.value for value in values], [value.error for value in values]
 
 
 def _bearing_force(window: Window, row: int, order: int) -> Value:
     """Amplitude of the force vector at an order: root of the sum of squares over x, y, z."""
-    amplitude = window.orders[1][row, :, order - 1]
+    amplitude = window.orders[1][row][:, order - 1]
     return Value(float(np.linalg.norm(amplitude)), window.error("bearing_force_orders", order))
 
 

@@ -27,6 +27,8 @@ class Window:
         Its samples.
     highest_order : int
         Up to which orders are fitted, all together.
+    bearings : tuple of int
+        Whose forces are fitted.
     mesh : int
         Whose orders they are.
     """
@@ -34,11 +36,12 @@ class Window:
     run: RunResult
     part: slice
     highest_order: int
+    bearings: tuple[int, ...]
     mesh: int = 0
-    _fits: dict[int, tuple[FloatArray, FloatArray]] = field(default_factory=dict, compare=False, repr=False)
+    _fits: dict[int, tuple[FloatArray, dict[int, FloatArray]]] = field(default_factory=dict, repr=False)
 
     @classmethod
-    def of(cls, run: RunResult, start: float, highest_order: int) -> Window:
+    def of(cls, run: RunResult, start: float, highest_order: int, bearings: tuple[int, ...]) -> Window:
         """Look at a run from `start` (s) on.
 
         Raises
@@ -47,7 +50,7 @@ class Window:
             The run ends before, or its output does not hold the order.
         """
         end = float(run.time[-1])
-        return cls(run, run.window(within("start", start, 0.0, end), end), highest_order)
+        return cls(run, run.window(within("start", start, 0.0, end), end), highest_order, bearings)
 
     def along(self, mesh: int) -> Window:
         """Return the same with the orders of a mesh."""
@@ -58,8 +61,8 @@ class Window:
         return self.run.dynamic_transmission_error[mesh, self.part]
 
     @property
-    def orders(self) -> tuple[FloatArray, FloatArray]:
-        """Amplitudes of the transmission error (H,) in m, and of all bearing forces (b, 3, H) in N.
+    def orders(self) -> tuple[FloatArray, dict[int, FloatArray]]:
+        """Amplitudes of the transmission error (H,) in m, and of the force of each bearing (3, H) in N.
 
         Of one fit to all of them, up to the highest order H.
         """
@@ -67,14 +70,14 @@ class Window:
             self._fits[self.mesh] = self._fitted()
         return self._fits[self.mesh]
 
-    def _fitted(self) -> tuple[FloatArray, FloatArray]:
+    def _fitted(self) -> tuple[FloatArray, dict[int, FloatArray]]:
         """Fit the orders of the mesh."""
         checked_order(self.run, "order", self.highest_order, self.mesh)
         position = unwrapped(self.run.position[self.mesh, self.part])
-        force = self.run.bearing_force[..., self.part]
-        signals = np.vstack([self.transmission_error(self.mesh)[None], force.reshape(-1, position.size)])
-        amplitude = order_amplitudes(position, signals, self.highest_order)
-        return amplitude[0], amplitude[1:].reshape(*force.shape[:2], -1)
+        forces = (self.run.bearing_force[bearing, :, self.part] for bearing in self.bearings)
+        signals = np.vstack([self.transmission_error(self.mesh)[None], *forces])
+        error, *force = order_amplitudes(position, signals, self.highest_order)
+        return error, dict(zip(self.bearings, np.reshape(force, (-1, 3, self.highest_order)), strict=True))
 
     def error(self, name: str, order: int = 0) -> float:
         """Sum of the errors by source that the receipt states under a name; NaN where it states none."""

@@ -203,7 +203,7 @@ def test_worst_cases_are_kept_as_full_runs(found: Study, tmp_path: Path) -> None
     files = keep_runs(task(GRID), found, tmp_path)
     assert [file.name for file in files] == [f"point_{k}.nc" for k in found.worst]
     run = RunResult.from_netcdf(files[0])
-    assert run.receipt["error"]["windows"] if run.time.size > 10_000 else run.energy is not None
+    assert run.energy is not None  # which runs of a study do without
     assert responses_of(run, RESPONSES)[0] == found.figure[found.worst[0]].tolist()
     assert found.figure[found.worst[0], 0] == found.figure[:, 0].max()
 
