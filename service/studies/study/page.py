@@ -27,7 +27,10 @@ SHOWN = 12
 
 def study_figures(study: Study) -> tuple[Figure, ...]:
     """Draw maps or curves over the grid, the distribution and the tornado."""
-    return (*grid_figures(study), distribution_figure(study), tornado_figure(study))
+    if not study.usable:
+        return (distribution_figure(study),)
+    figures = (*grid_figures(study), distribution_figure(study), tornado_figure(study))
+    return tuple(figure for figure in figures if figure.content)
 
 
 def summary_table(study: Study) -> Table:

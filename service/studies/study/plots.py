@@ -15,9 +15,13 @@ BAR = 9.0
 
 def label(study: Study, response: int) -> str:
     """Return the title of a response with its unit last."""
-    unit = in_boundary_units(study, response)[0]
-    text = study.response[response]
-    return f"{text}, {'µm' if unit == 'um' else unit}" if unit else text
+    return f"{study.response[response]}, {unit(study, response)}"
+
+
+def unit(study: Study, response: int) -> str:
+    """Return the unit of a response as plots have it."""
+    symbol = in_boundary_units(study, response)[0]
+    return {"um": "µm", "": "ratio"}.get(symbol, symbol)
 
 
 def grid_figures(study: Study) -> tuple[Figure, ...]:
@@ -52,8 +56,7 @@ def _map(study: Study, across: int, up: int, response: int) -> Panel:
         if np.isfinite(values).any():
             z[row, column] = np.nanmean(values) / one
     largest = float(np.nanmax(z, initial=0.0)) or 1.0
-    unit = label(study, response).removeprefix(study.response[response]).lstrip(", ")
-    shade = HeatMap(x, y, z, unit or "ratio", largest)
+    shade = HeatMap(x, y, z, unit(study, response), largest)
     axes = Axis(study.factor[across]), Axis(study.factor[up])
     return Panel(*axes, title=study.response[response], shade=shade)
 
@@ -61,7 +64,12 @@ def _map(study: Study, across: int, up: int, response: int) -> Panel:
 def _curves(study: Study, axis: int, shown: range) -> Figure:
     """Means, and of samples quantiles, over one factor."""
     panels = tuple(
-        Panel(Axis(study.factor[axis]), Axis(label(study, response)), _lines(study, axis, response))
+        Panel(
+            Axis(study.factor[axis]),
+            Axis(unit(study, response)),
+            _lines(study, axis, response),
+            title=study.response[response],
+        )
         for response in shown
     )
     caption = "Mean over all other factors"
@@ -146,24 +154,6 @@ def short(study: Study, factor: int) -> str:
 
 def tornado_figure(study: Study) -> Figure:
     """Draw what each factor does to the first response: by means of its levels, or by rank correlation."""
-    levels = [k for k in varied(study) if study.kind[k] in ("grid", "list")]
-    sampled = [k for k, kind in enumerate(study.kind) if kind not in ("grid", "list")]
-    panels = []
-    if levels:
-        one = in_boundary_units(study, 0)[1]
-        means = [study.level_means(k, 0)[1] / one for k in levels]
-        bars = [
-            (float(np.nanmin(m)), float(np.nanmax(m)), study.factor[k])
-            for k, m in zip(levels, means, strict=True)
-        ]
-        panels.append(_bars(bars, f"means of the levels: {label(study, 0)}"))
-    if sampled:
-        correlation = study.correlation(0)
-        bars = [
-            (min(0.0, c), max(0.0, c), study.factor[k])
-            for k, c in ((k, float(correlation[k])) for k in sampled)
-        ]
-        panels.append(_bars(bars, f"rank correlation with {study.response[0]}", (-1.0, 1.0)))
     return Figure(
         "study_tornado",
         "What matters",
@@ -171,8 +161,28 @@ def tornado_figure(study: Study) -> Figure:
         "sampled ones by Spearman's rank correlation within each combination, of their value or of its "
         "distance from the median.",
         _extreme(study),
-        tuple(panels),
+        (*_by_levels(study), *_by_samples(study)),
     )
+
+
+def _by_levels(study: Study) -> list[Panel]:
+    """Draw a bar between the means of the levels of each factor; none where none is known."""
+    one = in_boundary_units(study, 0)[1]
+    bars = []
+    for factor in varied(study):
+        if study.kind[factor] in ("grid", "list") and np.isfinite(study.swing(factor, 0)):
+            means = study.level_means(factor, 0)[1] / one
+            bars.append((float(np.nanmin(means)), float(np.nanmax(means)), study.factor[factor]))
+    return [_bars(bars, f"means of the levels: {label(study, 0)}")] if bars else []
+
+
+def _by_samples(study: Study) -> list[Panel]:
+    """Draw the rank correlation of each sampled factor as a bar from 0; none where none is known."""
+    known = [
+        (name, float(c)) for name, c in zip(study.factor, study.correlation(0), strict=True) if np.isfinite(c)
+    ]
+    bars = [(min(0.0, c), max(0.0, c), name) for name, c in known]
+    return [_bars(bars, f"rank correlation with {study.response[0]}", (-1.0, 1.0))] if bars else []
 
 
 def _bars(
@@ -202,8 +212,8 @@ def _extreme(study: Study) -> str:
     if not np.isfinite(first).any():
         return "No run has figures."
     point = int(np.nanargmax(first))
-    unit, one = in_boundary_units(study, 0)
+    one = in_boundary_units(study, 0)[1]
     at = ", ".join(
         f"{name} = {value:.6g}" for name, value in zip(study.factor, study.value[point], strict=True)
     )
-    return f"Largest {study.response[0]}: {number(float(first[point]) / one, 4)} {unit} at {at}."
+    return f"Largest {study.response[0]}: {number(float(first[point]) / one, 4)} {unit(study, 0)} at {at}."
