@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 
 from dynamics.checks import integer, within
+from dynamics.errors import DynamicsError, InputError
 from dynamics.simulation import simulate_to_file
 from dynamics.study.batch import PointResult, StudyTask, batches, run_batch, stated
 from dynamics.study.design import Design
 from dynamics.study.result import Study
 from dynamics.study.scenes import OneByOne, Workers
-from dynamics.types import FloatArray, IntArray, RunStatus
+from dynamics.types import FloatArray, IntArray
 from model_studies import Progress, silent
 
 
@@ -50,14 +52,16 @@ def study(
     InputError
         A design that is not of these factors, or figures out of bounds.
     """
+    if task.factors != design.names:
+        raise InputError("design.factors", design.names, f"those of the task: {', '.join(task.factors)}")
     within("confidence", confidence, 0.5, 0.9999)
     count = len(design.points)
     integer("keep_worst", keep_worst, 0, count)
     results: list[PointResult | None] = [None] * count
     parts = list(batches(design, task.scenes))
-    done = 0
-    for (indices, _), found in zip(parts, workers.run(run_batch, task, [v for _, v in parts]), strict=True):
-        for index, point in zip(indices, found, strict=True):
+    done, batch_results = 0, workers.run(run_batch, task, [values for _, values in parts])
+    for (indices, _), points in zip(parts, batch_results, strict=True):
+        for index, point in zip(indices, points, strict=True):
             results[index] = point
         done += len(indices)
         progress("runs", done / count)
@@ -67,14 +71,15 @@ def study(
 def keep_runs(task: StudyTask, study: Study, folder: Path, progress: Progress = silent) -> list[Path]:
     """Run the worst points of a study again as the scene asks, with all its checks; return their files.
 
-    A run that fails again has no file, or one up to where it came, as `simulate_to_file` leaves it.
+    A run that all its checks refuse, such as the energy audit, leaves the file that `simulate_to_file` does.
     """
     folder.mkdir(parents=True, exist_ok=True)
     files = []
     for count, index in enumerate(study.worst):
         file = folder / f"point_{int(index)}.nc"
-        status = simulate_to_file(task.scene(tuple(map(float, study.value[index]))), file)
-        if status is RunStatus.COMPLETED:
+        with suppress(DynamicsError):
+            simulate_to_file(task.scene(tuple(map(float, study.value[index]))), file)
+        if file.is_file():
             files.append(file)
         progress("worst cases", (count + 1) / len(study.worst))
     return files

@@ -13,7 +13,7 @@ import pytest
 from geared_scenes import BASE_RADIUS, gear_pair_scene, spring_table
 
 from dynamics.bodies import TimeLaw
-from dynamics.errors import InputError
+from dynamics.errors import InputError, SolveError
 from dynamics.results import RunResult
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
@@ -206,6 +206,21 @@ def test_worst_cases_are_kept_as_full_runs(found: Study, tmp_path: Path) -> None
     assert run.energy is not None  # which runs of a study do without
     assert responses_of(run, RESPONSES)[0] == found.figure[found.worst[0]].tolist()
     assert found.figure[found.worst[0], 0] == found.figure[:, 0].max()
+
+
+def test_a_kept_run_that_its_checks_refuse_does_not_end_the_study(
+    found: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(_scene: Scene, _file: Path) -> None:
+        raise SolveError("more than 1 % of the work is unaccounted for")
+
+    monkeypatch.setattr("dynamics.study.run_study.simulate_to_file", refuse)
+    assert keep_runs(task(GRID), found, tmp_path) == []
+
+
+def test_a_design_of_other_factors_is_refused() -> None:
+    with pytest.raises(InputError, match="torque, speed"):
+        study(task(GRID), Design({SPEED: Levels((60.0,))}))
 
 
 @pytest.mark.parametrize(
