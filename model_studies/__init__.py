@@ -10,10 +10,11 @@ from model_studies.fidelity import Fidelity, Outcome, against_finest, run_fideli
 from model_studies.frontier import FidelityResult, Frontier, knee_above
 from model_studies.pareto import front_of, knee_of
 from model_studies.progress import Progress, silent
-from model_studies.record import Record, called, in_unit
+from model_studies.record import NOT_STORED, Record, called, in_unit
 from model_studies.variants import LeftOut, run_variants
 
 __all__ = [
+    "NOT_STORED",
     "Ablation",
     "EffectAblation",
     "Fidelity",

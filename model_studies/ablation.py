@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from typing import Any, ClassVar, Generic, Protocol, Self, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
@@ -23,8 +23,8 @@ class Figures(Record):
         Measured.
     """
 
-    mean: FloatArray = field(metadata=in_unit("m"))
-    peak_to_peak: FloatArray = field(metadata=in_unit("m"))
+    mean: FloatArray = field(metadata=in_unit("m", "curve"))
+    peak_to_peak: FloatArray = field(metadata=in_unit("m", "curve"))
     cpu_seconds: float
 
     @property
@@ -50,8 +50,6 @@ class EffectAblation(Record, Generic[F, E]):
 
     Attributes
     ----------
-    FIGURES : type
-        Of the figures.
     name : str
     on : bool
         Whether the request has it on.
@@ -62,8 +60,6 @@ class EffectAblation(Record, Generic[F, E]):
     estimate : optional
         What leaving it out is estimated to change; None: nothing is known.
     """
-
-    FIGURES: ClassVar[type[Figures]]
 
     name: str
     on: bool
@@ -99,18 +95,12 @@ class EffectAblation(Record, Generic[F, E]):
 
     def to_json(self) -> Json:
         """Return plain JSON in SI units: the figures, their changes, the ratio of the times."""
-        units = {each.name: each.metadata["unit"] for each in fields(self.FIGURES) if each.metadata}
+        units = {each.name: each.metadata["unit"] for each in fields(self.with_effect) if each.metadata}
         changes = {
             f"{name.removesuffix('s')}_change_{unit}": self.change(name).tolist()
             for name, unit in units.items()
         }
         return {**super().to_json(), **changes, "cost_ratio": self.cost_ratio}
-
-    @classmethod
-    def from_json(cls, content: Json) -> Self:
-        """Return the effect that `to_json` wrote; the estimate is a record or None in `content`."""
-        figures = {key: cls.FIGURES.from_json(content[key]) for key in ("with", "without")}
-        return super().from_json(content | figures)
 
 
 A = TypeVar("A", bound=EffectAblation[Any, Any])
@@ -122,8 +112,6 @@ class Ablation(Record, Generic[F, A]):
 
     Attributes
     ----------
-    EFFECT : type
-        Of the effects.
     nominal : Figures
         Of the request.
     effects : tuple of EffectAblation
@@ -131,15 +119,6 @@ class Ablation(Record, Generic[F, A]):
         Effects that were not toggled, and why.
     """
 
-    EFFECT: ClassVar[type[EffectAblation[Any, Any]]]
-
     nominal: F
     effects: tuple[A, ...]
     left_out: dict[str, str]
-
-    @classmethod
-    def from_json(cls, content: Json) -> Self:
-        """Return the ablation that `to_json` wrote."""
-        nominal = cls.EFFECT.FIGURES.from_json(content["nominal"])
-        effects = tuple(cls.EFFECT.from_json(entry) for entry in content["effects"])
-        return super().from_json({**content, "nominal": nominal, "effects": effects})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import ClassVar, Generic, Self, TypeVar
+from typing import ClassVar, Generic, TypeVar
 
 import numpy as np
 
@@ -53,8 +53,6 @@ class Frontier(Record, Generic[R_co]):
 
     Attributes
     ----------
-    RESULT : type
-        Of the results.
     results : tuple of FidelityResult
         In the order of their usual cost; the last one is the reference, whose errors are its own.
     left_out : dict
@@ -65,8 +63,6 @@ class Frontier(Record, Generic[R_co]):
     chosen : str or None
         The fidelity that the request asks for.
     """
-
-    RESULT: ClassVar[type[FidelityResult]]
 
     results: tuple[R_co, ...] = field(metadata=called("rungs"))
     left_out: dict[str, str]
@@ -81,11 +77,6 @@ class Frontier(Record, Generic[R_co]):
     def to_json(self) -> Json:
         """Return plain JSON in SI units."""
         return {**super().to_json(), "reference": self.reference.name}
-
-    @classmethod
-    def from_json(cls, content: Json) -> Self:
-        """Return the study that `to_json` wrote."""
-        return super().from_json(content | {"rungs": tuple(map(cls.RESULT.from_json, content["rungs"]))})
 
 
 def knee_above(results: Sequence[FidelityResult], *shared: float) -> str | None:

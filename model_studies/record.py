@@ -1,4 +1,4 @@
-"""Records: dataclasses whose JSON follows from their fields.
+"""Records: dataclasses whose JSON follows from their fields; `record_file` has their files.
 
 A field is called in JSON what it is called here, unless its metadata say otherwise::
 
@@ -8,22 +8,26 @@ A field is called in JSON what it is called here, unless its metadata say otherw
 from __future__ import annotations
 
 import math
-from dataclasses import MISSING, Field, dataclass, fields
-from typing import Any, Self
+from dataclasses import Field, dataclass, fields
+from typing import Any
 
 import numpy as np
 
 from bounds.types import Json
 
 
-def in_unit(unit: str) -> dict[str, str]:
-    """Return the metadata of numbers in a unit, such as "m"; it ends their name. Lists are read as arrays."""
-    return {"unit": unit}
+def in_unit(unit: str, *dimensions: str) -> dict[str, Any]:
+    """Return the metadata of numbers in a unit, such as "m", which ends their name, along dimensions."""
+    return {"unit": unit} | ({"dimensions": dimensions} if dimensions else {})
 
 
 def called(key: str | None) -> dict[str, str | None]:
     """Return the metadata of a field that has another name in JSON; None: it is not written."""
     return {"key": key}
+
+
+NOT_STORED = {"stored": False}
+"""The metadata of a field that is in no file of the record; a default stands for it."""
 
 
 @dataclass(frozen=True)
@@ -34,18 +38,6 @@ class Record:
         """Return plain JSON in SI units."""
         values = {_key(each): getattr(self, each.name) for each in fields(self)}
         return {key: _plain(value) for key, value in values.items() if key and _known(value)}
-
-    @classmethod
-    def from_json(cls, content: Json) -> Self:
-        """Return the record that `to_json` wrote; values that are records must be records in `content`.
-
-        Raises
-        ------
-        KeyError
-            A field without a default is missing.
-        """
-        stored = [each for each in fields(cls) if each.default is MISSING or _key(each) in content]
-        return cls(**{each.name: _read(each, content[_key(each)]) for each in stored})
 
 
 def _key(of: Field[Any]) -> str:
@@ -67,10 +59,3 @@ def _plain(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         return value.tolist()
     return value.to_json() if hasattr(value, "to_json") else value
-
-
-def _read(of: Field[Any], value: Any) -> Any:
-    """Return lists of numbers as arrays, those of names as tuples."""
-    if not isinstance(value, list):
-        return value
-    return np.asarray(value, dtype=float) if "unit" in of.metadata else tuple(value)

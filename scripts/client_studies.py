@@ -12,8 +12,8 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
-from service.client.study_method import study_method
-from service.registry import JSON, STUDIES, Study
+from service.client.study_method import FORMS, study_method
+from service.registry import STUDIES, Study
 
 HEAD = """# Written by scripts/client_studies.py from service.registry: do not edit.
 from collections.abc import Mapping, Sequence
@@ -31,19 +31,19 @@ SUBJECTS = {"case": "CaseLike", "scene": "SceneLike", "case or scene": "CaseLike
 
 def stub() -> str:
     """Return the types of all methods."""
-    return HEAD + "".join(map(method, STUDIES.values()))
+    return HEAD + "".join(method(study, ending) for study in STUDIES.values() for ending in FORMS)
 
 
-def method(study: Study) -> str:
-    """Return the method of a study."""
+def method(study: Study, ending: str) -> str:
+    """Return a method of a study."""
     parts = [f"{study.argument}: {SUBJECTS[study.subject]}"]
     parts += ["study: Mapping[str, Any]"] if study.from_file else []
     parts += ["progress: Watch | None = None"]
     if study.inputs.model_fields and not study.from_file:
         parts += ["*", *(option(name, field) for name, field in study.inputs.model_fields.items())]
     lines = "".join(f"        {part},\n" for part in ("self", *parts))
-    result = "dict[str, Any]" if study.media_type == JSON else "Path"
-    return f"    def {study_method(study).__name__}(\n{lines}    ) -> {result}: ...\n"
+    result = "Path" if ending else "dict[str, Any]"
+    return f"    def {study_method(study, ending).__name__}(\n{lines}    ) -> {result}: ...\n"
 
 
 def option(name: str, field: FieldInfo) -> str:

@@ -23,7 +23,7 @@ class Study:
     Attributes
     ----------
     name : str
-        Of package, process and verb; the client's method adds ``_file`` where the result is netCDF.
+        Of package, process, verb and the client's method.
     subject : "case", "scene" or "case or scene"
         What is studied.
     title, action, description : str
@@ -36,8 +36,6 @@ class Study:
         Stages of the work, in order, and their shares of the time.
     version : str
         Part of the result's content hash: another one, and stored results are computed again.
-    media_type : str
-        Of the result's file.
     shared : bool
         Whether workers can share its tasks.
     folder : str
@@ -63,7 +61,6 @@ class Study:
     kind: str
     stages: tuple[tuple[str, float], ...]
     version: str = "2"
-    media_type: str = JSON
     shared: bool = False
     folder: str = ""
     from_file: bool = False
@@ -85,7 +82,7 @@ class Study:
     @property
     def endings(self) -> tuple[str, ...]:
         """Endings of the files that the verb writes."""
-        return (*([".nc"] if self.media_type == NETCDF else []), ".json", ".png", ".html", *self.further)
+        return (".nc", ".json", ".png", ".html", *self.further)
 
     @property
     def inputs(self) -> Any:
@@ -121,7 +118,6 @@ STUDIES: dict[str, Study] = {
             kind="flanks",
             collection="flanks",
             stages=(("compliance", 0.9), ("contact", 0.1)),
-            media_type=NETCDF,
         ),
         Study(
             "ablate",
@@ -133,6 +129,7 @@ STUDIES: dict[str, Study] = {
             kind="ablation",
             collection="ablations",
             stages=(("analysis", 0.1), ("ablation", 0.9)),
+            version="3",
         ),
         Study(
             "frontier",
@@ -144,6 +141,7 @@ STUDIES: dict[str, Study] = {
             kind="frontier",
             collection="frontiers",
             stages=(("analysis", 0.1), ("ladder", 0.9)),
+            version="3",
             folder="frontier",
         ),
         Study(
@@ -156,7 +154,6 @@ STUDIES: dict[str, Study] = {
             kind="sensitivity",
             collection="sensitivities",
             stages=(("tables", 1.0),),
-            media_type=NETCDF,
             shared=True,
             folder="sensitivity",
             further=(".csv",),
@@ -171,6 +168,7 @@ STUDIES: dict[str, Study] = {
             "examples/palermo_spur_20_20.toml --torque 100 -o root.png",
             kind="root_stress",
             stages=(("compliance", 0.5), ("contact", 0.1), ("root stress", 0.4)),
+            version="3",
             further=(".csv",),
             aliases=("--image",),
         ),
@@ -181,10 +179,10 @@ STUDIES: dict[str, Study] = {
             "Search better flanks",
             "Choose flank modifications for the least peak-to-peak STE over torques and scatter.",
             "examples/palermo_spur_20_20.toml examples/optimize_tip_relief.toml -o best",
-            kind="optimisation",
+            kind="optimization",
             collection="optimisations",
             stages=(("compliance", 0.2), ("search", 0.6), ("confirmation", 0.2)),
-            version="3",
+            version="4",
             shared=True,
             folder="optimum",
             from_file=True,
@@ -201,6 +199,7 @@ STUDIES: dict[str, Study] = {
             kind="scatter",
             collection="scatters",
             stages=(("compliance", 0.2), ("samples", 0.7), ("confirmation", 0.1)),
+            version="3",
             shared=True,
         ),
         Study(
@@ -213,7 +212,6 @@ STUDIES: dict[str, Study] = {
             kind="modes",
             collection="modes",
             stages=(("analysis", 0.9), ("modes", 0.1)),
-            media_type=NETCDF,
         ),
         Study(
             "response",
@@ -226,7 +224,6 @@ STUDIES: dict[str, Study] = {
             kind="response",
             collection="responses",
             stages=(("analysis", 0.9), ("response", 0.1)),
-            media_type=NETCDF,
         ),
         Study(
             "steady",
@@ -239,7 +236,6 @@ STUDIES: dict[str, Study] = {
             kind="steady",
             collection="steadies",
             stages=(("analysis", 0.4), ("up", 0.2), ("down", 0.2), ("branch", 0.2)),
-            media_type=NETCDF,
         ),
         Study(
             "study",
@@ -251,7 +247,6 @@ STUDIES: dict[str, Study] = {
             "examples/palermo_scene.toml examples/study_torque_speed.toml -o study",
             kind="study",
             stages=(("analysis", 0.2), ("runs", 0.7), ("worst cases", 0.1)),
-            media_type=NETCDF,
             shared=True,
             folder="study",
             from_file=True,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 from bounds import DEPTHS, Declared, Unit
@@ -88,26 +87,17 @@ def boundary_text(value: float) -> str:
     return f"{value:.7g}"
 
 
-def in_um(plain: Any) -> Any:
-    """Turn every field of plain JSON that ends in _m (and no torque) into one that ends in _um."""
-    return _converted(plain, "_m", "_um", lambda meters: meters / UM)
+def in_um(plain: Any, *, own: bool = False) -> Any:
+    """Turn every field of plain JSON that ends in _m (and no torque) into one that ends in _um.
 
-
-def in_m(plain: Any) -> Any:
-    """Turn every field of plain JSON that ends in _um into one that ends in _m."""
-    return _converted(plain, "_um", "_m", lambda micrometers: micrometers * UM)
-
-
-def _converted(value: Any, old: str, new: str, length: Callable[[float], float], *, own: bool = False) -> Any:
-    """Convert the fields whose names end in `old`, and rename them; `own`: the value is of such a field."""
-    if isinstance(value, list):
-        return [_converted(entry, old, new, length, own=own) for entry in value]
-    if not isinstance(value, dict):
-        return length(value) if own and value is not None else value
-    lengths = {name for name in value if name.endswith(old) and not name.endswith("_n_m")}
+    `own`: the value is of such a field.
+    """
+    if isinstance(plain, list):
+        return [in_um(entry, own=own) for entry in plain]
+    if not isinstance(plain, dict):
+        return plain / UM if own and plain is not None else plain
+    lengths = {name for name in plain if name.endswith("_m") and not name.endswith("_n_m")}
     return {
-        name.removesuffix(old) + new if name in lengths else name: _converted(
-            entry, old, new, length, own=name in lengths
-        )
-        for name, entry in value.items()
+        f"{name.removesuffix('_m')}_um" if name in lengths else name: in_um(entry, own=name in lengths)
+        for name, entry in plain.items()
     }

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Self
 
 import numpy as np
 
@@ -39,8 +38,6 @@ class EffectAblation(model_studies.EffectAblation[RunFigures, Influence]):
         Largest static displacement that the ledger states, m.
     """
 
-    FIGURES = RunFigures
-
     influence: float = field(metadata=called("worth_m"))
 
     @property
@@ -52,13 +49,6 @@ class EffectAblation(model_studies.EffectAblation[RunFigures, Influence]):
     def bearing_order_change(self) -> FloatArray:
         """Change (b, 5) of the mesh orders of bearing forces, N."""
         return self.change("bearing_orders")
-
-    @classmethod
-    def from_json(cls, content: Json) -> Self:
-        """Return the effect that `to_json` wrote."""
-        stored = content["estimate"]
-        estimate = None if stored is None else Influence.from_json(stored | {"on": content["on"]})
-        return super().from_json(content | {"estimate": estimate})
 
 
 @dataclass(frozen=True)
@@ -72,8 +62,6 @@ class Ablation(model_studies.Ablation[RunFigures, EffectAblation]):
     mesh, bearing : tuple of str
         What the rows of the figures are.
     """
-
-    EFFECT = EffectAblation
 
     mesh: tuple[str, ...]
     bearing: tuple[str, ...]

@@ -35,8 +35,8 @@ class RunFigures(Figures):
         Of the bearing forces, root of the sum of squares of their components, N; b = 0 if not stored.
     """
 
-    orders: FloatArray = field(metadata=in_unit("m"))
-    bearing_orders: FloatArray = field(metadata=in_unit("n"))
+    orders: FloatArray = field(metadata=in_unit("m", "curve", "order"))
+    bearing_orders: FloatArray = field(metadata=in_unit("n", "bearing", "order"))
 
 
 def run_figures(result: RunResult, seconds: float) -> RunFigures:

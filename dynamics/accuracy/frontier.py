@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from typing import Self
 
 import numpy as np
 
@@ -60,11 +59,6 @@ class FidelityResult(model_studies.FidelityResult):
         facts = {name: value for name, value in super().to_json().items() if name not in FIGURES}
         return {**facts, "errors": self.errors}
 
-    @classmethod
-    def from_json(cls, content: Json) -> Self:
-        """Return the result that `to_json` wrote."""
-        return super().from_json(content | content["errors"])
-
 
 @dataclass(frozen=True)
 class Frontier(model_studies.Frontier[FidelityResult]):
@@ -81,11 +75,9 @@ class Frontier(model_studies.Frontier[FidelityResult]):
         Of the reference, m.
     """
 
-    RESULT = FidelityResult
-
     orders: int
     blocks: int
-    transmission_error_rms: FloatArray = field(metadata=in_unit("m"))
+    transmission_error_rms: FloatArray = field(metadata=in_unit("m", "block", "mesh"))
 
 
 def frontier(

@@ -39,9 +39,9 @@ class Influence(Record):
         Whether the scene has it on anywhere.
     """
 
-    mean: FloatArray = field(metadata=in_unit("m"))
-    peak_to_peak: FloatArray = field(metadata=in_unit("m"))
-    bearing_force: FloatArray = field(metadata=in_unit("n"))
+    mean: FloatArray = field(metadata=in_unit("m", "curve"))
+    peak_to_peak: FloatArray = field(metadata=in_unit("m", "curve"))
+    bearing_force: FloatArray = field(metadata=in_unit("n", "bearing"))
     relative_mean: float
     relative_peak_to_peak: float
     relative_bearing_force: float

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +20,7 @@ from fe_contact.microgeometry.variables import modified
 from fe_contact.options import Run
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate, FloatArray, Json
+from model_studies import NOT_STORED, in_unit
 
 
 @dataclass(frozen=True)
@@ -30,8 +31,6 @@ class ConfirmedDesign:
     ----------
     values : dict of str to float
         ``gear.quantity`` to m.
-    table : SteDatabase
-        Over torques and misalignments, without scatter of the modifications.
     harris_map : HarrisMap
     figures : Evaluation
         Pressures, factors and curves at the nodes and the torques that count.
@@ -41,15 +40,17 @@ class ConfirmedDesign:
         The latter, m.
     violation : float
         Of the limits, in parts of them.
+    table : SteDatabase, optional
+        Over torques and misalignments, without scatter of the modifications; of a stored design None.
     """
 
     values: dict[str, float]
-    table: SteDatabase
     harris_map: HarrisMap
     figures: Evaluation
     objective: Estimate
-    scatter_error: float
+    scatter_error: float = field(metadata=in_unit("m"))
     violation: float
+    table: SteDatabase | None = field(default=None, metadata=NOT_STORED)
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -106,7 +107,7 @@ def confirm(
     own = problem.objective.of(harris.expected_error[counted])
     objective = Estimate(problem.objective.of(harris.expected[counted]), own + rule, "m")
     violation = counted_figures.violation(problem.limits)
-    return ConfirmedDesign(dict(values), table, harris, counted_figures, objective, rule, violation)
+    return ConfirmedDesign(dict(values), harris, counted_figures, objective, rule, violation, table)
 
 
 def full_table(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from fe_contact.microgeometry.objective import Limits
 from fe_contact.microgeometry.scatter import MISALIGNMENT, ScatterNodes
 from fe_contact.microgeometry.variables import LENGTHS, SLOPES, figure, modified
 from fe_contact.types import BoolArray, FloatArray, Status
+from model_studies import in_unit
 
 
 @dataclass(frozen=True)
@@ -42,8 +43,8 @@ class Evaluation:
         Largest part of the load on tip edges over positions.
     """
 
-    ste: FloatArray
-    pressure: FloatArray
+    ste: FloatArray = field(metadata=in_unit("m", "node", "position", "torque"))
+    pressure: FloatArray = field(metadata=in_unit("pa", "node", "torque"))
     face_load_factor: FloatArray
     edge_load_share: FloatArray
 

@@ -6,11 +6,12 @@ Engineers 172 (1958), 87-112.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from fe_contact.types import FloatArray, Json
+from model_studies import in_unit
 
 
 @dataclass(frozen=True)
@@ -34,13 +35,13 @@ class HarrisMap:
         Of the nodes.
     """
 
-    torque: FloatArray
+    torque: FloatArray = field(metadata=in_unit("n_m", "torque"))
     position: FloatArray
-    ste: FloatArray
-    nominal: FloatArray
-    nominal_error: FloatArray
-    peak_to_peak: FloatArray
-    error: FloatArray
+    ste: FloatArray = field(metadata=in_unit("m", "position", "torque"))
+    nominal: FloatArray = field(metadata=in_unit("m", "torque"))
+    nominal_error: FloatArray = field(metadata=in_unit("m", "torque"))
+    peak_to_peak: FloatArray = field(metadata=in_unit("m", "node", "torque"))
+    error: FloatArray = field(metadata=in_unit("m", "node", "torque"))
     weight: FloatArray
 
     @property

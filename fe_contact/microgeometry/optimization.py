@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 from fe_contact.microgeometry.confirmation import ConfirmedDesign
@@ -10,6 +10,7 @@ from fe_contact.microgeometry.scatter import ScatterNodes
 from fe_contact.microgeometry.search import SearchRun
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.types import Estimate, FloatArray, Json
+from model_studies import Record, in_unit
 
 
 class Outcome(StrEnum):
@@ -23,7 +24,7 @@ class Outcome(StrEnum):
 
 
 @dataclass(frozen=True)
-class Perturbation:
+class Perturbation(Record):
     """The change by a small step of one variable from the optimum.
 
     Attributes
@@ -37,20 +38,10 @@ class Perturbation:
     """
 
     name: str
-    low: float
-    high: float
-    change_low: float
-    change_high: float
-
-    def to_json(self) -> Json:
-        """Return plain JSON."""
-        return {
-            "name": self.name,
-            "low_m": self.low,
-            "high_m": self.high,
-            "change_low_m": self.change_low,
-            "change_high_m": self.change_high,
-        }
+    low: float = field(metadata=in_unit("m"))
+    high: float = field(metadata=in_unit("m"))
+    change_low: float = field(metadata=in_unit("m"))
+    change_high: float = field(metadata=in_unit("m"))
 
 
 @dataclass(frozen=True)
@@ -85,8 +76,8 @@ class Optimization:
     outcome: Outcome
     reason: str
     variables: tuple[DesignVariable, ...]
-    torque: FloatArray
-    misalignment: float
+    torque: FloatArray = field(metadata=in_unit("n_m", "torque"))
+    misalignment: float = field(metadata=in_unit("m"))
     nodes: ScatterNodes
     start: ConfirmedDesign
     optimum: ConfirmedDesign

@@ -15,6 +15,7 @@ from fe_contact.checks import finite, integer, positive
 from fe_contact.errors import InputError
 from fe_contact.microgeometry.variables import gear_and_quantity
 from fe_contact.types import FloatArray, Json
+from model_studies import Record, called, in_unit
 
 MISALIGNMENT = "misalignment"
 MOST_NODES = 1024
@@ -162,7 +163,7 @@ NO_SCATTER = Scatter()
 
 
 @dataclass(frozen=True)
-class ScatterNodes:
+class ScatterNodes(Record):
     """Nodes at which a design is assessed.
 
     Attributes
@@ -178,9 +179,9 @@ class ScatterNodes:
     """
 
     names: tuple[str, ...]
-    deviation: FloatArray
+    deviation: FloatArray = field(metadata=in_unit("m"))
     weight: FloatArray
-    finer: ScatterNodes | None = None
+    finer: ScatterNodes | None = field(default=None, metadata=called(None))
 
     @property
     def misalignment(self) -> FloatArray:
@@ -193,14 +194,6 @@ class ScatterNodes:
         """Deviation of every scattered figure of the modifications at a node, m."""
         deviations = zip(self.names, self.deviation[node], strict=True)
         return {name: float(value) for name, value in deviations if name != MISALIGNMENT}
-
-    def to_json(self) -> Json:
-        """Return plain JSON."""
-        return {
-            "names": list(self.names),
-            "deviation_m": self.deviation.tolist(),
-            "weight": self.weight.tolist(),
-        }
 
 
 ONE_NODE = ScatterNodes((), np.zeros((1, 0)), np.ones(1))

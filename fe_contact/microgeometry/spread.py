@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from fe_contact.types import FloatArray, Json
+from model_studies import in_unit
 from model_studies.spread import quantile_bounds
 
 
@@ -23,9 +24,9 @@ class Quantile:
     """
 
     fraction: float
-    value: FloatArray
-    low: FloatArray
-    high: FloatArray
+    value: FloatArray = field(metadata=in_unit("m", "torque"))
+    low: FloatArray = field(metadata=in_unit("m", "torque"))
+    high: FloatArray = field(metadata=in_unit("m", "torque"))
 
     def to_json(self) -> Json:
         """Return plain JSON; a bound that the sample is too small for is null."""

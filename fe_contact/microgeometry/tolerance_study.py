@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from fe_contact.microgeometry.tolerances import Tolerances
 from fe_contact.options import AnalysisOptions, Levels, Run
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, Json
+from model_studies import in_unit
 from model_studies.spread import rank_correlation
 
 IN_A_TASK = 25
@@ -54,14 +55,14 @@ class ToleranceStudy:
     asked : dict
     """
 
-    torque: FloatArray
+    torque: FloatArray = field(metadata=in_unit("n_m", "torque"))
     names: tuple[str, ...]
-    deviation: FloatArray
-    peak_to_peak: FloatArray
-    nominal: FloatArray
-    error: FloatArray
+    deviation: FloatArray = field(metadata=in_unit("m", "sample", "deviating"))
+    peak_to_peak: FloatArray = field(metadata=in_unit("m", "sample", "torque"))
+    nominal: FloatArray = field(metadata=in_unit("m", "torque"))
+    error: FloatArray = field(metadata=in_unit("m", "torque"))
     quantiles: tuple[Quantile, ...]
-    first_order: FloatArray
+    first_order: FloatArray = field(metadata=in_unit("m", "sample", "torque"))
     confidence: float
     cost: Json
     asked: Json

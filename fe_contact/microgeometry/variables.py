@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import reduce
 
 from bounds import Direction, Kind, SiNote, Text, above, at_least
@@ -12,7 +12,7 @@ from fe_contact.effects import Effect, named
 from fe_contact.errors import InputError
 from fe_contact.flank.modification import FLANK_FIELDS, fields_of
 from fe_contact.geometry import ParallelAxes
-from fe_contact.types import Json
+from model_studies import Record, in_unit
 
 GEARS = ("pinion", "wheel")
 QUANTITIES = fields_of(Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
@@ -23,7 +23,7 @@ ACROSS_FACE = tuple(name for name in QUANTITIES if Direction.FACE in FLANK_FIELD
 
 
 @dataclass(frozen=True)
-class DesignVariable:
+class DesignVariable(Record):
     """One figure of one gear's modification, free between bounds.
 
     Attributes
@@ -36,8 +36,8 @@ class DesignVariable:
     """
 
     name: str
-    low: float
-    high: float
+    low: float = field(metadata=in_unit("m"))
+    high: float = field(metadata=in_unit("m"))
 
     def __post_init__(self) -> None:
         gear_and_quantity(f"variables.{self.name}", self.name)
@@ -66,10 +66,6 @@ class DesignVariable:
     def acting(self) -> float:
         """A value at which the variable acts: the middle of its bounds, or the upper one if that is zero."""
         return 0.5 * (self.low + self.high) or self.high
-
-    def to_json(self) -> Json:
-        """Return plain JSON."""
-        return {"name": self.name, "low_m": self.low, "high_m": self.high}
 
 
 def gear_and_quantity(field: str, name: str) -> tuple[str, str]:

@@ -6,10 +6,10 @@ import json
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from pydantic import ValidationError
 
-from fe_contact.analysis import LoadDistribution
 from service.cli.output import Report, check_writable, console, print_json, progress_bar
 from service.cli.warned import warn
 from service.convert.case import case_at
@@ -23,8 +23,10 @@ from service.report.stored_study import page_beside
 from service.report.write import write_page
 from service.schemas import Case
 from service.schemas.flank import FlankPoint
-from service.studies.flank.run import flanks_of
 from service.tables.aligned import aligned, headline_load
+
+if TYPE_CHECKING:
+    from fe_contact.analysis import LoadDistribution
 
 
 def run_report(
@@ -62,6 +64,8 @@ def _flanks(read: Inputs, report: Report) -> LoadDistribution:
     BadInput
         There is no database to take the case from, or flank results are there already.
     """
+    from service.studies.flank.run import flanks_of  # noqa: PLC0415 (start-up time)
+
     database = read.database
     if "flanks" in read.pages:
         raise BadInput.of("--flank", True, "left out with a file of flank results", "Name one or the other.")

@@ -160,7 +160,7 @@ def _writers(study: Study) -> dict[str, Writer]:
     """Return what writes a result, by the ending of the file."""
     run, page = study.run, study.page
     return {
-        ".nc": run.save,
+        ".nc": run.file.write,
         ".json": run.save_facts,
         ".png": lambda result, file: file.write_bytes(png(page.figure(result))),
         ".html": lambda result, file: write_whole(page.page(result), file, warnings=messages()),

@@ -14,8 +14,10 @@ from typing import Any, BinaryIO, cast
 
 from service.client.status import Result
 from service.problems import BadInput
-from service.schemas.result_kinds import suffix_of
+from service.schemas.result_kinds import SUFFIX
 
+FIGURES = ".json"
+"""Ending of the figures of results."""
 SET_ASIDE = ".damaged"
 """Ending of what was found damaged: never read again, may be deleted."""
 
@@ -38,16 +40,16 @@ class ResultCache:
         with self._part(self._directory) as stream:
             yield stream
 
-    def keep(self, kind: str, key: str, stream: BinaryIO, digest: str) -> Path:
+    def keep(self, kind: str, key: str, stream: BinaryIO, digest: str, suffix: str = SUFFIX) -> Path:
         """Keep what was written into the file of `incoming`; `digest` is its SHA-256, hexadecimal."""
-        file = self._folder(kind, key) / f"{digest}{suffix_of(kind)}"
+        file = self._folder(kind, key) / f"{digest}{suffix}"
         file.parent.mkdir(parents=True, exist_ok=True)
         _settle(stream, file)
         return file
 
-    def get(self, kind: str, key: str) -> Path | None:
-        """Return the file of a result if it is here and undamaged; a damaged one is set aside."""
-        for file in sorted(self._folder(kind, key).glob(f"*{suffix_of(kind)}")):
+    def get(self, kind: str, key: str, suffix: str = SUFFIX) -> Path | None:
+        """Return a file of a result if it is here and undamaged; a damaged one is set aside."""
+        for file in sorted(self._folder(kind, key).glob(f"*{suffix}")):
             if _holds(file, file.stem):
                 return file
         return None
@@ -66,7 +68,8 @@ class ResultCache:
             result = Result(str(facts["key"]), str(facts["kind"]), str(facts["href"]))
         except (OSError, ValueError, KeyError, TypeError):
             return None
-        return result if self.get(result.kind, result.key) is not None else None
+        held = any(self.get(result.kind, result.key, suffix) is not None for suffix in (SUFFIX, FIGURES))
+        return result if held else None
 
     def _folder(self, kind: str, key: str) -> Path:
         """Return the folder of a key, whose files differ where services gave different bytes for it."""

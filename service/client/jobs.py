@@ -3,23 +3,25 @@
 from __future__ import annotations
 
 import base64
+import json
 import math
 import os
 import warnings
+from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
 import httpx2
 
-from service.client.cache import ResultCache
+from service.client.cache import FIGURES, ResultCache
 from service.client.connection import Connection
 from service.client.status import JobState, OfflineWarning, Result, Watch
 from service.client.waiting import Pace, ended
 from service.directories import cache_home
 from service.problems import BadInput, DamagedFile, NotFound, ServiceError, Unreachable
-from service.registry import NETCDF
-from service.schemas.result_kinds import RESULT_KINDS, RESULTS
+from service.registry import JSON, NETCDF
+from service.schemas.result_kinds import RESULT_KINDS, RESULTS, SUFFIX
 from service.version import solver_version
 
 _LONGEST_PAUSE_S = 2.0
@@ -175,7 +177,7 @@ class JobClient:
         return result
 
     def fetch_file(self, key: str, kind: str = "database") -> Path:
-        """Return the file of a result (netCDF or JSON, by its kind), from the disk cache or the service.
+        """Return the netCDF file of a result, from the disk cache or the service.
 
         The file belongs to the cache: read it, or copy it.
 
@@ -190,22 +192,30 @@ class JobClient:
         """
         return self.fetch_result(key, kind)[0]
 
+    def fetch_figures(self, key: str, kind: str) -> dict[str, Any]:
+        """Return the figures of a result in the units of the boundary; as `fetch_file`."""
+        figures: dict[str, Any] = json.loads(self._fetched(key, (kind,), JSON, FIGURES)[0].read_bytes())
+        return figures
+
     def fetch_result(self, key: str, *kinds: str) -> tuple[Path, str]:
         """Return the file of a result of one of some kinds, default all, and its kind; as `fetch_file`."""
-        kinds = kinds or tuple(RESULT_KINDS)
+        return self._fetched(key, kinds or tuple(RESULT_KINDS), NETCDF, SUFFIX)
+
+    def _fetched(self, key: str, kinds: Sequence[str], form: str, suffix: str) -> tuple[Path, str]:
+        """Return a form of a result, and its kind."""
         for kind in kinds:
-            cached = self._cache.get(kind, key)
+            cached = self._cache.get(kind, key, suffix)
             if cached is not None:
                 return cached, kind
         with self._cache.incoming() as file:
-            digest, headers = self._connection.download(f"{RESULTS}/{key}", NETCDF, file)
+            digest, headers = self._connection.download(f"{RESULTS}/{key}", form, file)
             kind = headers.get("result-kind", kinds[0])
             if kind not in kinds:
                 raise NotFound(f"Result {key!r} is no {kinds[0]}, but of the kind {kind}.")
             coded = base64.b64encode(bytes.fromhex(digest)).decode()
             if headers.get("content-digest") != f"sha-256=:{coded}:":
                 raise DamagedFile(f"The file of {kind} {key} was damaged on its way. Fetch it again.")
-            return self._cache.keep(kind, key, file, digest), kind
+            return self._cache.keep(kind, key, file, digest, suffix), kind
 
     def _note_other_version(self, error: BadInput) -> None:
         """Add to a refusal that client and service are of different versions, if they are."""

@@ -1,19 +1,25 @@
-"""The method of the client for a study: submit, wait, fetch."""
+"""The methods of the client for a study: submit, wait, fetch."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterable, Mapping
 from inspect import Parameter, Signature
 from typing import Any
 
 from service.client.jobs import JobClient
 from service.client.portable import inputs_of
-from service.registry import JSON, Study
+from service.registry import Study
+
+FORMS: dict[str, tuple[str, Callable[[JobClient, str, str], Any]]] = {
+    "": ("the figures, as ``loa {study.name} --json`` prints them", JobClient.fetch_figures),
+    "_file": ("the path of the netCDF file", JobClient.fetch_file),
+}
+"""What the methods of a study return, by how their names end."""
 
 
-def study_method(study: Study) -> Callable[..., Any]:
-    """Return the method of a study: submit, wait, and read the JSON or return the netCDF file."""
+def study_method(study: Study, ending: str) -> Callable[..., Any]:
+    """Return a method of a study: submit, wait, and fetch in the form of `FORMS`."""
+    words, fetch = FORMS[ending]
     signature = Signature(
         [
             Parameter("self", Parameter.POSITIONAL_ONLY),
@@ -31,18 +37,18 @@ def study_method(study: Study) -> Callable[..., Any]:
         }
         inputs = inputs_of(bound[study.argument]) | options
         result = self.obtain(study.name, inputs, bound.get("progress"))
-        file = self.fetch_file(result.key, result.kind)
-        return json.loads(file.read_bytes()) if study.media_type == JSON else file
+        return fetch(self, result.key, result.kind)
 
-    run.__name__ = study.package if study.media_type == JSON else f"{study.package}_file"
-    run.__qualname__, run.__doc__ = f"Studies.{run.__name__}", _METHOD.format(study=study)
+    run.__name__ = f"{study.package}{ending}"
+    run.__qualname__ = f"Studies.{run.__name__}"
+    run.__doc__ = _METHOD.format(study=study, returned=words.format(study=study))
     run.__signature__ = signature  # type: ignore[attr-defined]
     return run
 
 
 _METHOD = """{study.description}
 
-        Submits, waits, and returns what ``loa {study.name} --json`` prints, or the path of the netCDF file.
+        Submits, waits, and returns {returned}.
 
         Parameters
         ----------

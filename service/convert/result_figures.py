@@ -1,4 +1,4 @@
-"""The figures of a stored file in JSON, by the kind of the result."""
+"""The figures of a stored file, as JSON, by the kind of the result."""
 
 from __future__ import annotations
 
@@ -13,5 +13,5 @@ from service.registry import study_of
 def figures_of(kind: str, file: Path) -> dict[str, Any]:
     """Return what a stored file of a run or a study says, its warnings included."""
     study = study_of(kind)
-    figures = run_json(file) if study is None else study.run.facts(study.run.read(file))
+    figures = run_json(file) if study is None else study.run.facts(study.run.file.read(file))
     return figures | {WARNINGS: stamped(file)}

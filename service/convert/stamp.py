@@ -1,4 +1,4 @@
-"""Warnings in the files of results: an attribute of netCDF files, a member of JSON files."""
+"""Warnings in the files of results: an attribute of netCDF files, a member of the JSON that verbs write."""
 
 from __future__ import annotations
 
@@ -24,10 +24,6 @@ def stamp(file: Path, warnings: Sequence[Json]) -> None:
 
 
 def stamped(file: Path) -> list[Json]:
-    """Return the warnings of a file of a result, netCDF or JSON; none of an older one."""
-    with file.open("rb") as stream:
-        is_json = stream.read(1) == b"{"
-    if is_json:
-        return list(json.loads(file.read_text(encoding="utf-8")).get(WARNINGS, ()))
+    """Return the warnings of the netCDF file of a result; none of an older one."""
     with h5netcdf.File(file, "r") as content:
         return list(json.loads(content.attrs.get(WARNINGS, "[]")))

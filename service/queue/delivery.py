@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal, Self
 
 from service.problems import BadInput
-from service.registry import JSON
+from service.registry import NETCDF
 
 Response = Literal["raw", "document"]
 Transmission = Literal["value", "reference"]
@@ -40,26 +40,24 @@ class Delivery:
 AS_IT_IS = Delivery()
 
 
-def delivery(response: Response, transmission: Transmission | None, media_type: str, field: str) -> Delivery:
+def delivery(response: Response, transmission: Transmission | None, field: str) -> Delivery:
     """Return the form that was requested.
 
     Parameters
     ----------
     response, transmission
-        As requested; a transmission that is left out is by value, but of netCDF in a document by reference.
-    media_type : str
-        Of the result.
+        As requested; a transmission that is left out is by value, but in a document by reference.
     field : str
         What the caller calls the transmission.
 
     Raises
     ------
     BadInput
-        A result in a document by value that JSON does not hold.
+        A result in a document by value: JSON does not hold netCDF.
     """
-    if response == "document" and media_type != JSON:
+    if response == "document":
         if transmission == "value":
-            bound = f"reference in a document: JSON does not hold {media_type}"
+            bound = f"reference in a document: JSON does not hold {NETCDF}"
             raise BadInput.of(
                 field, transmission, bound, 'Ask for the response "raw" to get the file itself.'
             )

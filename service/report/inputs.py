@@ -17,7 +17,7 @@ from service.convert.stamp import stamped
 from service.drawing.page import Page
 from service.problems import BadInput
 from service.registry import STUDIES, Study
-from service.report.stored_study import marked_study, stored_study, study_page
+from service.report.stored_study import stored_study, study_page
 
 _BOUND = f"an STE database, a run, or the result of a study ({', '.join(STUDIES)})"
 _READERS: dict[str, tuple[tuple[str, str], Callable[[Path], Any]]] = {
@@ -72,17 +72,13 @@ def read_inputs(files: Sequence[Path]) -> Inputs:
 
 def _kind(file: Path) -> tuple[Study | None, str]:
     """Return the study that made a file, if one did, and the kind of the file."""
-    if file.suffix == ".json" and file.is_file():
-        study: Study | None = stored_study(file)
-    else:
-        attributes = _attributes(file)
-        study = marked_study(attributes)
-    if study is not None:
+    attributes = _attributes(file)
+    for kind, ((name, value), _) in _READERS.items():
+        if attributes.get(name) == value:
+            return None, kind
+    if (study := stored_study(attributes)) is not None:  # loads what computes studies
         return study, study.kind
-    kinds = [kind for kind, ((name, value), _) in _READERS.items() if attributes.get(name) == value]
-    if not kinds:
-        raise BadInput.of("file", str(file), _BOUND, "It is a netCDF file of another kind.")
-    return None, kinds[0]
+    raise BadInput.of("file", str(file), _BOUND, "It is a netCDF file of another kind.")
 
 
 def _attributes(file: Path) -> dict[str, str]:
@@ -95,6 +91,9 @@ def _attributes(file: Path) -> dict[str, str]:
     """
     if not file.is_file():
         raise BadInput.of("file", str(file), _BOUND, "There is no such file. Check the path.")
+    if file.suffix == ".json":
+        advice = "JSON is for programs. Name the netCDF file: the verb writes it with -o FILE.nc."
+        raise BadInput.of("file", str(file), _BOUND, advice)
     try:
         with h5netcdf.File(file, "r") as content:
             return {name: str(value) for name, value in content.attrs.items()}

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, cast
+from typing import cast
 
 from dynamics.errors import DynamicsError
 from fe_contact.errors import FeContactError
@@ -15,13 +14,9 @@ from service.problems import BadInput
 from service.registry import STUDIES, Study
 
 
-def marked_study(content: Mapping[str, object]) -> Study | None:
-    """Return the study that made a file, by the names in its JSON or the attributes of its netCDF file."""
-    for study in STUDIES.values():
-        marks = study.run.marks
-        if all(name in content and value in (None, content[name]) for name, value in marks.items()):
-            return study
-    return None
+def stored_study(attributes: Mapping[str, object]) -> Study | None:
+    """Return the study that made a file with these attributes; None: another kind of file."""
+    return next((study for study in STUDIES.values() if study.run.file.holds(attributes)), None)
 
 
 def study_page(study: Study, file: Path, database: SteDatabase | None = None) -> Page:
@@ -33,8 +28,8 @@ def study_page(study: Study, file: Path, database: SteDatabase | None = None) ->
         It is damaged.
     """
     try:
-        return page_beside(study, study.run.read(file), database)
-    except (KeyError, TypeError, ValueError, FeContactError, DynamicsError) as error:
+        return page_beside(study, study.run.file.read(file), database)
+    except (ValueError, FeContactError, DynamicsError) as error:
         advice = f"Something is missing or not as written ({type(error).__name__}: {error})."
         raise BadInput.of("file", str(file), f"an undamaged {study.kind}", advice) from None
 
@@ -44,22 +39,3 @@ def page_beside(study: Study, found: object, database: SteDatabase | None) -> Pa
     if database is None or study.page.beside is None:
         return cast(Page, study.page.page(found))
     return cast(Page, study.page.beside(found, database))
-
-
-def stored_study(file: Path) -> Study:
-    """Return which study a JSON file holds.
-
-    Raises
-    ------
-    BadInput
-        It holds none.
-    """
-    bound = "a study in JSON, as the verbs of loa write it"
-    try:
-        content: Any = json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise BadInput.of("file", str(file), bound, f"It cannot be read ({error}).") from None
-    study = marked_study(content if isinstance(content, dict) else {})
-    if study is None:
-        raise BadInput.of("file", str(file), bound, "It is JSON of another kind.")
-    return study

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request
@@ -13,12 +12,12 @@ from service.queue.delivery import Delivery, Transmission, delivery
 from service.queue.delivery import Response as Form
 from service.queue.job import Job
 from service.registry import NETCDF
-from service.routes.context import Context, Ctx
+from service.routes.context import Ctx
 from service.routes.errors import documented
 from service.routes.media_types import JSON
-from service.routes.results import file_response
+from service.routes.results import file_response, known_result
 from service.schemas.ogc import ResultReference
-from service.schemas.result_kinds import RESULT_KINDS, RESULTS, ResultKind
+from service.schemas.result_kinds import RESULTS
 
 router = APIRouter(prefix="/jobs", tags=["jobs"])
 
@@ -29,7 +28,7 @@ AskedMode = Annotated[
 ]
 _ANSWERS: dict[int | str, dict[str, Any]] = {
     200: {
-        "description": "The result, or a document of it by the name of its output",
+        "description": "The result, or a document of where it is by the name of its output",
         "content": {
             JSON: {"schema": {"type": "object"}},
             NETCDF: {"schema": {"type": "string", "format": "binary"}},
@@ -53,37 +52,26 @@ def results(
     job = context.submissions.find(job_id)
     _refuse_without_result(job)
     process = context.registry[job.process]
-    kind = RESULT_KINDS[process.kind]
-    form = _form(job.delivery, response, mode, kind)
+    form = _form(job.delivery, response, mode)
+    href = f"{RESULTS}/{job.key}"
     if form.transmission == "reference":
-        return _referenced(form, process.output, f"{RESULTS}/{job.key}", job.key, kind)
-    return _valued(form, process.output, job.key, kind, request, context)
+        return _referenced(form, process.output, href, job.key)
+    return file_response(known_result(context, job.key, process.kind), request, {"Content-Location": href})
 
 
-def _form(ordered: Delivery, response: Form | None, mode: Transmission | None, kind: ResultKind) -> Delivery:
+def _form(ordered: Delivery, response: Form | None, mode: Transmission | None) -> Delivery:
     """Return the form of the execution, or the one that this request asks for instead."""
     if response is None and mode is None:
         return ordered
-    return delivery(response or ordered.response, mode, kind.media_type, "transmissionMode")
+    return delivery(response or ordered.response, mode, "transmissionMode")
 
 
-def _referenced(form: Delivery, output: str, href: str, key: str, kind: ResultKind) -> Response:
+def _referenced(form: Delivery, output: str, href: str, key: str) -> Response:
     """Say where the result is."""
     if form.response == "raw":
-        link = f'<{href}>; rel="item"; type="{kind.media_type}"; title="{output}"'
+        link = f'<{href}>; rel="item"; type="{NETCDF}"; title="{output}"'
         return Response(status_code=204, headers={"Link": link})
-    return JSONResponse({output: ResultReference(href=href, type=kind.media_type, hash=key).model_dump()})
-
-
-def _valued(
-    form: Delivery, output: str, key: str, kind: ResultKind, request: Request, context: Context
-) -> Response:
-    """Return the result itself; in a document as a qualified value, as the standard has objects."""
-    stored = context.store.verified(key, kind.name)
-    if form.response == "raw":
-        return file_response(stored, request, {"Content-Location": f"{RESULTS}/{key}"})
-    opened = json.dumps({output: {"mediaType": kind.media_type, "value": None}}).removesuffix("null}}")
-    return Response(opened.encode() + stored.path.read_bytes() + b"}}", media_type=JSON)
+    return JSONResponse({output: ResultReference(href=href, type=NETCDF, hash=key).model_dump()})
 
 
 def _refuse_without_result(job: Job) -> None:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cache
 from typing import Annotated, Any, cast
 
 import structlog
 from fastapi import APIRouter, Header, Query, Response
+from pydantic import BaseModel
 
 from service.queue.caller import Caller
 from service.queue.delivery import Delivery, delivery
-from service.registry import JSON
+from service.registry import NETCDF
 from service.routes.context import Context, Ctx, From
 from service.routes.cursor import Limit
 from service.routes.errors import documented
@@ -26,13 +28,13 @@ from service.schemas.ogc import (
     ProcessSummary,
     StatusInfo,
 )
-from service.schemas.result_kinds import RESULT_KINDS
 from service.store import now
 from service.worker.process import Process, Registry
 
 logger = structlog.get_logger(__name__)
 
 After = Annotated[str, Query(max_length=64, description="Last process of the page before")]
+_SUBJECTS = ("case", "scene")
 Prefer = Annotated[str, Header(description="Jobs are always asynchronous (RFC 7240)", max_length=1000)]
 
 
@@ -84,8 +86,7 @@ def _unknown(registry: Registry) -> Any:
 
 def _add_execution(router: APIRouter, process: Process) -> None:
     """Add the execution route of one process."""
-    media_type = RESULT_KINDS[process.kind].media_type
-    body = execute_model(process.id, process.inputs, process.output, media_type)
+    body = execute_model(process.id, process.inputs, process.output)
 
     def execute(
         request: Any,
@@ -97,7 +98,7 @@ def _add_execution(router: APIRouter, process: Process) -> None:
         """Check the inputs and enter a job; equal work is shared, stored results are used."""
         output = getattr(request.outputs, process.output)
         field = f"outputs.{process.output}.transmissionMode"
-        form = delivery(request.response, output and output.transmissionMode, media_type, field)
+        form = delivery(request.response, output and output.transmissionMode, field)
         inputs = process.prepare(cast(BoundaryModel, request.inputs), context.store)
         status = _submit(context, process, inputs, caller, form)
         response.headers["Location"] = f"/v1/jobs/{status.jobID}"
@@ -162,11 +163,20 @@ def _card(action: str, inputs: type[BoundaryModel]) -> AdditionalParameters:
     """Return what a page needs to offer a study; nothing of what has no action."""
     if not action:
         return AdditionalParameters(parameters=[])
-    schemas = inputs.model_json_schema()["properties"]
-    fields = {name: schemas[name] for name, field in inputs.model_fields.items() if field.title}
-    subjects: list[Any] = [name for name in ("case", "scene") if name in schemas]
-    parts = {"action": [action], "subjects": subjects, "fields": [fields]}
+    subjects: list[Any] = [name for name in _SUBJECTS if name in inputs.model_fields]
+    parts = {"action": [action], "subjects": subjects, "fields": [dict(_titled(inputs))]}
     return AdditionalParameters(parameters=[Parameter(name=name, value=parts[name]) for name in parts])
+
+
+def _titled(inputs: type[BaseModel], within: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield names and schemas of the fields that have a title, those of tables by their path."""
+    schemas = inputs.model_json_schema()["properties"]
+    for name, field in inputs.model_fields.items():
+        kind = field.annotation
+        if field.title:
+            yield f"{within}{name}", schemas[name]
+        elif name not in _SUBJECTS and isinstance(kind, type) and issubclass(kind, BaseModel):
+            yield from _titled(kind, f"{within}{name}.")
 
 
 def _description(process: Process) -> ProcessDescription:
@@ -180,8 +190,6 @@ def _description(process: Process) -> ProcessDescription:
         }
         for name, field in process.inputs.model_fields.items()
     }
-    media_type = RESULT_KINDS[process.kind].media_type
-    value = {"type": "object"} if media_type == JSON else {"type": "string", "contentEncoding": "binary"}
-    output = {**value, "contentMediaType": media_type}
+    output = {"type": "string", "contentEncoding": "binary", "contentMediaType": NETCDF}
     outputs = {process.output: {"title": process.output, "description": process.title, "schema": output}}
     return ProcessDescription(**_summary(process), inputs=inputs, outputs=outputs)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import hashlib
 from collections.abc import Mapping
 from typing import Annotated, Any
 
@@ -15,16 +16,16 @@ from service.registry import NETCDF
 from service.routes.context import Context, Ctx
 from service.routes.errors import documented
 from service.routes.media_types import JSON, negotiated
-from service.schemas.result_kinds import RESULT_KINDS
+from service.schemas.result_kinds import RESULT_KINDS, SUFFIX
 from service.store import StoredResult
 
 _IMMUTABLE = "public, max-age=31536000, immutable"
 
 Key = Annotated[str, Path(pattern="^[0-9a-f]{64}$", description="Content hash of the input")]
-Accept = Annotated[str, Header(description=f"{NETCDF} for the file, application/json for its metadata")]
+Accept = Annotated[str, Header(description=f"{NETCDF} for the file, application/json for its figures")]
 _ANSWERS: dict[int | str, dict[str, Any]] = {
     200: {
-        "description": "The result; of a kind that is kept as JSON the file in any case",
+        "description": "The figures of the result, or its file",
         "content": {
             JSON: {"schema": {"type": "object"}},
             NETCDF: {"schema": {"type": "string", "format": "binary"}},
@@ -45,23 +46,25 @@ router = APIRouter(tags=["results"])
 def result(key: Key, request: Request, context: Ctx, accept: Accept = JSON) -> Response:
     """Figures or the file, by Accept; never changes. Its kind is in the header Result-Kind."""
     stored = known_result(context, key)
-    media_type = RESULT_KINDS[stored.kind].media_type
-    if media_type == JSON or negotiated(accept, (JSON, media_type)) == media_type:
+    if negotiated(accept, (JSON, NETCDF)) == NETCDF:
         return file_response(stored, request)
     return _metadata(stored, request, _figures(context, stored))
 
 
-def known_result(context: Context, key: str) -> StoredResult:
-    """Return a stored result of whichever kind.
+def known_result(context: Context, key: str, kind: str | None = None) -> StoredResult:
+    """Return a stored result of a kind, or of whichever it is.
 
     Raises
     ------
     NotFound
         There is none, or another version of this program made it.
     """
-    stored = context.store.verified(key)
+    stored = context.store.verified(key, kind)
     if stored.kind not in RESULT_KINDS:
         raise NotFound(f"Result {key!r} is of a kind that this version does not know: {stored.kind}.")
+    if stored.path.suffix != SUFFIX:
+        reason = "Version 0.1 stored it as JSON; results are netCDF"
+        raise NotFound(f"Result {key!r} cannot be read. {reason}. Submit its case again to compute it.")
     return stored
 
 
@@ -82,26 +85,32 @@ def file_response(
     stored: StoredResult, request: Request, further: Mapping[str, str] | None = None
 ) -> Response:
     """Return the file with its digest (RFC 9530), or 304."""
-    headers, kind = _headers(stored) | dict(further or {}), RESULT_KINDS[stored.kind]
-    digest = base64.b64encode(bytes.fromhex(stored.sha256)).decode()
+    headers = _headers(stored) | dict(further or {})
     if _known(request, headers["ETag"]):
         return Response(status_code=304, headers=headers)
     return FileResponse(
         stored.path,
-        media_type=kind.media_type,
-        filename=f"{stored.kind}_{stored.key[:12]}{kind.suffix}",
-        headers=headers | {"Content-Digest": f"sha-256=:{digest}:"},
+        media_type=NETCDF,
+        filename=f"{stored.kind}_{stored.key[:12]}{SUFFIX}",
+        headers=headers | _digest(bytes.fromhex(stored.sha256)),
     )
 
 
 def _metadata(stored: StoredResult, request: Request, facts: dict[str, Any]) -> Response:
-    """Return the metadata, or 304."""
+    """Return the figures with their digest, or 304."""
     headers = _headers(stored, "-json")
     if _known(request, headers["ETag"]):
         return Response(status_code=304, headers=headers)
-    return JSONResponse(
+    answer = JSONResponse(
         {"hash": stored.key, "sha256": stored.sha256, "size": stored.size, **facts}, headers=headers
     )
+    answer.headers.update(_digest(hashlib.sha256(answer.body).digest()))
+    return answer
+
+
+def _digest(sha256: bytes) -> dict[str, str]:
+    """Return the header with the digest of a body."""
+    return {"Content-Digest": f"sha-256=:{base64.b64encode(sha256).decode()}:"}
 
 
 def _headers(stored: StoredResult, form: str = "") -> dict[str, str]:

@@ -7,9 +7,8 @@ from typing import Any, Literal
 
 from pydantic import Field, create_model, model_validator
 
-from service.registry import JSON
+from service.registry import JSON, NETCDF
 from service.schemas.model import BoundaryModel, refuse
-from service.schemas.result_kinds import suffix_of_type
 
 _FORMAT = {"mediaType", "encoding", "schema"}
 _LINK = {"href", "rel", "type", "hreflang", "title"}
@@ -48,23 +47,20 @@ def _value(name: str, value: Any) -> Any:
     return value["value"]
 
 
-@lru_cache(maxsize=8)
-def _wanted_output(media_type: str) -> type[BoundaryModel]:
-    """Return the model of a request for an output of this type."""
-    kind = suffix_of_type(media_type).removeprefix(".").capitalize()
-    type_field: Any = (Literal[media_type], Field(media_type, description="The one type of the output"))
-    form = create_model(f"{kind}Format", __base__=BoundaryModel, mediaType=type_field)
-    text = "Default: value; of netCDF in a document: reference"
+@lru_cache(maxsize=1)
+def _wanted_output() -> type[BoundaryModel]:
+    """Return the model of a request for an output."""
+    type_field: Any = (Literal[NETCDF], Field(NETCDF, description="The one type of the output"))
+    form = create_model("NcFormat", __base__=BoundaryModel, mediaType=type_field)
+    text = "Default: value; in a document: reference"
     fields: dict[str, Any] = {
         "format": (form | None, Field(None, description="There is one format")),
         "transmissionMode": (Literal["value", "reference"] | None, Field(None, description=text)),
     }
-    return create_model(f"Wanted{kind}Output", __base__=BoundaryModel, **fields)
+    return create_model("WantedNcOutput", __base__=BoundaryModel, **fields)
 
 
-def execute_model(
-    process: str, inputs: type[BoundaryModel], output: str, media_type: str
-) -> type[ExecuteBody]:
+def execute_model(process: str, inputs: type[BoundaryModel], output: str) -> type[ExecuteBody]:
     """Return the model of a process' body.
 
     Parameters
@@ -73,11 +69,11 @@ def execute_model(
         Its identifier.
     inputs : type[BoundaryModel]
         Model of its inputs.
-    output, media_type : str
-        Name and type of its one output.
+    output : str
+        Name of its one output.
     """
     title = process.title().replace("-", "")
-    wanted: Any = (_wanted_output(media_type) | None, Field(None, description="The one output"))
+    wanted: Any = (_wanted_output() | None, Field(None, description="The one output"))
     outputs = create_model(f"{title}Outputs", __base__=BoundaryModel, **{output: wanted})
     form = Field("raw", description="Results as they are, or as a JSON object by name")
     fields: dict[str, Any] = {

@@ -6,7 +6,7 @@ import re
 import uuid
 from dataclasses import dataclass
 
-from service.schemas.result_kinds import suffix_of
+from service.schemas.result_kinds import SUFFIX
 
 _DIGEST_LENGTH = 16
 _NAME = re.compile(
@@ -45,4 +45,4 @@ class ResultName:
 def new_name(key: str, kind: str, sha256: str) -> str:
     """Return the name of a new file, which no other has."""
     unique = uuid.uuid4().hex[:8]
-    return f"{kind}/{key[:2]}/{key}.{sha256[:_DIGEST_LENGTH]}.{unique}{suffix_of(kind)}"
+    return f"{kind}/{key[:2]}/{key}.{sha256[:_DIGEST_LENGTH]}.{unique}{SUFFIX}"

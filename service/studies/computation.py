@@ -11,6 +11,7 @@ from typing import Any
 from fe_contact.workers import InProcess, Workers
 from service.convert.scene import TabledScene
 from service.schemas.model import BoundaryModel
+from service.studies.result_file import ResultFile
 
 Json = dict[str, Any]
 Result = Any
@@ -57,13 +58,8 @@ class Computation:
         to the result. Raises `BadInput`, `JobFailed`.
     facts : callable
         Figures of a result in the units of the boundary, as they are printed and served.
-    read : callable
-        A file of the service to the result. Raises the libraries' errors, or KeyError, TypeError, ValueError.
-    marks : mapping
-        By what such a file is known: names in its JSON, or attributes of its netCDF file, with their values;
-        None: any.
-    write : callable
-        Result and path to the file; default: the figures as JSON.
+    file : ResultFile
+        How a result is written and read back.
     narrowed : callable
         ``narrowed(subject, inputs)``: what of the subject the inputs choose; it is checked, hashed and
         computed. Default: all of it.
@@ -93,9 +89,7 @@ class Computation:
 
     compute: Callable[[Any, Any, Means], Result]
     facts: Callable[[Result], Json]
-    read: Callable[[Path], Result]
-    marks: Mapping[str, str | None]
-    write: Callable[[Result, Path], None] | None = None
+    file: ResultFile
     narrowed: Callable[[Any, Any], Any] = lambda subject, _inputs: subject
     of_scene: Callable[[TabledScene], Any] = lambda tabled: tabled.scene
     check: Callable[[Any, Any], object] = lambda _subject, _inputs: None
@@ -107,13 +101,6 @@ class Computation:
     kept: Callable[[Result, Means], Mapping[str, Path]] = lambda _result, _means: {}
     writers: Mapping[str, Callable[[Result, Path], object]] = field(default_factory=dict)
     failure: Callable[[Result], str] = lambda _found: ""
-
-    def save(self, result: Result, file: Path) -> None:
-        """Write the file of the service."""
-        if self.write is None:
-            self.save_facts(result, file)
-        else:
-            self.write(result, file)
 
     def save_facts(self, result: Result, file: Path) -> None:
         """Write the figures as JSON."""

@@ -9,7 +9,7 @@ from typing import Any
 
 from service.registry import STUDIES, Study
 from service.schemas import Case
-from service.schemas.result_kinds import suffix_of
+from service.schemas.result_kinds import SUFFIX
 from service.store import ResultStore
 from service.studies.computation import Means
 from service.worker.cluster import cluster_of, table_workers
@@ -48,8 +48,8 @@ def _work(study: Study, order: WorkOrder, progress: Progress) -> tuple[Product, 
     with (table_workers if study.run.resumed else cluster_of)(order) as workers:
         means = Means(order.data_directory, progress, workers, folder=order.workspace / "runs")
         found = study.run.compute(subject, inputs, means)
-    file = order.workspace / f"{study.kind}{suffix_of(study.kind)}"
-    study.run.save(found, file)
+    file = order.workspace / f"{study.kind}{SUFFIX}"
+    study.run.file.write(found, file)
     own = study.run.warnings(found) if warnings is None else warnings
     runs = (Product(key, "run", run) for key, run in study.run.kept(found, means).items())
     return (*products, *runs, Product(order.key, study.kind, file, own))

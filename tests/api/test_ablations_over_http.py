@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import hashlib
 import json
 from collections.abc import Iterator
@@ -10,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from study_service import CASE, Served, prepared, scene_by_hash, study_service, without
+from study_service import CASE, Served, figures_alone, prepared, scene_by_hash, study_service, without
 
 from fe_contact.effects import EFFECTS
 from fe_contact.ste import SteDatabase
@@ -20,6 +19,7 @@ from service.problems import BadInput
 from service.schemas import Case, validated
 from service.schemas.scene import SceneInput
 from service.store import stored_results
+from service.store.results import IndexLine
 from service.studies.ablate import Inputs
 from service.studies.ablate.run import ablation_of, facts
 from service.studies.computation import Means
@@ -28,6 +28,7 @@ from service.worker.catalogue import default_registry
 from service.worker.order import WorkOrder
 
 ABLATE = default_registry()["ablate"]
+OLD = "0d" * 32
 ONLY = ["tooth_coupling", "misalignment"]
 TIMES = ("cpu_seconds", "predicted_cpu_seconds", "cost_ratio")  # measured, or predicted for this cache
 
@@ -45,7 +46,7 @@ def scene(tmp_path: Path) -> SceneInput:
 
 def test_the_ablation_of_a_case_is_that_of_python(served: Served, tmp_path: Path) -> None:
     seen: list[JobState] = []
-    told = served.client.ablate(CASE, seen.append, only=ONLY)
+    told = figures_alone(served.client.ablate(CASE, seen.append, only=ONLY))
     here = ablation_of(validated(Case, CASE), Inputs(only=tuple(ONLY)), Means(tmp_path, lambda *_: None))
     assert [effect["name"] for effect in told["effects"]] == ["tooth_coupling"]
     assert told["left_out"] == {"misalignment": "the gears are aligned"}
@@ -56,13 +57,24 @@ def test_the_ablation_of_a_case_is_that_of_python(served: Served, tmp_path: Path
     assert progress == sorted(progress) and progress[-1] == 100
 
 
-def test_its_file_is_json_whatever_is_accepted(served: Served) -> None:
+def test_it_is_served_as_figures_and_as_its_file(served: Served) -> None:
     told = served.client.ablate(CASE, only=ONLY)
     job = served.client.submit("ablate", {"case": CASE, "only": ONLY[::-1]})  # the same question: stored
     assert job.status == "successful"
-    answer = served.file_is_json("ablation", told, job.id)
-    digest = base64.b64encode(hashlib.sha256(answer.content).digest()).decode()
-    assert answer.headers["content-digest"] == f"sha-256=:{digest}:"
+    served.has_figures_and_file("ablation", told, job.id)
+
+
+def test_one_that_version_0_1_stored_as_json_is_to_be_computed_again(served: Served, tmp_path: Path) -> None:
+    old, store = tmp_path / "ablation.json", stored_results(served.data)
+    old.write_text("{}", encoding="utf-8")
+    digest = hashlib.sha256(b"{}").hexdigest()
+    name = f"ablation/{OLD[:2]}/{OLD}.{digest[:16]}.01234567.json"
+    store.files.put(name, old, digest)
+    store.enter(IndexLine(OLD, "ablation", digest, 2, name, "2026-01-01T00:00:00Z"))
+    for path in (f"/v1/results/{OLD}", f"/v1/results/{OLD}/figures"):
+        answer = served.http.get(path)
+        assert answer.status_code == 404
+        assert "Version 0.1 stored it as JSON" in answer.json()["detail"]
 
 
 def test_the_ablation_of_a_scene_is_that_of_python(served: Served, scene: SceneInput, tmp_path: Path) -> None:
@@ -76,12 +88,12 @@ def test_the_ablation_of_a_scene_is_that_of_python(served: Served, scene: SceneI
     overall = [ABLATE.overall(*step) for step in seen]
     assert overall and None not in overall and overall == sorted(overall)  # type: ignore[type-var]
     stored_results(data).put(product.key, product.kind, product.file)
-    told = client.ablate(scene, only=["lateral"])
+    told = figures_alone(client.ablate(scene, only=["lateral"]))
     tables = {"mesh": SteDatabase.from_netcdf(tmp_path / "ste.nc")}
     means = Means(tmp_path, lambda *_: None)
     here = ablation_of(dynamic_scene(scene, tables), Inputs(only=("lateral",)), means)
     assert [effect["name"] for effect in told["effects"]] == ["lateral"]
-    expected = json.loads(json.dumps(facts(here)))
+    expected = json.loads(json.dumps(facts(here))) | {"warnings": []}
     assert without(TIMES, told) == without(TIMES, expected)
 
 

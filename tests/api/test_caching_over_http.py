@@ -26,7 +26,7 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[TestClie
     secret = KeyFile(directory / "keys.json").add("bench")
     app = create_app(Settings(data_directory=directory), works=False)
     for kind in RESULT_KINDS.values():
-        file = directory / f"file{kind.suffix}"
+        file = directory / "file.nc"
         file.write_text("{}")
         app.state.context.store.put(KEY, kind.name, file)
     yield TestClient(app, raise_server_exceptions=False), {"Authorization": f"Bearer {secret}"}
@@ -102,10 +102,10 @@ def test_what_needs_no_key_holds_nothing_secret(service: tuple[TestClient, dict[
 
 def test_without_keys_results_are_kept_for_ever_and_refusals_never(tmp_path: Path) -> None:
     app = create_app(Settings(data_directory=tmp_path), works=False)
-    file = tmp_path / "file.json"
+    file = tmp_path / "file.nc"
     file.write_text("{}")
     app.state.context.store.put(KEY, "ablation", file)
-    client = TestClient(app, raise_server_exceptions=False)
+    client = TestClient(app, raise_server_exceptions=False, headers={"Accept": NETCDF})
     assert {"public", "immutable"} <= directives(client.get(f"/v1/results/{KEY}"))
     assert "authorization" not in varies(client.get(f"/v1/results/{KEY}"))
     for path in (f"/v1/results/{ABSENT}", "/v1/nowhere", "/v1/ablations/short"):

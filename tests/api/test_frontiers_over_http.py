@@ -9,13 +9,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from study_service import CASE, Served, prepared, scene_by_hash, study_service, without
+from study_service import CASE, Served, figures_alone, prepared, scene_by_hash, study_service, without
 
 from dynamics.accuracy.registry import FIDELITIES as SCENE_FIDELITIES
 from fe_contact.analysis.studies.accuracy_study import FIDELITIES
 from fe_contact.errors import SolveError
 from fe_contact.ste import SteDatabase
 from service.client import JobState
+from service.convert.result_figures import figures_of
 from service.convert.scene import dynamic_scene
 from service.schemas import Case, validated
 from service.schemas.scene import SceneInput
@@ -49,12 +50,12 @@ def worked(inputs: dict[str, Any], workspace: Path, data: Path) -> tuple[dict[st
     order = WorkOrder(FRONTIER.entry, inputs, FRONTIER.key(inputs), workspace, data)
     (product,) = study_work.frontier(order, lambda *step: seen.append(FRONTIER.overall(*step)))
     assert (product.key, product.kind) == (order.key, "frontier")
-    return json.loads(product.file.read_bytes()), [part for part in seen if part is not None]
+    return figures_of("frontier", product.file), [part for part in seen if part is not None]
 
 
 def test_the_ladder_of_a_case_is_that_of_python(served: Served, tmp_path: Path) -> None:
     seen: list[JobState] = []
-    told = served.client.frontier(CASE, seen.append, rungs=CLOSED)
+    told = figures_alone(served.client.frontier(CASE, seen.append, rungs=CLOSED))
     here = frontier_of(validated(Case, CASE), Inputs(rungs=tuple(CLOSED)), Means(tmp_path, lambda *_: None))
     assert [rung["name"] for rung in told["rungs"]] == CLOSED
     assert told["rungs"][0]["mean_error"] > 1e-3 and told["reference"] == "thin_slices"
@@ -65,11 +66,11 @@ def test_the_ladder_of_a_case_is_that_of_python(served: Served, tmp_path: Path) 
     assert progress == sorted(progress) and progress[-1] == 100
 
 
-def test_its_file_is_json_whatever_is_accepted(served: Served) -> None:
+def test_it_is_served_as_figures_and_as_its_file(served: Served) -> None:
     told = served.client.frontier(CASE, rungs=CLOSED)
     job = served.client.submit("frontier", {"case": CASE, "rungs": CLOSED[::-1]})  # the same question: stored
     assert job.status == "successful"
-    served.file_is_json("frontier", told, job.id)
+    served.has_figures_and_file("frontier", told, job.id)
 
 
 def test_the_ladder_of_a_scene_is_that_of_python(served: Served, scene: SceneInput, tmp_path: Path) -> None:
@@ -80,13 +81,13 @@ def test_the_ladder_of_a_scene_is_that_of_python(served: Served, scene: SceneInp
     inputs = FRONTIER.prepare(FRONTIER.inputs.model_validate_json(json.dumps(given)), stored_results(data))
     made, progress = worked(inputs, tmp_path, data)
     assert progress == sorted(progress) and len(progress) == len(rungs) + 1
-    stored_results(data).put(FRONTIER.key(inputs), "frontier", tmp_path / "frontier.json")
-    told = client.frontier(scene, rungs=rungs)
+    stored_results(data).put(FRONTIER.key(inputs), "frontier", tmp_path / "frontier.nc")
+    told = figures_alone(client.frontier(scene, rungs=rungs))
     tables = {"mesh": SteDatabase.from_netcdf(tmp_path / "ste.nc")}
     means = Means(tmp_path, lambda *_: None)
     here = frontier_of(dynamic_scene(scene, tables), Inputs(rungs=tuple(rungs)), means)
     assert told == made and told["reference"] == "10_nm"
-    expected = json.loads(json.dumps(here.to_json()))
+    expected = json.loads(json.dumps(here.to_json())) | {"warnings": []}
     assert without(MEASURED, told) == without(MEASURED, expected)
 
 
@@ -134,6 +135,14 @@ def test_equal_questions_in_other_words_are_one_result() -> None:
         for further in ({}, {"rungs": everything}, {"rungs": [*everything[::-1], *CLOSED]}, {"rungs": CLOSED})
     ]
     assert keys[0] == keys[1] == keys[2] != keys[3]
+
+
+def test_up_to_a_fidelity_is_all_before_it_in_the_order_of_cost() -> None:
+    names = [fidelity.name for fidelity in FIDELITIES]
+    for last in ("corrected_fine", "3d_draft", "3d_fine"):
+        asked = prepared(FRONTIER, case=CASE, up_to=last)
+        assert asked["rungs"] == names[: names.index(last) + 1]
+    assert prepared(FRONTIER, case=CASE, up_to="3d_draft", rungs=["3d_fine", *CLOSED])["rungs"] == CLOSED
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 from running_service import REFERENCES
-from study_service import empty_service
+from study_service import empty_service, figures_alone
 
 from service.client import JobState, LineOfActionClient
 from service.problems import BadInput
@@ -62,7 +62,8 @@ def untimed(value: Any) -> Any:
 def test_the_optimization_is_that_of_python(served: Served, data: Path) -> None:
     client, http = served
     seen: list[JobState] = []
-    told = client.optimize(CASE, STUDY, seen.append)
+    answer = client.optimize(CASE, STUDY, seen.append)
+    told = figures_alone(answer)
     # on the gears as the job condensed them: linear algebra in more threads sums in another order
     here = optimization_of(validated(Case, CASE), validated(Inputs, STUDY), Means(data, lambda *_: None))
     expected = json.loads(json.dumps(optimization_json(here))) | {"warnings": []}
@@ -81,8 +82,21 @@ def test_the_optimization_is_that_of_python(served: Served, data: Path) -> None:
     assert progress == sorted(progress) and progress[-1] == 100
     job = client.submit("optimize", {"case": CASE, **STUDY})  # the same question: stored already
     assert job.status == "successful"
-    reference = http.get(f"/v1/jobs/{job.id}/results", params=REFERENCES).json()["optimisation"]
-    assert http.get(reference["href"], headers={"Accept": "application/x-netcdf"}).json() == told
+    reference = http.get(f"/v1/jobs/{job.id}/results", params=REFERENCES).json()["optimization"]
+    assert http.get(reference["href"]).json() == answer
+    assert client.optimize_file(CASE, STUDY).suffix == ".nc"
+
+
+@pytest.mark.parametrize(("model", "crowned"), [("plane_strain", False), ("3d", True)])
+def test_without_variables_the_tip_relief_of_both_gears_is_free(model: str, crowned: bool) -> None:
+    case = CASE | {"accuracy": CASE["accuracy"] | {"model": model}}
+    asked = {"case": case, "variables": {"most_tip_relief_um": 25.0}}
+    given = OPTIMISE.inputs.model_validate_json(json.dumps(asked))
+    variables = OPTIMISE.prepare(given, None)["variables"]  # type: ignore[arg-type]  # needs no store
+    free = {gear: {k: v for k, v in variables[gear].items() if v is not None} for gear in ("pinion", "wheel")}
+    relief = {"tip_relief_um": [0.0, 25.0], "tip_relief_length_mm": pytest.approx([0.6, 3.2])}
+    assert free["wheel"] == relief
+    assert free["pinion"] == relief | ({"helix_crowning_um": [0.0, 30.0]} if crowned else {})
 
 
 def test_defaults_written_out_are_the_same_question() -> None:
@@ -97,7 +111,7 @@ def test_defaults_written_out_are_the_same_question() -> None:
 @pytest.mark.parametrize(
     ("further", "field"),
     [
-        ({"variables": {}}, "variables"),
+        ({"variables": {"most_tip_relief_um": 0.0}}, "variables.most_tip_relief_um"),
         ({"variables": {"pinion": {"tip_relief_um": [40.0, 0.0]}}}, "variables.pinion.tip_relief_um"),
         ({"variables": {"pinion": {"tip_relief_um": [-1.0, 5.0]}}}, "variables.pinion.tip_relief_um"),
         ({"variables": {"pinion": {"tip_relief_um": [0.0, 40.0]}}}, "variables.pinion.tip_relief"),

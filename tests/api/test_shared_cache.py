@@ -14,6 +14,7 @@ from served_app import served
 
 from service.access import KeyFile
 from service.app import create_app
+from service.registry import NETCDF
 from service.settings import Settings
 
 KEY = "5" * 64
@@ -45,7 +46,7 @@ pytestmark = pytest.mark.skipif(NGINX is None, reason="nginx is not installed")
 def cached(tmp_path: Path) -> Iterator[httpx2.Client]:
     """A caller behind a cache, which keeps what RFC 9111 allows it; the service has a result and no keys."""
     app = create_app(Settings(data_directory=tmp_path / "data"), works=False)
-    file = tmp_path / "file.json"
+    file = tmp_path / "file.nc"
     file.write_text("{}")
     app.state.context.store.put(KEY, "ablation", file)
     with served(app) as service:
@@ -55,7 +56,9 @@ def cached(tmp_path: Path) -> Iterator[httpx2.Client]:
         proxy = subprocess.Popen(command)
         try:
             transport = httpx2.HTTPTransport(uds=str(tmp_path / "socket"))
-            with httpx2.Client(base_url="http://localhost", transport=transport) as client:
+            with httpx2.Client(
+                base_url="http://localhost", transport=transport, headers={"Accept": NETCDF}
+            ) as client:
                 until(lambda: _answers(client))
                 yield client
         finally:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
-from study_service import empty_service
+from study_service import empty_service, figures_alone, without
 
 from fe_contact import LoadDistribution
 from service.client import JobState, LineOfActionClient
@@ -22,7 +22,7 @@ from service.schemas.flank import FlankPoint
 from service.studies.computation import Means
 from service.studies.flank.run import flank_json, flanks_of
 from service.studies.root_stress import Inputs
-from service.studies.root_stress.run import root_stress_of
+from service.studies.root_stress.run import root_stress_json, root_stress_of
 from service.studies.sensitivity.stored import read_studies
 from service.worker.catalogue import default_registry
 
@@ -99,16 +99,25 @@ def test_a_study_comes_with_all_its_curves(served: tuple[LineOfActionClient, Tes
     assert pair["curves"][0]["misalignment"]["misalignment_um"] == pytest.approx([0.0, 20.0])
 
 
+def test_a_sensitivity_across_the_face_takes_a_case_of_the_plane_there() -> None:
+    process = default_registry()["sensitivity"]
+
+    def asked(case: dict[str, Any]) -> dict[str, Any]:
+        model = process.inputs.model_validate_json(json.dumps({"case": case}))
+        return process.prepare(model, None)  # type: ignore[arg-type]  # needs no store
+
+    assert asked(PLANE)["case"]["accuracy"]["model"] == "3d"
+    assert asked(CASE)["case"]["accuracy"]["model"] == "auto"
+
+
 def test_the_root_stress_is_that_of_python(served: tuple[LineOfActionClient, TestClient], data: Path) -> None:
     client, http = served
     found = client.root_stress(PLANE, torque_n_m=30.0)
     point = FlankPoint(torque_n_m=30.0)
     means = Means(data, lambda *_: None)
-    here = root_stress_of(case_at(validated(Case, PLANE), point), Inputs(), means)
+    here = root_stress_json(root_stress_of(case_at(validated(Case, PLANE), point), Inputs(), means))
     costs = ("receipt", "warnings")
-    assert {k: v for k, v in found.items() if k not in costs} == {
-        k: v for k, v in here.items() if k not in costs
-    }
+    assert without(costs, figures_alone(found)) == without(costs, here)
     assert found["receipt"]["cpu_seconds"] > 0.0
     (job,) = (j for j in http.get("/v1/jobs").json()["jobs"] if j["processID"] == "root-stress")
     key = client.result(job["jobID"]).key

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from contextlib import suppress
 
 import pytest
 from page_visit import Visit, found_inaccessible, opened
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Browser, Error, Page, Route, expect
 
 PAIR = {
     "pair-normal_module_mm": "2.5",
@@ -113,3 +114,27 @@ def test_a_helix_with_a_model_of_the_plane_is_told_what_it_is(visit: Visit) -> N
     told.get_by_role("button", name="Set the model to 3d").press("Enter")
     expect(page.locator("#f-accuracy-model")).to_have_value("3d")
     expect(told).not_to_contain_text("spur pair")
+
+
+def test_an_edit_gives_up_the_plan_that_the_edit_before_asked_for(visit: Visit) -> None:
+    """The service refuses a question (409) when a later one takes its place: nobody is to hear of it."""
+    page, waiting = visit.page, []
+
+    def as_a_busy_service(route: Route) -> None:
+        if not waiting:
+            waiting.append(route)
+            return
+        problem = {"type": "urn:lineofaction:problem:superseded", "title": "superseded", "status": 409}
+        with suppress(Error):  # given up by the page
+            waiting[0].fulfill(status=409, json=problem)
+        route.continue_()
+
+    expect(page.locator("#plan dl")).to_be_visible()
+    page.route("**/v1/plans", as_a_busy_service)
+    for width in ("21", "22"):
+        with page.expect_request("**/v1/plans"):
+            page.locator("#f-pair-pinion-face_width_mm").fill(width)
+    with page.expect_response("**/v1/plans"):
+        page.locator("#f-pair-pinion-face_width_mm").fill("23")
+    expect(page.locator("#plan dl")).to_be_visible()
+    assert [line for line in visit.console if line.startswith("error")] == []

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import logging
 import os
 import resource
@@ -34,14 +33,6 @@ def work(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
     left = order.workspace / "left"
     file.write_text(left.read_text() if left.exists() else wish["text"])
     return (Product(order.key, "database", file),)
-
-
-def report(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
-    """Make a result in JSON."""
-    progress("first", 1.0)
-    file = order.workspace / "result.json"
-    file.write_text(json.dumps({"text": order.inputs["wish"]["text"]}))
-    return (Product(order.key, "ablation", file),)
 
 
 def slow_content(text: str) -> bytes:

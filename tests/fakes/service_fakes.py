@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any, Literal
 
 from pydantic import Field
@@ -61,5 +60,3 @@ FAKE = Process(
     stages=(Stage("first", 0.25), Stage("second", 0.75)),
 )
 REGISTRY = Registry(FAKE)
-REPORT = replace(FAKE, id="report", output="ablation", kind="ablation", entry="service_fake_work:report")
-"""One whose results are JSON."""

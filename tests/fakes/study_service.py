@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import hashlib
 import json
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -11,13 +13,13 @@ from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
-from httpx2 import Response
 from running_service import REFERENCES
 from scene_files import scene_file
 
 from service.app import create_app
 from service.client import LineOfActionClient
 from service.problems import BadInput
+from service.registry import JSON, NETCDF
 from service.schemas import read_model
 from service.schemas.scene import SceneInput
 from service.settings import Settings
@@ -43,16 +45,19 @@ class Served:
     http: TestClient
     data: Path
 
-    def file_is_json(self, output: str, told: Any, job: str) -> Response:
-        """Check that the file of a job is what was told, whatever is accepted; return an answer with it."""
+    def has_figures_and_file(self, output: str, told: Any, job: str) -> None:
+        """Check that what a job left is what was told, in the form that is accepted, with its digest."""
         reference = self.http.get(f"/v1/jobs/{job}/results", params=REFERENCES).json()[output]
-        assert reference["type"] == "application/json"
-        for accept in ("application/json", "application/x-netcdf", "*/*"):
+        assert reference["type"] == NETCDF
+        for accept, kind in ((JSON, JSON), ("*/*", JSON), (NETCDF, NETCDF)):
             answer = self.http.get(reference["href"], headers={"Accept": accept})
-            assert (answer.headers["content-type"], answer.json()) == ("application/json", told)
-        known = self.http.get(reference["href"], headers={"If-None-Match": answer.headers["etag"]})
-        assert (known.status_code, known.content) == (304, b"")
-        return answer
+            assert answer.headers["content-type"] == kind
+            assert kind == NETCDF or answer.json() == told
+            digest = base64.b64encode(hashlib.sha256(answer.content).digest()).decode()
+            assert answer.headers["content-digest"] == f"sha-256=:{digest}:"
+            again = {"If-None-Match": answer.headers["etag"], "Accept": accept}
+            known = self.http.get(reference["href"], headers=again)
+            assert (known.status_code, known.content) == (304, b"")
 
     def refuses(self, process: str, inputs: dict[str, Any], field: str) -> None:
         """Check that inputs are refused by the name of a field before there is a job."""
@@ -108,3 +113,8 @@ def without(names: tuple[str, ...], value: Any) -> Any:
     if isinstance(value, dict):
         return {name: without(names, inner) for name, inner in value.items() if name not in names}
     return [without(names, item) for item in value] if isinstance(value, list) else value
+
+
+def figures_alone(answer: dict[str, Any]) -> dict[str, Any]:
+    """Return the figures of a result without what the service adds about its file."""
+    return {name: value for name, value in answer.items() if name not in ("hash", "sha256", "size")}

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 
 from fe_contact.types import BoolArray, Estimate, FloatArray, IntArray
+from model_studies import in_unit
 
 Root = Literal["tension", "compression"]
 ROOTS: tuple[Root, Root] = ("tension", "compression")
 
 
-class RootPeak(NamedTuple):
+@dataclass(frozen=True)
+class RootPeak:
     """The largest stress of a cycle, and where it is.
 
     Attributes
@@ -36,12 +38,13 @@ class RootPeak(NamedTuple):
     stress: Estimate
     position: float
     pair: int
-    flank_coordinate: float
-    tangent_angle: float
-    face_position: float
+    flank_coordinate: float = field(metadata=in_unit("m"))
+    tangent_angle: float = field(metadata=in_unit("rad"))
+    face_position: float = field(metadata=in_unit("m"))
 
 
-class RootPassage(NamedTuple):
+@dataclass(frozen=True)
+class RootPassage:
     """The stress in the roots of one tooth on its way through the mesh.
 
     Attributes
@@ -54,11 +57,11 @@ class RootPassage(NamedTuple):
         Stress along the profile at the station nearest to the peak: what fatigue counts, Pa.
     """
 
-    position: FloatArray
-    tension: FloatArray
-    compression: FloatArray
-    at_tension_peak: FloatArray
-    at_compression_peak: FloatArray
+    position: FloatArray = field(metadata=in_unit("1", "passage"))
+    tension: FloatArray = field(metadata=in_unit("pa", "passage"))
+    compression: FloatArray = field(metadata=in_unit("pa", "passage"))
+    at_tension_peak: FloatArray = field(metadata=in_unit("pa", "passage"))
+    at_compression_peak: FloatArray = field(metadata=in_unit("pa", "passage"))
 
 
 @dataclass(frozen=True)

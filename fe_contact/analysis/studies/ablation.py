@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Self
 
 import numpy as np
 
@@ -48,7 +47,7 @@ class Figures(model_studies.Figures):
         Of the whole run with nothing in the cache.
     """
 
-    harmonics: FloatArray = field(metadata=in_unit("m"))
+    harmonics: FloatArray = field(metadata=in_unit("m", "curve", "harmonic"))
     predicted_cpu_seconds: float
 
     @property
@@ -60,8 +59,6 @@ class Figures(model_studies.Figures):
 @dataclass(frozen=True)
 class EffectAblation(model_studies.EffectAblation[Figures, Influence]):
     """One effect toggled; its estimate is that of the ledger, at the nominal load."""
-
-    FIGURES = Figures
 
     @property
     def harmonic_change(self) -> FloatArray:
@@ -75,15 +72,6 @@ class EffectAblation(model_studies.EffectAblation[Figures, Influence]):
             for name in ("mean", "peak_to_peak")
         }
         return super().to_json() | relative
-
-    @classmethod
-    def from_json(cls, content: Json) -> Self:
-        """Return the effect that `to_json` wrote; estimates of older versions are of another kind."""
-        stored, estimate = content["estimate"], None
-        if stored is not None and "whole_mean_m" in stored:
-            names = ("misalignment", "mean", "peak_to_peak", "whole_mean", "whole_peak_to_peak")
-            estimate = Influence(stored["torque_n_m"], *(stored[f"{name}_m"] for name in names))
-        return super().from_json(content | {"estimate": estimate})
 
 
 @dataclass(frozen=True)
@@ -102,10 +90,8 @@ class Ablation(model_studies.Ablation[Figures, EffectAblation]):
         At which the figures are, m.
     """
 
-    EFFECT = EffectAblation
-
-    torque: FloatArray = field(metadata=in_unit("n_m"))
-    normal_force: FloatArray = field(metadata=in_unit("n"))
+    torque: FloatArray = field(metadata=in_unit("n_m", "curve"))
+    normal_force: FloatArray = field(metadata=in_unit("n", "curve"))
     misalignment: float = field(metadata=in_unit("m"))
 
     def measured(self, entry: EffectAblation) -> Influence:

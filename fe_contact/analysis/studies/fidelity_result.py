@@ -46,8 +46,8 @@ class FidelityResult(model_studies.FidelityResult):
 
     FIGURES = FIGURES
 
-    mean: FloatArray = field(metadata=in_unit("m"))
-    peak_to_peak: FloatArray = field(metadata=in_unit("m"))
+    mean: FloatArray = field(metadata=in_unit("m", "curve"))
+    peak_to_peak: FloatArray = field(metadata=in_unit("m", "curve"))
     stated_error: float
     stages: dict[str, float]
     peak_memory_bytes: int

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Self
 
 import model_studies
 from fe_contact.analysis.request.model_choice import decide
@@ -52,8 +51,6 @@ class Frontier(model_studies.Frontier[FidelityResult]):
         What full finite-element contact is known to cost on this very pair; empty on any other.
     """
 
-    RESULT = FidelityResult
-
     solves: int
     full_contact: MeasuredFullContact | None = field(default=None, metadata=called(None))
     known_full_contact: tuple[FullContactLevel, ...] = field(default=(), metadata=called(None))
@@ -68,13 +65,6 @@ class Frontier(model_studies.Frontier[FidelityResult]):
             "full_finite_element_contact_origin": ORIGIN,
             **measured,
         }
-
-    @classmethod
-    def from_json(cls, content: Json) -> Self:
-        """Return the study that `to_json` wrote, without full finite-element contact of the case itself."""
-        entries = content.get("full_finite_element_contact", ())
-        known = tuple(FullContactLevel.from_json(entry, content["solves"]) for entry in entries)
-        return replace(super().from_json(content), known_full_contact=known)
 
 
 def frontier(

@@ -39,7 +39,7 @@ async function asked(path, options = {}) {
   try {
     response = await fetch(path, { ...options, headers: { ...options.headers, ...keyHeader() } });
   } catch {
-    heard(false);
+    if (!options.signal?.aborted) heard(false);
     throw new Problem({ title: "No answer", detail: "The service does not answer. Is it still running?", status: 0 });
   }
   heard(true);
@@ -52,9 +52,10 @@ export async function get(path) {
   return (await answer(await asked(path))).json();
 }
 
-export async function post(path, body) {
+/** @param {AbortSignal} [signal] gives the request up */
+export async function post(path, body, signal) {
   const headers = { "Content-Type": "application/json" };
-  return (await answer(await asked(path, { method: "POST", headers, body: JSON.stringify(body) }))).json();
+  return (await answer(await asked(path, { method: "POST", headers, body: JSON.stringify(body), signal }))).json();
 }
 
 export async function dismiss(path) {

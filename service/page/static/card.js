@@ -12,7 +12,7 @@ function control({ name, label, value = "", choices, list = false }, title) {
   const input = choices
     ? make("select", { id }, ...choices.map(([choice, text]) => make("option", { value: choice }, text)))
     : make("input", { type: "text", inputmode: list ? "text" : "decimal", id, size: list ? 22 : 8, autocomplete: "off" });
-  if (!choices) input.value = value;
+  input.value = value || input.value;
   const read = choices ? (text) => text : list ? numbersIn : numberIn;
   return { name, input, read, block: make("span", { class: "row" }, make("label", { for: id }, label), input) };
 }
@@ -25,10 +25,15 @@ function numberIn(text) {
 
 const numbersIn = (text) => text.split(/[,;\s]+/).filter(Boolean).map(numberIn);
 
-/** What was typed, by name; empty fields are left out. */
+/** What was typed, by name, in a table where the name is a path; empty fields are left out. */
 function valuesOf(controls) {
-  const given = controls.filter(({ input }) => input.value.trim() !== "");
-  return Object.fromEntries(given.map(({ name, input, read }) => [name, read(input.value)]));
+  const values = {};
+  for (const { name, input, read } of controls.filter(({ input }) => input.value.trim() !== "")) {
+    const path = name.split(".");
+    const last = path.pop();
+    path.reduce((table, key) => (table[key] ??= {}), values)[last] = read(input.value);
+  }
+  return values;
 }
 
 /**

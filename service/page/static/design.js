@@ -122,24 +122,25 @@ export class Design {
     this.timer = setTimeout(() => this.look(), SETTLED);
   }
 
-  /** Draw and plan what the form holds; refusals go to their fields. */
+  /** Draw and plan what the form holds, and give up what an earlier look asked for; refusals go to their fields. */
   async look() {
     clearTimeout(this.timer);
+    this.looking?.abort();
+    const { signal } = (this.looking = new AbortController());
     const body = { inputs: { case: this.form.case } };
-    const turn = (this.turn = (this.turn ?? 0) + 1);
     let drawn = false;
     try {
-      const outline = await post("/v1/cases/outline", body);
-      if (turn !== this.turn) return;
+      const outline = await post("/v1/cases/outline", body, signal);
+      if (signal.aborted) return;
       this.form.clear();
       this.drawing.show(outline);
       drawn = true;
-      const plan = await post("/v1/plans", { ...body, caller: this.caller });
-      if (turn === this.turn) this.expected = showPlan(plan);
+      const plan = await post("/v1/plans", { ...body, caller: this.caller }, signal);
+      if (!signal.aborted) this.expected = showPlan(plan);
     } catch (problem) {
+      if (signal.aborted) return;
       if (!(problem instanceof Problem)) throw problem;
-      const later = problem.type.endsWith("superseded") || problem.status === 0; // asked again when it is back
-      if (turn !== this.turn || later) return;
+      if (problem.status === 0) return; // asked again when the service is back
       this.refuse(problem);
       this.expected = undefined;
       noPlan();

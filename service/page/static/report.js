@@ -50,9 +50,7 @@ function files(result) {
   const line = make("span", { class: "fault", role: "status" });
   const row = make("div", { class: "row files" }, make("span", { class: "hint" }, "Save"));
   const button = (text, action) => row.append(make("button", { type: "button", onclick: () => said(action, line) }, text));
-  if (result.type === "application/x-netcdf") {
-    button("netCDF", async () => save(await file(result.href, result.type), `${name}.nc`));
-  }
+  button("netCDF", async () => save(await file(result.href, result.type), `${name}.nc`));
   button("JSON", async () => save(await file(result.href, "application/json"), `${name}.json`));
   button("Figures as JSON", async () => save(await file(`${result.href}/figures`, "application/json"), `${name}_figures.json`));
   row.append(line);

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
-from pathlib import Path
 
 from bounds.types import Json
 from dynamics.ablation import Ablation as SceneAblation
@@ -21,7 +19,8 @@ from service.schemas import Case
 from service.schemas.scene import SceneInput
 from service.studies.ablate import Inputs
 from service.studies.computation import Computation, Means
-from service.units import in_m, in_um
+from service.studies.result_file import record_file
+from service.units import in_um
 
 
 def ablation_of(subject: Case | Scene, inputs: Inputs, means: Means) -> Ablation | SceneAblation:
@@ -74,17 +73,10 @@ def facts(ablation: Ablation | SceneAblation) -> Json:
     return {"of": "case" if isinstance(ablation, Ablation) else "scene", **in_um(ablation.to_json())}
 
 
-def read(file: Path) -> Ablation | SceneAblation:
-    """Return the ablation in a file of `facts`."""
-    content = json.loads(file.read_text(encoding="utf-8"))
-    return (SceneAblation if content["of"] == "scene" else Ablation).from_json(in_m(content))
-
-
 RUN = Computation(
     ablation_of,
     facts,
-    read,
-    marks=dict.fromkeys(("of", "nominal", "effects")),
+    record_file(("ablation of a case", Ablation), ("ablation of a scene", SceneAblation)),
     check=check,
     normalized=normalized,
 )

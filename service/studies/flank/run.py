@@ -22,6 +22,7 @@ from service.convert.checks import check_case
 from service.convert.plausibility import phrased_for
 from service.schemas import Case
 from service.studies.computation import Computation
+from service.studies.result_file import ResultFile
 from service.units import MM, UM
 
 Json = dict[str, Any]
@@ -72,9 +73,7 @@ def flank_json(flanks: LoadDistribution) -> Json:
 RUN = Computation(
     lambda case, _inputs, means: flanks_of(case, means.home / "compliance", means.report),
     flank_json,
-    LoadDistribution.from_netcdf,
-    marks={"format": FORMAT},
-    write=LoadDistribution.to_netcdf,
+    ResultFile("format", (FORMAT,), LoadDistribution.to_netcdf, LoadDistribution.from_netcdf),
     narrowed=case_at,
     check=lambda case, _inputs: check_case(case, whole_table=False),
     normalized=lambda _case, _inputs: {},

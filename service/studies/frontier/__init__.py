@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field, Strict
 
@@ -21,6 +21,13 @@ class Inputs(BoundaryModel):
         max_length=64,
         description="Fidelities to run, by name, at least two; left out: all that are valid",
         examples=[["thin_slices", "corrected", "3d_standard"]],
+    )
+    up_to: Literal["corrected_fine", "3d_draft", "3d_standard", "3d_fine"] = Field(
+        default="3d_fine",
+        title="Up to",
+        description="The dearest fidelity of a case that is run: the finest in two dimensions, or in three "
+        "(minutes)",
+        examples=["3d_draft"],
     )
     full_contact: int | None = Field(
         default=None,

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 
 from bounds.types import Json
 from dynamics.accuracy import Frontier as SceneFrontier
@@ -22,6 +19,7 @@ from service.schemas import Case
 from service.schemas.scene import SceneInput
 from service.studies.computation import Computation, Means
 from service.studies.frontier import Inputs
+from service.studies.result_file import record_file
 
 LEAST = 2
 
@@ -36,7 +34,7 @@ def frontier_of(subject: Case | Scene, inputs: Inputs, means: Means) -> Frontier
     JobFailed
         Fewer than two fidelities came to their end.
     """
-    names = requested(inputs.rungs, of_scene=isinstance(subject, Scene))
+    names = requested(inputs, of_scene=isinstance(subject, Scene))
     with boundary_errors():
         if isinstance(subject, Scene):
             return frontier_of_scene(subject, fidelities=names, progress=means.report)
@@ -55,12 +53,14 @@ def check(subject: Case | SceneInput, inputs: Inputs) -> None:
     """Refuse a case that cannot be, a fidelity that there is not, and full contact of a scene."""
     if isinstance(subject, Case):
         check_case(subject)
-    elif inputs.full_contact is not None:
-        raise BadInput.of("full_contact", inputs.full_contact, "left out for a scene", "Give it with a case.")
-    requested(inputs.rungs, of_scene=not isinstance(subject, Case))
+    else:
+        for name in ("full_contact", "up_to"):
+            if (value := getattr(inputs, name)) != Inputs.model_fields[name].default:
+                raise BadInput.of(name, value, "left out for a scene", "Give it with a case.")
+    requested(inputs, of_scene=not isinstance(subject, Case))
 
 
-def requested(names: Sequence[str] | None, *, of_scene: bool) -> list[str]:
+def requested(inputs: Inputs, *, of_scene: bool) -> list[str]:
     """Return the fidelities that are requested, once each, in the order of their cost.
 
     Raises
@@ -70,7 +70,9 @@ def requested(names: Sequence[str] | None, *, of_scene: bool) -> list[str]:
     """
     known = [fidelity.name for fidelity in (SCENE_FIDELITIES if of_scene else FIDELITIES)]
     with boundary_errors():
-        names = chosen("rungs", names, known, "Or leave it out: all are run.")
+        names = chosen("rungs", inputs.rungs, known, "Or leave it out: all are run.")
+    if not of_scene:
+        names = [name for name in names if known.index(name) <= known.index(inputs.up_to)]
     if len(names) < LEAST:
         raise BadInput.of("rungs", names, "at least two fidelities", "An error needs two to compare.")
     return names
@@ -79,20 +81,13 @@ def requested(names: Sequence[str] | None, *, of_scene: bool) -> list[str]:
 def normalized(subject: Case | SceneInput, inputs: Inputs) -> Json:
     """Return the fidelities in their order, and full contact if it is requested."""
     beside = {} if inputs.full_contact is None else {"full_contact": inputs.full_contact}
-    return {"rungs": requested(inputs.rungs, of_scene=not isinstance(subject, Case)), **beside}
-
-
-def read(file: Path) -> Frontier | SceneFrontier:
-    """Return the study in a file of `Frontier.to_json` of either library."""
-    content = json.loads(file.read_text(encoding="utf-8"))
-    return (Frontier if "solves" in content else SceneFrontier).from_json(content)
+    return {"rungs": requested(inputs, of_scene=not isinstance(subject, Case)), **beside}
 
 
 RUN = Computation(
     frontier_of,
     lambda study: study.to_json(),
-    read,
-    marks=dict.fromkeys(("rungs", "knee", "chosen")),
+    record_file(("accuracy study of a case", Frontier), ("accuracy study of a scene", SceneFrontier)),
     check=check,
     normalized=normalized,
 )

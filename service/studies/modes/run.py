@@ -12,6 +12,7 @@ from dynamics.scene import Scene
 from service.convert.case import boundary_errors
 from service.studies.computation import Computation, Means
 from service.studies.modes import Inputs
+from service.studies.result_file import array_file
 from service.units import RPM
 
 Json = dict[str, Any]
@@ -109,7 +110,5 @@ def _crossing(modes: ModalAnalysis, index: int) -> Json:
 RUN = Computation(
     modes_of,
     facts,
-    ModalAnalysis.from_netcdf,
-    marks={"schema": ModalAnalysis.SCHEMA},
-    write=ModalAnalysis.to_netcdf,
+    array_file(ModalAnalysis),
 )

@@ -56,6 +56,15 @@ class VariablesInput(BoundaryModel):
 
     pinion: GearVariablesInput = Field(default=GearVariablesInput(), description="Of the driving gear")
     wheel: GearVariablesInput = Field(default=GearVariablesInput(), description="Of the driven gear")
+    most_tip_relief_um: float = Field(
+        default=40.0,
+        title="Most tip relief, µm",
+        gt=0.0,
+        le=1000.0,
+        description="Where neither gear names a figure: tip relief of both up to this, 0.15 to 0.8 modules "
+        "long, and unless the model is of the plane up to 30 um of crowning of the driving gear",
+        examples=[40.0],
+    )
 
 
 @with_fields({figure.field: _deviation(figure) for figure in _FREE})
@@ -68,6 +77,7 @@ class ScatterInput(BoundaryModel):
 
     misalignment_um: float = Field(
         default=0.0,
+        title="Misalignment, standard deviation, µm",
         ge=0.0,
         le=1000.0,
         description="Standard deviation of the misalignment in um",
@@ -141,7 +151,12 @@ class SearchInput(BoundaryModel):
     seed: int = Field(default=0, ge=0, le=2**32 - 1, description="Equal seeds, equal results", examples=[0])
     starts: int = Field(default=1, ge=1, le=256, description="Independent searches", examples=[1])
     evaluations: int = Field(
-        default=1000, ge=1, le=1_000_000, description="Most designs of each search", examples=[1000]
+        default=1000,
+        title="Designs tried, at most",
+        ge=1,
+        le=1_000_000,
+        description="Most designs of each search",
+        examples=[1000],
     )
     positions: int = Field(
         default=64, ge=8, le=4096, description="In a base pitch, for the search", examples=[64]
@@ -171,7 +186,8 @@ class Inputs(BoundaryModel):
         examples=[0.0],
     )
     variables: VariablesInput = Field(
-        description="Figures of the modifications that are free",
+        default=VariablesInput(),
+        description="Figures of the modifications that are free; left out: those of most_tip_relief_um",
         examples=[{"pinion": {"tip_relief_um": [0.0, 60.0], "tip_relief_length_mm": [0.5, 3.0]}}],
     )
     scatter: ScatterInput = Field(
@@ -182,13 +198,10 @@ class Inputs(BoundaryModel):
     search: SearchInput = Field(default=SearchInput(), description="How it is searched")
 
     @model_validator(mode="after")
-    def _some_variable(self) -> Self:
-        """Refuse torques that do not increase, and nothing to vary."""
+    def _increasing(self) -> Self:
+        """Refuse torques that do not increase."""
         if self.torque_n_m is not None and any(b <= a for a, b in pairwise(self.torque_n_m)):
             refuse(
                 "torque_n_m", list(self.torque_n_m), "strictly increasing", "Sort the list and drop repeats."
             )
-        gears = (self.variables.pinion, self.variables.wheel)
-        if not any(gear.model_dump(exclude_none=True) for gear in gears):
-            refuse("variables", {}, "at least one variable", "For example pinion.tip_relief_um = [0, 60].")
         return self

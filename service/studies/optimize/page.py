@@ -7,6 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from fe_contact.microgeometry import Optimization
+from fe_contact.microgeometry.confirmation import ConfirmedDesign
 from service.convert.vocabulary import boundary_name
 from service.drawing import palette
 from service.drawing.figure import (
@@ -22,7 +24,6 @@ from service.drawing.figure import (
     thousands,
 )
 from service.drawing.page import Headline, Page, Section
-from service.studies.optimize.stored import ShownDesign, ShownOptimization
 from service.studies.presentation import Presentation
 from service.units import UM, factor
 
@@ -32,7 +33,7 @@ _STEP = 0.4  # between two torques of a map, over the largest ripple
 _ROOM = 1.12  # of the axis over the curves: for the names at their ends
 
 
-def harris_figure(result: ShownOptimization) -> Figure:
+def harris_figure(result: Optimization) -> Figure:
     """Draw both Harris maps on equal axes, and peak-to-peak over torque."""
     designs = (("before", result.start), ("after", result.optimum))
     curves = [_shown(result, design) for _, design in designs]
@@ -56,21 +57,21 @@ def harris_figure(result: ShownOptimization) -> Figure:
     )
 
 
-def _chosen(result: ShownOptimization) -> list[int]:
+def _chosen(result: Optimization) -> list[int]:
     """Torques whose curves are drawn: those of the map nearest to evenly spaced ones."""
     torque = result.start.harris_map.torque
     even = np.linspace(torque[0], torque[-1], min(torque.size, MOST_CURVES))
     return sorted({int(np.abs(torque - value).argmin()) for value in even})
 
 
-def _shown(result: ShownOptimization, design: ShownDesign) -> FloatArray:
+def _shown(result: Optimization, design: ConfirmedDesign) -> FloatArray:
     """Curves (P, K) of the chosen torques less their means, um."""
     values = design.harris_map.ste[:, _chosen(result)] / UM
     return np.asarray(values - values.mean(axis=0))
 
 
 def _map(
-    result: ShownOptimization, name: str, design: ShownDesign, values: FloatArray, step: float, axis: Axis
+    result: Optimization, name: str, design: ConfirmedDesign, values: FloatArray, step: float, axis: Axis
 ) -> Panel:
     """Draw one line per torque, closed over its period, named at its end."""
     harris, index = design.harris_map, _chosen(result)
@@ -86,7 +87,7 @@ def _map(
     return Panel(across, axis, tuple(lines), title=f"Harris map {name}", notes=tuple(labels))
 
 
-def _scattered(result: ShownOptimization) -> str:
+def _scattered(result: Optimization) -> str:
     """Say what the lines of the scatter are."""
     if result.nodes.weight.size == 1:
         return "Nothing scatters."
@@ -96,7 +97,7 @@ def _scattered(result: ShownOptimization) -> str:
     )
 
 
-def _ripple(result: ShownOptimization) -> Panel:
+def _ripple(result: Optimization) -> Panel:
     """Draw the expectation of both designs over torque, between the extremes of their nodes."""
     lines: list[Line] = []
     for name, design, color in (
@@ -117,7 +118,7 @@ def _ripple(result: ShownOptimization) -> Panel:
     return Panel(across, Axis("peak to peak, µm"), tuple(lines), counted, title="Ripple over torque")
 
 
-def ripple_table(result: ShownOptimization) -> Table:
+def ripple_table(result: Optimization) -> Table:
     """Return peak-to-peak at the torques of the map, with errors."""
     before, after = result.start.harris_map, result.optimum.harris_map
     rows = tuple(
@@ -142,7 +143,7 @@ def _value(value: float, error: float) -> tuple[str, str]:
     return number(value / UM, 3), number(error / UM, 2)
 
 
-def optimum_table(result: ShownOptimization) -> Table:
+def optimum_table(result: Optimization) -> Table:
     """Return the variables, and what a perturbation changes."""
     rows = []
     for var, step in zip(result.variables, result.sensitivity, strict=True):
@@ -158,7 +159,7 @@ def optimum_table(result: ShownOptimization) -> Table:
     return Table("Design, and the change of the objective by a perturbation", head, tuple(rows))
 
 
-def node_table(result: ShownOptimization) -> Table:
+def node_table(result: Optimization) -> Table:
     """Return every node of the scatter with the ripple at the torques that count."""
     head = [*(f"{boundary_name(name)} by" for name in result.nodes.names), "weight"]
     for word in ("before", "after"):
@@ -174,7 +175,7 @@ def node_table(result: ShownOptimization) -> Table:
     return Table("Robustness: peak to peak at every node of the scatter", tuple(head), tuple(rows))
 
 
-def run_table(result: ShownOptimization) -> Table:
+def run_table(result: Optimization) -> Table:
     """Return the searches."""
     rows = tuple(
         (
@@ -191,14 +192,14 @@ def run_table(result: ShownOptimization) -> Table:
     return Table("Searches", ("start", "objective, µm", "designs", "ended", "CPU s"), rows)
 
 
-def cost_table(result: ShownOptimization) -> Table:
+def cost_table(result: Optimization) -> Table:
     """Return the CPU time of the stages."""
     stages = result.cost["stages"].items()
     rows = tuple((name, number(float(cost["cpu_seconds"]), 3)) for name, cost in stages)
     return Table("Cost", ("stage", "CPU s"), rows)
 
 
-def optimization_page(result: ShownOptimization) -> Page:
+def optimization_page(result: Optimization) -> Page:
     """Return the page of an optimization."""
     before, after = result.start.objective, result.optimum.objective
     heads = (
@@ -215,7 +216,7 @@ def optimization_page(result: ShownOptimization) -> Page:
     return Page("Micro-geometry of least transmission error", lead, heads, (figure, design, robust, search))
 
 
-def _text(result: ShownOptimization) -> Iterator[Table | str]:
+def _text(result: Optimization) -> Iterator[Table | str]:
     """Yield the design, its ripple, and how the search ended."""
     yield optimum_table(result)
     yield ripple_table(result)

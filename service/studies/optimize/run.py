@@ -29,9 +29,9 @@ from fe_contact.options import Run
 from service.convert.case import analysis_options, boundary_errors, gear_pair
 from service.convert.vocabulary import boundary_name
 from service.schemas import Case
-from service.studies.computation import Computation, Means
+from service.studies.computation import Computation, Means, with_defaults
 from service.studies.optimize import GearScatterInput, GearVariablesInput, Inputs, ScatterInput, SearchInput
-from service.studies.optimize.stored import read
+from service.studies.result_file import record_file
 from service.units import UM, factor, in_um
 
 Json = dict[str, Any]
@@ -63,9 +63,25 @@ def check(case: Case, study: Inputs) -> None:
         _request(case, study).check()
 
 
+def with_variables(case: Case, study: Inputs) -> Inputs:
+    """Return a study with the usual variables of a case, if it names none."""
+    variables = study.variables
+    if any(gear.model_dump(exclude_none=True) for gear in (variables.pinion, variables.wheel)):
+        return study
+    module = case.pair.normal_module_mm
+    relief = {
+        "tip_relief_um": (0.0, variables.most_tip_relief_um),
+        "tip_relief_length_mm": (0.15 * module, 0.8 * module),
+    }
+    in_plane = case.accuracy.model in ("plane_strain", "plane_stress")
+    crowning = {} if in_plane else {"helix_crowning_um": (0.0, 30.0)}
+    gears = {"pinion": GearVariablesInput(**relief, **crowning), "wheel": GearVariablesInput(**relief)}
+    return study.model_copy(update={"variables": variables.model_copy(update=gears)})
+
+
 def _request(case: Case, study: Inputs) -> OptimizationRequest:
     """Return what is requested of the library, in SI."""
-    pair = gear_pair(case)
+    pair, study = gear_pair(case), with_variables(case, study)
     torques = study.torque_n_m or case.load.torque_n_m
     if torques is None:
         torques = tuple(float(pair.torque(force)) for force in case.load.normal_force_n or ())
@@ -216,9 +232,9 @@ def write_values(result: Optimization, target: Path) -> None:
 RUN = Computation(
     optimization_of,
     optimization_json,
-    read,
-    marks=dict.fromkeys(("start", "optimum", "variables")),
+    record_file(("optimization", Optimization)),
     check=check,
+    normalized=lambda case, study: with_defaults(with_variables(case, study)),
     interruptible=True,
     writers={".toml": write_values},
 )

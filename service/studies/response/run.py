@@ -12,6 +12,7 @@ from dynamics.scene import Scene
 from service.convert.case import boundary_errors
 from service.studies.computation import Computation, Means
 from service.studies.response import Inputs
+from service.studies.result_file import array_file
 from service.units import N_PER_UM, RPM, UM
 
 Json = dict[str, Any]
@@ -83,7 +84,5 @@ def _peak_json(peak: Peak) -> Json:
 RUN = Computation(
     response_of,
     facts,
-    ForcedResponse.from_netcdf,
-    marks={"schema": ForcedResponse.SCHEMA},
-    write=ForcedResponse.to_netcdf,
+    array_file(ForcedResponse),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from service.drawing.facts import facts
 from service.drawing.figure import Axis, Figure, Line, Panel, Reference, Table, number
 from service.drawing.page import Headline, Page, Section
 from service.studies.presentation import Presentation
-from service.studies.root_stress.run import GEARS
+from service.studies.root_stress.run import GEARS, Roots, root_stress_json
 
 Json = dict[str, Any]
 _WAY = Axis("position of the tooth's own pair, base pitches (0 = pitch point)")
@@ -117,4 +117,14 @@ def text(stresses: Json) -> Iterator[Table | str]:
     yield f"cost {stresses['receipt']['cpu_seconds']:.3g} CPU s"
 
 
-PAGE = Presentation(root_stress_figure, page, text, series=passage_table)
+def _of_figures(shown: Callable[[Json], Any]) -> Callable[[Roots], Any]:
+    """Return what shows the roots by their figures."""
+    return lambda roots: shown(root_stress_json(roots))
+
+
+PAGE = Presentation(
+    _of_figures(root_stress_figure),
+    _of_figures(page),
+    _of_figures(text),
+    series=_of_figures(passage_table),
+)

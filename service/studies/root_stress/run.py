@@ -1,19 +1,21 @@
-"""Tooth-root stress of a case of one load and one alignment: figures in the units of the boundary."""
+"""Tooth-root stress of a case of one load and one alignment: the roots of both gears, and their figures."""
 
 from __future__ import annotations
 
-import json
 import math
+from dataclasses import dataclass, field
 from typing import Any
 
 from fe_contact.analysis import RootStressHistory, root_stress
-from fe_contact.analysis.flanks.root_stress_history import ROOTS, RootPeak
+from fe_contact.analysis.flanks.root_stress_history import ROOTS, RootPassage, RootPeak
 from fe_contact.options import Run
+from model_studies import in_unit
 from service.convert.case import analysis_options, boundary_errors, case_at, gear_pair, operating_point
 from service.convert.checks import check_case
 from service.convert.plausibility import phrased_for
 from service.schemas import Case
 from service.studies.computation import Computation, Means
+from service.studies.result_file import record_file
 from service.studies.root_stress import Inputs
 from service.units import MM, UM
 
@@ -22,7 +24,43 @@ GEARS = ("pinion", "wheel")
 MPA = 1e6
 
 
-def root_stress_of(case: Case, _inputs: Inputs, means: Means) -> Json:
+@dataclass(frozen=True)
+class GearRoots:
+    """The roots of one gear: their peaks, where ISO 6336-3 takes its section (m), a tooth's passage."""
+
+    tension: RootPeak
+    compression: RootPeak
+    critical_coordinate: float = field(metadata=in_unit("m"))
+    passage: RootPassage
+
+
+@dataclass(frozen=True)
+class Roots:
+    """Tooth-root stress of both gears at one load and one alignment, in SI units.
+
+    Attributes
+    ----------
+    pinion, wheel : GearRoots
+    torque, normal_force : float
+        On the driving gear, N m; F_bn, N.
+    misalignment, center_distance_change : float
+        m.
+    receipt : dict
+    warnings : list of dict
+        In the fields and units of the case.
+    """
+
+    pinion: GearRoots
+    wheel: GearRoots
+    torque: float = field(metadata=in_unit("n_m"))
+    normal_force: float = field(metadata=in_unit("n"))
+    misalignment: float = field(metadata=in_unit("m"))
+    center_distance_change: float = field(metadata=in_unit("m"))
+    receipt: Json
+    warnings: list[Json]
+
+
+def root_stress_of(case: Case, _inputs: Inputs, means: Means) -> Roots:
     """Return the peaks over a mesh cycle, what one tooth of each gear meets, the receipt and the warnings.
 
     Raises
@@ -35,23 +73,43 @@ def root_stress_of(case: Case, _inputs: Inputs, means: Means) -> Json:
     run = Run(cache=means.home / "compliance", progress=means.report)
     with boundary_errors():
         stress = root_stress(gear_pair(case), operating_point(case), analysis_options(case), run)
+    return Roots(
+        _roots(stress.pinion),
+        _roots(stress.wheel),
+        stress.torque,
+        stress.normal_force,
+        stress.misalignment,
+        stress.center_distance_change,
+        stress.receipt,
+        phrased_for(case, stress.warnings),
+    )
+
+
+def _roots(history: RootStressHistory) -> GearRoots:
+    """One gear."""
+    tension, compression = (history.peak(root) for root in ROOTS)
+    return GearRoots(tension, compression, history.critical_coordinate, history.passage())
+
+
+def root_stress_json(roots: Roots) -> Json:
+    """Return the stresses in MPa, places in mm and degrees."""
     return {
-        "torque_n_m": stress.torque,
-        "normal_force_n": stress.normal_force,
-        "misalignment_um": stress.misalignment / UM,
-        "center_distance_change_mm": stress.center_distance_change / MM,
-        **{gear: _gear_json(getattr(stress, gear)) for gear in GEARS},
-        "receipt": stress.receipt,
-        "warnings": phrased_for(case, stress.warnings),
+        "torque_n_m": roots.torque,
+        "normal_force_n": roots.normal_force,
+        "misalignment_um": roots.misalignment / UM,
+        "center_distance_change_mm": roots.center_distance_change / MM,
+        **{gear: _gear_json(getattr(roots, gear)) for gear in GEARS},
+        "receipt": roots.receipt,
+        "warnings": roots.warnings,
     }
 
 
-def _gear_json(history: RootStressHistory) -> Json:
+def _gear_json(roots: GearRoots) -> Json:
     """One gear."""
-    passage = history.passage()
+    passage = roots.passage
     return {
-        **{root: _peak_json(history.peak(root)) for root in ROOTS},
-        "critical_section_mm": history.critical_coordinate / MM,
+        **{root: _peak_json(getattr(roots, root)) for root in ROOTS},
+        "critical_section_mm": roots.critical_coordinate / MM,
         "passage": {
             "position": passage.position.tolist(),
             "tension_mpa": (passage.tension / MPA).tolist(),
@@ -76,11 +134,10 @@ def _peak_json(peak: RootPeak) -> Json:
 
 RUN = Computation(
     root_stress_of,
-    lambda stresses: stresses,
-    lambda file: json.loads(file.read_text(encoding="utf-8")),
-    marks=dict.fromkeys(("pinion", "wheel", "receipt")),
+    root_stress_json,
+    record_file(("tooth-root stress", Roots)),
     narrowed=case_at,
     check=lambda case, _inputs: check_case(case),
     normalized=lambda _case, _inputs: {},
-    warnings=lambda stresses: stresses["warnings"],
+    warnings=lambda roots: roots.warnings,
 )

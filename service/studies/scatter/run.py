@@ -2,16 +2,9 @@
 
 from __future__ import annotations
 
-import json
-import math
-from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from fe_contact.microgeometry import Sampling, ToleranceStudy, iso1328_tolerances, scatter
-from fe_contact.microgeometry.spread import Quantile
 from fe_contact.microgeometry.tolerance_study import toleranced
 from fe_contact.options import Run
 from service.convert.case import analysis_options, boundary_errors, gear_pair
@@ -19,6 +12,7 @@ from service.convert.vocabulary import boundary_name
 from service.problems import BadInput
 from service.schemas import Case
 from service.studies.computation import Computation, Means, with_defaults
+from service.studies.result_file import record_file
 from service.studies.scatter import Inputs
 from service.units import UM, in_um
 
@@ -91,44 +85,10 @@ def facts(study: ToleranceStudy) -> Json:
     return plain | {"names": [boundary_name(name) for name in study.names]}
 
 
-def read(file: Path) -> ToleranceStudy:
-    """Return the study in a file of `facts`; what was requested stays in boundary units."""
-    content = json.loads(file.read_text(encoding="utf-8"))
-    return ToleranceStudy(
-        np.array(content["torque_n_m"], dtype=float),
-        tuple(name.rpartition("_")[0] for name in content["names"]),
-        _lengths(content["deviation_um"]),
-        _lengths(content["peak_to_peak_um"]),
-        _lengths(content["nominal_um"]),
-        _lengths(content["error_um"]),
-        tuple(_quantile(row, len(content["torque_n_m"])) for row in content["quantiles"]),
-        _lengths(content["first_order_um"]),
-        content["confidence"],
-        content["cost"],
-        content["asked"],
-    )
-
-
-def _lengths(values: list[float] | list[list[float]]) -> NDArray[np.float64]:
-    """Convert um to m."""
-    return np.asarray(values, dtype=float) * UM
-
-
-def _quantile(content: Json, torques: int) -> Quantile:
-    """One quantile; a bound that the sample is too small for was left out."""
-    ends = (
-        np.full(torques, unbounded) if content[name] is None else _lengths(content[name])
-        for name, unbounded in (("low_um", 0.0), ("high_um", math.inf))
-    )
-    low, high = ends
-    return Quantile(content["fraction"], _lengths(content["value_um"]), low, high)
-
-
 RUN = Computation(
     draw,
     facts,
-    read,
-    marks=dict.fromkeys(("samples", "quantiles", "influence")),
+    record_file(("tolerance study", ToleranceStudy)),
     check=check,
     normalized=normalized,
 )

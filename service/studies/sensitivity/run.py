@@ -15,6 +15,7 @@ from service.convert.case import boundary_errors, gear_pair, study_options
 from service.schemas import Case
 from service.stages import TABLE_STAGES, overall
 from service.studies.computation import Computation, Means
+from service.studies.result_file import ResultFile
 from service.studies.sensitivity import Inputs
 from service.studies.sensitivity.stored import FORMAT, PairStudy, read_studies, write_studies
 from service.units import MM, UM
@@ -55,6 +56,13 @@ def _table_by_table(report: Progress) -> Progress:
         report("tables", (max(begun, 0) + done) / TABLES)
 
     return part
+
+
+def across_face(case: Case, _inputs: Inputs) -> Case:
+    """Return a case in three dimensions: no model of the plane knows a misalignment."""
+    if case.accuracy.model not in ("plane_strain", "plane_stress"):
+        return case
+    return case.model_copy(update={"accuracy": case.accuracy.model_copy(update={"model": "3d"})})
 
 
 def check_study(case: Case, inputs: Inputs) -> None:
@@ -132,9 +140,8 @@ def _ripple_json(curve: RippleCurve) -> Json:
 RUN = Computation(
     study_case,
     studies_json,
-    read_studies,
-    marks={"format": FORMAT},
-    write=write_studies,
+    ResultFile("format", (FORMAT,), write_studies, read_studies),
+    narrowed=across_face,
     check=check_study,
     joined=joined,
     resumed=True,

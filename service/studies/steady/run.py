@@ -12,6 +12,7 @@ from dynamics.periodic.steady_states import BRANCH, CURVES, UP
 from dynamics.scene import Scene
 from service.convert.case import boundary_errors
 from service.studies.computation import Computation, Means
+from service.studies.result_file import array_file
 from service.studies.steady import Inputs
 from service.units import RPM, UM
 
@@ -120,8 +121,6 @@ def not_found(states: SteadyStates) -> str:
 RUN = Computation(
     steady_of,
     facts,
-    SteadyStates.from_netcdf,
-    marks={"schema": SteadyStates.SCHEMA},
-    write=SteadyStates.to_netcdf,
+    array_file(SteadyStates),
     failure=not_found,
 )

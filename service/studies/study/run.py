@@ -11,6 +11,7 @@ from fe_contact.workers.content import content_digest
 from service.convert.case import boundary_errors
 from service.convert.scene import TabledScene
 from service.studies.computation import Computation, Means, with_defaults
+from service.studies.result_file import array_file
 from service.studies.study import Inputs
 from service.studies.study.checks import check
 from service.studies.study.design import design_of, responses_of
@@ -58,9 +59,7 @@ def kept(result: Study, means: Means) -> Mapping[str, Path]:
 RUN = Computation(
     study_of,
     facts,
-    Study.from_netcdf,
-    marks={"schema": Study.SCHEMA},
-    write=Study.to_netcdf,
+    array_file(Study),
     of_scene=lambda tabled: tabled,
     check=check,
     resumed=True,

@@ -239,7 +239,8 @@ def test_the_import_is_light() -> None:
     # of the libraries the fields and parts that they declare, and nothing that computes
     parts = {tuple(name.split(".")[:2]) for name in loaded if name.startswith(("fe_contact.", "dynamics."))}
     declared = {("fe_contact", name) for name in ("body", "checks", "errors", "flank", "material", "types")}
-    assert parts == declared | {("dynamics", "parts")}
+    scene = ("bodies", "checks", "errors", "joints", "parts", "settings", "types")
+    assert parts == declared | {("dynamics", name) for name in scene}
 
 
 def test_a_table_fetched_is_an_ste_database(client: LineOfActionClient) -> None:

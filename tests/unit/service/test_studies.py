@@ -11,8 +11,9 @@ from typer.main import get_command
 
 from service.cli.commands import app
 from service.client import LineOfActionClient
-from service.registry import JSON, STUDIES, Study, study_of
-from service.report.stored_study import marked_study
+from service.client.study_method import FORMS
+from service.registry import STUDIES, Study, study_of
+from service.report.stored_study import stored_study
 from service.schemas.model import BoundaryModel
 from service.schemas.request_examples import INPUTS
 from service.schemas.result_kinds import RESULT_KINDS
@@ -37,7 +38,7 @@ def test_its_process_takes_what_is_studied_and_what_is_varied(study: Study) -> N
     process = default_registry()[study.name]
     subject = set(process.inputs.model_fields) - set(study.inputs.model_fields)
     assert subject == set(study.subject.split(" or "))
-    assert (process.kind, RESULT_KINDS[study.kind].media_type) == (study.kind, study.media_type)
+    assert process.kind == RESULT_KINDS[study.kind].name
     process.inputs.model_validate_json(json.dumps(INPUTS[study.name]))  # the example is accepted
 
 
@@ -49,8 +50,8 @@ def test_its_verb_has_an_option_for_everything_that_is_varied(study: Study) -> N
 
 
 @EVERY
-def test_the_client_has_a_method_that_says_what_it_takes(study: Study) -> None:
-    ending = "" if study.media_type == JSON else "_file"
+@pytest.mark.parametrize("ending", FORMS)
+def test_the_client_has_a_method_that_says_what_it_takes(study: Study, ending: str) -> None:
     method = getattr(LineOfActionClient, f"{study.package}{ending}")
     names = list(signature(method).parameters)
     expected = ["study", "progress"] if study.from_file else ["progress", "options"]
@@ -60,7 +61,7 @@ def test_the_client_has_a_method_that_says_what_it_takes(study: Study) -> None:
 
 @EVERY
 def test_its_files_are_known_from_those_of_others(study: Study) -> None:
-    content = {name: value or "anything" for name, value in study.run.marks.items()}
-    assert marked_study(content) is study
-    for name in content:
-        assert marked_study({other: value for other, value in content.items() if other != name}) is None
+    file = study.run.file
+    assert file.values
+    assert all(stored_study({file.attribute: value, "title": "any"}) is study for value in file.values)
+    assert stored_study({file.attribute: "something else"}) is None

@@ -39,11 +39,6 @@ class FullContactLevel:
             "mean_error": self.relative_error,
         }
 
-    @classmethod
-    def from_json(cls, content: Json, solves: int) -> FullContactLevel:
-        """Return the level that `to_json` wrote."""
-        return cls(content["unknowns"], content["cpu_seconds"] / solves, content["mean_error"])
-
 
 MEASURED_GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 """Both gears of the pair that was measured, 80 mm apart."""

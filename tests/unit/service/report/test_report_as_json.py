@@ -14,7 +14,7 @@ from service.report.as_json import page_json, stored_figures
 from service.report.content import page_of
 from service.report.inputs import read_inputs
 from service.studies.frontier.page import frontier_page
-from service.studies.frontier.run import read
+from service.studies.frontier.run import RUN
 
 
 def rung(name: str, error: float, seconds: float) -> FidelityResult:
@@ -47,8 +47,8 @@ def test_a_stored_table_has_the_figures_of_its_report(database: SteDatabase, tmp
 
 
 def test_a_stored_ladder_is_drawn_as_a_fresh_one(tmp_path: Path) -> None:
-    file = tmp_path / "frontier.json"
-    file.write_text(json.dumps(LADDER.to_json(), allow_nan=False), encoding="utf-8")
+    file = tmp_path / "frontier.nc"
+    RUN.file.write(LADDER, file)
     fresh = page_json(frontier_page(LADDER))
     assert stored_figures({"kind": "frontier", "file": str(file)}) == fresh
-    assert read(file).to_json() == LADDER.to_json()
+    assert RUN.file.read(file).to_json() == LADDER.to_json()

@@ -1,4 +1,4 @@
-"""Studies kept as JSON: drawn from their file as they are drawn fresh."""
+"""Studies kept as netCDF files: the same figures and the same page as fresh ones."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+import h5netcdf
 import numpy as np
 import pytest
 from analysis_requests import design_request, table_request
@@ -28,18 +29,12 @@ from fe_contact.microgeometry import (
 )
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.ste import SteDatabase
-from service.drawing.page import Page
 from service.problems import BadInput
+from service.registry import STUDIES, Study
 from service.report.as_json import page_json, stored_figures
 from service.report.content import page_of
 from service.report.inputs import read_inputs
 from service.studies.ablate.page import ablation_page
-from service.studies.ablate.run import facts as ablation_json
-from service.studies.frontier.page import frontier_page
-from service.studies.optimize.page import optimization_page
-from service.studies.optimize.run import optimization_json
-from service.studies.scatter import page as scatter_page
-from service.studies.scatter import run as scatter_run
 
 RELIEF = FlankModification(tip_relief=15e-6, tip_relief_length=1.2e-3)
 GEAR = Gear(20, 4e-3, 0.025, 0.04, modification=RELIEF)
@@ -53,8 +48,8 @@ def compliance(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def studies(compliance: Path) -> dict[str, tuple[str, dict[str, Any], Page]]:
-    """Kind, JSON and fresh page of one study of every sort."""
+def studies(compliance: Path) -> dict[str, tuple[Study, Any]]:
+    """One result of every sort, and the study that made it."""
     only = ["tooth_coupling", "profile_modification", "misalignment"]
     of_case = ablate(
         PAIR,
@@ -92,45 +87,49 @@ def studies(compliance: Path) -> dict[str, tuple[str, dict[str, Any], Page]]:
         for name, family, error, seconds in told
     )
     ladder = SceneFrontier(rungs, {"modes": "no bearings"}, "coarse", None, 5, 3, np.ones((3, 1)))
-    return {
-        "ablation of a case": ("ablation", ablation_json(of_case), ablation_page(of_case)),
-        "ablation of a scene": ("ablation", ablation_json(of_scene), ablation_page(of_scene)),
-        "ladder of a scene": ("frontier", ladder.to_json(), frontier_page(ladder)),
-        "optimisation": ("optimisation", optimization_json(found), optimization_page(found)),
-        "optimization without scatter": ("optimisation", optimization_json(exact), optimization_page(exact)),
-        "tolerances": ("scatter", scatter_run.facts(drawn), scatter_page.page(drawn)),
+    results = {
+        "ablation of a case": ("ablate", of_case),
+        "ablation of a scene": ("ablate", of_scene),
+        "accuracy study of a scene": ("frontier", ladder),
+        "optimization": ("optimize", found),
+        "optimization without scatter": ("optimize", exact),
+        "tolerances": ("scatter", drawn),
     }
+    return {name: (STUDIES[study], result) for name, (study, result) in results.items()}
 
 
 ALL = (
     "ablation of a case",
     "ablation of a scene",
-    "ladder of a scene",
-    "optimisation",
+    "accuracy study of a scene",
+    "optimization",
     "optimization without scatter",
     "tolerances",
 )
 
 
 @pytest.mark.parametrize("name", ALL)
-def test_its_file_is_drawn_as_it_is_drawn_fresh(
-    studies: dict[str, tuple[str, dict[str, Any], Page]], name: str, tmp_path: Path
+def test_its_file_says_and_draws_what_the_fresh_one_does(
+    studies: dict[str, tuple[Study, Any]], name: str, tmp_path: Path
 ) -> None:
-    kind, content, fresh = studies[name]
-    file = tmp_path / "study.json"
-    file.write_text(json.dumps(content, allow_nan=False), encoding="utf-8")
-    told = stored_figures({"kind": kind, "file": str(file)})
-    assert told == page_json(fresh)
+    study, result = studies[name]
+    file = tmp_path / "study.nc"
+    study.run.file.write(result, file)
+    fresh = json.dumps(study.run.facts(result), allow_nan=False)
+    assert json.dumps(study.run.facts(study.run.file.read(file)), allow_nan=False) == fresh
+    told = stored_figures({"kind": study.kind, "file": str(file)})
+    assert told == page_json(study.page.page(result))
     assert all(f["alternative"] and f["plot"]["data"] for s in told["sections"] for f in s["figures"])
     assert page_json(page_of(read_inputs([file]))) == told, "a report and the service show the same"
 
 
 def test_both_harris_maps_are_drawn_to_one_scale(
-    studies: dict[str, tuple[str, dict[str, Any], Page]],
+    studies: dict[str, tuple[Study, Any]],
 ) -> None:
     """A curve's height is its ripple, and the torques stand apart by the same on both."""
-    _, content, fresh = studies["optimisation"]
-    (figure,) = (f for s in fresh.sections for f in s.figures if f.key == "harris_map")
+    study, result = studies["optimization"]
+    content = study.run.facts(result)
+    (figure,) = (f for s in study.page.page(result).sections for f in s.figures if f.key == "harris_map")
     before, after, _ = figure.content  # type: ignore[misc]
     assert before.y.limits == after.y.limits
     for panel, name in ((before, "start"), (after, "optimum")):
@@ -145,37 +144,34 @@ def test_both_harris_maps_are_drawn_to_one_scale(
 
 
 def test_a_report_takes_a_study_beside_a_table(
-    studies: dict[str, tuple[str, dict[str, Any], Page]], database: SteDatabase, tmp_path: Path
+    studies: dict[str, tuple[Study, Any]], database: SteDatabase, tmp_path: Path
 ) -> None:
-    table, study = tmp_path / "ste.nc", tmp_path / "optimum.json"
+    table, file = tmp_path / "ste.nc", tmp_path / "optimum.nc"
     database.to_netcdf(table)
-    study.write_text(json.dumps(studies["optimisation"][1]), encoding="utf-8")
-    keys = [f.key for s in page_of(read_inputs([study, table])).sections for f in s.figures]
+    study, result = studies["optimization"]
+    study.run.file.write(result, file)
+    keys = [f.key for s in page_of(read_inputs([file, table])).sections for f in s.figures]
     assert keys.index("ste") < keys.index("harris_map")
-    with pytest.raises(BadInput, match="the only optimisation"):
-        read_inputs([study, study])
+    with pytest.raises(BadInput, match="the only optimization"):
+        read_inputs([file, file])
 
 
-@pytest.mark.parametrize(
-    ("text", "told"),
-    [
-        ("{", "cannot be read"),
-        ("[1]", "of another kind"),
-        ('{"of": "case"}', "of another kind"),
-        ('{"of": "case", "nominal": {}, "effects": []}', "undamaged ablation"),
-        ('{"start": 1, "optimum": 2, "variables": []}', "undamaged optimisation"),
-    ],
-)
-def test_a_file_that_holds_no_study_is_refused(text: str, told: str, tmp_path: Path) -> None:
-    file = tmp_path / "study.json"
-    file.write_text(text, encoding="utf-8")
-    with pytest.raises(BadInput, match=told):
+def test_json_and_a_damaged_file_are_refused_with_a_reason(
+    studies: dict[str, tuple[Study, Any]], tmp_path: Path
+) -> None:
+    study, result = studies["tolerances"]
+    old, file = tmp_path / "scatter.json", tmp_path / "scatter.nc"
+    study.run.save_facts(result, old)
+    with pytest.raises(BadInput, match=r"JSON is for programs.*-o FILE\.nc"):
+        read_inputs([old])
+    study.run.file.write(result, file)
+    with h5netcdf.File(file, "r+") as content:
+        content.variables["nominal"][...] = 0.0
+    with pytest.raises(BadInput, match="undamaged scatter"):
         read_inputs([file])
 
 
-def test_an_ablation_of_nothing_has_its_reasons_and_no_plot(
-    studies: dict[str, tuple[str, dict[str, Any], Page]], compliance: Path
-) -> None:
+def test_an_ablation_of_nothing_has_its_reasons_and_no_plot(compliance: Path) -> None:
     none = ablate(
         PAIR,
         *table_request(torques=[20.0], positions=16, **QUICK),

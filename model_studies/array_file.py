@@ -1,0 +1,168 @@
+"""Named arrays and plain JSON in a netCDF-4 file: written whole, checked by a digest when it is read."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bounds.types import Json
+
+SCHEMA_VERSION = 1
+PARTS = "part"  # dimension of the real and the imaginary part
+DOCUMENTS = "documents"
+
+
+class UnreadableFile(ValueError):
+    """A file is missing, no netCDF-4, of another schema, or damaged."""
+
+
+@dataclass(frozen=True)
+class Stored:
+    """The storage of one array: its dimensions, its SI unit, its description."""
+
+    dimensions: tuple[str, ...]
+    units: str
+    long_name: str
+
+
+def write_arrays(
+    path: Path, schema: str, stored: Mapping[str, Stored], arrays: Mapping[str, Any], rest: Json
+) -> None:
+    """Write a netCDF-4 file; it appears whole or not at all.
+
+    Parameters
+    ----------
+    path : Path
+    schema : str
+        What the file is: its attribute ``schema``.
+    stored, arrays : mapping
+        By name. Complex arrays get a last dimension of real and imaginary part; those without entries are in
+        no variable.
+    rest : dict
+        Plain JSON.
+    """
+    import h5netcdf  # noqa: PLC0415 - needed for files only
+
+    documents = json.dumps({"shapes": _shapes(arrays), "fields": rest}, allow_nan=False)
+    attributes = {
+        "Conventions": "CF-1.11",
+        "schema": schema,
+        "schema_version": np.int64(SCHEMA_VERSION),
+        DOCUMENTS: documents,
+        "sha256": _digest(documents, arrays),
+    }
+    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
+    os.close(handle)
+    part = Path(name)
+    try:
+        with h5netcdf.File(part, "w") as file:
+            for key, values in arrays.items():
+                _add(file, key, stored[key], values)
+            for key, value in attributes.items():
+                file.attrs[key] = value
+        _publish(part, path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def read_arrays(path: Path, schemas: tuple[str, ...]) -> tuple[str, dict[str, Any], Json]:
+    """Return the schema of a file, its arrays, bit by bit the same, and the rest.
+
+    Raises
+    ------
+    UnreadableFile
+        The file is missing, no netCDF-4, of none of the schemas, or damaged.
+    """
+    import h5netcdf  # noqa: PLC0415 - needed for files only
+
+    if not path.is_file():
+        raise UnreadableFile(f"{path}: no such file")
+    try:
+        with h5netcdf.File(path, "r") as file:
+            attributes = dict(file.attrs)
+            raw = {str(name): np.asarray(variable[...]) for name, variable in file.variables.items()}
+    # what HDF5 raises on damaged bytes is not one class
+    except (OSError, ValueError, KeyError, RuntimeError, TypeError, AttributeError, IndexError) as error:
+        raise UnreadableFile(f"{path}: not a readable netCDF-4 file ({error})") from error
+    stated = f"{attributes.get('schema')} {attributes.get('schema_version')}"
+    if stated not in [f"{schema} {SCHEMA_VERSION}" for schema in schemas]:
+        raise UnreadableFile(f"{path}: schema is {stated}, expected {' or '.join(schemas)} {SCHEMA_VERSION}")
+    try:
+        documents = str(attributes[DOCUMENTS])
+        content = json.loads(documents)
+        arrays = {name: _restored(raw.get(name), kind) for name, kind in content["shapes"].items()}
+        if attributes["sha256"] != _digest(documents, arrays):
+            raise UnreadableFile(f"{path}: damaged, its contents do not match their checksum")
+        return str(attributes["schema"]), arrays, content["fields"]
+    except (KeyError, ValueError, TypeError) as error:
+        raise UnreadableFile(f"{path}: damaged, {error!r}") from error
+
+
+def _shapes(arrays: Mapping[str, Any]) -> Json:
+    """Type and shape of every array: those without entries are in no variable."""
+    return {name: [values.dtype.str, list(values.shape)] for name, values in arrays.items()}
+
+
+def _add(file: Any, name: str, stored: Stored, values: Any) -> None:
+    """Write one array, if it has entries."""
+    if not values.size:
+        return
+    dimensions = stored.dimensions
+    if np.iscomplexobj(values):
+        dimensions = (*dimensions, PARTS)
+        values = np.stack([values.real, values.imag], axis=-1)
+    dimensions = tuple(map(partial(_dimension, file), dimensions, values.shape))
+    packed = {"compression": "gzip", "compression_opts": 4, "shuffle": True} if dimensions else {}
+    variable = file.create_variable(name, dimensions, values.dtype, **packed)
+    variable[...] = values
+    variable.attrs.update({"units": stored.units, "long_name": stored.long_name})
+
+
+def _dimension(file: Any, name: str, size: int) -> str:
+    """Return the name of a dimension; one that is there in another size gets its size into its name."""
+    known = file.dimensions.get(name)
+    if known is not None and known.size != size:
+        return _dimension(file, f"{name}_{size}", size)
+    if known is None:
+        file.dimensions[name] = size
+    return name
+
+
+def _restored(values: Any, kind: list[Any]) -> Any:
+    """Return an array as it was."""
+    dtype, shape = np.dtype(kind[0]), tuple(kind[1])
+    if values is None:
+        return np.empty(shape, dtype=dtype)
+    if dtype.kind == "c":
+        whole = np.empty(shape, dtype=dtype)
+        whole.real, whole.imag = values[..., 0], values[..., 1]
+        return whole
+    return np.ascontiguousarray(values.astype(dtype, copy=False)).reshape(shape)
+
+
+def _digest(documents: str, arrays: Mapping[str, Any]) -> str:
+    """SHA-256 over the documents and all arrays in their order."""
+    hasher = hashlib.sha256(documents.encode())
+    for name, values in arrays.items():
+        hasher.update(name.encode())
+        hasher.update(np.ascontiguousarray(values).tobytes())
+    return hasher.hexdigest()
+
+
+def _publish(part: Path, path: Path) -> None:
+    """Flush to disk and rename, with ordinary permissions."""
+    mask = os.umask(0)
+    os.umask(mask)
+    part.chmod(0o666 & ~mask)
+    with part.open("rb") as written:
+        os.fsync(written.fileno())
+    part.replace(path)

@@ -1,0 +1,157 @@
+"""Dataclasses as netCDF-4 files by their fields: arrays and floats are variables, the rest is JSON.
+
+Numbers of records in a row are one variable with a first dimension that is called as the row is: the field
+``mean`` of the figures ``with_effect`` of all ``effects`` is ``effects.with_effect.mean (effects, load)``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import Field, dataclass, fields, is_dataclass, replace
+from enum import Enum
+from pathlib import Path
+from types import NoneType, UnionType
+from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
+
+from model_studies.array_file import Stored, UnreadableFile, read_arrays, write_arrays
+
+IN_VARIABLE = "variable"
+"""Stands in the JSON for what is in a variable."""
+_UNITS = {"n": "N", "n_m": "N m", "pa": "Pa"}
+
+
+@dataclass(frozen=True)
+class _Place:
+    """The variable of a field: its name, unit, dimensions, and the row of records that it runs along."""
+
+    name: str = ""
+    unit: str = "1"
+    dimensions: tuple[str, ...] = ()
+    row: str = ""
+
+    def of(self, field: Field[Any]) -> _Place:
+        """Return the place of a field of the record that is here."""
+        name = f"{self.name}.{field.name}" if self.name else field.name
+        unit = field.metadata.get("unit", "1")
+        return _Place(name, _UNITS.get(unit, unit), field.metadata.get("dimensions", ()), self.row)
+
+    @property
+    def in_row(self) -> _Place:
+        """The place of the entries of a tuple that is here."""
+        return replace(self, row=self.name)
+
+    def stored(self, rank: int) -> Stored:
+        """Return how an array of so many dimensions is stored."""
+        row = (self.row,) if self.row else ()
+        own = self.dimensions or tuple(f"{self.name}_{axis}" for axis in range(rank - len(row)))
+        return Stored((*row, *own), self.unit, self.name.replace(".", " ").replace("_", " "))
+
+
+def write_record(record: Any, path: Path, schema: str) -> None:
+    """Write a dataclass; it appears whole or not at all. Fields with `NOT_STORED` are left out."""
+    columns: dict[_Place, list[Any]] = {}
+    rest = _apart(type(record), record, _Place(), columns)
+    arrays = {place: np.stack(rows) if place.row else rows[0] for place, rows in columns.items()}
+    write_arrays(
+        path,
+        schema,
+        {place.name: place.stored(values.ndim) for place, values in arrays.items()},
+        {place.name: values for place, values in arrays.items()},
+        rest,
+    )
+
+
+def read_record(path: Path, kinds: Mapping[str, type]) -> Any:
+    """Return what `write_record` wrote, bit by bit the same; `kinds` are the dataclasses by their schemas.
+
+    Raises
+    ------
+    UnreadableFile
+        The file is missing, no netCDF-4, of none of these schemas, damaged, or of other fields.
+    """
+    schema, arrays, rest = read_arrays(path, tuple(kinds))
+    columns: dict[str, Iterator[Any]] = {}
+
+    def taken(place: _Place) -> Any:
+        values = arrays[place.name]
+        return next(columns.setdefault(place.name, iter(values if place.row else [values])))
+
+    try:
+        return _together(kinds[schema], rest, _Place(), taken)
+    except (KeyError, TypeError, ValueError, StopIteration) as error:
+        raise UnreadableFile(f"{path}: not as this version writes it, {error!r}") from error
+
+
+def _apart(kind: Any, value: Any, place: _Place, columns: dict[_Place, list[Any]]) -> Any:
+    """Put the numbers of a value of a type into columns; return the rest as JSON."""
+    kind = _present(kind)
+    if value is None:
+        return None
+    if is_dataclass(kind):
+        return {
+            field.name: _apart(of, getattr(value, field.name), place.of(field), columns)
+            for field, of in _stored_fields(kind)
+        }
+    if get_origin(kind) is tuple:
+        return [_apart(get_args(kind)[0], entry, place.in_row, columns) for entry in value]
+    if _is_number(kind):
+        columns.setdefault(place, []).append(np.asarray(value))
+        return IN_VARIABLE
+    if isinstance(value, Enum | np.generic):
+        return value.value if isinstance(value, Enum) else value.item()
+    return dict(value) if isinstance(value, Mapping) else value
+
+
+def _together(kind: Any, plain: Any, place: _Place, taken: Any) -> Any:
+    """Return the value of a type that `_apart` took apart; `taken` gives the next entry of a variable."""
+    kind = _present(kind)
+    if plain is None:
+        return None
+    if is_dataclass(kind):
+        values = {
+            field.name: _together(of, plain[field.name], place.of(field), taken)
+            for field, of in _stored_fields(kind)
+        }
+        return kind(**values)  # type: ignore[operator]  # is_dataclass says instances are types too
+    if get_origin(kind) is tuple:
+        return tuple(_together(get_args(kind)[0], entry, place.in_row, taken) for entry in plain)
+    if _is_number(kind):
+        value = taken(place)
+        return float(value) if kind is float else np.ascontiguousarray(value)
+    if isinstance(kind, type) and issubclass(kind, Enum):
+        return kind(plain)
+    by_integer = isinstance(plain, dict) and get_args(kind)[:1] == (int,)
+    return {int(key): value for key, value in plain.items()} if by_integer else plain
+
+
+def _is_number(kind: Any) -> bool:
+    """Whether values of a type are in a variable: floats and arrays."""
+    return kind is float or get_origin(kind) is np.ndarray
+
+
+def _present(kind: Any) -> Any:
+    """Return a type without None."""
+    if get_origin(kind) not in (Union, UnionType):
+        return kind
+    parts = [part for part in get_args(kind) if part is not NoneType]
+    return parts[0] if len(parts) == 1 else kind
+
+
+def _stored_fields(kind: Any) -> list[tuple[Field[Any], Any]]:
+    """Return the stored fields of a dataclass with their types; parameters of generic bases are put in."""
+    bound: dict[Any, Any] = {}
+    for base in (base for each in kind.__mro__ for base in getattr(each, "__orig_bases__", ())):
+        bound |= dict(zip(getattr(get_origin(base), "__parameters__", ()), get_args(base), strict=False))
+    hints = get_type_hints(kind)
+    stored = [field for field in fields(kind) if field.metadata.get("stored", True)]
+    return [(field, _bound(hints[field.name], bound)) for field in stored]
+
+
+def _bound(hint: Any, bound: Mapping[Any, Any]) -> Any:
+    """Return a type with what its parameters stand for."""
+    if isinstance(hint, TypeVar):
+        return bound.get(hint, hint)
+    parameters = getattr(hint, "__parameters__", ())
+    return hint[tuple(bound.get(each, each) for each in parameters)] if parameters else hint

@@ -1,0 +1,136 @@
+"""A record comes back from its file as it was, and its numbers are variables with units and dimensions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from pathlib import Path
+from typing import Any, Generic, TypeVar
+
+import h5netcdf
+import numpy as np
+import pytest
+import xarray
+
+from bounds.types import FloatArray, IntArray
+from model_studies import NOT_STORED, in_unit
+from model_studies.array_file import UnreadableFile
+from model_studies.record_file import read_record, write_record
+
+SCHEMA = "a study of cups"
+
+
+class Ended(StrEnum):
+    """A reason."""
+
+    FULL = "full"
+
+
+@dataclass(frozen=True)
+class Cup:
+    """A record in a row."""
+
+    name: str
+    height: FloatArray = field(metadata=in_unit("m", "rim"))
+    load: float = field(metadata=in_unit("n_m"))
+    taste: float | None = None
+
+
+C = TypeVar("C")
+
+
+@dataclass(frozen=True)
+class Set(Generic[C]):
+    """A generic base."""
+
+    first: C
+    rest: tuple[C, ...]
+
+
+@dataclass(frozen=True)
+class Study(Set[Cup]):
+    """What is stored."""
+
+    count: IntArray
+    ended: Ended
+    shares: Mapping[int, float]
+    spare: Cup | None = None
+    table: object = field(default=None, metadata=NOT_STORED)
+
+
+def cup(name: str, scale: float, taste: float | None = None) -> Cup:
+    return Cup(name, scale * np.array([1.0, np.nan, np.inf]), scale / 3.0, taste)
+
+
+STUDY = Study(
+    cup("a", 1.0, 0.1),
+    (cup("b", 2.0), cup("c", 3.0, float("nan")), cup("d", 0.7, -0.0)),
+    np.array([], dtype=np.int64),
+    Ended.FULL,
+    {-1: 0.25, 2: 0.75},
+    table="not kept",
+)
+
+
+def written(study: Study, folder: Path) -> Path:
+    write_record(study, folder / "study.nc", SCHEMA)
+    return folder / "study.nc"
+
+
+def numbers(value: Any) -> bytes:
+    return np.asarray(value, dtype=float).tobytes()
+
+
+def test_it_comes_back_to_the_last_bit(tmp_path: Path) -> None:
+    back = read_record(written(STUDY, tmp_path), {SCHEMA: Study})
+    assert type(back) is Study
+    for mine, theirs in zip((STUDY.first, *STUDY.rest), (back.first, *back.rest), strict=True):
+        assert (type(theirs), mine.name) == (Cup, theirs.name)
+        assert numbers(mine.height) == numbers(theirs.height)
+        assert numbers(mine.load) == numbers(theirs.load) and isinstance(theirs.load, float)
+        assert (mine.taste is None) == (theirs.taste is None)
+        assert numbers(mine.taste or 0.0) == numbers(theirs.taste or 0.0)
+    assert (back.count.dtype, back.count.shape) == (np.int64, (0,))
+    assert back.ended is Ended.FULL
+    assert (back.shares, back.spare, back.table) == ({-1: 0.25, 2: 0.75}, None, None)
+
+
+def test_rows_of_records_are_one_variable_with_unit_and_dimensions(tmp_path: Path) -> None:
+    with xarray.open_dataset(written(STUDY, tmp_path), engine="h5netcdf") as read:
+        heights = read["rest.height"]
+        assert (heights.dims, heights.shape, heights.units) == (("rest", "rim"), (3, 3), "m")
+        assert heights.long_name == "rest height"
+        assert (read["rest.load"].dims, read["rest.load"].units) == (("rest",), "N m")
+        assert (read["first.load"].dims, float(read["first.load"])) == ((), 1.0 / 3.0)
+
+
+def test_a_record_in_place_of_none_is_kept(tmp_path: Path) -> None:
+    back = read_record(written(replace(STUDY, spare=cup("e", 5.0)), tmp_path), {SCHEMA: Study})
+    assert back.spare.name == "e" and numbers(back.spare.height) == numbers(cup("e", 5.0).height)
+
+
+@dataclass(frozen=True)
+class Other:
+    """Not what was written."""
+
+    first: Cup
+    lid: float
+
+
+def test_other_files_and_other_fields_are_refused(tmp_path: Path) -> None:
+    file = written(STUDY, tmp_path)
+    with pytest.raises(UnreadableFile, match="expected a study of hats"):
+        read_record(file, {"a study of hats": Study})
+    with pytest.raises(UnreadableFile, match="not as this version writes it"):
+        read_record(file, {SCHEMA: Other})
+    with pytest.raises(UnreadableFile, match="no such file"):
+        read_record(tmp_path / "none.nc", {SCHEMA: Study})
+
+
+def test_a_changed_number_is_found(tmp_path: Path) -> None:
+    file = written(STUDY, tmp_path)
+    with h5netcdf.File(file, "r+") as content:
+        content.variables["first.load"][...] = 1.0
+    with pytest.raises(UnreadableFile, match="checksum"):
+        read_record(file, {SCHEMA: Study})
