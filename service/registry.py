@@ -237,6 +237,20 @@ STUDIES: dict[str, Study] = {
             collection="steadies",
             stages=(("analysis", 0.4), ("up", 0.2), ("down", 0.2), ("branch", 0.2)),
         ),
+        Study(
+            "study",
+            "scene",
+            "Many scenes",
+            "Run the study",
+            "Run many scenes: a grid, a list or a Monte Carlo over anything a scene declares; maps, spread, "
+            "what matters, worst cases.",
+            "examples/palermo_scene.toml examples/study_torque_speed.toml -o study",
+            kind="study",
+            stages=(("analysis", 0.2), ("runs", 0.7), ("worst cases", 0.1)),
+            shared=True,
+            folder="study",
+            from_file=True,
+        ),
     )
 }
 """By name."""

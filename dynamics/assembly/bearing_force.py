@@ -37,11 +37,11 @@ class BearingForce(NamedTuple):
 
     def of(self, local: FloatArray, q: FloatArray, v: FloatArray) -> FloatArray:
         """Return the signals (S, T) of the local forces (R, T), `q` and `v` (T, n)."""
-        state = np.concatenate([local, q.T, v.T])
-        signals = np.repeat(self.constant[:, None], q.shape[0], axis=1)
+        state = [*local, *q.T, *v.T]
+        signals, part = np.repeat(self.constant[:, None], q.shape[0], axis=1), np.empty(q.shape[0])
         for signal, (start, end) in enumerate(zip(self.first[:-1], self.first[1:], strict=True)):
             for entry in range(start, end):
-                signals[signal] += self.weight[entry] * state[self.column[entry]]
+                signals[signal] += np.multiply(self.weight[entry], state[self.column[entry]], out=part)
         return signals
 
 

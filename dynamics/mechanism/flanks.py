@@ -75,7 +75,8 @@ def flank_laws(
     damping = np.array(
         [_damping(scene, kinematics, f, stiffness[f], polar_inertia) for f in range(len(static))]
     )
-    law = FlankLaws(pack_tables(used), damping, DAMPING_REACH * typical)
+    alike = all(own is table for own, table in zip(used, static, strict=True))
+    law = FlankLaws(packed if alike else pack_tables(used), damping, DAMPING_REACH * typical)
     return Flanks(nominal, stiffness, tuple(used), law, (), packed, tuple(used))
 
 

@@ -94,6 +94,22 @@ def histories(
     }
 
 
+def checked_series(system: System, time: FloatArray, states: States, seen: Observed) -> dict[str, Any]:
+    """Return the series that a run is checked by (`RunChecks`): of points of the motion, not filtered."""
+    laws, driving = observe_laws(system.arrays, time), system.driving_rows
+    return {
+        "time": time,
+        "position": seen.position[: len(system.scene.meshes)],
+        "dynamic_transmission_error": seen.coordinate[driving],
+        "mesh_force": seen.force[driving],
+        "coast_force": _coast_force(system, seen.force),
+        "least_mesh_force": states.least[:, driving].T,
+        "largest_mesh_force": states.largest[:, driving].T,
+        **axis_series(system, seen.coordinate, seen.force),
+        "bearing_force": _on_the_ground(system, laws, seen.force, states.q, states.v, states.moved)[0],
+    }
+
+
 def _contact(system: System, force: FloatArray) -> FloatArray:
     """Return which flanks of each mesh carry, (m, T): 1 the driving, 2 the coast flank, 3 both, 0 none."""
     coast = _coast_force(system, force)

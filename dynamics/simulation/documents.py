@@ -27,7 +27,7 @@ from dynamics.results import EnergyAudit, StepStatistics
 from dynamics.results.case import resolved_case
 from dynamics.results.effect_ledger import effect_ledger
 from dynamics.results.energy_check import energy_check
-from dynamics.results.histories import filtered, histories, unfiltered
+from dynamics.results.histories import checked_series, filtered, histories, unfiltered
 from dynamics.results.run_checks import RunChecks
 from dynamics.scene import Integration
 from dynamics.simulation.violations import FIRST, EarlierRun
@@ -94,12 +94,13 @@ def known_influences(decided: Decided, system: System, end: Ending) -> Mapping[s
 
 
 def series_of(system: System, time: FloatArray, states: States) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return all series of `RunResult` for the `states` at `time` (T,), as stored and unfiltered."""
+    """Return all series of `RunResult` for the `states` at `time` (T,), and those to check, unfiltered."""
     seen = observe(system.arrays, time, states.q, states.v, states.moved)
-    raw = histories(system, time, states, seen, unfiltered(system, seen, states))
     if system.sampling.stop_band == 0.0:
-        return raw, raw
-    return histories(system, time, states, seen, filtered(system, states)), raw
+        points = histories(system, time, states, seen, unfiltered(system, seen, states))
+        return points, points
+    series = histories(system, time, states, seen, filtered(system, states))
+    return series, checked_series(system, time, states, seen)
 
 
 def _method(choice: MethodChoice | None, end: Ending) -> Json:

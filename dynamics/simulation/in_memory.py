@@ -72,6 +72,11 @@ def simulate(scene: Scene, progress: Progress | None = None, cancel: Cancel | No
         Once for each thing about the scene that is far from practice; all are in `RunResult.warnings`.
     """
     warn_of(scene_findings(scene))
+    return run_scene(scene, progress, cancel)
+
+
+def run_scene(scene: Scene, progress: Progress | None = None, cancel: Cancel | None = None) -> RunResult:
+    """Run `scene` as `simulate` does; what is implausible about it is in the result alone."""
     decided, before = decide_effects(scene), FIRST
     run = _run(decided, before, None, progress, cancel)
     while needed := _needed(scene, run.result):

@@ -15,12 +15,13 @@ from fe_contact.microgeometry.linearized_design import linearized
 from fe_contact.microgeometry.objective import NO_LIMITS
 from fe_contact.microgeometry.sampling import Sampling
 from fe_contact.microgeometry.scatter import ONE_NODE, Scatter, ScatterNodes, SobolSample
-from fe_contact.microgeometry.spread import Quantile, quantile, rank_correlation
+from fe_contact.microgeometry.spread import Quantile, quantile
 from fe_contact.microgeometry.tolerances import Tolerances
 from fe_contact.options import AnalysisOptions, Levels, Run
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, Json
 from model_studies import in_unit
+from model_studies.spread import rank_correlation
 
 IN_A_TASK = 25
 """Samples of a task: half a second to some seconds. It does not depend on who does the tasks."""

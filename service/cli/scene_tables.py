@@ -15,7 +15,7 @@ from service.client.mesh_tables import MeshTables, TableSource
 from service.client.portable import case_of_mesh
 from service.convert.checks import check_case
 from service.convert.plausibility import case_warnings, scene_warnings, within
-from service.convert.scene import check_scene, dynamic_scene
+from service.convert.scene import TabledScene, check_scene, dynamic_scene
 from service.convert.topology import facts_of
 from service.problems import BadInput
 from service.schemas import Case
@@ -26,13 +26,18 @@ _ADVICE = "Name the service that holds it: --service http://127.0.0.1:8321"
 
 def scene_with_tables(scene: SceneInput, folder: Path, service: str | None, report: Report) -> Scene:
     """Return the scene in SI with its tables; `folder` is what its files are relative to."""
+    return tabled_scene(scene, folder, service, report).scene
+
+
+def tabled_scene(scene: SceneInput, folder: Path, service: str | None, report: Report) -> TabledScene:
+    """Return the scene with its tables and with its cases written out; see `scene_with_tables`."""
     if service is None:
         return _checked(scene, folder, _Here(report))
     with LineOfActionClient(service) as client:
         return _checked(scene, folder, client.tables(watching(report)))
 
 
-def _checked(scene: SceneInput, folder: Path, source: TableSource) -> Scene:
+def _checked(scene: SceneInput, folder: Path, source: TableSource) -> TabledScene:
     """Check the scene before anything is computed for it, then gather its tables."""
     tables = MeshTables(folder, source)
     facts = {mesh.name: _facts(i, mesh, folder, tables) for i, mesh in enumerate(scene.meshes)}
@@ -40,7 +45,17 @@ def _checked(scene: SceneInput, folder: Path, source: TableSource) -> Scene:
     databases = {mesh.name: tables.of(i, mesh) for i, mesh in enumerate(scene.meshes)}
     built = dynamic_scene(scene, databases)
     warn(scene_warnings(scene, built, {name: table.metadata.warnings for name, table in databases.items()}))
-    return built
+    return TabledScene(_written_out(scene, folder), databases, built)
+
+
+def _written_out(scene: SceneInput, folder: Path) -> SceneInput:
+    """Return the scene with the cases in its files written out."""
+    cases = [case_of_mesh(mesh, f"meshes[{i}]", folder) for i, mesh in enumerate(scene.meshes)]
+    meshes = (
+        mesh if case is None else mesh.model_copy(update={"case": case, "case_file": None})
+        for mesh, case in zip(scene.meshes, cases, strict=True)
+    )
+    return scene.model_copy(update={"meshes": tuple(meshes)})
 
 
 def _facts(index: int, mesh: MeshInput, folder: Path, tables: MeshTables) -> PairFacts:

@@ -20,7 +20,8 @@ from service.cli.output import (
     progress_bar,
     table,
 )
-from service.cli.scene_tables import scene_with_tables
+from service.cli.resumed import resumed_workers
+from service.cli.scene_tables import tabled_scene
 from service.cli.warned import messages, warn, warnings_so_far
 from service.client.portable import scene_of
 from service.convert.plausibility import case_warnings
@@ -51,10 +52,15 @@ def run_study(study: Study, options: Json) -> None:
         study.run.check(subject, inputs)
     executor = ExecutorChoice(options.get("workers", 1), options.get("dask"))
     stopping = until_interrupted if study.run.interruptible else nullcontext
-    with open_executor(executor) as workers, progress_bar() as report, stopping() as cancel:
-        means = Means(cache_home(), report, workers, cancel)
+    with (
+        open_executor(executor) as others,
+        resumed_workers(study, [subject for subject, _ in subjects], inputs, others) as workers,
+        progress_bar() as report,
+        stopping() as cancel,
+    ):
+        means = Means(cache_home(), report, workers, cancel, _runs_folder(targets))
         results = [
-            study.run.compute(_made(subject, folder, options, report), inputs, means)
+            study.run.compute(_made(study, subject, folder, options, report), inputs, means)
             for subject, folder in subjects
         ]
         interrupted = cancel is not None and cancel()
@@ -120,11 +126,16 @@ def _assessed(subject: Case | SceneInput) -> Case | SceneInput:
     return subject
 
 
-def _made(subject: Case | SceneInput, folder: Path, options: Json, report: Report) -> Any:
-    """Return the case, or the scene with its tables."""
+def _runs_folder(targets: list[Path]) -> Path | None:
+    """Return the folder for runs beside the files to write."""
+    return targets[0].with_name(f"{targets[0].stem}_runs") if targets else None
+
+
+def _made(study: Study, subject: Case | SceneInput, folder: Path, options: Json, report: Report) -> Any:
+    """Return the case, or what the study takes of the scene with its tables."""
     if isinstance(subject, Case):
         return subject
-    return scene_with_tables(subject, folder, options["service"], report)
+    return study.run.of_scene(tabled_scene(subject, folder, options["service"], report))
 
 
 def _names(study: Study, files: Sequence[Path]) -> list[str]:

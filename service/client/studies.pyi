@@ -184,3 +184,15 @@ class Studies(JobClient):
         repeat: int = ...,
         settling_periods: int = ...,
     ) -> Path: ...
+    def study(
+        self,
+        scene: SceneLike,
+        study: Mapping[str, Any],
+        progress: Watch | None = None,
+    ) -> dict[str, Any]: ...
+    def study_file(
+        self,
+        scene: SceneLike,
+        study: Mapping[str, Any],
+        progress: Watch | None = None,
+    ) -> Path: ...

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from dynamics.bodies import AngleLaw, GearBody, Inertia, SpeedCurve, TimeLaw, hollow_cylinder
 from dynamics.effects.mechanism_of import mechanism_of
@@ -41,6 +41,25 @@ from service.schemas.scene_motion import DriveInput, FreeRotationInput, LoadTorq
 from service.units import DEGREE, MM, RPM, UM
 
 ANY_STIFFNESS = 1e8  # N/m; checks that need no table do not read it
+
+
+@dataclass(frozen=True)
+class TabledScene:
+    """A scene with its tables.
+
+    Attributes
+    ----------
+    inputs : SceneInput
+        As it was written, the cases of its meshes written out.
+    databases : mapping of str to SteDatabase
+        By name of the mesh.
+    scene : Scene
+        What they make, in SI.
+    """
+
+    inputs: SceneInput
+    databases: Mapping[str, SteDatabase]
+    scene: Scene
 
 
 def dynamic_scene(scene: SceneInput, databases: Mapping[str, SteDatabase]) -> Scene:

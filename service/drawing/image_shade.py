@@ -36,9 +36,11 @@ def _cells(ax: Axes, shade: HeatMap) -> Any:
 
 
 def _edges(middles: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
-    """Return the ends of equal cells around their middles; a single one is a unit wide."""
-    step = middles[1] - middles[0] if middles.size > 1 else 1.0
-    return np.concatenate([middles - 0.5 * step, [middles[-1] + 0.5 * step]])
+    """Return the ends of cells, half way between their middles; a single one is a unit wide."""
+    half = 0.5 * np.diff(middles) if middles.size > 1 else np.array([0.5])
+    return np.concatenate(
+        [[middles[0] - half[0]], middles[:-1] + half[: middles.size - 1], [middles[-1] + half[-1]]]
+    )
 
 
 def _strokes(ax: Axes, shade: Strokes) -> Any:

@@ -87,19 +87,19 @@ def _place(model: type[BaseModel] | None, loc: Loc) -> tuple[type[BaseModel] | N
         info = current.model_fields.get(part)
         if index == len(loc) - 1 or info is None:
             return current, info
-        inner = _model_in(info.annotation)
+        inner = model_in(info.annotation)
         if inner is None:
             return current, info
         current = inner
     return current, info
 
 
-def _model_in(annotation: object) -> type[BaseModel] | None:
+def model_in(annotation: object) -> type[BaseModel] | None:
     """Return the model inside an annotation such as `Model | None` or `tuple[Model, ...]`."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return annotation
     if get_origin(annotation) in (Union, types.UnionType, tuple, list, dict, Annotated):
-        models = (_model_in(argument) for argument in get_args(annotation))
+        models = (model_in(argument) for argument in get_args(annotation))
         return next((inner for inner in models if inner is not None), None)
     return None
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from fe_contact.workers import InProcess, Workers
+from service.convert.scene import TabledScene
 from service.schemas.model import BoundaryModel
 from service.studies.result_file import ResultFile
 
@@ -30,12 +31,15 @@ class Means:
         Who does the tasks.
     cancel : callable, optional
         Says whether to end with the best so far.
+    folder : Path, optional
+        Where to put the runs that a study keeps in full; None: nowhere.
     """
 
     home: Path
     report: Callable[[str, float], None]
     workers: Workers = field(default_factory=InProcess)
     cancel: Callable[[], bool] | None = None
+    folder: Path | None = None
 
 
 def with_defaults(inputs: BoundaryModel) -> Json:
@@ -59,6 +63,8 @@ class Computation:
     narrowed : callable
         ``narrowed(subject, inputs)``: what of the subject the inputs choose; it is checked, hashed and
         computed. Default: all of it.
+    of_scene : callable
+        What `compute` takes of a `TabledScene`; default: the scene in SI.
     check : callable
         ``check(subject, inputs)`` refuses what a schema accepts, and computes nothing; raises `BadInput`.
         Here and below a scene is a `SceneInput`.
@@ -73,6 +79,8 @@ class Computation:
         Whether it ends with the best so far when `Means.cancel` says so.
     resumed : bool
         Whether tasks that were done are kept for an attempt after one that died.
+    kept : callable
+        ``kept(result, means)``: the runs in `Means.folder`, by the hash that they are stored under.
     writers : mapping
         Further files of the verb, by their ending.
     failure : callable
@@ -83,12 +91,14 @@ class Computation:
     facts: Callable[[Result], Json]
     file: ResultFile
     narrowed: Callable[[Any, Any], Any] = lambda subject, _inputs: subject
+    of_scene: Callable[[TabledScene], Any] = lambda tabled: tabled.scene
     check: Callable[[Any, Any], object] = lambda _subject, _inputs: None
     normalized: Callable[[Any, Any], Json] = lambda _subject, inputs: with_defaults(inputs)
     warnings: Callable[[Result], list[Json] | None] = lambda _found: None
     joined: Callable[[Mapping[str, Result]], Result] | None = None
     interruptible: bool = False
     resumed: bool = False
+    kept: Callable[[Result, Means], Mapping[str, Path]] = lambda _result, _means: {}
     writers: Mapping[str, Callable[[Result, Path], object]] = field(default_factory=dict)
     failure: Callable[[Result], str] = lambda _found: ""
 

@@ -14,7 +14,7 @@ from fe_contact.ste import SteDatabase
 from service.convert.case import case_json
 from service.convert.plausibility import scene_warnings
 from service.convert.runs import staged
-from service.convert.scene import dynamic_scene
+from service.convert.scene import TabledScene, dynamic_scene
 from service.problems import BadInput, JobFailed
 from service.schemas.scene import MeshInput, SceneInput
 from service.store import stored_results
@@ -27,7 +27,7 @@ def simulate_scene(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
     """Run a scene; tables come from the store, those missing are computed and kept."""
     ordered = ordered_scene(order, progress)
     file = order.workspace / "run.nc"
-    _run(ordered.scene, file, progress)
+    _run(ordered.tabled.scene, file, progress)
     return (*ordered.products, Product(order.key, "run", file, ordered.warnings))
 
 
@@ -35,7 +35,7 @@ def simulate_scene(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
 class OrderedScene:
     """The scene of an order with its tables, those of them that had to be computed, and its warnings."""
 
-    scene: Scene
+    tabled: TabledScene
     products: tuple[Product, ...]
     warnings: list[dict[str, Any]]
 
@@ -49,7 +49,8 @@ def ordered_scene(order: WorkOrder, progress: Progress) -> OrderedScene:
         databases[mesh.name] = _table(order, index, mesh, products, progress)
     scene = dynamic_scene(inputs, databases)
     tables = {name: database.metadata.warnings for name, database in databases.items()}
-    return OrderedScene(scene, tuple(products), scene_warnings(inputs, scene, tables))
+    tabled = TabledScene(inputs, databases, scene)
+    return OrderedScene(tabled, tuple(products), scene_warnings(inputs, scene, tables))
 
 
 def _run(scene: Scene, file: Path, progress: Progress) -> None:

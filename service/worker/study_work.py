@@ -42,20 +42,22 @@ def prepare(study: Study, inputs: Any, store: ResultStore) -> Json:
 
 def _work(study: Study, order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
     """Do a study, into a file."""
-    subject, products, warnings = _subject(order, progress)
+    subject, products, warnings = _subject(study, order, progress)
     varied = {name: value for name, value in order.inputs.items() if name not in ("case", "scene")}
     inputs = study.inputs.model_validate_json(json.dumps(varied))
     with (table_workers if study.run.resumed else cluster_of)(order) as workers:
-        found = study.run.compute(subject, inputs, Means(order.data_directory, progress, workers))
+        means = Means(order.data_directory, progress, workers, folder=order.workspace / "runs")
+        found = study.run.compute(subject, inputs, means)
     file = order.workspace / f"{study.kind}{SUFFIX}"
     study.run.file.write(found, file)
     own = study.run.warnings(found) if warnings is None else warnings
-    return (*products, Product(order.key, study.kind, file, own))
+    runs = (Product(key, "run", run) for key, run in study.run.kept(found, means).items())
+    return (*products, *runs, Product(order.key, study.kind, file, own))
 
 
-def _subject(order: WorkOrder, progress: Progress) -> tuple[Any, tuple[Product, ...], Any]:
+def _subject(study: Study, order: WorkOrder, progress: Progress) -> tuple[Any, tuple[Product, ...], Any]:
     """Return what is studied, the tables that were computed for it, and its warnings if they are known."""
     if "scene" in order.inputs:
         ordered = ordered_scene(order, progress)
-        return ordered.scene, ordered.products, ordered.warnings
+        return study.run.of_scene(ordered.tabled), ordered.products, ordered.warnings
     return Case.model_validate_json(json.dumps(order.inputs["case"])), (), None

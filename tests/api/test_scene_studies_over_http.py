@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import json
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +14,12 @@ import pytest
 from fastapi.testclient import TestClient
 from scene_files import scene_file
 
+from dynamics.bodies import TimeLaw
 from dynamics.linearize import ForcedResponse, ModalAnalysis
 from dynamics.periodic import SteadyStates
+from dynamics.results import RunResult
+from dynamics.simulation import simulate
+from dynamics.study import Response, Study, responses_of
 from fe_contact.ste import SteDatabase
 from service.app import create_app
 from service.client import JobState, LineOfActionClient
@@ -32,6 +37,14 @@ from service.worker.catalogue import default_registry
 from service.worker.order import WorkOrder
 
 KEY = "ab" * 32
+STUDY = {
+    "factors": [
+        {"path": "loads.brake.torque_n_m", "levels": [50.0, 100.0]},
+        {"path": "meshes.mesh.damping_ratio", "uniform": {"low": 0.05, "high": 0.1}},
+    ],
+    "responses": [{"quantity": "dte_rms"}, {"quantity": "bearing_force", "order": 1}],
+    "samples": 3,
+}
 
 
 @pytest.fixture(scope="module")
@@ -93,6 +106,7 @@ def test_modes_are_those_of_python(
             "steadies",
             SteadyStates,
         ),
+        ("study", STUDY, "results", Study),
     ],
 )
 def test_the_work_of_a_study_is_served_as_figures_and_as_its_file(
@@ -126,6 +140,23 @@ def test_the_work_of_a_study_is_served_as_figures_and_as_its_file(
     assert {name: answer[name] for name in figures(found)} == figures(found)
 
 
+def test_a_study_over_http_has_the_bits_of_python_and_keeps_its_worst_run(
+    served: tuple[LineOfActionClient, TestClient], scene: SceneInput, tmp_path: Path
+) -> None:
+    client, _ = served
+    made = Study.from_netcdf(client.study_file(scene, STUDY | {"keep_worst": 1}))
+    alone = here(scene, tmp_path)
+    values = dict(zip(made.factor, made.value[made.worst[0]].tolist(), strict=True))
+    mesh = replace(alone.meshes[0], damping_ratio=values["meshes.mesh.damping_ratio"])
+    load = replace(alone.loads[0], torque=TimeLaw.constant(values["loads.brake.torque_n_m"]))
+    run = simulate(replace(alone, meshes=(mesh,), loads=(load,)))
+    responses = (Response("dte_rms"), Response("bearing_force", order=1))
+    assert made.figure[made.worst[0]].tolist() == responses_of(run, responses)[0]
+    (key,) = made.facts["runs"].values()
+    kept = RunResult.from_netcdf(client.fetch_file(key, "run"))
+    np.testing.assert_array_equal(kept.mesh_force, run.mesh_force)
+
+
 @pytest.mark.parametrize(
     ("process", "further", "field"),
     [
@@ -137,6 +168,8 @@ def test_the_work_of_a_study_is_served_as_figures_and_as_its_file(
         ("steady", {"speed_rpm": [5.0, 5.0]}, "speed_rpm"),
         ("steady", {"speed_rpm": [5.0], "repeat": 99}, "repeat"),
         ("response", {"speed_rpm": [0.0, 1.0]}, "speed_rpm"),
+        ("study", {**STUDY, "samples": 1}, "samples"),
+        ("study", {**STUDY, "factors": [{"path": "loads.x.y", "levels": [1.0]}], "samples": 1}, "path"),
     ],
 )
 def test_bad_inputs_are_refused_by_name_before_there_is_a_job(

@@ -41,6 +41,20 @@ def test_the_scene_of_the_pair_is_edited_and_computed_over_speed(visit: Visit, a
     assert speeds == 5
 
 
+def test_many_runs_at_constant_speeds_are_drawn_over_speed(visit: Visit, analyzed: str) -> None:
+    page = visit.page
+    page.get_by_role("button", name="Write the scene of the pair").press("Enter")
+    text = page.get_by_label("Scene, TOML")
+    expect(text).to_have_value(re.compile("database_hash"))
+    text.fill(text.input_value().replace("duration_s = 1.0", "duration_s = 0.1"))
+    page.get_by_label("Compute", exact=True).select_option("study")
+    page.get_by_label("number", exact=True).fill("3")
+    page.get_by_role("button", name="Compute the scene").press("Enter")
+    for name in ("study_curves", "study_distribution", "study_tornado"):
+        expect(page.locator(f"#scene-body [data-figure={name}] .plot")).to_have_attribute("data-drawn", "yes")
+    assert visit.complaints == []
+
+
 def test_a_scene_that_cannot_be_used_is_refused_by_field(visit: Visit) -> None:
     page = visit.page
     refused = page.locator("#scene-body [role=alert]")

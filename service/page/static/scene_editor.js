@@ -8,7 +8,7 @@ import { showFailure } from "./job.js";
 
 const WHAT = [
   ["simulate", "Run over time"], ["modes", "Modes over speed"], ["response", "Forced response over speed"],
-  ["steady", "Steady states over speed"],
+  ["steady", "Steady states over speed"], ["study", "Many runs, at constant speeds"],
 ];
 const FIELDS = [
   { name: "process", label: "Compute", choices: WHAT },
@@ -84,10 +84,28 @@ export class SceneEditor {
 
   job({ process, from, to, count }) {
     this.refusal.replaceChildren();
-    const speeds = process === "simulate" ? {} : { speed_rpm: evenly(from, to, count) };
-    return { process, inputs: async () => ({ scene: await this.read(), ...speeds }) };
+    return {
+      process,
+      inputs: async () => {
+        const scene = await this.read();
+        return { scene, ...varied(process, scene, evenly(from, to, count)) };
+      },
+    };
   }
 }
+
+/** What a process varies of a scene; a study runs it at each speed of its first drive. */
+function varied(process, scene, speeds) {
+  if (process === "simulate") return {};
+  if (process !== "study") return { speed_rpm: speeds };
+  const path = `drives.${(scene.drives ?? [{ name: "?" }])[0].name}.speed_rpm`;
+  return { factors: [{ path, levels: speeds }], responses: RESPONSES };
+}
+
+const RESPONSES = [
+  { quantity: "dte_peak_to_peak" }, { quantity: "bearing_force", order: 1 }, { quantity: "dynamic_factor" },
+  { quantity: "contact_loss" },
+];
 
 const HELP = "Shafts, gears, bearings, meshes, drives and loads as in a scene file. A mesh carries its pair written out "
   + "([meshes.case]) or names a result of this service (database_hash); files that it names are not read here. "

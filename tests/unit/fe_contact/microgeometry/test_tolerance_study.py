@@ -12,9 +12,10 @@ from scipy.special import ndtr
 from fe_contact import GearPair, analyze
 from fe_contact.errors import InputError
 from fe_contact.microgeometry import Sampling, Tolerances, ToleranceStudy, scatter
-from fe_contact.microgeometry.spread import quantile, rank_correlation
+from fe_contact.microgeometry.spread import quantile
 from fe_contact.microgeometry.variables import modified
 from fe_contact.options import AnalysisOptions, Run
+from model_studies.spread import rank_correlation
 
 TORQUES = [100.0, 200.0]
 DRAFT: dict[str, Any] = {"level": "draft", "model": "plane_strain"}

@@ -1,0 +1,30 @@
+"""Many scenes: a design of experiments over a scene, the responses of its runs, and their statistics."""
+
+from dynamics.study.batch import StudyTask
+from dynamics.study.design import Design
+from dynamics.study.factors import Distribution, Factor, Levels, Listed, Normal, Uniform
+from dynamics.study.responses import QUANTITIES, Response, responses_of
+from dynamics.study.result import Spread, Study
+from dynamics.study.run_study import keep_runs, study
+from dynamics.study.scenes import OneByOne, Scenes, Workers
+
+__all__ = [
+    "QUANTITIES",
+    "Design",
+    "Distribution",
+    "Factor",
+    "Levels",
+    "Listed",
+    "Normal",
+    "OneByOne",
+    "Response",
+    "Scenes",
+    "Spread",
+    "Study",
+    "StudyTask",
+    "Uniform",
+    "Workers",
+    "keep_runs",
+    "responses_of",
+    "study",
+]

@@ -1,0 +1,101 @@
+"""The design of a study: which values of its factors are run together."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from bounds import at_most
+from dynamics.checks import integer
+from dynamics.errors import InputError
+from dynamics.study.factors import Factor, Levels, Listed, Normal, Uniform
+from dynamics.types import FloatArray
+
+MOST_POINTS = 1_000_000
+
+
+@dataclass(frozen=True)
+class Design:
+    """Grid x list x sample: every combination of levels meets every entry of the list and every sample.
+
+    All combinations meet the same samples, so that differences between them are not those of two samples.
+
+    Attributes
+    ----------
+    factors : mapping of str to Factor
+        By name. Levels form a grid, the last factor changing fastest; listed values change together;
+        distributions are sampled.
+    samples : int
+        Of the distributions; 1 without any.
+    seed : int
+        Equal seeds give equal samples; a larger sample begins with a smaller one.
+    """
+
+    factors: Mapping[str, Factor]
+    samples: int = 1
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        if not self.factors:
+            raise InputError("factors", {}, "at least one factor")
+        integer("samples", self.samples, 1, MOST_POINTS)
+        integer("seed", self.seed, 0, 2**63 - 1)
+        if bool(self._sampled) != (self.samples > 1):
+            advice = "Samples are of factors with a distribution."
+            bound = "above 1 with a distribution, and 1 without"
+            raise InputError("samples", self.samples, bound, advice)
+        lengths = {len(factor.values) for factor in self.factors.values() if isinstance(factor, Listed)}
+        if len(lengths) > 1:
+            raise InputError("values", sorted(lengths), "lists of one length: their values change together")
+        cells = math.prod(self.shape) * max(lengths, default=1)
+        if cells * self.samples > MOST_POINTS:
+            raise InputError("factors", cells * self.samples, at_most(MOST_POINTS, note=" points"))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the factors."""
+        return tuple(self.factors)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of levels of each factor of the grid."""
+        return tuple(len(f.values) for f in self.factors.values() if isinstance(f, Levels))
+
+    @cached_property
+    def cells(self) -> FloatArray:
+        """Combinations of grid and list (C, f): NaN where a factor is sampled."""
+        grid = [np.array(f.values) for f in self.factors.values() if isinstance(f, Levels)]
+        listed = [np.array(f.values) for f in self.factors.values() if isinstance(f, Listed)]
+        entries = np.arange(len(listed[0]) if listed else 1)
+        *levels, entry = (axis.ravel() for axis in np.meshgrid(*grid, entries, indexing="ij"))
+        values = np.full((entry.size, len(self.factors)), np.nan)
+        own, others = iter(levels), iter(listed)
+        for column, factor in enumerate(self.factors.values()):
+            if isinstance(factor, Levels):
+                values[:, column] = next(own)
+            elif isinstance(factor, Listed):
+                values[:, column] = next(others)[entry]
+        return values
+
+    @cached_property
+    def points(self) -> FloatArray:
+        """Values of all factors at all points (C x samples, f), the samples of a combination in a row."""
+        cells = self.cells
+        values = np.repeat(cells, self.samples, axis=0)
+        values[:, self._sampled] = np.tile(self._sample(), (len(cells), 1))
+        return values
+
+    @property
+    def _sampled(self) -> list[int]:
+        """Columns of the sampled factors."""
+        return [k for k, f in enumerate(self.factors.values()) if isinstance(f, Normal | Uniform)]
+
+    def _sample(self) -> FloatArray:
+        """Draw the values of the sampled factors (samples, d)."""
+        kinds = [f for f in self.factors.values() if isinstance(f, Normal | Uniform)]
+        uniform = np.random.Generator(np.random.PCG64(self.seed)).random((self.samples, len(kinds)))
+        return np.array([kind.quantile(column) for kind, column in zip(kinds, uniform.T, strict=True)]).T

@@ -1,0 +1,187 @@
+"""Responses of a run by name: what a study makes of each run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from dynamics.checks import integer, one_of
+from dynamics.errors import InputError
+from dynamics.results import RunResult
+from dynamics.results.contact_state import ContactState
+from dynamics.results.planet_load_sharing import planet_load_sharing
+from dynamics.study.window import Window
+
+
+class Value(NamedTuple):
+    """The value of a response in SI, and its error where the run states one, else NaN."""
+
+    value: float
+    error: float = float("nan")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """What a response is.
+
+    Attributes
+    ----------
+    title : str
+    unit : str
+        SI; empty for a ratio.
+    of : "mesh", "bearing" or ""
+        Whose it is; empty: the whole run's.
+    by_order : bool
+        Whether it is an amplitude at a multiple of the mesh frequency.
+    take : callable
+        ``take(window, row, order)`` to the value.
+    """
+
+    title: str
+    unit: str
+    of: str
+    by_order: bool
+    take: Callable[[Window, int, int], Value]
+
+
+@dataclass(frozen=True)
+class Response:
+    """A named response.
+
+    Attributes
+    ----------
+    quantity : str
+        A name of `QUANTITIES`.
+    part : str
+        Name of its mesh or bearing; empty: the largest of all.
+    order : int
+        Multiple of the mesh frequency, for amplitudes by order; else 0.
+    mesh : str
+        Whose frequency the orders of a bearing are of; empty: the first mesh.
+    """
+
+    quantity: str
+    part: str = ""
+    order: int = 0
+    mesh: str = ""
+
+    def __post_init__(self) -> None:
+        one_of("quantity", self.quantity, QUANTITIES)
+        if self.kind.by_order:
+            integer("order", self.order, 1, 1000)
+        elif self.order:
+            raise InputError("order", self.order, f"left out: {self.quantity} has no order")
+        if self.part and not self.kind.of:
+            raise InputError("part", self.part, f"left out: {self.quantity} is of the whole run")
+        if self.mesh and self.kind.of != "bearing":
+            raise InputError(
+                "mesh", self.mesh, f"left out: the orders of {self.quantity} are of its own mesh"
+            )
+
+    @property
+    def kind(self) -> Quantity:
+        """What it is."""
+        return QUANTITIES[self.quantity]
+
+    @property
+    def title(self) -> str:
+        """Name in words, without the unit."""
+        order = f", order {self.order}" if self.order else ""
+        return f"{self.kind.title}{f' of {self.part}' if self.part else ''}{order}"
+
+    def rows(self, run: RunResult) -> tuple[int, ...]:
+        """Return which meshes or bearings of a run it is of; one of the whole run has one row."""
+        names = {"mesh": run.mesh, "bearing": run.bearing, "": ("",)}[self.kind.of]
+        if not names:
+            raise InputError("outputs.bearing_forces", False, "true", "The responses of bearings need them.")
+        if not self.part:
+            return tuple(range(len(names)))
+        return (names.index(one_of(self.kind.of, self.part, names)),)
+
+    def of(self, window: Window) -> Value:
+        """Return its value in a window of a run; of several parts the largest one."""
+        run, rows = window.run, self.rows(window.run)
+        mesh = run.mesh.index(one_of("mesh", self.mesh, run.mesh)) if self.mesh else 0
+        seen = window if self.kind.of == "mesh" else window.along(mesh)
+        return max((self.kind.take(seen, row, self.order) for row in rows), key=lambda value: value.value)
+
+
+def responses_of(
+    run: RunResult, responses: Sequence[Response], start: float = 0.0
+) -> tuple[list[float], list[float]]:
+    """Return values and errors of `responses` from the time `start` (s) of a run on.
+
+    Raises
+    ------
+    InputError
+        No such part, an order that the output does not hold, or a `start` behind the end.
+    """
+    bearings = {row for each in responses if each.kind.of == "bearing" for row in each.rows(run)}
+    highest = max((response.order for response in responses), default=0)
+    window = Window.of(run, start, highest, tuple(sorted(bearings)))
+    values = [response.of(window) for response in responses]
+    return [value.value for value in values], [value.error for value in values]
+
+
+def _bearing_force(window: Window, row: int, order: int) -> Value:
+    """Amplitude of the force vector at an order: root of the sum of squares over x, y, z."""
+    amplitude = window.orders[1][row][:, order - 1]
+    return Value(float(np.linalg.norm(amplitude)), window.error("bearing_force_orders", order))
+
+
+def _dte_order(window: Window, row: int, order: int) -> Value:
+    """Amplitude of the dynamic transmission error at an order of its mesh."""
+    amplitude = window.along(row).orders[0]
+    return Value(float(amplitude[order - 1]), window.error("transmission_error_orders", order))
+
+
+def _dte_rms(window: Window, row: int, _order: int) -> Value:
+    """Root mean square about the mean."""
+    return Value(float(np.std(window.transmission_error(row))), window.error("rms"))
+
+
+def _dte_peak_to_peak(window: Window, row: int, _order: int) -> Value:
+    """Largest less least value."""
+    return Value(float(np.ptp(window.transmission_error(row))))
+
+
+def _peak_mesh_force(window: Window, row: int, _order: int) -> Value:
+    """Largest unfiltered force of the driving flank."""
+    return Value(float(np.max(window.run.largest_mesh_force[row, window.part])))
+
+
+def _dynamic_factor(window: Window, row: int, order: int) -> Value:
+    """K_v of ISO 6336-1: the largest over the nominal force."""
+    nominal = float(window.run.nominal_force[row])
+    return Value(_peak_mesh_force(window, row, order).value / nominal if nominal > 0.0 else float("nan"))
+
+
+def _contact_loss(window: Window, row: int, _order: int) -> Value:
+    """Share of the samples in which no flank touches."""
+    return Value(float(np.mean(window.run.contact[row, window.part] == ContactState.OFF)))
+
+
+def _mesh_load_factor(window: Window, _row: int, _order: int) -> Value:
+    """K_gamma of ISO 6336-1 at the central gear where planets share worst, over the whole run."""
+    shared = planet_load_sharing(window.run)
+    if not shared:
+        raise InputError("quantity", "mesh_load_factor", "of a scene with planets")
+    return Value(max(sharing.mesh_load_factor for sharing in shared))
+
+
+QUANTITIES: dict[str, Quantity] = {
+    "bearing_force": Quantity("bearing force", "N", "bearing", True, _bearing_force),
+    "dte_order": Quantity("dynamic transmission error", "m", "mesh", True, _dte_order),
+    "dte_rms": Quantity("dynamic transmission error, rms", "m", "mesh", False, _dte_rms),
+    "dte_peak_to_peak": Quantity(
+        "dynamic transmission error, peak to peak", "m", "mesh", False, _dte_peak_to_peak
+    ),
+    "peak_mesh_force": Quantity("peak mesh force", "N", "mesh", False, _peak_mesh_force),
+    "dynamic_factor": Quantity("dynamic factor K_v", "", "mesh", False, _dynamic_factor),
+    "contact_loss": Quantity("contact loss", "", "mesh", False, _contact_loss),
+    "mesh_load_factor": Quantity("mesh load factor K_gamma", "", "", False, _mesh_load_factor),
+}
+"""Responses by name."""

@@ -1,0 +1,211 @@
+"""``loa study``: many scenes from two files, equal to single runs, taken up again after a kill."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+import tomllib
+from functools import wraps
+from pathlib import Path
+from typing import Any, get_args
+
+import numpy as np
+import pytest
+from scene_files import scene_file
+from typer.testing import CliRunner, Result
+
+from dynamics.results import RunResult
+from dynamics.study import QUANTITIES, Study
+from dynamics.study.batch import run_batch
+from service.cli.commands import app
+from service.report import write_report
+from service.schemas import read_model
+from service.schemas.scene import SceneInput
+from service.studies.study import Inputs, QuantityName
+from service.studies.study.paths import part_name, places_of, with_value
+from service.studies.study.run import facts
+
+STUDY = """
+samples = 3
+seed = 5
+keep_worst = 1
+[[factors]]
+path = "loads.brake.torque_n_m"
+levels = [50.0, 100.0]
+[[factors]]
+path = "bushings.*.radial_stiffness_n_per_m"
+normal = { mean = 2e8, standard_deviation = 1e7, low = 1.5e8 }
+[[responses]]
+quantity = "bearing_force"
+part = "left"
+order = 1
+[[responses]]
+quantity = "dte_peak_to_peak"
+"""
+
+
+def loa(*arguments: object) -> Result:
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+def study_file(folder: Path, text: str = STUDY) -> Path:
+    path = folder / "study.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    return scene_file(tmp_path)
+
+
+def test_figures_are_those_of_loa_simulate(scene: Path, tmp_path: Path) -> None:
+    result = loa("study", scene, study_file(tmp_path), "-o", tmp_path / "out", "--json")
+    assert result.exit_code == 0, result.output
+    answer = json.loads(result.stdout)
+    made = Study.from_netcdf(tmp_path / "out" / "study.nc")
+    figures = facts(made)
+    assert figures == {name: answer[name] for name in figures}
+    point = int(made.worst[0])
+    torque, stiffness = made.value[point].tolist()
+    text = (
+        scene.read_text(encoding="utf-8").replace("[100.0]", f"[{torque!r}]").replace("2e8", repr(stiffness))
+    )
+    (tmp_path / "alone.toml").write_text(text, encoding="utf-8")
+    assert loa("simulate", tmp_path / "alone.toml", "-o", tmp_path / "alone.nc").exit_code == 0
+    alone = RunResult.from_netcdf(tmp_path / "alone.nc")
+    assert made.figure[point, 1] == np.ptp(alone.dynamic_transmission_error[0])
+    kept = RunResult.from_netcdf(tmp_path / "out" / "study_runs" / f"point_{point}.nc")
+    np.testing.assert_array_equal(kept.bearing_force, alone.bearing_force)
+
+
+def test_two_processes_give_the_same_bits(scene: Path, tmp_path: Path) -> None:
+    for folder, further in (("one", ()), ("two", ("--workers", 2))):
+        assert loa("study", scene, study_file(tmp_path), "-o", tmp_path / folder, *further).exit_code == 0
+    one, two = (Study.from_netcdf(tmp_path / folder / "study.nc") for folder in ("one", "two"))
+    np.testing.assert_array_equal(one.figure, two.figure)
+
+
+def test_a_killed_study_goes_on_where_it_was(scene: Path, tmp_path: Path) -> None:
+    many = STUDY.replace("samples = 3", "samples = 40").replace("keep_worst = 1", "")
+    arguments = ["study", str(scene), str(study_file(tmp_path, many)), "-o", str(tmp_path / "killed")]
+    kept = tmp_path / "cache" / "lineofaction" / "studies"
+    with subprocess.Popen([sys.executable, "-m", "service.cli", *arguments], env=os.environ) as running:
+        deadline = time.monotonic() + 120.0
+        while len(list(kept.glob("*/*"))) < 3 and time.monotonic() < deadline:
+            assert running.poll() is None
+            time.sleep(0.002)
+        running.send_signal(signal.SIGKILL)
+    before = [file for file in kept.glob("*/*") if file.suffix != ".partial"]
+    assert 3 <= len(before) < 10 and not (tmp_path / "killed" / "study.nc").exists()
+    done = []
+
+    @wraps(run_batch)
+    def counted(task: Any, batch: Any) -> Any:
+        done.append(len(batch))
+        return run_batch(task, batch)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("dynamics.study.run_study.run_batch", counted)
+        assert loa(*arguments).exit_code == 0
+    assert len(done) == 10 - len(before)  # of 80 runs, 8 in a batch
+    assert not list(kept.glob("*"))
+    assert loa(*arguments[:-1], tmp_path / "whole").exit_code == 0
+    killed, whole = (Study.from_netcdf(tmp_path / name / "study.nc") for name in ("killed", "whole"))
+    np.testing.assert_array_equal(killed.figure, whole.figure)
+
+
+@pytest.mark.parametrize(
+    ("path", "said"),
+    [
+        ("loads.brake.torque_nm", "torque_n_m"),
+        ("loads.break.torque_n_m", "brake"),
+        ("lods.brake.torque_n_m", "loads"),
+        ("meshes.mesh.case.pair.pinion.tip_relif_um", "tip_relief_um"),
+        ("meshes.mesh.case.pair.pinion.face_width_mm", "tip_relief_um"),
+        ("meshes.mesh.case.pair.pinion.tip_relief_um", "takes a database"),
+    ],
+)
+def test_a_path_that_there_is_not_is_refused_with_the_nearest(
+    scene: Path, tmp_path: Path, path: str, said: str
+) -> None:
+    text = STUDY.replace("loads.brake.torque_n_m", path)
+    result = loa("study", scene, study_file(tmp_path, text))
+    assert result.exit_code == 2
+    assert "factors[0].path" in result.stderr and path in result.stderr and said in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "field"),
+    [
+        ("samples = 3", "", "samples"),
+        ("levels = [50.0, 100.0]", "", "factors[0].levels"),
+        ("levels = [50.0, 100.0]", "levels = [1.0]\niso1328_class = 6", "factors[0].levels"),
+        ("levels = [50.0, 100.0]", "iso1328_class = 6", "factors[0].iso1328_class"),
+        ('part = "left"', 'part = "middle"', "responses[0].part"),
+        ("order = 1", "", "order"),
+        ('"bushings.*.radial', '"bushings.*.radiant', "factors[1].path"),
+        ("levels = [50.0", "levels = [-1e300", "factors[0].levels[0]"),
+    ],
+)
+def test_what_cannot_be_is_refused_by_its_field(
+    scene: Path, tmp_path: Path, old: str, new: str, field: str
+) -> None:
+    text = STUDY.replace(old, new)
+    result = loa("study", scene, study_file(tmp_path, text))
+    assert result.exit_code == 2 and field in result.stderr, result.output
+
+
+def test_a_path_names_parts_entries_and_what_is_left_out(scene: Path) -> None:
+    inputs = read_model(SceneInput, scene)
+    assert places_of(inputs, "path", "bushings.*.damping_ratio") == (
+        ("bushings", 0, "damping_ratio"), ("bushings", 1, "damping_ratio"),
+    )  # fmt: skip
+    assert places_of(inputs, "path", "loads.brake.torque_n_m[0]") == (("loads", 0, "torque_n_m", 0),)
+    (backlash,) = places_of(inputs, "path", "meshes.mesh.coast_flank.backlash_um")
+    table = inputs.model_dump(mode="json")
+    with_value(table, backlash, 30.0)
+    assert table["meshes"][0]["coast_flank"] == {"backlash_um": 30.0}
+    with_value(table, ("drives", 0, "speed_rpm"), 5.0)
+    assert table["drives"][0]["speed_rpm"] == [5.0] * len(inputs.drives[0].speed_rpm or ())
+    assert part_name(inputs.loads[0], 0) == "brake"
+
+
+def test_the_quantities_are_those_of_the_library() -> None:
+    assert get_args(QuantityName) == tuple(QUANTITIES)
+
+
+def test_a_value_that_the_scene_refuses_is_a_failed_point(scene: Path, tmp_path: Path) -> None:
+    text = STUDY.replace("levels = [50.0, 100.0]", "levels = [50.0, 1e5]")  # beyond what the table holds
+    assert loa("study", scene, study_file(tmp_path, text), "-o", tmp_path / "out").exit_code == 0
+    made = Study.from_netcdf(tmp_path / "out" / "study.nc")
+    failed = facts(made)["failed"]
+    assert [row["point"] for row in failed] == [3, 4, 5] and all(row["reason"] for row in failed)
+    assert np.isnan(made.figure[3:]).all() and np.isfinite(made.figure[:3]).all()
+
+
+def test_the_report_has_the_runs_and_their_plots(scene: Path, tmp_path: Path) -> None:
+    assert loa("study", scene, study_file(tmp_path), "-o", tmp_path / "out").exit_code == 0
+    write_report(tmp_path / "out" / "study.nc", tmp_path / "again.html")
+    for page in (tmp_path / "out" / "study.html", tmp_path / "again.html"):
+        text = page.read_text(encoding="utf-8")
+        for word in ("study_curves", "study_distribution", "study_tornado", "torque_n_m", "energy audit"):
+            assert word in text
+
+
+def test_a_study_of_failed_runs_alone_is_still_shown(scene: Path, tmp_path: Path) -> None:
+    text = STUDY.replace("levels = [50.0, 100.0]", "levels = [1e5, 2e5]")
+    result = loa("study", scene, study_file(tmp_path, text), "-o", tmp_path / "out")
+    assert result.exit_code == 0, result.output
+    assert "Runs without figures: 6 of 6" in result.output
+    assert Study.from_netcdf(tmp_path / "out" / "study.nc").worst.size == 0
+
+
+def test_a_factor_says_whether_it_is_sampled() -> None:
+    inputs = Inputs.model_validate(tomllib.loads(STUDY))
+    assert [factor.sampled for factor in inputs.factors] == [False, True]
