@@ -73,8 +73,8 @@ class Note:
 class HeatMap:
     """Cells colored by a value; NaN stays blank.
 
-    `x` (n,) and `y` (m,) are the middles of the cells, `z` (m, n); colors run from 0 to `largest`; `label`
-    has the unit after its last comma.
+    `x` (n,) and `y` (m,) are the middles of the cells, `z` (m, n); colors run from `least` to `largest`;
+    `label` has the unit after its last comma.
     """
 
     x: FloatArray
@@ -82,6 +82,7 @@ class HeatMap:
     z: FloatArray
     label: str
     largest: float
+    least: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.colors import LinearSegmentedColormap, Normalize
 
 from service.drawing import palette
 from service.drawing.figure import HeatMap, Strokes
@@ -30,9 +30,8 @@ def draw_shade(ax: Axes, shade: HeatMap | Strokes) -> None:
 def _cells(ax: Axes, shade: HeatMap) -> Any:
     """Draw a heat map."""
     z = np.ma.masked_invalid(shade.z)
-    return ax.pcolormesh(
-        _edges(shade.x), _edges(shade.y), z, cmap=color_map(), vmin=0.0, vmax=shade.largest, rasterized=True
-    )
+    x, y, span = _edges(shade.x), _edges(shade.y), Normalize(shade.least, shade.largest)
+    return ax.pcolormesh(x, y, z, cmap=color_map(), norm=span, rasterized=True)
 
 
 def _edges(middles: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:

@@ -47,7 +47,7 @@ def _cells(shade: HeatMap, domain: list[float]) -> Json:
         "x": numbers(shade.x),
         "y": numbers(shade.y),
         "z": [numbers(row) for row in shade.z],
-        "zmin": 0.0,
+        "zmin": shade.least,
         "zmax": shade.largest,
         "hoverongaps": False,
         "colorscale": color_scale(),

@@ -33,7 +33,7 @@ def grid_figures(study: Study) -> tuple[Figure, ...]:
     if len(axes) == 1:
         return (_curves(study, axes[0], shown),)
     panels = tuple(_map(study, axes[0], axes[1], response) for response in shown)
-    caption = "Means over all other factors and samples. White: no run there has figures."
+    caption = "Means over all other factors and samples; colors span least to largest. White: no figures."
     return (
         Figure("study_map", _over(study, axes[:2]), caption, _extreme(study), panels),
         _curves(study, axes[0], shown),
@@ -55,10 +55,17 @@ def _map(study: Study, across: int, up: int, response: int) -> Panel:
         values = study.figure[here, response]
         if np.isfinite(values).any():
             z[row, column] = np.nanmean(values) / one
-    largest = float(np.nanmax(z, initial=0.0)) or 1.0
-    shade = HeatMap(x, y, z, unit(study, response), largest)
+    least, largest = _range(z)
+    shade = HeatMap(x, y, z, unit(study, response), largest, least)
     axes = Axis(study.factor[across]), Axis(study.factor[up])
     return Panel(*axes, title=study.response[response], shade=shade)
+
+
+def _range(z: FloatArray) -> tuple[float, float]:
+    """Return least and largest value, apart where all are alike."""
+    known = z[np.isfinite(z)]
+    least, largest = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
+    return least, largest if largest > least else least + 1.0
 
 
 def _curves(study: Study, axis: int, shown: range) -> Figure:

@@ -56,6 +56,11 @@ def kept(result: Study, means: Means) -> Mapping[str, Path]:
     return {key: file for key, file in files.items() if file.is_file()}
 
 
+def missing(result: Study) -> str:
+    """Say that no run has figures."""
+    return "" if result.usable else f"No run has figures. The first: {result.reason[0]}"
+
+
 RUN = Computation(
     study_of,
     facts,
@@ -64,4 +69,5 @@ RUN = Computation(
     check=check,
     resumed=True,
     kept=kept,
+    failure=missing,
 )

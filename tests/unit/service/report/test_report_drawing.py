@@ -206,6 +206,16 @@ def test_cells_keep_their_places_and_blanks() -> None:
     assert "MPa" in upper["hovertemplate"]
 
 
+def test_colors_span_least_to_largest() -> None:
+    shade = HeatMap(
+        np.arange(3.0), np.arange(2.0), 1.0 + 0.01 * np.arange(6.0).reshape(2, 3), "K_v, ratio", 1.05, 1.0
+    )
+    drawn = plotly_figure(shaded(shade, 1))["data"][0]
+    assert (drawn["zmin"], drawn["zmax"]) == (1.0, 1.05)
+    _, scale = _panel_sheet(shaded(shade, 1).content).axes  # type: ignore[arg-type]
+    assert scale.get_ylim() == (1.0, 1.05)
+
+
 def test_every_stroke_is_drawn_once_wider_with_its_value() -> None:
     value = np.array([0.0, 1.0, 50.0, 100.0, 0.0])
     x = np.stack([np.arange(5.0), np.arange(5.0) + 0.5], axis=1)

@@ -198,10 +198,10 @@ def test_the_report_has_the_runs_and_their_plots(scene: Path, tmp_path: Path) ->
             assert word in text
 
 
-def test_a_study_of_failed_runs_alone_is_still_shown(scene: Path, tmp_path: Path) -> None:
+def test_a_study_of_failed_runs_alone_is_still_shown_and_has_failed(scene: Path, tmp_path: Path) -> None:
     text = STUDY.replace("levels = [50.0, 100.0]", "levels = [1e5, 2e5]")
     result = loa("study", scene, study_file(tmp_path, text), "-o", tmp_path / "out")
-    assert result.exit_code == 0, result.output
+    assert result.exit_code == 1 and "No run has figures" in result.stderr
     assert "Runs without figures: 6 of 6" in result.output
     assert Study.from_netcdf(tmp_path / "out" / "study.nc").worst.size == 0
 
