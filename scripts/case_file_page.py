@@ -11,25 +11,30 @@ from dataclasses import MISSING
 from pathlib import Path
 
 from bounds import Choice
+from fe_contact.geometry import Gear, GearPair, RingGear
 from service.convert.vocabulary import DECLARED
+from service.schemas.case import OF_PAIR
 from service.schemas.declared import Figure, figures
+from service.schemas.gear import of_gear
+from service.schemas.wheel import RING
 
-KINDS = {f"{kind.__module__.partition('.')[0]}.{kind.__name__}": kind for kind in DECLARED}
+TABLES = {kind: figures(kind) for kind in DECLARED} | {GearPair: OF_PAIR, Gear: of_gear(Gear), RingGear: RING}
+BY_NAME = {f"{kind.__module__.partition('.')[0]}.{kind.__name__}": own for kind, own in TABLES.items()}
 TABLE = re.compile(r"(<!-- fields of ([\w.]+) -->\n)(.*?)(<!-- end of fields -->)", re.DOTALL)
 HEAD = "| field | meaning | accepted | default |\n|---|---|---|---|\n"
 
 
 def page(text: str) -> str:
     """Return the page with its tables anew."""
-    return TABLE.sub(lambda found: f"{found[1]}{table(KINDS[found[2]], found[3])}{found[4]}", text)
+    return TABLE.sub(lambda found: f"{found[1]}{table(BY_NAME[found[2]], found[3])}{found[4]}", text)
 
 
-def table(kind: type, before: str = "") -> str:
-    """Return the table of the declared fields of a dataclass, after the rows of others that it had before."""
-    own = {f"| `{figure.field}`" for figure in figures(kind)}
+def table(declared: tuple[Figure, ...], before: str = "") -> str:
+    """Return the table of declared fields, after the rows of others that it had before."""
+    own = {f"| `{figure.field}`" for figure in declared}
     lines = before.splitlines(keepends=True)
     others = [line for line in lines if line.startswith("| `") and line.partition(" | ")[0] not in own]
-    return HEAD + "".join((*others, *(f"{row(figure)}\n" for figure in figures(kind))))
+    return HEAD + "".join((*others, *(f"{row(figure)}\n" for figure in declared)))
 
 
 def row(figure: Figure) -> str:

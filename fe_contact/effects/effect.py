@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -57,7 +57,7 @@ class ContactScene:
     def with_gears(self, change: Callable[[Toothing], dict[str, object]]) -> ContactScene:
         """Return the scene with some fields of both gears changed."""
         gears = {"pinion": self.pair.pinion, "wheel": self.pair.wheel}
-        changed = {name: replace(gear, **change(gear)) for name, gear in gears.items()}  # type: ignore[arg-type]
+        changed: Any = {name: replace(gear, **change(gear)) for name, gear in gears.items()}  # type: ignore[arg-type]
         return replace(self, pair=replace(self.pair, **changed))
 
     @property

@@ -44,7 +44,7 @@ class ShaftDeflection(Effect):
 
     def without(self, scene: ContactScene) -> ContactScene:
         """Return the scene on rigid shafts."""
-        return replace(scene, pair=replace(scene.pair, shafts=(None, None)))  # type: ignore[call-arg]  # a field of pairs
+        return replace(scene, pair=replace(scene.pair, shafts=(None, None)))
 
 
 def _term(scene: ContactScene) -> ShaftCompliance:

@@ -5,45 +5,54 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from bounds import SiNote, at_most
-from fe_contact.checks import positive, within
+from bounds import Declared, Kind, at_most, between, declared, described, required, up_to
+from fe_contact.checks import declared_fields
 from fe_contact.errors import InfeasibleGeometry
 
+NORMAL_MODULE = Declared(Kind.LENGTH, "m", up_to(10.0), "Normal module m_n", 0.004)
+PRESSURE_ANGLE = Declared(
+    Kind.ANGLE,
+    "rad",
+    between(math.radians(10.0), math.radians(35.0)),
+    "Normal pressure angle",
+    math.radians(20.0),
+)
+ADDENDUM = Declared(
+    Kind.RATIO, "", between(0.1, 3.0), "Addendum h_aP of the basic rack in normal modules", 1.0
+)
+DEDENDUM = Declared(
+    Kind.RATIO, "", between(0.1, 4.0), "Dedendum h_fP of the basic rack in normal modules", 1.25
+)
+ROOT_RADIUS = Declared(
+    Kind.RATIO,
+    "",
+    between(0.0, 2.0),
+    "Root fillet radius rho_fP of the basic rack in normal modules; at most the full fillet",
+    0.38,
+)
 
+
+@described
 @dataclass(frozen=True)
 class BasicRack:
-    """Standard basic rack tooth profile.
-
-    Attributes
-    ----------
-    normal_module : float
-        m_n in m.
-    pressure_angle : float
-        alpha_P in the normal plane, rad.
-    addendum_coefficient, dedendum_coefficient : float
-        h_aP / m_n and h_fP / m_n.
-    root_radius_coefficient : float
-        rho_fP / m_n: fillet radius of the rack, the tip rounding of the tool.
+    """Standard basic rack tooth profile; its root radius is the tip rounding of the tool.
 
     Raises
     ------
+    InputError
+        A value out of its bounds.
     InfeasibleGeometry
         "root radius": the rounding does not fit between the two flanks of the tooth space.
     """
 
-    normal_module: float
-    pressure_angle: float = math.radians(20.0)
-    addendum_coefficient: float = 1.0
-    dedendum_coefficient: float = 1.25
-    root_radius_coefficient: float = 0.38
+    normal_module: float = required(NORMAL_MODULE)
+    normal_pressure_angle: float = declared(math.radians(20.0), PRESSURE_ANGLE)
+    addendum_coefficient: float = declared(1.0, ADDENDUM)
+    dedendum_coefficient: float = declared(1.25, DEDENDUM)
+    root_radius_coefficient: float = declared(0.38, ROOT_RADIUS)
 
     def __post_init__(self) -> None:
-        positive("normal_module", self.normal_module, SiNote("In m: module 4 mm is 0.004."))
-        low, high = math.radians(10.0), math.radians(35.0)
-        within("normal_pressure_angle", self.pressure_angle, low, high, SiNote("In rad: 20 deg is 0.349."))
-        within("addendum_coefficient", self.addendum_coefficient, 0.1, 3.0, "The usual value is 1.")
-        within("dedendum_coefficient", self.dedendum_coefficient, 0.1, 4.0, "The usual value is 1.25.")
-        within("root_radius_coefficient", self.root_radius_coefficient, 0.0, 2.0, "The usual value is 0.38.")
+        declared_fields(self)
         self._refuse_large_root_radius()
 
     def _refuse_large_root_radius(self) -> None:
@@ -65,8 +74,8 @@ class BasicRack:
     @property
     def full_fillet_coefficient(self) -> float:
         """Largest rho_fP / m_n: one arc joins both flanks (negative: the flanks already cross)."""
-        space = math.pi / 4.0 - self.dedendum_coefficient * math.tan(self.pressure_angle)
-        return space * math.cos(self.pressure_angle) / (1.0 - math.sin(self.pressure_angle))
+        space = math.pi / 4.0 - self.dedendum_coefficient * math.tan(self.normal_pressure_angle)
+        return space * math.cos(self.normal_pressure_angle) / (1.0 - math.sin(self.normal_pressure_angle))
 
     @property
     def dedendum(self) -> float:

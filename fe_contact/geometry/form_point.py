@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 from fe_contact.flank.involute import involute_function, roll_length_at_radius
 from fe_contact.geometry.trochoid import Trochoid
@@ -59,6 +58,8 @@ def find_form_point(
     """
     if tangent_roll_length >= 0.0:
         return FormPoint(tangent_roll_length, normal_pressure_angle, undercut=False)
+
+    from scipy.optimize import brentq  # noqa: PLC0415 (start-up time)
 
     def radius(tool_angle: float) -> float:
         return float(trochoid.radius(np.array(tool_angle)))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from fe_contact.body.shaft import Shafts
 from fe_contact.geometry.backlash import reference_center_distance
 from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.pair_feasibility import refuse_infeasible_pair, refuse_strangers
@@ -17,17 +16,7 @@ class GearPair(ParallelAxes):
 
     Both gears are external; `InternalGearPair` has a ring gear. `ParallelAxes` says what a pair can answer.
 
-    Attributes
-    ----------
-    pinion, wheel : Gear
-        Of equal normal module, pressure angle and opposite helix angle.
-    center_distance : float, optional
-        a in m; default: the distance without backlash of gears without thickness allowance, so that the
-        allowances become backlash.
-    axial_offset : float
-        Distance in m of the wheel's mid-face from the pinion's, along the pinion's axis.
-    shafts : (Shaft or None, Shaft or None)
-        What carries pinion and wheel between two bearings each; None is rigid.
+    They are of equal normal module and pressure angle, and of opposite helix angle.
 
     Raises
     ------
@@ -38,11 +27,7 @@ class GearPair(ParallelAxes):
         "interference", "tip clearance".
     """
 
-    pinion: Gear
     wheel: Gear
-    center_distance: float = None  # type: ignore[assignment]  # a float after construction
-    axial_offset: float = 0.0
-    shafts: Shafts = (None, None)
 
     def __post_init__(self) -> None:
         refuse_strangers(self.pinion, self.wheel)

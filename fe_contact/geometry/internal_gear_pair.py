@@ -5,9 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from fe_contact.body.shaft import Shafts
 from fe_contact.geometry.backlash import reference_center_distance
-from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.internal_interference import tip_clearances
 from fe_contact.geometry.internal_pair_feasibility import (
     refuse_infeasible_internal_pair,
@@ -27,22 +25,9 @@ class InternalGearPair(ParallelAxes):
     When the ring drives, the same contacts are run through in the opposite order: deflections and forces at a
     position are the same, the position falls with time.
 
-    Attributes
-    ----------
-    pinion : Gear
-        The external gear.
-    wheel : RingGear
-        Of equal normal module, pressure angle and helix angle: the hand is the same.
-    center_distance : float, optional
-        a in m, > 0 (the standard's -a); default: the distance without backlash of gears without thickness
-        allowance, so that the allowances become backlash. Backlash falls as the distance grows.
-    axial_offset : float
-        Distance in m of the wheel's mid-face from the pinion's, along the pinion's axis.
-    shafts : (Shaft or None, Shaft or None)
-        What carries pinion and ring between two bearings each; None is rigid.
-    radial_assembly : bool
-        Whether the pinion is put in its place radially, which "trimming interference" may forbid; else it is
-        put in along the axis.
+    Both are of equal normal module, pressure angle and helix angle: the hand is the same. The center distance
+    is positive (the standard's -a); backlash falls as it grows. With `radial_assembly` the pinion is put in
+    its place radially, which "trimming interference" may forbid; else it is put in along the axis.
 
     Raises
     ------
@@ -54,11 +39,7 @@ class InternalGearPair(ParallelAxes):
         "tip interference", "trochoidal interference", "trimming interference".
     """
 
-    pinion: Gear
     wheel: RingGear
-    center_distance: float = None  # type: ignore[assignment]  # a float after construction
-    axial_offset: float = 0.0
-    shafts: Shafts = (None, None)
     radial_assembly: bool = False
 
     def __post_init__(self) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from bounds import LIMIT_SLACK, Quantity, SiNote, Text, above, at_least, at_most, below
-from fe_contact.checks import positive
+from bounds import LIMIT_SLACK, Quantity, Text, above, at_least, at_most, below
+from fe_contact.checks import declared_fields
 from fe_contact.errors import InfeasibleGeometry
 from fe_contact.geometry.backlash import base_radius_sum, tight_center_distance
 from fe_contact.geometry.internal_interference import (
@@ -38,7 +38,7 @@ def refuse_tooth_numbers(pinion: Toothing, ring: Toothing) -> None:
 
 def refuse_infeasible_internal_pair(pair: ParallelAxes) -> None:
     """Raise `InfeasibleGeometry` if the two gears cannot run at their center distance."""
-    positive("center_distance", pair.center_distance, SiNote("In m, positive: 80 mm is 0.08."))
+    declared_fields(pair)
     refuse_face_overlap(pair)
     _refuse_short_distance(pair)
     refuse_jamming(pair)

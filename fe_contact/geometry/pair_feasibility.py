@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NoReturn
 
 from bounds import LIMIT_SLACK, Quantity, SiNote, Text, Words, at_least, at_most, below, exactly
-from fe_contact.checks import finite, positive
+from fe_contact.checks import declared_fields, finite
 from fe_contact.errors import InfeasibleGeometry
 from fe_contact.flank.modification import UNMODIFIED
 from fe_contact.geometry.backlash import (
@@ -50,7 +50,7 @@ def refuse_strangers(pinion: Toothing, wheel: Toothing) -> None:
 
 def refuse_infeasible_pair(pair: ParallelAxes) -> None:
     """Raise `InfeasibleGeometry` if two external gears cannot run at their center distance."""
-    positive("center_distance", pair.center_distance, SiNote("In m: 80 mm is 0.08."))
+    declared_fields(pair)
     refuse_face_overlap(pair)
     refuse_jamming(pair)
     _refuse_contact_ratio(pair)
@@ -175,7 +175,7 @@ def _largest_clear_tip(pair: ParallelAxes, gear: Toothing, mate: Toothing) -> fl
 
     def cuts(radius: float) -> bool:
         tip_diameter = 2.0 * radius
-        shorter = replace(gear, tip_diameter=tip_diameter, modification=UNMODIFIED)  # type: ignore[call-arg]
+        shorter = replace(gear, tip_diameter=tip_diameter, modification=UNMODIFIED)
         return fillet_penetration(pair, shorter, mate) > FILLET_SLACK * gear.normal_module
 
     low += 1e-6 * gear.normal_module

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bounds import LIMIT_SLACK
+from bounds import LIMIT_SLACK, Declared, Kind, declared, described, up_to
 from fe_contact.geometry.backlash import allowance_backlash, base_circle_backlash, working_pressure_angle
 from fe_contact.geometry.path_of_contact import PathOfContact
 from fe_contact.geometry.printed_data import backlash_rounding
@@ -26,31 +26,24 @@ if TYPE_CHECKING:
     from fe_contact.geometry.toothing import Toothing
 
 
+_DISTANCE = Declared(Kind.LENGTH, "m", up_to(1000.0), "Center distance a", 0.08)
+
+
+@described
 @dataclass(frozen=True)
 class ParallelAxes:
-    """Two gears on parallel axes; use `GearPair` or `InternalGearPair`. Gear 1 (`pinion`) drives gear 2."""
+    """Two gears on parallel axes; use `GearPair` or `InternalGearPair`. Gear 1 (`pinion`) drives gear 2.
 
-    if TYPE_CHECKING:  # fields of the kinds
+    A center distance that is left out is that without backlash of gears without thickness allowance, so that
+    the allowances become backlash. `axial_offset`: distance in m of the wheel's mid-face from the pinion's,
+    along the pinion's axis; `shafts`: what carries pinion and wheel between two bearings each, None is rigid.
+    """
 
-        @property
-        def pinion(self) -> Gear:
-            """Gear 1."""
-
-        @property
-        def wheel(self) -> Toothing:
-            """Gear 2."""
-
-        @property
-        def center_distance(self) -> float:
-            """Center distance a in m, > 0."""
-
-        @property
-        def axial_offset(self) -> float:
-            """Distance in m of the wheel's mid-face from the pinion's, along the pinion's axis."""
-
-        @property
-        def shafts(self) -> Shafts:
-            """The bodies of pinion and wheel."""
+    pinion: Gear
+    wheel: Toothing
+    center_distance: float = declared(None, _DISTANCE)
+    axial_offset: float = 0.0
+    shafts: Shafts = (None, None)
 
     def at_center_distance(self, center_distance: float) -> Self:
         """Return the same gears at another distance in m.
@@ -60,7 +53,7 @@ class ParallelAxes:
         InputError
             They do not mesh there.
         """
-        return replace(self, center_distance=center_distance)  # type: ignore[call-arg]  # a field of the kinds
+        return replace(self, center_distance=center_distance)
 
     # Kinematics
 

@@ -8,86 +8,90 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection
-from dataclasses import dataclass, replace
+from dataclasses import KW_ONLY, dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Self
 
+from bounds import Declared, Kind, SiNote, between, declared, described, integers, required, up_to
 from fe_contact.body.bore_seat import CLAMPED, BoreSeat
+from fe_contact.checks import declared_fields, within
 from fe_contact.flank.involute import involute_function, roll_length_at_radius
+from fe_contact.flank.modification import UNMODIFIED, FlankModification
+from fe_contact.geometry.basic_rack import ADDENDUM, DEDENDUM, NORMAL_MODULE, PRESSURE_ANGLE, ROOT_RADIUS
+from fe_contact.geometry.pitch_deviation import NO_PITCH_DEVIATION, PitchDeviation
+from fe_contact.material import STEEL, Material
 
 if TYPE_CHECKING:
     from fe_contact.body.gear_blank import Web
-    from fe_contact.flank.modification import FlankModification
     from fe_contact.geometry.fillet_curve import FilletCurve
     from fe_contact.geometry.form_point import FormPoint
-    from fe_contact.geometry.pitch_deviation import PitchDeviation
-    from fe_contact.material import Material
     from fe_contact.types import Json
 
 
+def counted(low: int, high: int) -> Declared:
+    """Return the declaration of a number of teeth."""
+    return Declared(Kind.COUNT, "", integers(low, high), "Number of teeth", 20)
+
+
+_FACE = Declared(Kind.LENGTH, "m", up_to(50.0), "Face width b", 0.025)
+_LIMIT = math.radians(50.0)
+_HELIX = Declared(
+    Kind.ANGLE,
+    "rad",
+    between(-_LIMIT, _LIMIT),
+    "Helix angle at the reference circle; > 0: right hand. External gears mesh with opposite hands",
+    0.0,
+)
+PROFILE_SHIFT = Declared(Kind.RATIO, "", between(-3.0, 3.0), "Profile shift x in normal modules", 0.2)
+_TIP = Declared(
+    Kind.LENGTH,
+    "m",
+    up_to(500.0),
+    "Tip diameter; left out: d + 2 m_n (h_aP + x), of a ring gear d - 2 m_n (h_aP + x)",
+    0.088,
+)
+_ALLOWANCE = Declared(
+    Kind.LENGTH,
+    "m",
+    between(0.0, 5.0),
+    "Normal tooth thickness removed at the reference circle, which is backlash; up to half a module",
+    5e-5,
+    written="um",
+)
+
+MATING = ("normal_module", "normal_pressure_angle", "helix_angle")
+"""Fields in which mating gears agree, but for the hand of external ones."""
+
+
+@described
 @dataclass(frozen=True)
 class Toothing:
-    """Closed forms of a cylindrical involute gear; use `Gear` or `RingGear`.
+    """Data and closed forms of a cylindrical involute gear; use `Gear` or `RingGear`.
 
-    Attributes
-    ----------
-    teeth : int
-        Number of teeth, positive for both kinds.
-    normal_module, face_width : float
-        m_n and b in m.
+    All numbers are positive for both kinds. The tool of a thickness allowance is that much thicker; the root
+    circle stays where it is. `modification`: departures of the flanks from the involute helicoid; `material`:
+    elasticity; `pitch_deviation`: of the loaded flank of every tooth.
     """
 
-    teeth: int
-    normal_module: float
-    face_width: float
+    teeth: int = required(counted(4, 4000))
+    normal_module: float = required(NORMAL_MODULE)
+    face_width: float = required(_FACE)
+    _: KW_ONLY
+    normal_pressure_angle: float = declared(math.radians(20.0), PRESSURE_ANGLE)
+    helix_angle: float = declared(0.0, _HELIX)
+    profile_shift_coefficient: float = declared(0.0, PROFILE_SHIFT)
+    addendum_coefficient: float = declared(1.0, ADDENDUM)
+    dedendum_coefficient: float = declared(1.25, DEDENDUM)
+    root_radius_coefficient: float = declared(0.38, ROOT_RADIUS)
+    tip_diameter: float | None = declared(None, _TIP)
+    thickness_allowance: float = declared(0.0, _ALLOWANCE)
+    modification: FlankModification = UNMODIFIED
+    material: Material = STEEL
+    pitch_deviation: PitchDeviation = NO_PITCH_DEVIATION
 
     sign: ClassVar[int] = 1  # of the tooth number in ISO 21771-1: +1 external, -1 internal
 
-    if TYPE_CHECKING:  # fields of the kinds, whose order in the constructor is theirs
-
-        @property
-        def normal_pressure_angle(self) -> float:
-            """alpha_n, rad."""
-
-        @property
-        def helix_angle(self) -> float:
-            """beta, rad."""
-
-        @property
-        def profile_shift_coefficient(self) -> float:
-            """x, in normal modules."""
-
-        @property
-        def addendum_coefficient(self) -> float:
-            """h_aP / m_n."""
-
-        @property
-        def dedendum_coefficient(self) -> float:
-            """h_fP / m_n."""
-
-        @property
-        def root_radius_coefficient(self) -> float:
-            """rho_fP / m_n, or rho_a0 / m_n of the cutter of a ring gear."""
-
-        @property
-        def tip_diameter(self) -> float | None:
-            """d_a in m, if given."""
-
-        @property
-        def thickness_allowance(self) -> float:
-            """A_s, m."""
-
-        @property
-        def modification(self) -> FlankModification:
-            """Departures of the flanks from the involute helicoid."""
-
-        @property
-        def pitch_deviation(self) -> PitchDeviation:
-            """Of the loaded flank of every tooth."""
-
-        @property
-        def material(self) -> Material:
-            """Elasticity."""
+    if TYPE_CHECKING:  # what the kinds answer
 
         @property
         def held_radius(self) -> float:
@@ -103,6 +107,12 @@ class Toothing:
         @property
         def form_point(self) -> FormPoint:
             """Where involute and fillet meet."""
+
+    def _check_fields(self) -> None:
+        """Check all numbers one by one, and the allowance against the tooth it is taken from."""
+        declared_fields(self)
+        half, note = 0.5 * self.normal_module, SiNote("In m: 0.1 mm is 1e-4.")
+        within("thickness_allowance", self.thickness_allowance, 0.0, half, note)
 
     @cached_property
     def transverse_module(self) -> float:
@@ -145,7 +155,7 @@ class Toothing:
 
     def right_handed(self) -> Self:
         """Return the gear if it is spur or right hand, else its mirror image."""
-        return replace(self, helix_angle=abs(self.helix_angle))  # type: ignore[call-arg]  # a field of the kinds
+        return replace(self, helix_angle=abs(self.helix_angle))
 
     def with_parts(self, parts: Collection[str]) -> Toothing:
         """Return the gear without the optional parts of its body that are not among `parts`.

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import fields, replace
-from typing import Any
+from dataclasses import replace
+from typing import Any, TypeVar
 
 from bounds import inside
 from fe_contact.allowed_error import AllowedError
-from fe_contact.body.parts import PARTS
 from fe_contact.errors import FeContactError
 from fe_contact.geometry import (
     FlankGrid,
@@ -21,10 +20,11 @@ from fe_contact.geometry import (
     PitchDeviation,
     RingGear,
     Shaft,
+    Toothing,
 )
 from fe_contact.material import Material
 from fe_contact.options import AnalysisOptions, OperatingPoint, TableAxes
-from service.convert.declared import declared_part, in_si, parts_in_si
+from service.convert.declared import declared_part, in_si
 from service.convert.errors import translated
 from service.problems import BadInput
 from service.schemas import (
@@ -32,22 +32,14 @@ from service.schemas import (
     Case,
     ErrorsInput,
     LoadInput,
-    MaterialInput,
-    PairInput,
     ToothingInput,
-    WheelInput,
 )
 from service.schemas.flank import FlankPoint
-from service.units import DEGREE, MM, NM, UM
+from service.units import MM, NM, UM
 
 Json = dict[str, Any]
 
-_COEFFICIENTS = (
-    "profile_shift_coefficient",
-    "addendum_coefficient",
-    "dedendum_coefficient",
-    "root_radius_coefficient",
-)
+Toothed = TypeVar("Toothed", bound=Toothing)
 
 
 def gear_pair(case: Case) -> ParallelAxes:
@@ -59,12 +51,12 @@ def gear_pair(case: Case) -> ParallelAxes:
         No such pair exists; named by the case's fields, in its units.
     """
     with boundary_errors():
-        pinion = _gear("pinion", case.pair, case.material, +1.0)
+        pinion = _gear(Gear, "pinion", case)
         shafts = (_shaft("pinion", case.pair.pinion), _shaft("wheel", case.pair.wheel))
-        distance = case.pair.center_distance_mm * MM
+        facts = in_si(GearPair, case.pair)
         if case.pair.wheel.internal:
-            return InternalGearPair(pinion, _ring_gear(case.pair, case.material), distance, shafts=shafts)
-        return GearPair(pinion, _gear("wheel", case.pair, case.material, -1.0), distance, shafts=shafts)
+            return InternalGearPair(pinion, _gear(RingGear, "wheel", case), shafts=shafts, **facts)
+        return GearPair(pinion, _gear(Gear, "wheel", case), shafts=shafts, **facts)
 
 
 @contextmanager
@@ -79,52 +71,18 @@ def boundary_errors(prefix: str = "") -> Iterator[None]:
         raise known or error from None
 
 
-def _gear(name: str, pair: PairInput, material: MaterialInput, hand: float) -> Gear:
-    """One external gear of the pair; mating ones have opposite hands."""
-    gear = getattr(pair, name)
+def _gear(kind: type[Toothed], name: str, case: Case) -> Toothed:
+    """One gear of the pair; mating external ones have opposite hands."""
+    gear: ToothingInput = getattr(case.pair, name)
+    hand = -kind.sign if name == "wheel" else 1
     with inside(name):
-        return Gear(
-            bore_diameter=gear.bore_diameter_mm * MM,
-            **_parts(Gear, gear),
-            **_toothing(gear, pair, material, hand),
+        facts = in_si(kind, gear, case.pair)
+        return kind(
+            **facts | {"helix_angle": hand * facts["helix_angle"] + 0.0},  # -0.0 becomes 0.0
+            modification=_modification(gear),
+            material=Material(**in_si(Material, gear.material or case.material)),
+            pitch_deviation=PitchDeviation(tuple(value * UM for value in gear.pitch_deviation_um)),
         )
-
-
-def _ring_gear(pair: PairInput, material: MaterialInput) -> RingGear:
-    """Return the wheel as a ring gear, which has the hand of its pinion."""
-    wheel: WheelInput = pair.wheel
-    with inside("wheel"):
-        return RingGear(
-            rim_diameter=(wheel.rim_diameter_mm or 0.0) * MM,
-            cutter_teeth=wheel.cutter_teeth or 0,
-            cutter_profile_shift_coefficient=wheel.cutter_profile_shift_coefficient or 0.0,
-            **_parts(RingGear, wheel),
-            **_toothing(wheel, pair, material, +1.0),
-        )
-
-
-def _parts(kind: type, gear: ToothingInput) -> Json:
-    """Return the parts of a gear's body that gears of its kind have."""
-    own = {entry.name for entry in fields(kind)}
-    return parts_in_si({name: fact for name, fact in PARTS.items() if name in own}, gear)
-
-
-def _toothing(toothing: ToothingInput, pair: PairInput, material: MaterialInput, hand: float) -> Json:
-    """Fields that external gears and ring gears share."""
-    tip = toothing.tip_diameter_mm
-    return {
-        "teeth": toothing.teeth,
-        "normal_module": pair.normal_module_mm * MM,
-        "face_width": toothing.face_width_mm * MM,
-        "normal_pressure_angle": pair.normal_pressure_angle_deg * DEGREE,
-        "helix_angle": hand * pair.helix_angle_deg * DEGREE if pair.helix_angle_deg else 0.0,
-        "tip_diameter": None if tip is None else tip * MM,
-        "thickness_allowance": toothing.thickness_allowance_um * UM,
-        "modification": _modification(toothing),
-        "material": Material(**in_si(Material, toothing.material or material)),
-        "pitch_deviation": PitchDeviation(tuple(value * UM for value in toothing.pitch_deviation_um)),
-        **{coefficient: getattr(toothing, coefficient) for coefficient in _COEFFICIENTS},
-    }
 
 
 def _shaft(name: str, gear: ToothingInput) -> Shaft | None:

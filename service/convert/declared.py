@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, TypeVar
 
 from pydantic import BaseModel
 
-from bounds import Declared, inside
+from bounds import inside
 from service.schemas.declared import figures, parts_of
 
 Part = TypeVar("Part")
@@ -27,8 +26,8 @@ def declared_part(kind: type[Part], model: BaseModel | None, name: str, **furthe
         return kind(**in_si(kind, model), **further)
 
 
-def in_si(kind: type[Any], model: BaseModel) -> dict[str, Any]:
-    """Return the declared fields of a dataclass, in SI, from the model that has them.
+def in_si(kind: type[Any], *models: BaseModel) -> dict[str, Any]:
+    """Return the declared fields of a dataclass, in SI, each from the first of the models that has it.
 
     Parts that are left out are left out.
 
@@ -37,19 +36,19 @@ def in_si(kind: type[Any], model: BaseModel) -> dict[str, Any]:
     RefusedValue
         A value of a part out of its bounds.
     """
-    values = ((figure, getattr(model, figure.field)) for figure in figures(kind))
+    values = ((figure, _first(models, figure.field)) for figure in figures(kind))
     numbers = {
         figure.name: value * figure.unit.factor if isinstance(value, float) else value
         for figure, value in values
     }
-    return numbers | parts_in_si(parts_of(kind), model)
-
-
-def parts_in_si(parts: Mapping[str, Declared], model: BaseModel) -> dict[str, Any]:
-    """Return the parts that a model has by name; raises as `in_si`."""
-    own = {
-        name: declared_part(fact.part, getattr(model, name), name)
-        for name, fact in parts.items()
+    parts = {
+        name: declared_part(fact.part, _first(models, name), name)
+        for name, fact in parts_of(kind).items()
         if fact.part is not None
     }
-    return {name: part for name, part in own.items() if part is not None}
+    return numbers | {name: part for name, part in parts.items() if part is not None}
+
+
+def _first(models: tuple[BaseModel, ...], field: str) -> Any:
+    """Return a field of the first of the models that has it."""
+    return next(getattr(model, field) for model in models if hasattr(model, field))

@@ -16,18 +16,16 @@ from dynamics.joints.imposed_rotation import ImposedRotation
 from dynamics.joints.planet_bearing import PlanetBearing
 from dynamics.settings.integration import Integration
 from dynamics.settings.outputs import Outputs
-from fe_contact.body.parts import PARTS
 from fe_contact.body.shaft import Shaft
 from fe_contact.flank.modification import FlankModification
+from fe_contact.geometry import Gear, GearPair, RingGear
+from fe_contact.geometry.toothing import MATING
 from fe_contact.material import Material
 from service.schemas.declared import figures, parts_of
+from service.schemas.gear import SHARED
 
 # Fields of a case, by the library's name (see fe_contact.geometry and fe_contact.planning).
-_CASE = {
-    "normal_module": "pair.normal_module_mm",
-    "normal_pressure_angle": "pair.normal_pressure_angle_deg",
-    "helix_angle": "pair.helix_angle_deg",
-    "center_distance": "pair.center_distance_mm",
+_CASE = {figure.name: f"pair.{figure.field}" for figure in (*SHARED, *figures(GearPair))} | {
     "torques": "load.torque_n_m",
     "normal_forces": "load.normal_force_n",
     "misalignments": "errors.misalignment_um",
@@ -52,7 +50,7 @@ def _with_parts(parts: Mapping[str, Declared]) -> Iterator[type]:
 
 
 _ANYWHERE = (
-    *(FlankModification, Material, Shaft, *_with_parts(PARTS)),
+    *(FlankModification, Material, Shaft, *(Gear, RingGear, *_with_parts(parts_of(Gear)))),
     *(GearBody, Inertia, TurningShaft, BeamSection),
     Outputs,
     *(Bushing, PlanetBearing, Coupling, FreeRotation),
@@ -70,11 +68,6 @@ def _fields_of(*kinds: type) -> dict[str, str]:
 
 _LAST = _fields_of(*_ANYWHERE) | {
     # gear
-    "face_width": "face_width_mm",
-    "bore_diameter": "bore_diameter_mm",
-    "rim_diameter": "rim_diameter_mm",
-    "tip_diameter": "tip_diameter_mm",
-    "thickness_allowance": "thickness_allowance_um",
     "pitch_deviation": "pitch_deviation_um",
     "roll_length": "roll_length_mm",
     "face_position": "face_position_mm",
@@ -100,15 +93,12 @@ _LAST = _fields_of(*_ANYWHERE) | {
     "transmission_error": "transmission_error_um",
 }
 
-# What both gears share lies in [pair], whichever gear reports it.
-_SHARED = ("normal_module", "normal_pressure_angle", "helix_angle")
-
 
 def case_field(name: str) -> str:
     """Return the case file's name of a field of fe_contact, e.g. ``pair.pinion.bore_diameter_mm``."""
     parts = [part for part in name.split(".") if part != "modification"]
     head, index = _split_index(parts[-1])
-    if len(parts) == 1 or head in _SHARED:
+    if len(parts) == 1 or head in MATING:  # what both share lies in [pair], whichever gear reports it
         return _CASE.get(head, _LAST.get(head, head)) + index
     parts[-1] = _LAST.get(head, head) + index
     return ".".join(["pair", *parts] if parts[0] in ("pinion", "wheel") else parts)

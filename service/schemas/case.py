@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import MISSING, replace
 from itertools import pairwise
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, Strict, model_validator
 
-from service.schemas.gear import GearInput
+from fe_contact.geometry.gear_pair import GearPair
+from service.schemas.declared import as_fields, figures, with_fields
+from service.schemas.gear import SHARED, GearInput
 from service.schemas.gear_body import MaterialInput
 from service.schemas.model import BoundaryModel, refuse
 from service.schemas.wheel import WheelInput
@@ -31,23 +34,20 @@ def _increasing(field: str, values: tuple[float, ...] | None) -> None:
         refuse(field, list(values), "strictly increasing", "Sort the list and drop repeats.")
 
 
-class PairInput(BoundaryModel):
+OF_PAIR = (*SHARED, *(replace(figure, default=MISSING) for figure in figures(GearPair)))
+"""Figures that a case has in ``[pair]``."""
+
+
+@with_fields(as_fields(OF_PAIR))
+class _PairFigures(BoundaryModel):
+    """The figures of a pair."""
+
+    normal_module_mm: float
+
+
+class PairInput(_PairFigures):
     """A pinion, an external wheel or a ring gear of the same basic rack, and their center distance."""
 
-    normal_module_mm: float = Field(gt=0.0, le=100.0, description="Normal module in mm", examples=[4.0])
-    normal_pressure_angle_deg: float = Field(
-        default=20.0, ge=10.0, le=35.0, description="Normal pressure angle in degrees", examples=[20.0]
-    )
-    helix_angle_deg: float = Field(
-        default=0.0,
-        ge=-45.0,
-        le=45.0,
-        description="Helix angle in degrees; > 0: pinion right hand",
-        examples=[0.0],
-    )
-    center_distance_mm: float = Field(
-        gt=0.0, le=50_000.0, description="Center distance in mm", examples=[80.0]
-    )
     pinion: GearInput = Field(description="The driving gear")
     wheel: WheelInput = Field(description="The driven gear, external or a ring gear")
 

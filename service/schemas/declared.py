@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import MISSING, dataclass, fields, replace
 from functools import cache
 from typing import Annotated, Any, Literal, TypeVar
@@ -106,7 +106,12 @@ def figures(kind: type[Any], *kinds: Kind) -> tuple[Figure, ...]:
 def declared_in(kind: type[Any], *, all_given: bool = False) -> Fields:
     """Return the declared fields of a dataclass as those of a model; `all_given`: numbers have no default."""
     own = (replace(each, default=MISSING) if all_given else each for each in figures(kind))
-    return {**{figure.field: figure.as_field() for figure in own}, **parts_in(parts_of(kind))}
+    return {**as_fields(own), **parts_in(parts_of(kind))}
+
+
+def as_fields(own: Iterable[Figure]) -> Fields:
+    """Return figures as fields of a model."""
+    return {figure.field: figure.as_field() for figure in own}
 
 
 def parts_of(kind: type[Any]) -> Mapping[str, Declared]:

@@ -6,9 +6,10 @@ from typing import Annotated, Self
 
 from pydantic import Field, Strict, model_validator
 
-from fe_contact.body.parts import PARTS
 from fe_contact.flank.modification import FlankModification
-from service.schemas.declared import declared_in, parts_in, with_fields
+from fe_contact.geometry.gear import Gear
+from fe_contact.geometry.toothing import MATING, Toothing
+from service.schemas.declared import Figure, as_fields, declared_in, figures, parts_in, parts_of, with_fields
 from service.schemas.gear_body import GearShaftInput, MaterialInput
 from service.schemas.model import BoundaryModel, refuse
 
@@ -23,7 +24,7 @@ GridRow = Annotated[
     Field(min_length=2, max_length=500),
 ]
 PitchDeviations = Annotated[
-    tuple[Annotated[float, Field(ge=-1000.0, le=1000.0)], ...], Strict(False), Field(max_length=1000)
+    tuple[Annotated[float, Field(ge=-1000.0, le=1000.0)], ...], Strict(False), Field(max_length=4000)
 ]
 
 
@@ -44,50 +45,27 @@ class FlankGridInput(BoundaryModel):
     )
 
 
-@with_fields({**declared_in(FlankModification), **parts_in(PARTS)})
-class ToothingInput(BoundaryModel):
+SHARED = tuple(figure for figure in figures(Toothing) if figure.name in MATING)
+"""Figures that a case has once, for both gears."""
+
+
+def of_gear(kind: type[Toothing]) -> tuple[Figure, ...]:
+    """Return the figures of a kind of gear that a case has in the gear's table."""
+    return tuple(figure for figure in figures(kind) if figure not in SHARED)
+
+
+@with_fields(as_fields(of_gear(Toothing)))
+class _ToothingFigures(BoundaryModel):
+    """The figures of all gears."""
+
+    teeth: int
+    face_width_mm: float
+
+
+@with_fields({**declared_in(FlankModification), **parts_in(parts_of(Gear))})
+class ToothingInput(_ToothingFigures):
     """Fields of all gears. Modifications: > 0 is material removed, normal to the involute, transverse."""
 
-    teeth: int = Field(ge=5, le=1000, description="Number of teeth", examples=[20])
-    face_width_mm: float = Field(ge=1e-3, le=5000.0, description="Face width in mm", examples=[25.0])
-    profile_shift_coefficient: float = Field(
-        default=0.0, ge=-3.0, le=3.0, description="Profile shift in normal modules", examples=[0.2]
-    )
-    addendum_coefficient: float = Field(
-        default=1.0,
-        ge=0.1,
-        le=3.0,
-        description="Addendum of the basic rack in normal modules",
-        examples=[1.0],
-    )
-    dedendum_coefficient: float = Field(
-        default=1.25,
-        ge=0.1,
-        le=3.0,
-        description="Dedendum of the basic rack in normal modules",
-        examples=[1.25],
-    )
-    root_radius_coefficient: float = Field(
-        default=0.38,
-        ge=0.0,
-        le=1.0,
-        description="Root fillet radius of the basic rack in normal modules",
-        examples=[0.38],
-    )
-    tip_diameter_mm: float | None = Field(
-        default=None,
-        gt=0.0,
-        le=50_000.0,
-        description="Tip diameter in mm; left out: d + 2 m_n (h_aP + x)",
-        examples=[88.0],
-    )
-    thickness_allowance_um: float = Field(
-        default=0.0,
-        ge=0.0,
-        le=10_000.0,
-        description="Normal tooth thickness removed at the reference circle in um (backlash)",
-        examples=[50.0],
-    )
     flank_grid: FlankGridInput | None = Field(
         default=None,
         description="Free-form flank, removed besides the amounts above",
@@ -126,7 +104,6 @@ class ToothingInput(BoundaryModel):
         return self
 
 
+@with_fields(as_fields(of_gear(Gear)))
 class GearInput(ToothingInput):
     """One external gear."""
-
-    bore_diameter_mm: float = Field(ge=1e-3, le=20_000.0, description="Bore diameter in mm", examples=[40.0])

@@ -2,62 +2,41 @@
 
 from __future__ import annotations
 
+from dataclasses import MISSING, replace
 from typing import Any, Self
 
 from pydantic import Field, model_validator
 
+from bounds import declarations
+from fe_contact.geometry.gear import Gear
+from fe_contact.geometry.ring_gear import RingGear
+from service.schemas.declared import as_fields, figures, with_fields
 from service.schemas.gear import ToothingInput
 from service.schemas.model import refuse
 
-_RING_DEFAULTS = {
-    "root_radius_coefficient": 0.2,
-    "cutter_teeth": 25,
-    "cutter_profile_shift_coefficient": 0.0,
-}
-_RING_ONLY = ("rim_diameter_mm", "cutter_teeth", "cutter_profile_shift_coefficient")
+RING = tuple(figure for figure in figures(RingGear) if figure not in figures(Gear))
+"""What is a ring gear's own, or otherwise than an external gear's."""
+_DEFAULTS = {figure.field: figure.own(figure.default) for figure in RING if figure.default is not MISSING}
+_RING_ONLY = tuple(figure for figure in RING if figure.name not in declarations(Gear))
+_GEAR_ONLY = tuple(figure for figure in figures(Gear) if figure.name not in declarations(RingGear))
 
 
+@with_fields(as_fields(replace(figure, default=None) for figure in (*_GEAR_ONLY, *_RING_ONLY)))
 class WheelInput(ToothingInput):
     """The driven gear. What only one kind has is left out by the other."""
 
     internal: bool = Field(
         default=False, description="Whether the wheel is a ring gear around the pinion", examples=[True]
     )
-    bore_diameter_mm: float | None = Field(
-        default=None,
-        gt=0.0,
-        le=20_000.0,
-        description="Bore diameter in mm of an external wheel",
-        examples=[40.0],
-    )
-    rim_diameter_mm: float | None = Field(
-        default=None,
-        gt=0.0,
-        le=50_000.0,
-        description="Outer diameter in mm of a ring gear's rim, which is held rigidly all round",
-        examples=[212.0],
-    )
-    cutter_teeth: int | None = Field(
-        default=None,
-        ge=6,
-        le=1000,
-        description="Teeth of the pinion cutter that makes a ring gear; left out: 25",
-        examples=[25],
-    )
-    cutter_profile_shift_coefficient: float | None = Field(
-        default=None,
-        ge=-3.0,
-        le=3.0,
-        description="Profile shift of that cutter in normal modules; left out: 0",
-        examples=[0.0],
-    )
+    bore_diameter_mm: float | None
+    rim_diameter_mm: float | None
 
     @model_validator(mode="before")
     @classmethod
     def _ring_defaults(cls, data: Any) -> Any:
         """Fill in a ring gear's tool, so that the echo says so; its tip rounding makes the root."""
         if isinstance(data, dict) and data.get("internal") is True:
-            return _RING_DEFAULTS | {name: value for name, value in data.items() if value is not None}
+            return _DEFAULTS | {name: value for name, value in data.items() if value is not None}
         return data
 
     @model_validator(mode="after")
@@ -69,7 +48,7 @@ class WheelInput(ToothingInput):
         if self.bore_diameter_mm is None:
             advice = "Bore diameter in mm. For example 40.0; or internal = true for a ring gear."
             refuse("bore_diameter_mm", None, "given", advice)
-        for name in _RING_ONLY:
+        for name in (figure.field for figure in _RING_ONLY):
             if getattr(self, name) is not None:
                 bound = "left out, or given with internal = true"
                 refuse(name, getattr(self, name), bound, "Only a ring gear has it.")

@@ -13,7 +13,7 @@ from bounds import Direction, Kind
 from fe_contact.analysis import analyze
 from fe_contact.errors import InputError
 from fe_contact.flank.modification import FlankModification
-from fe_contact.geometry import BoreSeat, Gear, GearBlank, GearPair, Key, Shaft
+from fe_contact.geometry import BoreSeat, Gear, GearBlank, GearPair, Key, RingGear, Shaft
 from fe_contact.material import Material
 from fe_contact.microgeometry import QUANTITIES
 from fe_contact.microgeometry.variables import ACROSS_FACE
@@ -22,6 +22,7 @@ from service.convert.case import gear_pair
 from service.convert.vocabulary import boundary_name, case_field
 from service.schemas import Case
 from service.schemas.declared import Figure, figures
+from service.schemas.gear import SHARED
 from service.schemas.live import LiveInput
 from service.schemas.request_examples import CASE
 from service.studies.optimize import GearScatterInput, GearVariablesInput
@@ -138,6 +139,75 @@ def test_a_body_is_refused_beyond_its_bound_by_case_and_library(kind: type[Any],
     with pytest.raises(ValidationError) as refused:
         Case.model_validate_json(json.dumps(table))
     assert figure.field in str(refused.value)
+
+
+GEARS = {
+    Gear: Gear(20, 4e-3, 25e-3, 40e-3),
+    RingGear: RingGear(60, 4e-3, 25e-3, 0.28, addendum_coefficient=0.75),
+}
+OF_GEARS = pytest.mark.parametrize(
+    ("kind", "figure"),
+    [(kind, each) for kind in GEARS for each in figures(kind)],
+    ids=lambda one: getattr(one, "name", None) or one.__name__,
+)
+
+
+def case_of(kind: type[Any]) -> tuple[dict[str, Any], str]:
+    """Return a case that has a gear of a kind, and which of its gears that is."""
+    table = json.loads(json.dumps(CASE))
+    if kind is Gear:
+        return table, "pinion"
+    ring = {"teeth": 60, "face_width_mm": 25.0, "internal": True, "rim_diameter_mm": 280.0}
+    table["pair"] |= {"center_distance_mm": 79.8, "wheel": ring | {"addendum_coefficient": 0.75}}
+    return table, "wheel"
+
+
+@OF_GEARS
+def test_a_gear_of_a_case_means_that_of_the_library(kind: type[Any], figure: Figure) -> None:
+    table, gear = case_of(kind)
+    read = Case.model_validate_json(json.dumps(table)).pair
+    value = getattr(getattr(gear_pair(Case.model_validate_json(json.dumps(table))), gear), figure.name)
+    written = getattr(read if figure in SHARED else getattr(read, gear), figure.field)
+    assert value == (written if written is None else pytest.approx(written * figure.unit.factor, rel=1e-15))
+
+
+@OF_GEARS
+def test_a_gear_is_refused_beyond_its_bound_by_case_and_library(kind: type[Any], figure: Figure) -> None:
+    beyond = 2 * figure.what.bound.high
+    with pytest.raises(InputError) as caught:
+        replace(GEARS[kind], **{figure.name: type(figure.what.example)(beyond)})
+    assert (caught.value.field, caught.value.bound) == (figure.name, figure.what.bound)
+    table, gear = case_of(kind)
+    place = "pair" if figure in SHARED else f"pair.{gear}"
+    assert case_field(f"{gear}.{figure.name}") == f"{place}.{figure.field}"
+    at = table["pair"] if figure in SHARED else table["pair"][gear]
+    at[figure.field] = figure.own(type(figure.what.example)(beyond))
+    with pytest.raises(ValidationError) as refused:
+        Case.model_validate_json(json.dumps(table))
+    assert f"{place}.{figure.field}" in str(refused.value)
+
+
+@pytest.mark.parametrize(("kind", "teeth"), [(Gear, 4), (Gear, 2000), (RingGear, 12), (RingGear, 4000)])
+def test_a_case_takes_as_few_and_as_many_teeth_as_the_library(kind: type[Any], teeth: int) -> None:
+    table, gear = case_of(kind)
+    table["pair"][gear]["teeth"] = teeth
+    Case.model_validate_json(json.dumps(table))
+    try:
+        replace(GEARS[kind], teeth=teeth)
+    except InputError as error:  # it may be infeasible, but not by this
+        assert error.field != "teeth"
+
+
+def test_a_pair_is_refused_beyond_its_largest_center_distance_by_case_and_library() -> None:
+    (figure,) = figures(GearPair)
+    with pytest.raises(InputError) as caught:
+        GearPair(GEARS[Gear], GEARS[Gear], 2 * figure.what.bound.high)
+    assert (caught.value.field, caught.value.bound) == ("center_distance", figure.what.bound)
+    table = json.loads(json.dumps(CASE))
+    table["pair"]["center_distance_mm"] = figure.own(2 * figure.what.bound.high)
+    with pytest.raises(ValidationError) as refused:
+        Case.model_validate_json(json.dumps(table))
+    assert "pair.center_distance_mm" in str(refused.value)
 
 
 def test_design_variables_and_scatter_are_depths_and_lengths() -> None:

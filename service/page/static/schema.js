@@ -40,7 +40,7 @@ export function kindOf(schema) {
 
 /** Whether a field of a gear is of its flanks: a figure declared to act along them, or one of their two tables. */
 export function ofFlank(name, schema) {
-  return Boolean(schema["x-along"]) || /^(flank_grid|pitch_deviation)/.test(name);
+  return Boolean(schema["x-along"]?.length) || /^(flank_grid|pitch_deviation)/.test(name);
 }
 
 export function at(content, path) {

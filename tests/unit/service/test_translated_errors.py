@@ -110,7 +110,7 @@ def test_numbers_of_a_bound_are_converted_by_what_they_are(bound: Words, shown: 
 
 def test_suggestions_never_explain_si_to_someone_who_does_not_use_it() -> None:
     found = translated(InputError("pinion.face_width", -0.025, above(0.0), SiNote("In m: 25 mm is 0.025.")))
-    assert found is not None and "In m" not in str(found) and "Face width in mm" in str(found)
+    assert found is not None and "In m" not in str(found) and "Face width b, in mm" in str(found)
 
 
 @pytest.mark.parametrize("error", [MeshError("no mesh"), DynamicsSolveError("no equilibrium")])

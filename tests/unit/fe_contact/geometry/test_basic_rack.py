@@ -33,7 +33,7 @@ def test_flanks_that_cross_above_the_root_are_refused_even_without_rounding() ->
     [
         ("normal_module", 0.0, "normal_module"),
         ("normal_module", math.nan, "normal_module"),
-        ("pressure_angle", 20.0, "normal_pressure_angle"),
+        ("normal_pressure_angle", 20.0, "normal_pressure_angle"),
         ("addendum_coefficient", -1.0, "addendum_coefficient"),
         ("dedendum_coefficient", 0.0, "dedendum_coefficient"),
         ("root_radius_coefficient", -0.1, "root_radius_coefficient"),
