@@ -79,6 +79,9 @@ def orders() -> Iterator[tuple[str, str, dict[str, Any]]]:
     yield "modes", "modes", scene
     yield "response, 20 speeds", "response", scene | {"speed_rpm": _SPEEDS}
     yield "steady, 20 speeds", "steady", scene | {"speed_rpm": _SPEEDS}
+    speeds = {"path": "drives.motor.speed_rpm", "levels": _SPEEDS}
+    varied = {"factors": [speeds], "responses": [{"quantity": "dte_rms"}]}
+    yield "study, 20 speeds", "study", scene | varied
 
 
 def _jobs(client: LineOfActionClient, log: Path) -> Iterator[Figure]:

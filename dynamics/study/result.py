@@ -130,11 +130,13 @@ class Study(ArrayFile):
         """
         sampled = [k for k, kind in enumerate(self.kind) if kind in ("normal", "uniform")]
         result, rows = np.full(len(self.factor), np.nan), []
+        if not sampled:
+            return result
         about = np.median(self.value[:, sampled], axis=0)
         values = (self.value[:, sampled] - about).reshape(-1, self.samples, len(sampled))
         for deviation, column in zip(values, self.column(response), strict=True):
             usable = np.isfinite(column)
-            if np.count_nonzero(usable) > 2 and sampled:
+            if np.count_nonzero(usable) > 2:
                 rows.append(rank_correlation(deviation[usable], column[usable, None])[:, 0])
         if rows:
             result[sampled] = np.mean(rows, axis=0)

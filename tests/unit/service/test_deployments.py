@@ -11,6 +11,7 @@ from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
+import h5py
 import pytest
 from postgres_server import PostgresServer, migrated
 from running_service import Bench, bench
@@ -70,15 +71,17 @@ def first(tmp_path: Path, new_database: NewDatabase, place: str) -> Iterator[Ben
 
 
 def put(machine: Bench, key: str) -> str:
-    """Put a result, the bytes of which are a JSON text, and return the name of its file."""
+    """Put a result that holds its key, and return the name of its file."""
     file = machine.settings.data_directory / "made"
-    file.write_text(json.dumps(key))
+    with h5py.File(file, "w") as content:
+        content.attrs["key"] = key
     return machine.store.put(key, "ablation", file).file
 
 
 def read(store: ResultStore, key: str) -> object:
     """Return what a result holds."""
-    return json.loads(store.verified(key, "ablation").path.read_bytes())
+    with h5py.File(store.verified(key, "ablation").path, "r") as content:
+        return content.attrs["key"]
 
 
 def retention(machine: Bench, days: float = 7.0) -> Retention:

@@ -198,6 +198,16 @@ def test_the_report_has_the_runs_and_their_plots(scene: Path, tmp_path: Path) ->
             assert word in text
 
 
+def test_a_grid_without_samples_has_a_report(scene: Path, tmp_path: Path) -> None:
+    text = 'factors = [{ path = "loads.brake.torque_n_m", levels = [50.0, 100.0] }]\n'
+    text += 'responses = [{ quantity = "dte_rms" }]\n'
+    result = loa("study", scene, study_file(tmp_path, text), "-o", tmp_path / "out")
+    assert result.exit_code == 0, result.output
+    page = (tmp_path / "out" / "study.html").read_text(encoding="utf-8")
+    assert "study_curves" in page and "study_tornado" in page
+    assert np.isnan(Study.from_netcdf(tmp_path / "out" / "study.nc").correlation(0)).all()
+
+
 def test_a_study_of_failed_runs_alone_is_still_shown_and_has_failed(scene: Path, tmp_path: Path) -> None:
     text = STUDY.replace("levels = [50.0, 100.0]", "levels = [1e5, 2e5]")
     result = loa("study", scene, study_file(tmp_path, text), "-o", tmp_path / "out")
