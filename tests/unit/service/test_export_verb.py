@@ -8,29 +8,22 @@ from pathlib import Path
 import meshio
 import pytest
 from geared_scenes import gear_pair_scene
+from spur_case import SPUR
 from typer.testing import CliRunner, Result
 
 from dynamics.simulation import simulate
 from service.cli.commands import app
 
-SMALL = """
-[pair]
-normal_module_mm = 4.0
-center_distance_mm = 80.0
-[pair.pinion]
-teeth = 20
-face_width_mm = 25.0
-bore_diameter_mm = 40.0
-[pair.wheel]
-teeth = 20
-face_width_mm = 25.0
-bore_diameter_mm = 40.0
+SMALL = (
+    SPUR
+    + """
 [load]
 torque_n_m = [50, 100]
 [accuracy]
 level = "draft"
 model = "plane_strain"
 """
+)
 
 
 def loa(*arguments: object) -> Result:

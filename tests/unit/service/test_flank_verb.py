@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
+from spur_case import SPUR
 from typer.testing import CliRunner, Result
 
 from fe_contact import LoadDistribution
@@ -15,18 +16,9 @@ from service.convert.case import case_at
 from service.schemas import Case, validated
 from service.schemas.flank import FlankPoint
 
-SMALL = """
-[pair]
-normal_module_mm = 4.0
-center_distance_mm = 80.0
-[pair.pinion]
-teeth = 20
-face_width_mm = 25.0
-bore_diameter_mm = 40.0
-[pair.wheel]
-teeth = 20
-face_width_mm = 25.0
-bore_diameter_mm = 40.0
+SMALL = (
+    SPUR
+    + """
 [load]
 torque_n_m = [50, 100, 200]
 [accuracy]
@@ -34,6 +26,7 @@ level = "draft"
 positions = 16
 model = "plane_strain"
 """
+)
 
 
 def loa(*arguments: object) -> Result:

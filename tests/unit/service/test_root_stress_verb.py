@@ -8,6 +8,7 @@ import json
 from pathlib import Path
 
 import pytest
+from spur_case import SPUR
 from typer.testing import CliRunner, Result
 
 from service.cli.commands import app
@@ -18,23 +19,15 @@ from service.studies.root_stress import Inputs
 from service.studies.root_stress.page import root_stress_figure
 from service.studies.root_stress.run import root_stress_json, root_stress_of
 
-CASE = """
-[pair]
-normal_module_mm = 4.0
-center_distance_mm = 80.0
-[pair.pinion]
-teeth = 20
-face_width_mm = 25.0
-bore_diameter_mm = 40.0
-[pair.wheel]
-teeth = 20
-face_width_mm = 25.0
-bore_diameter_mm = 40.0
+CASE = (
+    SPUR
+    + """
 [load]
 torque_n_m = [50, 100]
 [accuracy]
 level = "draft"
 """
+)
 
 
 def loa(*arguments: object) -> Result:
