@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from bounds import Declared, Kind, declared, described, required, up_to
+from bounds import Declared, Kind, between, declared, described, required
 from fe_contact.body.bore_seat import CLAMPED, BoreSeat
 from fe_contact.body.gear_blank import GearBlank, Web
 from fe_contact.geometry.basic_rack import BasicRack
@@ -19,7 +19,7 @@ from fe_contact.geometry.toothing import Toothing, counted
 from fe_contact.geometry.trochoid import Trochoid
 from fe_contact.types import Json
 
-_BORE = Declared(Kind.LENGTH, "m", up_to(500.0), "Bore diameter; below the root diameter", 0.04)
+_BORE = Declared(Kind.LENGTH, "m", between(1e-6, 500.0, "m"), "Bore diameter; below the root diameter", 0.04)
 _BLANK = "Rim, web and hub; left out: a solid body"
 _SEAT = "Seat of the bore; left out: the whole bore is fixed"
 

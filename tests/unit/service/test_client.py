@@ -238,7 +238,10 @@ def test_the_import_is_light() -> None:
     assert not (heavy | own) & loaded
     # of the libraries the fields and parts that they declare, and nothing that computes
     parts = {tuple(name.split(".")[:2]) for name in loaded if name.startswith(("fe_contact.", "dynamics."))}
-    declared = {("fe_contact", name) for name in ("body", "checks", "errors", "flank", "material", "types")}
+    declared = {
+        ("fe_contact", name)
+        for name in ("body", "checks", "errors", "flank", "geometry", "material", "types")
+    }
     scene = ("bodies", "checks", "errors", "joints", "parts", "settings", "types")
     assert parts == declared | {("dynamics", name) for name in scene}
 
