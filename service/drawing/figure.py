@@ -15,11 +15,15 @@ Dash = Literal["solid", "dash", "dot"]
 
 @dataclass(frozen=True)
 class Axis:
-    """An axis: its label with the unit, its scale, and its limits where the data should not decide."""
+    """An axis: its label with the unit, its scale, and its limits where the data should not decide.
+
+    `names` stand at values in place of numbers.
+    """
 
     label: str
     scale: Literal["linear", "log"] = "linear"
     limits: tuple[float, float] | None = None
+    names: tuple[tuple[float, str], ...] = ()
 
 
 @dataclass(frozen=True)

@@ -116,6 +116,9 @@ def _scale(ax: Axes, axis: Axis, name: str) -> None:
     if axis.limits:
         ax.set(**{f"{name}lim": axis.limits})
     drawn = getattr(ax, f"{name}axis")
+    if axis.names:
+        drawn.set_ticks([value for value, _ in axis.names], labels=[text for _, text in axis.names])
+        return
     if axis.scale == "linear":
         drawn.set_major_formatter(ScalarFormatter(useOffset=False))
         return

@@ -112,6 +112,8 @@ def _axis(axis: Axis) -> Json:
     }
     if axis.scale == "log":
         made |= {"exponentformat": "power", "dtick": 1}
+    if axis.names:
+        made |= {"tickvals": [value for value, _ in axis.names], "ticktext": [name for _, name in axis.names]}
     if axis.limits:
         made["range"] = [float(v) for v in (np.log10(axis.limits) if axis.scale == "log" else axis.limits)]
     return made

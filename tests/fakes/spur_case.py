@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-SPUR = """
+
+def spur_case(pinion: str = "", wheel: str = "") -> str:
+    """Return the text, with further lines of either gear."""
+    return f"""
 [pair]
 normal_module_mm = 4.0
 center_distance_mm = 80.0
@@ -10,8 +13,13 @@ center_distance_mm = 80.0
 teeth = 20
 face_width_mm = 25.0
 bore_diameter_mm = 40.0
+{pinion}
 [pair.wheel]
 teeth = 20
 face_width_mm = 25.0
 bore_diameter_mm = 40.0
+{wheel}
 """
+
+
+SPUR = spur_case()

@@ -6,7 +6,7 @@ import numpy as np
 
 from dynamics.study import Study
 from service.drawing import palette
-from service.drawing.figure import Axis, Figure, FloatArray, HeatMap, Line, Note, Panel, number
+from service.drawing.figure import Axis, Figure, FloatArray, HeatMap, Line, Panel, number
 from service.studies.study.figures import in_boundary_units
 
 SHOWN_RESPONSES, SHOWN_CURVES, SHOWN_FACTORS = 4, 6, 12
@@ -195,22 +195,15 @@ def _by_samples(study: Study) -> list[Panel]:
 def _bars(
     bars: list[tuple[float, float, str]], text: str, limits: tuple[float, float] | None = None
 ) -> Panel:
-    """Draw bars, the longest on top, with their names above them."""
+    """Draw bars beside their names, the longest on top."""
     ordered = sorted(bars, key=lambda bar: bar[0] - bar[1])[:SHOWN_FACTORS]
     heights = [float(len(ordered) - k) for k in range(len(ordered))]
     lines = tuple(
         Line(name, np.array([low, high]), np.full(2, height), palette.category(k), width=BAR)
         for k, ((low, high, name), height) in enumerate(zip(ordered, heights, strict=True))
     )
-    notes = tuple(
-        Note(low, height + 0.18, name) for (low, _, name), height in zip(ordered, heights, strict=True)
-    )
-    return Panel(
-        Axis(text, limits=limits),
-        Axis("factors, longest on top", limits=(0.4, len(ordered) + 0.8)),
-        lines,
-        notes=notes,
-    )
+    names = tuple((height, name) for (_, _, name), height in zip(ordered, heights, strict=True))
+    return Panel(Axis(text, limits=limits), Axis("", limits=(0.4, len(ordered) + 0.6), names=names), lines)
 
 
 def _extreme(study: Study) -> str:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene
+from spur_case import spur_case
 from typer.testing import CliRunner
 
 from dynamics.ablation import ablate
@@ -16,28 +17,18 @@ from service.drawing.image import png
 from service.studies.ablate.page import ablation_figure, ablation_table
 from service.studies.ablate.run import facts
 
-CASE = """
-[pair]
-normal_module_mm = 4.0
-center_distance_mm = 80.0
-[pair.pinion]
-teeth = 20
-face_width_mm = 25.0
-bore_diameter_mm = 40.0
-tip_relief_um = 15.0
-tip_relief_length_mm = 1.2
-[pair.wheel]
-teeth = 20
-face_width_mm = 25.0
-bore_diameter_mm = 40.0
-tip_relief_um = 15.0
-tip_relief_length_mm = 1.2
+CASE = (
+    spur_case(
+        "tip_relief_um = 15.0\ntip_relief_length_mm = 1.2", "tip_relief_um = 15.0\ntip_relief_length_mm = 1.2"
+    )
+    + """
 [load]
 torque_n_m = [20.0, 100.0]
 [accuracy]
 level = "draft"
 positions = 64
 """
+)
 
 
 @pytest.fixture

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 from bad_inputs import GOOD
+from spur_case import spur_case
 
 from service.convert.case import case_json, gear_pair
 from service.convert.checks import check_case
@@ -18,22 +19,13 @@ from service.schemas.scene import SceneInput
 
 HEADING = "roll_length_mm,face_position_mm,removed_um"
 ROWS = [f"{roll},{face},{roll * face / 10}" for roll in (4.5, 10, 19) for face in (-12.5, 0, 12.5)]
-CASE = """
-[pair]
-normal_module_mm = 4.0
-center_distance_mm = 80.0
-[pair.pinion]
-teeth = 20
-face_width_mm = 25.0
-bore_diameter_mm = 40.0
-flank_grid_csv = "flanks/pinion.csv"
-[pair.wheel]
-teeth = 20
-face_width_mm = 25.0
-bore_diameter_mm = 40.0
+CASE = (
+    spur_case('flank_grid_csv = "flanks/pinion.csv"')
+    + """
 [load]
 torque_n_m = [100.0]
 """
+)
 
 
 def written(folder: Path, *lines: str) -> Path:

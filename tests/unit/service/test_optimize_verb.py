@@ -9,30 +9,21 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from spur_case import spur_case
 from typer.testing import CliRunner
 
 from service.cli.commands import app
 
-CASE = """
-[pair]
-normal_module_mm = 4.0
-center_distance_mm = 80.0
-[pair.pinion]
-teeth = 20
-face_width_mm = 25.0
-bore_diameter_mm = 40.0
-{pinion}
-[pair.wheel]
-teeth = 20
-face_width_mm = 25.0
-bore_diameter_mm = 40.0
-{wheel}
+CASE = (
+    spur_case("{pinion}", "{wheel}")
+    + """
 [load]
 torque_n_m = [100.0, 200.0]
 [accuracy]
 level = "draft"
 model = "plane_strain"
 """
+)
 STUDY = """
 [variables.pinion]
 tip_relief_um = [0, 40]

@@ -8,6 +8,7 @@ from pathlib import Path
 import h5netcdf
 import pytest
 from click import Context
+from spur_case import spur_case
 from typer.main import get_command
 from typer.testing import CliRunner, Result
 
@@ -18,19 +19,9 @@ from service.problems import EXIT_BAD_INPUT, EXIT_WARNINGS
 NOT_COMPUTING = {"hardcases", "serve", "work", "keys", "database", "store"}
 LOA = get_command(app)  # loads its verbs when asked: the application itself lists none
 VERBS = LOA.list_commands(Context(LOA))
-CASE = """
-[pair]
-normal_module_mm = 4.0
-center_distance_mm = 80.0
-[pair.pinion]
-teeth = 20
-face_width_mm = 25.0
-bore_diameter_mm = 40.0
-{relief}
-[pair.wheel]
-teeth = 20
-face_width_mm = 25.0
-bore_diameter_mm = 40.0
+CASE = (
+    spur_case("{relief}")
+    + """
 [load]
 torque_n_m = [100.0]
 [accuracy]
@@ -39,6 +30,7 @@ model = "plane_strain"
 receipt = "minimal"
 positions = 8
 """
+)
 MESSAGE = "pair.pinion.tip_relief_um = 0.02 um: "
 
 

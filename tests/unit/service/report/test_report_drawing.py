@@ -206,6 +206,16 @@ def test_cells_keep_their_places_and_blanks() -> None:
     assert "MPa" in upper["hovertemplate"]
 
 
+def test_names_stand_on_an_axis_in_place_of_numbers() -> None:
+    line = Line("bar", np.array([0.0, 2.0]), np.array([1.0, 1.0]), "#000000")
+    panel = Panel(Axis("N"), Axis("", limits=(0.4, 2.6), names=((1.0, "torque"), (2.0, "speed"))), (line,))
+    figure = Figure("key", "Title", "Caption", "Words", (panel,))
+    axis = plotly_figure(figure)["layout"]["yaxis"]
+    assert (axis["tickvals"], axis["ticktext"]) == ([1.0, 2.0], ["torque", "speed"])
+    drawn = _panel_sheet(figure.content).axes[0]  # type: ignore[arg-type]
+    assert [tick.get_text() for tick in drawn.get_yticklabels()] == ["torque", "speed"]
+
+
 def test_colors_span_least_to_largest() -> None:
     shade = HeatMap(
         np.arange(3.0), np.arange(2.0), 1.0 + 0.01 * np.arange(6.0).reshape(2, 3), "K_v, ratio", 1.05, 1.0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scene_files import SCENE
+from spur_case import spur_case
 
 from dynamics.simulation import simulate
 from dynamics.study import Design, Levels, Response, StudyTask, responses_of, study
@@ -19,26 +20,16 @@ from service.studies.study.design import design_of
 from service.studies.study.paths import places_of
 from service.studies.study.scenes import VariedScene
 
-CASE = """
-[pair]
-normal_module_mm = 4.0
-center_distance_mm = 80.0
-[pair.pinion]
-teeth = 20
-face_width_mm = 25.0
-bore_diameter_mm = 40.0
-tip_relief_um = 10.0
-tip_relief_length_mm = 2.0
-[pair.wheel]
-teeth = 20
-face_width_mm = 25.0
-bore_diameter_mm = 40.0
+CASE = (
+    spur_case("tip_relief_um = 10.0\ntip_relief_length_mm = 2.0")
+    + """
 [load]
 torque_n_m = [50.0, 100.0]
 [accuracy]
 level = "draft"
 model = "plane_stress"
 """
+)
 PATH = "meshes.mesh.case.pair.pinion.tip_relief_um"
 RESPONSES = (Response("dte_peak_to_peak"), Response("peak_mesh_force"))
 
