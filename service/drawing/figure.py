@@ -163,8 +163,11 @@ class Figure:
 
 
 def legend_names(panels: Sequence[Panel]) -> list[str]:
-    """Return the names that a legend lists: of lines that no note of their panel names."""
-    named = [{note.text for note in panel.notes} for panel in panels]
+    """Return the names that a legend lists: of lines that neither notes nor axes of their panel name."""
+    named = [
+        {note.text for note in panel.notes} | {name for axis in (panel.x, panel.y) for _, name in axis.names}
+        for panel in panels
+    ]
     return list(
         dict.fromkeys(
             line.name

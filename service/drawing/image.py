@@ -80,7 +80,7 @@ def _draw(ax: Axes, line: Line) -> Any:
     stroke: dict[str, Any] = {"color": line.color, "ls": _DASH[line.dash], "lw": line.width * 0.8}
     if line.markers:
         stroke |= {"marker": "o", "ms": 6}
-    (handle,) = ax.plot(line.x, line.y, **stroke)
+    (handle,) = ax.plot(line.x, line.y, solid_capstyle="butt", **stroke)
     if line.has_band:
         ax.fill_between(line.x, line.y - line.band, line.y + line.band, color=line.color, alpha=0.2, lw=0)
     return handle

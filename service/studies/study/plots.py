@@ -199,8 +199,8 @@ def _bars(
     ordered = sorted(bars, key=lambda bar: bar[0] - bar[1])[:SHOWN_FACTORS]
     heights = [float(len(ordered) - k) for k in range(len(ordered))]
     lines = tuple(
-        Line(name, np.array([low, high]), np.full(2, height), palette.category(k), width=BAR)
-        for k, ((low, high, name), height) in enumerate(zip(ordered, heights, strict=True))
+        Line(name, np.array([low, high]), np.full(2, height), palette.category(0), width=BAR)
+        for (low, high, name), height in zip(ordered, heights, strict=True)
     )
     names = tuple((height, name) for (_, _, name), height in zip(ordered, heights, strict=True))
     return Panel(Axis(text, limits=limits), Axis("", limits=(0.4, len(ordered) + 0.6), names=names), lines)

@@ -207,9 +207,10 @@ def test_cells_keep_their_places_and_blanks() -> None:
 
 
 def test_names_stand_on_an_axis_in_place_of_numbers() -> None:
-    line = Line("bar", np.array([0.0, 2.0]), np.array([1.0, 1.0]), "#000000")
+    line = Line("torque", np.array([0.0, 2.0]), np.array([1.0, 1.0]), "#000000")
     panel = Panel(Axis("N"), Axis("", limits=(0.4, 2.6), names=((1.0, "torque"), (2.0, "speed"))), (line,))
     figure = Figure("key", "Title", "Caption", "Words", (panel,))
+    assert legend_names(figure.content) == []  # type: ignore[arg-type]
     axis = plotly_figure(figure)["layout"]["yaxis"]
     assert (axis["tickvals"], axis["ticktext"]) == ([1.0, 2.0], ["torque", "speed"])
     drawn = _panel_sheet(figure.content).axes[0]  # type: ignore[arg-type]
