@@ -35,7 +35,7 @@ class Quantity:
     ----------
     code : int
         Specific data type: 8 displacement, 9 reaction force, 12 acceleration, 17 time, 18
-        frequency, 20 order.
+        frequency, 19 revolutions per minute, 20 order.
     length, force : int
         Exponents of the units of length and force.
     label, unit : str

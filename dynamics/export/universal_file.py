@@ -6,6 +6,7 @@ import os
 import tempfile
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -35,6 +36,7 @@ ORDINATES = {
     "mesh_force": Quantity(9, 0, 1, "Mesh force", "N"),
     "dynamic_transmission_error": Quantity(8, 1, 0, "Transmission error", "m"),
 }
+TACHO = Quantity(19, 0, 0, "Speed", "rpm")
 ROTATIONS = ("bearing_moment",)
 SPECTRUM = "amplitude (peak), Hann window"
 TEXT = {"time": "time series", "spectrum": SPECTRUM, "orders": f"{SPECTRUM}, power mean of all blocks"}
@@ -53,6 +55,9 @@ def write_universal_file(
     end: float | None = None,
 ) -> int:
     """Write bearing forces, moments and accelerations, mesh forces and transmission errors, if there.
+
+    Time series come with a tacho of every mesh: the speed of its driving gear against the line of centers,
+    in rpm.
 
     Units (dataset 164), positions of bearings and meshes (2411), a dataset 58 per component. Directions 1, 2,
     3 are x, y, z of the fixed frame (of a planet bearing: of its carrier's), 4, 5, 6 moments about them, 0 a
@@ -89,7 +94,7 @@ def write_universal_file(
         with os.fdopen(handle, "w", encoding="ascii", errors="replace") as file:
             file.write(units_dataset())
             file.write(nodes_dataset(_nodes(result)))
-            for nodal in _functions(part, function):
+            for nodal in chain(_functions(part, function), _tachos(part, function)):
                 file.write(function_dataset(nodal))
                 count += 1
         mask = os.umask(0)
@@ -121,13 +126,33 @@ def _functions(result: RunResult, function: str) -> Iterator[NodalFunction]:
             direction = 0 if at_mesh else component_index[1] + 1 + turned
             component = "" if at_mesh else f" {'xyz'[component_index[1]]}"
             title = f"{series} {names[component_index[0]]}{component} ({ordinate.unit})"
-            rate = f"{result.sample_rate:.17g} samples per second"
-            lines = (title, TEXT[function], "NONE", f"lineofaction, {rate}")
+            lines = (title, TEXT[function], "NONE", _origin(result))
             node = component_index[0] + (FIRST_MESH_NODE if at_mesh else 1)
             axes = (abscissa, ordinate, first, increment)
             yield NodalFunction(
                 kind, lines, names[component_index[0]], node, direction, *axes, values[component_index]
             )
+
+
+def _tachos(result: RunResult, function: str) -> Iterator[NodalFunction]:
+    """Yield the speed at every mesh, of the mean motion: what orders are tracked by."""
+    if function != "time":
+        return
+    teeth = {gear["name"]: int(gear["teeth"]) for gear in result.case["gears"]}
+    for index, mesh in enumerate(result.case["meshes"]):
+        driver = mesh["driver"]
+        lines = (f"tacho {driver} (rpm)", "speed of the driving gear", "NONE", _origin(result))
+        start = float(result.time[0]), 1.0 / result.sample_rate
+        speed = result.mesh_frequency[index] * 60.0 / teeth[driver]
+        kind, abscissa = ABSCISSAE[function]
+        yield NodalFunction(
+            kind, lines, mesh["name"], FIRST_MESH_NODE + index, 0, abscissa, TACHO, *start, speed
+        )
+
+
+def _origin(result: RunResult) -> str:
+    """Name what wrote the file, and the exact rate."""
+    return f"lineofaction, {result.sample_rate:.17g} samples per second"
 
 
 def _values(result: RunResult, series: str, function: str) -> tuple[float, float, FloatArray]:

@@ -4,6 +4,7 @@ from dynamics.orders.peaks import Peak, find_peaks
 from dynamics.orders.position_grid import resample_to_position
 from dynamics.orders.sidebands import Sideband, sidebands
 from dynamics.orders.spectrum import MeshOrder, Spectrum, mesh_orders, spectrum, window_spectrum
+from dynamics.orders.third_octaves import ThirdOctaves, third_octaves
 from dynamics.orders.valid_orders import highest_valid_order
 from dynamics.orders.waterfall import OrderTrack, Waterfall, frequency_waterfall, order_track, order_waterfall
 
@@ -13,6 +14,7 @@ __all__ = [
     "Peak",
     "Sideband",
     "Spectrum",
+    "ThirdOctaves",
     "Waterfall",
     "find_peaks",
     "frequency_waterfall",
@@ -23,5 +25,6 @@ __all__ = [
     "resample_to_position",
     "sidebands",
     "spectrum",
+    "third_octaves",
     "window_spectrum",
 ]

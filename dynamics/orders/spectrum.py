@@ -31,6 +31,9 @@ class Spectrum:
     resolution : float
         Distance of the lines, Hz.
     window : str
+    noise_bandwidth : float
+        Of the window, in lines: the mean square of a signal is the sum of half the squared amplitudes over
+        it (1 rectangular, 1.5 Hann, 3.77 flat top).
     """
 
     frequency: FloatArray
@@ -38,6 +41,7 @@ class Spectrum:
     unit: str
     resolution: float
     window: str
+    noise_bandwidth: float
 
 
 @dataclass(frozen=True)
@@ -79,7 +83,8 @@ def spectrum(values: FloatArray, sample_rate: float, unit: str = "", window: str
         lines[..., -1] *= 0.5
     lines[..., 0] = np.abs(mean[..., 0])
     resolution = positive("sample_rate", sample_rate) / samples
-    return Spectrum(np.arange(lines.shape[-1]) * resolution, lines, unit, resolution, window)
+    bandwidth = samples * float(np.sum(weight**2) / np.sum(weight) ** 2)
+    return Spectrum(np.arange(lines.shape[-1]) * resolution, lines, unit, resolution, window, bandwidth)
 
 
 def window_spectrum(

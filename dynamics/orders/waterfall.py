@@ -10,7 +10,7 @@ from bounds import Bound, at_most, between
 from dynamics.checks import integer
 from dynamics.errors import InputError
 from dynamics.orders.position_grid import check_series, resample_to_position
-from dynamics.orders.spectrum import spectrum
+from dynamics.orders.spectrum import Spectrum, spectrum
 from dynamics.orders.valid_orders import checked_order
 from dynamics.results import RunResult
 from dynamics.types import FloatArray
@@ -29,15 +29,21 @@ class Waterfall:
     time, mesh_frequency : (B,) arrays
         Means of each block, s and Hz.
     amplitude : (..., B, K) array
-        Peak amplitude under a Hann window, in `unit`; the mean at line 0.
+        Peak amplitude under the window, in `unit`; the mean at line 0.
+    rms : (..., B) array
+        Of each block about its mean, of all that the signal holds, in `unit`.
     unit : str
+    noise_bandwidth : float
+        Of the window, in lines.
     """
 
     line: FloatArray
     time: FloatArray
     mesh_frequency: FloatArray
     amplitude: FloatArray
+    rms: FloatArray
     unit: str
+    noise_bandwidth: float
 
     def cut(self, line: float) -> FloatArray:
         """Return the amplitude over the run at one line, (..., B): an order cut where lines are orders.
@@ -76,12 +82,19 @@ class OrderTrack:
 
 
 def order_waterfall(
-    result: RunResult, series: str, pitches: int = 16, highest: int | None = None, mesh: int = 0
+    result: RunResult,
+    series: str,
+    pitches: int = 16,
+    highest: int | None = None,
+    mesh: int = 0,
+    window: str = "hann",
+    overlap: float = 0.0,
 ) -> Waterfall:
     """Return the spectra over mesh orders, up to `highest`, of blocks of `pitches` base pitches.
 
-    Orders are 1/`pitches` apart. A multiple of a gear's teeth puts the orders of its shaft on lines. Without
-    `highest` they reach to the tenth mesh order, or as far as the output holds.
+    Blocks overlap by that share of their length. Orders are 1/`pitches` apart. A multiple of a gear's teeth
+    puts the orders of its shaft on lines. Without `highest` they reach to the tenth mesh order, or as far as
+    the output holds.
 
     Raises
     ------
@@ -93,17 +106,13 @@ def order_waterfall(
     highest = checked_order(result, "highest", highest, mesh)
     per_pitch = max(64, 8 * highest)
     _, time, values = resample_to_position(result, getattr(result, series), per_pitch, mesh)
-    length = pitches * per_pitch
-    blocks = time.size // length
-    if blocks == 0:
+    if time.size < pitches * per_pitch:
         bound = at_most(time.size // per_pitch, note=", the run's length")
         raise InputError("pitches", pitches, bound)
-    cut = values[..., : blocks * length].reshape(*values.shape[:-1], blocks, length)
-    lines = spectrum(cut, float(per_pitch), unit)
-    middle = time[: blocks * length].reshape(blocks, length).mean(axis=1)
-    frequency = np.interp(middle, result.time, result.mesh_frequency[mesh])
-    kept = slice(0, highest * pitches + 1)
-    return Waterfall(lines.frequency[kept], middle, frequency, lines.amplitude[..., kept], unit)
+    blocks = _blocks(time.size, pitches * per_pitch, overlap)
+    frequency = np.interp(time, result.time, result.mesh_frequency[mesh])
+    made = [spectrum(values[..., block], float(per_pitch), unit, window) for block in blocks]
+    return _waterfall(made, values, blocks, (time, frequency), highest * pitches + 1)
 
 
 def order_track(
@@ -123,7 +132,12 @@ def order_track(
 
 
 def frequency_waterfall(
-    result: RunResult, series: str, block: float, overlap: float = 0.5, mesh: int = 0
+    result: RunResult,
+    series: str,
+    block: float,
+    overlap: float = 0.5,
+    mesh: int = 0,
+    window: str = "hann",
 ) -> Waterfall:
     """Return the spectra over frequency of blocks of `block` seconds that overlap by that share.
 
@@ -137,15 +151,35 @@ def frequency_waterfall(
     if not 4 <= length <= result.time.size:
         bound = between(4.0 / result.sample_rate, float(result.time[-1]), "s", "the run's")
         raise InputError("block", block, bound)
+    blocks = _blocks(result.time.size, length, overlap)
+    values = getattr(result, series)
+    made = [spectrum(values[..., block], result.sample_rate, unit, window) for block in blocks]
+    return _waterfall(made, values, blocks, (result.time, result.mesh_frequency[mesh]))
+
+
+def _blocks(samples: int, length: int, overlap: float) -> list[slice]:
+    """Return the samples of every block."""
     if not 0.0 <= overlap < 1.0:
         raise InputError("overlap", overlap, Bound(0.0, 1.0, high_open=True))
     step = max(round(length * (1.0 - overlap)), 1)
-    first = np.arange(0, result.time.size - length + 1, step)
-    values = getattr(result, series)
-    lines = [spectrum(values[..., at : at + length], result.sample_rate, unit) for at in first]
-    time, mesh_frequency = (
-        np.array([over[at : at + length].mean() for at in first])
-        for over in (result.time, result.mesh_frequency[mesh])
+    return [slice(first, first + length) for first in range(0, samples - length + 1, step)]
+
+
+def _waterfall(
+    made: list[Spectrum],
+    values: FloatArray,
+    blocks: list[slice],
+    over: tuple[FloatArray, FloatArray],
+    lines: int | None = None,
+) -> Waterfall:
+    """Put the spectra of blocks of `values` (..., T) together, the first `lines`; `over` (T,) are means."""
+    time, frequency = (np.array([series[block].mean() for block in blocks]) for series in over)
+    return Waterfall(
+        made[0].frequency[:lines],
+        time,
+        frequency,
+        np.stack([one.amplitude[..., :lines] for one in made], axis=-2),
+        np.stack([values[..., block].std(axis=-1) for block in blocks], axis=-1),
+        made[0].unit,
+        made[0].noise_bandwidth,
     )
-    amplitude = np.stack([line.amplitude for line in lines], axis=-2)
-    return Waterfall(lines[0].frequency, time, mesh_frequency, amplitude, unit)

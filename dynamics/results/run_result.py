@@ -77,11 +77,13 @@ class RunResult:
         Plain JSON: effects on and off with reasons; times and error estimate; the scene as resolved, with
         every damping value used.
     modes : dict
-        Natural modes about the static equilibrium at t = 0: lists `frequency` (Hz), `damping_ratio` and
-        `freedom` (the one with most of the kinetic energy); empty if they were not found. Where gyroscopic
+        Natural modes about the static equilibrium at t = 0: lists `frequency` (Hz), `damping_ratio`,
+        `freedom` (the one with most of the kinetic energy) and `moves` (the parts with a twentieth of it or
+        more, "shaft, how", with their shares); empty if they were not found. Where gyroscopic
         terms are on also `over_speed`: whirl modes (a lists of S values each: `frequency` in Hz,
         `damping_ratio`, `whirl` from -1, backward, to 1, forward) at S speeds of `shaft` (`speed`, rad/s;
-        `mesh_frequency` of every mesh, Hz) from rest to the largest of the run, and `freedom` at the last.
+        `mesh_frequency` of every mesh, Hz) from rest to the largest of the run, `freedom` and `moves` at
+        the last.
     warnings : list of dict
         What is implausible about the scene; empty where nothing is.
     acceleration : (n, T) array

@@ -10,16 +10,10 @@ from typing import Any
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.errors import SolveError
 from dynamics.influence import Decided, Influence, estimate_influences
 from dynamics.integrators.march import Ending
 from dynamics.integrators.method_choice import MethodChoice
 from dynamics.integrators.workspace import Count
-from dynamics.linearize import natural_modes
-from dynamics.linearize.campbell import whirl_branches
-from dynamics.linearize.linear_system import LinearSystem, linearize
-from dynamics.linearize.speeds import leading_law, mesh_frequencies
-from dynamics.mechanism.additions import SPEED_DEPENDENCE
 from dynamics.motion.observation import observe
 from dynamics.motion.sampled_states import States
 from dynamics.plausibility import scene_findings
@@ -30,6 +24,7 @@ from dynamics.results.energy_check import energy_check
 from dynamics.results.histories import checked_series, filtered, histories, unfiltered
 from dynamics.results.run_checks import RunChecks
 from dynamics.scene import Integration
+from dynamics.simulation.run_modes import modes_of_run
 from dynamics.simulation.violations import FIRST, EarlierRun
 from dynamics.types import FloatArray, Json
 
@@ -37,7 +32,6 @@ ERROR_CHECK_FACTOR = 0.1
 IMPLICIT_STAGES_PER_STEP = 5
 LEAST_WORK = 500_000
 """Steps times freedoms of a run whose ledger has estimates that no tolerance requests."""
-WHIRL_SPEEDS = 33
 
 
 def documents(
@@ -80,7 +74,7 @@ def documents(
         | system.corrections,
         "case": resolved_case(system),
         "warnings": [finding.to_json() for finding in scene_findings(decided.scene)],
-        "modes": _modes(system),
+        "modes": modes_of_run(system),
     }
 
 
@@ -109,43 +103,6 @@ def _method(choice: MethodChoice | None, end: Ending) -> Json:
     if choice is None or steps == 0:
         return {}
     return {"method": choice.to_json(end.end / steps, end.seconds)}
-
-
-def _modes(system: System) -> Json:
-    """Return the natural modes in plain numbers; nothing where there is no equilibrium."""
-    try:
-        linear = linearize(system)
-    except SolveError:
-        return {}
-    modes = natural_modes(linear)
-    most = np.argmax(modes.kinetic_energy, axis=1) if modes.frequency.size else []
-    turning = any(part.speed.extreme != 0.0 for part in system.scene.references)
-    rotating = turning and system.ledger.adds(SPEED_DEPENDENCE)
-    return {
-        "frequency": [float(value) for value in modes.frequency],
-        "damping_ratio": [float(value) for value in modes.damping_ratio],
-        "freedom": [modes.freedom[index] for index in most],
-        **({"over_speed": _over_speed(system, linear)} if rotating else {}),
-    }
-
-
-def _over_speed(system: System, linear: LinearSystem) -> Json:
-    """Return the whirl modes up to the largest speeds of the run, those that oscillate at all of them."""
-    law = leading_law(system)
-    extreme = system.scene.references[law].speed.extreme
-    speed = np.linspace(0.0, abs(extreme), WHIRL_SPEEDS)
-    branches = whirl_branches(system, linear, speed)
-    whole = np.all(np.isfinite(branches.frequency), axis=0)
-    most = np.argmax(branches.kinetic_energy[-1], axis=1)
-    return {
-        "shaft": system.scene.references[law].shaft,
-        "speed": speed.tolist(),
-        "mesh_frequency": mesh_frequencies(system, speed).tolist(),
-        "frequency": branches.frequency[:, whole].T.tolist(),
-        "damping_ratio": branches.damping_ratio[:, whole].T.tolist(),
-        "whirl": branches.whirl[:, whole].T.tolist(),
-        "freedom": [linear.freedom[index] for index in most[whole]],
-    }
 
 
 def finer(integration: Integration) -> Integration:

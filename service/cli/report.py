@@ -21,6 +21,7 @@ from service.report.content import nominal_force
 from service.report.inputs import Inputs, read_inputs
 from service.report.stored_study import page_beside
 from service.report.write import write_page
+from service.runs.run_view import RunView
 from service.schemas import Case
 from service.schemas.flank import FlankPoint
 from service.tables.aligned import aligned, headline_load
@@ -30,14 +31,14 @@ if TYPE_CHECKING:
 
 
 def run_report(
-    files: Sequence[Path], output: Path, images: Path | None, *, flank: bool, as_json: bool
+    files: Sequence[Path], output: Path, images: Path | None, view: RunView, *, flank: bool, as_json: bool
 ) -> None:
     """Write the page; draw the pictures and compute the flank results if requested."""
     for file in files:
         if not file.is_file():
             raise BadInput.of("file", str(file), "a file of results", "Check the path.")
     check_writable(output)
-    read = read_inputs(files)
+    read = replace(read_inputs(files), view=view)
     warn(warning for file in files for warning in stamped(file))
     spent = 0.0
     if flank:

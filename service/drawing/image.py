@@ -10,7 +10,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure as Sheet
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, ScalarFormatter
+from matplotlib.ticker import (
+    FuncFormatter,
+    LogLocator,
+    MaxNLocator,
+    NullFormatter,
+    NullLocator,
+    ScalarFormatter,
+)
 
 from service.drawing import palette
 from service.drawing.figure import Axis, Figure, Line, Panel, Reference, Surface, legend_names, repeats_below
@@ -21,6 +28,7 @@ _LEGEND_CHARACTERS, _HANDLE_CHARACTERS = 120, 9  # of the legend's type: across 
 _NOTE_ROW = 10  # points
 _NARROW = 100.0  # largest over smallest value of a logarithmic axis with plain numbers
 _MOST_WHOLE = 30  # an axis of whole numbers up to here has no ticks between them
+_BOX = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.0}  # under a text on colors
 _DASH = {"solid": "-", "dash": "--", "dot": ":"}
 
 
@@ -97,7 +105,9 @@ def _finish(ax: Axes, panel: Panel) -> None:
     for note in panel.notes:
         offset = (-5 if note.left else 5, 4 + _NOTE_ROW * note.row - (8 if note.row < 0 else 0))
         side = "right" if note.left else "left"
-        ax.annotate(note.text, (note.x, note.y), offset, textcoords="offset points", ha=side, fontsize=8)
+        box = None if panel.shade is None else _BOX
+        text = ax.annotate(note.text, (note.x, note.y), offset, textcoords="offset points", ha=side, bbox=box)
+        text.set_fontsize(8)
     if panel.title:
         ax.set_title(panel.title, loc="left", fontsize=10, fontweight="bold")
     ax.grid(color=palette.GRID, lw=0.6)
@@ -118,6 +128,7 @@ def _scale(ax: Axes, axis: Axis, name: str) -> None:
     drawn = getattr(ax, f"{name}axis")
     if axis.names:
         drawn.set_ticks([value for value, _ in axis.names], labels=[text for _, text in axis.names])
+        drawn.set_minor_locator(NullLocator())
         return
     if axis.scale == "linear":
         drawn.set_major_formatter(ScalarFormatter(useOffset=False))
@@ -146,7 +157,7 @@ def _refer(ax: Axes, reference: Reference, *, boxed: bool) -> None:
         )
     written.set(fontsize=8, color=palette.MUTED)
     if boxed:
-        written.set(color=palette.INK, bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.0})
+        written.set(color=palette.INK, bbox=_BOX)
 
 
 def _surface_sheet(surface: Surface) -> Sheet:

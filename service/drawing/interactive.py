@@ -30,6 +30,7 @@ _LEGEND_ROW = 22  # pixels
 _NOTE_ROW = 15  # pixels
 _BAND_ALPHA = "33"  # of an error band, after the six digits of its color
 _ROW_CHARACTERS, _HANDLE_CHARACTERS = 120, 7  # of the legend's type: across the page, beside a name
+_BOX = "rgba(255,255,255,0.8)"  # under a text on colors
 _FONT = {"family": "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', sans-serif", "size": 14}
 
 
@@ -164,7 +165,8 @@ def _notes(panel: Panel, suffix: str) -> list[Json]:
             annotation[name] = float(np.log10(value)) if axis.scale == "log" else value
         shifts = {"xshift": -4 if note.left else 4, "yshift": _NOTE_ROW * note.row}
         side = {"xanchor": "right" if note.left else "left", "yanchor": "bottom"}
-        notes.append(annotation | shifts | side | {"font": {"size": 12}})
+        box = {} if panel.shade is None else {"bgcolor": _BOX}
+        notes.append(annotation | shifts | side | box | {"font": {"size": 12}})
     return notes
 
 
@@ -185,7 +187,7 @@ def _add_reference(layout: Json, reference: Reference, panel: Panel, suffix: str
     anchor = {"xanchor": across, "yanchor": "top" if upright else "bottom"}
     text: Json = {"text": reference.label, "showarrow": False, "font": {"size": 12, "color": palette.MUTED}}
     if panel.shade is not None:
-        text |= {"bgcolor": "rgba(255,255,255,0.8)", "font": {"size": 12, "color": palette.INK}}
+        text |= {"bgcolor": _BOX, "font": {"size": 12, "color": palette.INK}}
     layout["annotations"].append(along | position | anchor | text)
 
 

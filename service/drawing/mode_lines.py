@@ -12,6 +12,7 @@ from service.drawing import palette
 from service.drawing.figure import FloatArray, Table, number
 
 SHOWN_MODES, LEAST_DISTANCE, CIRCULAR = 8, 0.01, 0.1
+MOVES = "moves, share of the kinetic energy"
 CAPTION = {
     False: "Dashed: natural frequencies about the static equilibrium",
     True: "Dashed: whirl modes about the static equilibrium, at the speeds of the run",
@@ -26,11 +27,12 @@ _COLOURS = {
 
 @dataclass(frozen=True)
 class ModeLine:
-    """A mode over the blocks of a diagram: its name in the legend, color, and frequency (B,) in Hz."""
+    """A mode over the blocks of a diagram: its name in the legend, color, frequency (B,), Hz, what moves."""
 
     name: str
     color: str
     frequency: FloatArray
+    moves: str
 
 
 def whirling(run: RunResult) -> bool:
@@ -41,13 +43,14 @@ def whirling(run: RunResult) -> bool:
 def mode_lines(run: RunResult, mesh_frequency: FloatArray, top: float) -> list[ModeLine]:
     """Return the lowest modes below `top` (Hz) that lie apart, over mesh frequencies (B,), Hz."""
     frequencies, whirls = _frequencies(run, mesh_frequency)
+    modes = run.modes["over_speed"] if whirling(run) else run.modes
     kept: list[ModeLine] = []
     for index in np.argsort(frequencies[:, 0]) if frequencies.size else ():
         values = frequencies[index]
         apart = all(np.max(np.abs(line.frequency - values)) > LEAST_DISTANCE * top for line in kept)
         if 0.0 < values[0] < top and apart:
             name = _name(whirls[index]) if whirling(run) else "natural modes"
-            kept.append(ModeLine(name, _COLOURS[name], values))
+            kept.append(ModeLine(name, _COLOURS[name], values, _most(modes, int(index))))
     return kept[:SHOWN_MODES]
 
 
@@ -78,13 +81,17 @@ def mode_table(run: RunResult, top: float, orders: int) -> Table | None:
     if whirling(run):
         return _whirl_table(modes["over_speed"], top, orders, (low, high))
     rows = []
-    facts = zip(modes["frequency"], modes["damping_ratio"], modes["freedom"], strict=True)
-    for frequency, ratio, freedom in facts:
+    for index, (frequency, ratio) in enumerate(zip(modes["frequency"], modes["damping_ratio"], strict=True)):
         if not 0.0 < frequency < top:
             continue
         met = [(k, frequency / k) for k in range(1, orders + 1) if low <= frequency / k <= high]
-        rows.append((number(frequency, 4), number(100.0 * ratio, 2), freedom, _met(met)))
-    head = ("natural frequency, Hz", "damping ratio, %", "moves most", "met by mesh order at mesh frequency")
+        rows.append((number(frequency, 4), number(100.0 * ratio, 2), _moves(modes, index), _met(met)))
+    head = (
+        "natural frequency, Hz",
+        "damping ratio, %",
+        MOVES,
+        "met by mesh order at mesh frequency",
+    )
     return Table("Natural modes in the range of the diagram", head, tuple(rows))
 
 
@@ -92,9 +99,8 @@ def _whirl_table(over: dict[str, Any], top: float, orders: int, ends: tuple[floa
     """List whirl modes at rest and at the highest speed."""
     mesh = np.array(over["mesh_frequency"][0])
     rows = []
-    for values, ratio, whirl, freedom in zip(
-        over["frequency"], over["damping_ratio"], over["whirl"], over["freedom"], strict=True
-    ):
+    branches = zip(over["frequency"], over["damping_ratio"], over["whirl"], strict=True)
+    for index, (values, ratio, whirl) in enumerate(branches):
         line = np.array(values)
         if not 0.0 < line[0] < top:
             continue
@@ -109,7 +115,7 @@ def _whirl_table(over: dict[str, Any], top: float, orders: int, ends: tuple[floa
                 number(float(line[-1]), 4),
                 number(100.0 * ratio[-1], 2),
                 _name(whirl[-1]),
-                freedom,
+                _moves(over, index),
                 _met(met),
             )
         )
@@ -118,10 +124,22 @@ def _whirl_table(over: dict[str, Any], top: float, orders: int, ends: tuple[floa
         "at the highest speed, Hz",
         "damping ratio there, %",
         "whirl",
-        "moves most",
+        MOVES,
         "met by mesh order at mesh frequency",
     )
     return Table("Whirl modes in the range of the diagram", head, tuple(rows))
+
+
+def _most(modes: dict[str, Any], index: int) -> str:
+    """Name what moves most in a mode."""
+    return str(next(iter(modes["moves"][index])) if "moves" in modes else modes["freedom"][index])
+
+
+def _moves(modes: dict[str, Any], index: int) -> str:
+    """Write what moves in a mode; of a run that does not hold it, the freedom that moves most."""
+    if "moves" not in modes:
+        return str(modes["freedom"][index])
+    return "; ".join(f"{name} {number(100.0 * share, 2)} %" for name, share in modes["moves"][index].items())
 
 
 def _meeting(mesh: FloatArray, gap: FloatArray) -> float | None:

@@ -41,7 +41,7 @@ def _page_of(read: Inputs) -> Page:
         alarms += study.alarms
     if run is not None:
         headlines += dynamic_headlines(run)
-        results += dynamic_results(run)
+        results += dynamic_results(run, read.view)
         making += dynamic_making(run)
         alarms += dynamic_alarms(run)
     return Page(_title(read), _lead(read), tuple(headlines), (*results, *making), tuple(alarms))

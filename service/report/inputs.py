@@ -18,6 +18,7 @@ from service.drawing.page import Page
 from service.problems import BadInput
 from service.registry import STUDIES, Study
 from service.report.stored_study import stored_study, study_page
+from service.runs.run_view import RunView
 
 _BOUND = f"an STE database, a run, or the result of a study ({', '.join(STUDIES)})"
 _READERS: dict[str, tuple[tuple[str, str], Callable[[Path], Any]]] = {
@@ -31,13 +32,15 @@ _READERS: dict[str, tuple[tuple[str, str], Callable[[Path], Any]]] = {
 class Inputs:
     """The results that were read; at least one of them.
 
-    `pages` are those of studies, by the kind of their results; `warnings` are those of all files, in words.
+    `pages` are those of studies, by the kind of their results; `warnings` are those of all files, in words;
+    `view` is what of the run is shown.
     """
 
     database: SteDatabase | None = None
     run: RunResult | None = None
     pages: Mapping[str, Page] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
+    view: RunView = field(default_factory=RunView)
 
     @property
     def only_page(self) -> Page | None:

@@ -8,7 +8,7 @@ from dynamics.results import RunResult
 from dynamics.results.dynamic_factor import dynamic_factor
 from service.drawing import palette
 from service.drawing.figure import Axis, Figure, Line, Panel, number
-from service.runs.run_signal import run_axis
+from service.runs.run_view import run_axis
 
 PITCHES = 16
 

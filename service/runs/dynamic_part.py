@@ -9,18 +9,21 @@ import numpy as np
 from dynamics.results import RunResult
 from dynamics.results.contact_state import contact_shares
 from service.drawing.facts import facts, records
-from service.drawing.figure import Figure, Table, number
+from service.drawing.figure import Table, number
 from service.drawing.page import Headline, Section
 from service.drawing.sampling import peak_table, sampling_table
-from service.runs.bearing_force import bearing_force
-from service.runs.bearing_spectrum import bearing_spectrum
-from service.runs.campbell import campbell
+from service.runs.campbell import campbell, frequency_blocks
 from service.runs.dynamic_error import dynamic_error
 from service.runs.dynamic_factor import dynamic_factor_figure
-from service.runs.order_cuts import order_cuts
+from service.runs.levels_over_speed import levels_over_speed, order_blocks
+from service.runs.octave_bands import octave_bands
+from service.runs.order_map import order_map
 from service.runs.planet_sharing import planet_sharing
-from service.runs.run_series import RunSeries, run_series
+from service.runs.run_series import run_series
+from service.runs.run_view import RunView, Signal, shown_signal
 from service.runs.sideband_table import sideband_tables
+from service.runs.signal_over_time import signal_over_time
+from service.runs.signal_spectrum import signal_spectrum
 
 LEAST_PITCHES = 64  # of a run whose orders are shown
 _LEDGER = {"effect": "effect", "part": "part", "on": "simulated", "reason": "because"}
@@ -55,12 +58,25 @@ def dynamic_alarms(run: RunResult) -> tuple[str, ...]:
     return tuple(alarms)
 
 
-def dynamic_results(run: RunResult) -> tuple[Section, ...]:
-    """Show the motion and the forces of one run."""
-    series = run_series(run)
-    text = "" if len(run.mesh) == 1 else f"Of {len(run.mesh)} meshes, {run.mesh[0]} is shown."
+def dynamic_results(run: RunResult, view: RunView) -> tuple[Section, ...]:
+    """Show the motion of one run, and the quantity that the view names.
+
+    Raises
+    ------
+    BadInput
+        The run does not hold what the view names.
+    """
+    signal = shown_signal(run, view)
+    series = run_series(run, signal.mesh)
+    text = "" if len(run.mesh) == 1 else f"Of {len(run.mesh)} meshes, {run.mesh[signal.mesh]} is shown."
     motion = Section("Dynamic transmission error", text, figures=(dynamic_error(series),))
-    return motion, *_bearings(series), *_orders(run), *_forces(run)
+    shown = (signal_over_time(run, series, signal), signal_spectrum(run, signal))
+    return motion, Section(_heading(signal), figures=shown), *_orders(run, signal), *_forces(run)
+
+
+def _heading(signal: Signal) -> str:
+    """Write the name of the signal as a heading."""
+    return signal.name[0].upper() + signal.name[1:]
 
 
 def dynamic_making(run: RunResult) -> tuple[Section, ...]:
@@ -74,20 +90,19 @@ def dynamic_making(run: RunResult) -> tuple[Section, ...]:
     return accuracy, _effects(run), scene
 
 
-def _bearings(series: RunSeries) -> tuple[Section, ...]:
-    """Show the forces on the bearings, where the run kept them."""
-    if not series.bearings:
+def _orders(run: RunResult, signal: Signal) -> tuple[Section, ...]:
+    """Show levels, bands and mesh orders over the run, for runs long enough to have them."""
+    if np.ptp(np.unwrap(run.position[signal.mesh], period=1.0)) < LEAST_PITCHES:
         return ()
-    figures: tuple[Figure, ...] = (bearing_force(series), bearing_spectrum(series))
-    return (Section("Bearing forces", figures=figures),)
-
-
-def _orders(run: RunResult) -> tuple[Section, ...]:
-    """Show the mesh orders over the run, for runs long enough to have them."""
-    if np.ptp(np.unwrap(run.position[0], period=1.0)) < LEAST_PITCHES:
-        return ()
-    figures = (campbell(run), order_cuts(run))
-    return (Section("Orders", figures=figures, tables=sideband_tables(run)),)
+    orders, frequencies = order_blocks(run, signal), frequency_blocks(run, signal)
+    figures = (
+        levels_over_speed(run, signal, orders),
+        order_map(run, signal, orders),
+        campbell(run, signal, frequencies),
+        octave_bands(run, signal, frequencies),
+    )
+    shown = tuple(figure for figure in figures if figure is not None)
+    return (Section("Levels and orders", figures=shown, tables=sideband_tables(run, signal)),)
 
 
 def _forces(run: RunResult) -> tuple[Section, ...]:

@@ -1,13 +1,11 @@
-"""The series behind the figures of a run: one mesh with its driving gear, and all bearings."""
+"""The series behind the figures of a run: one mesh with its driving gear."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.orders import highest_valid_order
 from dynamics.results import RunResult
 from service.drawing.figure import FloatArray, number
 
@@ -32,10 +30,6 @@ class RunSeries:
         Transverse, N; the extremes around each sample are those of the unfiltered force.
     nominal_force : float
         Transverse mesh force in N that the load asks for.
-    bearings : mapping of str to (n, 3) array
-        Force on each bearing in N, x, y, z in the fixed frame.
-    valid_order : int
-        Highest mesh order that the output holds at the highest speed.
     """
 
     time: FloatArray
@@ -48,19 +42,11 @@ class RunSeries:
     least_force: FloatArray
     largest_force: FloatArray
     nominal_force: float
-    bearings: Mapping[str, FloatArray]
-    valid_order: int = 0
-
-    @property
-    def loudest_bearing(self) -> str:
-        """Name of the bearing whose force varies most over the run."""
-        return max(self.bearings, key=lambda name: float(np.sum(np.var(self.bearings[name], axis=0))))
 
 
 def run_series(run: RunResult, mesh: int = 0) -> RunSeries:
     """Take the series of one mesh out of a run."""
     shaft = run.shaft.index(driving_shaft(run, mesh))
-    bearings = {name: run.bearing_force[k].T for k, name in enumerate(run.bearing)}
     return RunSeries(
         time=run.time,
         speed_rpm=np.abs(run.speed[shaft]) * 30.0 / np.pi,
@@ -72,8 +58,6 @@ def run_series(run: RunResult, mesh: int = 0) -> RunSeries:
         least_force=run.least_mesh_force[mesh],
         largest_force=run.largest_mesh_force[mesh],
         nominal_force=float(run.nominal_force[mesh]),
-        bearings=bearings,
-        valid_order=highest_valid_order(run, mesh),
     )
 
 

@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from dynamics.errors import InputError
 from dynamics.orders import Sideband, sidebands
 from dynamics.results import RunResult
 from service.drawing.figure import Table, number
-from service.runs.run_signal import shown_signal
+from service.runs.run_view import Signal
 
 SHARE, ROWS = 1e-3, 12  # of the largest mesh order
 
 
-def sideband_tables(run: RunResult) -> tuple[Table, ...]:
+def sideband_tables(run: RunResult, signal: Signal) -> tuple[Table, ...]:
     """Tabulate the largest sidebands of the loudest component; nothing if the run is too short for them."""
-    signal = shown_signal(run)
-    values = getattr(run, signal.series)[signal.row]
-    if values.ndim > 1:
-        values = values[values.var(axis=-1).argmax()]
+    values = max(signal.components(run).values(), key=lambda series: float(np.var(series)))
     try:
-        lines = sidebands(run, values)
+        lines = sidebands(run, values, mesh=signal.mesh)
     except InputError:  # fewer than four revolutions
         return ()
     least = SHARE * max(line.amplitude for line in lines if line.number == 0)
@@ -26,7 +25,7 @@ def sideband_tables(run: RunResult) -> tuple[Table, ...]:
     if not beside:
         return ()
     caption = f"Sidebands of the {signal.name}, once per revolution of a gear and its multiples"
-    head = ("mesh order", "sideband", "order", "amplitude, N")
+    head = ("mesh order", "sideband", "order", f"amplitude, {signal.quantity.unit} peak")
     return (Table(caption, head, tuple(map(_row, beside[:ROWS]))),)
 
 

@@ -36,7 +36,7 @@ STUDIES = {
     "modes": ("Modes", "Find the modes", {"Top speed": "2000"}, ["modal_campbell", "modal_energy"]),
     "simulate": (
         "Run-up", "Simulate the run-up", {"Duration": "0.05"},
-        ["dynamic_error", "bearing_force", "bearing_spectrum"],
+        ["dynamic_error", "signal", "spectrum"],
     ),
 }  # fmt: skip
 

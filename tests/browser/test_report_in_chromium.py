@@ -21,10 +21,12 @@ CURVES = {
     "load_sharing": 9,
     "mesh_stiffness": 3,
     "dynamic_error": 6,
-    "bearing_force": 2,
-    "bearing_spectrum": 1,
+    "signal": 2,
+    "spectrum": 1,
+    "levels": 6,
+    "order_map": 0,
     "campbell": 8,
-    "order_cuts": 5,
+    "octave_bands": 2,
     "dynamic_factor": 3,
 }
 PANELS = {
@@ -33,10 +35,12 @@ PANELS = {
     "load_sharing": 3,
     "mesh_stiffness": 1,
     "dynamic_error": 3,
-    "bearing_force": 2,
-    "bearing_spectrum": 1,
+    "signal": 2,
+    "spectrum": 1,
+    "levels": 1,
+    "order_map": 1,
     "campbell": 1,
-    "order_cuts": 1,
+    "octave_bands": 1,
     "dynamic_factor": 1,
 }
 

@@ -58,6 +58,17 @@ def test_time_series_come_back_with_units_positions_and_directions(run, tmp_path
     np.testing.assert_allclose(functions[1001, 0, 9]["data"], run.mesh_force[0], rtol=1e-12)
 
 
+def test_a_tacho_counts_the_teeth_that_pass(run, tmp_path):
+    """Its speed over time, times the teeth, is the travel of the mesh in base pitches."""
+    _, _, functions = read(run, tmp_path / "run.unv")
+    tacho = functions[1001, 0, 19]
+    assert tacho["ordinate_axis_units_lab"].strip() == "rpm"
+    teeth = {gear["name"]: gear["teeth"] for gear in run.case["gears"]}[run.case["meshes"][0]["driver"]]
+    traveled = np.sum(tacho["data"]) / run.sample_rate * teeth / 60.0
+    assert traveled == pytest.approx(np.ptp(np.unwrap(run.position[0], period=1.0)), rel=2e-3)
+    assert not [key for key in read(run, tmp_path / "o.unv", "orders")[2] if key[2] == 19]
+
+
 def test_nodes_are_at_bearings_and_meshes(run, tmp_path):
     _, nodes, _ = read(run, tmp_path / "run.unv")
     assert list(nodes["node_nums"]) == [1, 2, 3, 4, 1001]

@@ -128,3 +128,12 @@ def test_what_has_no_lines_is_refused():
         sidebands(run, run.mesh_force[0], periods={"ring": 500})
     with pytest.raises(InputError, match="values"):
         sidebands(run, run.mesh_force)
+
+
+@pytest.mark.parametrize("window", ["hann", "rectangular", "flat_top"])
+def test_the_rms_of_a_block_is_that_of_its_orders(window):
+    """Orders on lines: 3 and 0.5 in amplitude, whatever the window."""
+    found = order_waterfall(run_up(chirp), "mesh_force", window=window)
+    np.testing.assert_allclose(found.rms[0], np.sqrt(0.5 * (3.0**2 + 0.5**2)), rtol=2e-4)
+    power = 0.5 * found.amplitude[0, :, 1:] ** 2 / found.noise_bandwidth
+    np.testing.assert_allclose(np.sqrt(power.sum(axis=-1)), found.rms[0], rtol=5e-3)

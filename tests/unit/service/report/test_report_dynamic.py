@@ -7,16 +7,18 @@ import pytest
 
 from dynamics.results import RunResult
 from dynamics.types import RunStatus
-from service.runs.bearing_force import bearing_force
-from service.runs.bearing_spectrum import (
-    amplitude_spectrum,
-    bearing_spectrum,
-    order_amplitudes,
-    spectrum_window,
-)
+from service.problems import BadInput
 from service.runs.dynamic_error import dynamic_error
 from service.runs.dynamic_part import dynamic_alarms, dynamic_headlines, dynamic_making, dynamic_results
 from service.runs.run_series import run_series
+from service.runs.run_view import RunView, shown_signal
+from service.runs.signal_over_time import signal_over_time
+from service.runs.signal_spectrum import (
+    amplitude_spectrum,
+    order_amplitudes,
+    signal_spectrum,
+    spectrum_window,
+)
 
 
 def test_position_is_unwrapped_and_speed_is_the_driver_s(run: RunResult) -> None:
@@ -44,30 +46,64 @@ def test_dynamic_and_static_error_are_drawn_at_three_speeds(run: RunResult) -> N
 
 
 def test_the_bearing_that_varies_most_is_shown(run: RunResult) -> None:
-    assert run_series(run).loudest_bearing == "right"
-    figure = bearing_force(run_series(run))
-    whole, detail = figure.content  # type: ignore[misc]
+    signal = shown_signal(run, RunView())
+    assert (signal.name, signal.unit) == ("force on bearing right", "N rms")
+    whole, detail = signal_over_time(run, run_series(run), signal).content  # type: ignore[misc]
     assert [line.name for line in whole.lines] == ["y"]
     assert whole.lines[0].y.min() < -1020
     assert detail.x.limits[0] > whole.x.limits[0]
 
 
-def test_a_sine_shows_its_amplitude() -> None:
-    time = np.arange(4000) / 4000.0
-    force = np.zeros((4000, 3))
-    force[:, 0] = 5.0 + 3.0 * np.cos(2 * np.pi * 100 * time)
-    force[:, 1] = 4.0 * np.sin(2 * np.pi * 100 * time)
-    frequency, amplitude = amplitude_spectrum(time, force)
-    assert frequency[np.argmax(amplitude)] == 100.0
-    assert amplitude.max() == pytest.approx(5.0, rel=1e-9)
-    assert amplitude[frequency > 110].max() < 1e-9
+def test_the_view_names_bearing_quantity_and_scale(run: RunResult) -> None:
+    other = shown_signal(run, RunView(bearing="left", scale="peak"))
+    assert (other.part, other.unit) == ("left", "N peak")
+    error = shown_signal(run, RunView(quantity="transmission_error"))
+    (drawn,) = error.components(run).values()
+    np.testing.assert_array_equal(drawn, 1e6 * run.dynamic_transmission_error[0])
+    peak, effective = (shown_signal(run, RunView(scale=scale)) for scale in ("peak", "rms"))
+    amplitude = np.ones((2, 3, 5))
+    np.testing.assert_allclose(peak.amplitude(amplitude), np.sqrt(3.0))
+    np.testing.assert_allclose(effective.amplitude(amplitude), np.sqrt(1.5))
+
+
+@pytest.mark.parametrize(
+    ("view", "field"),
+    [
+        (RunView(quantity="noise"), "quantity"),
+        (RunView(quantity="acceleration"), "accelerations = true"),
+        (RunView(bearing="middle"), "bearing"),
+        (RunView(mesh="second"), "mesh"),
+        (RunView(orders=(1.5,)), "orders"),
+        (RunView(orders=(99.0,)), "orders"),
+        (RunView(window="boxcar"), "window"),
+        (RunView(scale="sone"), "scale"),
+    ],
+)
+def test_a_view_that_the_run_cannot_serve_is_refused(run: RunResult, view: RunView, field: str) -> None:
+    bare = replace(run, bearing_acceleration=np.empty((0, 3, run.time.size)))
+    with pytest.raises(BadInput, match=field):
+        shown_signal(bare, view)
+
+
+def test_a_sine_shows_its_amplitude(run: RunResult) -> None:
+    phase = 2 * np.pi * 100 * run.time
+    force = np.zeros_like(run.bearing_force)
+    force[1, 0] = 5.0 + 3.0 * np.cos(phase)
+    force[1, 1] = 4.0 * np.sin(phase)
+    sine = replace(run, bearing_force=force)
+    window = slice(0, int(run.sample_rate))  # 1 s
+    for scale, factor in (("peak", 1.0), ("rms", np.sqrt(0.5))):
+        signal = shown_signal(sine, RunView(scale=scale))
+        frequency, amplitude = amplitude_spectrum(sine, signal, window)
+        assert frequency[np.argmax(amplitude)] == 100.0
+        assert amplitude.max() == pytest.approx(5.0 * factor, rel=1e-9)
+        assert amplitude[frequency > 110].max() < 1e-9
 
 
 def test_mesh_orders_are_found_where_they_are(run: RunResult) -> None:
-    series = run_series(run)
-    window = spectrum_window(series)
-    mesh = series.mesh_frequency[window]
-    frequency, amplitude = amplitude_spectrum(series.time[window], series.bearings["right"][window])
+    window = spectrum_window(run.time)
+    mesh = run.mesh_frequency[0, window]
+    frequency, amplitude = amplitude_spectrum(run, shown_signal(run, RunView()), window)
     (first, weak), (second, strong), *others = order_amplitudes(frequency, amplitude, mesh)
     assert mesh.min() - 10 <= first <= mesh.max() + 10
     assert second == pytest.approx(2 * first, abs=10)
@@ -75,18 +111,19 @@ def test_mesh_orders_are_found_where_they_are(run: RunResult) -> None:
 
 
 def test_orders_are_marked_at_multiples_of_the_mesh_frequency(run: RunResult) -> None:
-    (panel,) = bearing_spectrum(run_series(run)).content  # type: ignore[misc]
+    (panel,) = signal_spectrum(run, shown_signal(run, RunView())).content  # type: ignore[misc]
     marks = [reference.value for reference in panel.references]
     np.testing.assert_allclose(marks, np.arange(1, 7) * marks[0])  # what the rate holds
     assert marks[0] == pytest.approx(20 * 900 * 0.925 / 60, rel=1e-3)
     assert panel.y.scale == "log"
 
 
-def test_a_run_without_bearing_forces_has_no_such_section(run: RunResult) -> None:
+def test_a_run_without_bearing_forces_shows_its_mesh_force(run: RunResult) -> None:
     bare = replace(run, bearing=(), bearing_force=np.empty((0, 3, run.time.size)))
-    titles = [section.title for section in dynamic_results(bare)]
-    assert titles == ["Dynamic transmission error", "Orders", "Mesh forces"]
-    assert [section.title for section in dynamic_results(run)] == [titles[0], "Bearing forces", *titles[1:]]
+    titles = [section.title for section in dynamic_results(bare, RunView())]
+    assert titles == ["Dynamic transmission error", "Mesh force of mesh", "Levels and orders", "Mesh forces"]
+    titles[1] = "Force on bearing right"
+    assert [section.title for section in dynamic_results(run, RunView())] == titles
 
 
 def test_the_audit_and_the_step_error_are_told(run: RunResult) -> None:

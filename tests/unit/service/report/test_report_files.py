@@ -22,10 +22,12 @@ def files(tmp_path: Path, database: SteDatabase, run: RunResult) -> tuple[Path, 
 STATIC = {"ste", "ripple", "load_sharing", "mesh_stiffness", "database"}
 DYNAMIC = {
     "dynamic_error",
-    "bearing_force",
-    "bearing_spectrum",
+    "signal",
+    "spectrum",
+    "levels",
+    "order_map",
     "campbell",
-    "order_cuts",
+    "octave_bands",
     "dynamic_factor",
 }
 

@@ -12,11 +12,15 @@ from dynamics.linearize import whirl_modes
 from dynamics.results import RunResult
 from dynamics.simulation import simulate
 from service.drawing.figure import HeatMap, Panel
-from service.runs.campbell import DEPTH, campbell
+from service.runs.campbell import campbell, frequency_blocks
 from service.runs.dynamic_factor import dynamic_factor_figure
 from service.runs.dynamic_part import dynamic_results
-from service.runs.order_cuts import order_cuts
+from service.runs.level_map import DEPTH
+from service.runs.levels_over_speed import levels_over_speed, order_blocks
+from service.runs.octave_bands import octave_bands
+from service.runs.order_map import order_map
 from service.runs.planet_sharing import planet_sharing
+from service.runs.run_view import RunView, shown_signal
 from service.runs.sideband_table import sideband_tables
 
 MODES = {
@@ -31,8 +35,18 @@ def panel(figure) -> Panel:
     return found
 
 
+def diagram(run: RunResult):
+    signal = shown_signal(run, RunView())
+    return campbell(run, signal, frequency_blocks(run, signal))
+
+
+def levels(run: RunResult, **view):
+    signal = shown_signal(run, RunView(**view))
+    return panel(levels_over_speed(run, signal, order_blocks(run, signal)))
+
+
 def test_the_campbell_diagram_is_loudest_along_the_second_order(run: RunResult) -> None:
-    figure = campbell(replace(run, modes=MODES))
+    figure = diagram(replace(run, modes=MODES))
     shade = panel(figure).shade
     assert isinstance(shade, HeatMap)
     assert shade.z.max() == pytest.approx(DEPTH)
@@ -57,7 +71,7 @@ def test_whirl_modes_follow_the_speed_of_the_run(run: RunResult) -> None:
         "whirl": [[0.0, *[-1.0] * 6], [0.0, *[1.0] * 6]],
         "freedom": ["input.tilt_x"] * 2,
     }
-    figure = campbell(replace(run, modes=MODES | {"over_speed": over}))
+    figure = diagram(replace(run, modes=MODES | {"over_speed": over}))
     lines = {line.name: line for line in panel(figure).lines if "whirl" in line.name}
     excited = next(line for line in panel(figure).lines if line.name == "mesh orders")
     np.testing.assert_allclose(lines["forward whirl"].y, 250.0 + 0.2 * excited.y, rtol=1e-9)
@@ -83,18 +97,49 @@ def test_only_runs_with_gyroscopic_terms_hold_modes_over_speed() -> None:
     )
 
 
-def test_order_cuts_are_the_amplitudes_of_the_run(run: RunResult) -> None:
-    first, second, *others = panel(order_cuts(run)).lines
-    assert panel(order_cuts(run)).x.label == "speed of the driving gear, rpm"
-    middle = slice(3, -1)
-    np.testing.assert_allclose(first.y[middle], 10.0, rtol=0.02)
-    np.testing.assert_allclose(second.y[middle], 20.0, rtol=0.02)
-    assert max(line.y[middle].max() for line in others) < 0.3
+def test_a_mode_is_named_by_what_moves(run: RunResult) -> None:
+    moves = [{"output, torsional": 0.9, "input, lateral": 0.1}] * 4
+    figure = diagram(replace(run, modes=MODES | {"moves": moves}))
+    assert figure.table.rows[0][2] == "output, torsional 90 %; input, lateral 10 %"
+    notes = {note.text for note in panel(figure).notes}
+    assert {"output, torsional 300.0 Hz", "1×", "2×"} <= notes
+
+
+def test_levels_are_those_of_the_run(run: RunResult) -> None:
+    """Orders 1 and 2 of 10 and 20 N; levels in dB re 1 N, rms or peak, and their sum."""
+    overall, first, second, *others = levels(run, orders=(1, 2, 4), scale="peak").lines
+    middle = slice(8, -4)
+    np.testing.assert_allclose(first.y[middle], 20.0, atol=0.2)
+    np.testing.assert_allclose(second.y[middle], 20.0 * np.log10(20.0), atol=0.2)
+    np.testing.assert_allclose(overall.y[middle], 20.0 * np.log10(np.sqrt(250.0)), atol=0.2)
+    assert max(line.y[middle].max() for line in others) < 0.0
+    _, effective, _ = levels(run, orders=(1, 2)).lines
+    np.testing.assert_allclose(first.y - effective.y, 10.0 * np.log10(2.0), atol=1e-9)
+
+
+def test_the_largest_orders_are_cut_unless_named(run: RunResult) -> None:
+    names = [line.name for line in levels(run).lines]
+    assert names[:3] == ["overall, rms", "1×", "2×"] and len(names) == 6
+
+
+def test_an_order_map_has_its_lines_at_the_orders_of_the_run(run: RunResult) -> None:
+    signal = shown_signal(run, RunView())
+    shade = panel(order_map(run, signal, order_blocks(run, signal))).shade
+    assert isinstance(shade, HeatMap)
+    np.testing.assert_allclose(shade.y[np.argmax(shade.z, axis=0)], 2.0, atol=1.0 / 16)
+
+
+def test_octave_bands_hold_the_power_of_the_signal(run: RunResult) -> None:
+    signal = shown_signal(run, RunView())
+    blocks = frequency_blocks(run, signal)
+    figure = octave_bands(run, signal, blocks)
+    most = panel(figure).lines[0]
+    assert float(np.max(most.y)) == pytest.approx(20.0 * np.log10(np.sqrt(0.5) * 20.0), abs=0.3)
 
 
 def test_at_constant_speed_the_axis_is_time(run: RunResult) -> None:
     steady = replace(run, speed=np.full_like(run.speed, 50.0))
-    assert panel(order_cuts(steady)).x.label == "time, s"
+    assert levels(steady).x.label == "time, s"
 
 
 def test_the_dynamic_factor_of_a_constant_force_is_its_ratio(run: RunResult) -> None:
@@ -109,14 +154,18 @@ def test_load_sharing_is_drawn_for_sun_and_ring_and_only_for_planets() -> None:
     assert figure is not None
     assert [part.title for part in figure.content] == ["sun", "ring"]
     assert len(figure.table.rows) == 6
-    assert [section.title for section in dynamic_results(run)][-1] == "Mesh forces"
+    assert [section.title for section in dynamic_results(run, RunView())][-1] == "Mesh forces"
+
+
+def sidebands_of(run: RunResult):
+    return sideband_tables(run, shown_signal(run, RunView()))
 
 
 def test_sidebands_are_tabulated_with_what_modulates(run: RunResult) -> None:
     travel = np.unwrap(run.position[0], period=1.0)
     force = run.bearing_force.copy()
     force[1, 1] *= 1.0 + 0.3 * np.cos(2 * np.pi * travel / 20)
-    (table,) = sideband_tables(replace(run, bearing_force=force))
+    (table,) = sidebands_of(replace(run, bearing_force=force))
     assert table.rows[0][0] in ("1", "2")
     assert {row[1] for row in table.rows[:2]} <= {"+1 × pinion", "-1 × pinion", "+1 × wheel", "-1 × wheel"}
-    assert sideband_tables(replace(run, bearing_force=run.bearing_force)) == ()
+    assert sidebands_of(run) == ()
