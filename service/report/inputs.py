@@ -73,6 +73,21 @@ def read_inputs(files: Sequence[Path]) -> Inputs:
     return Inputs(**read, pages=pages, warnings=warnings)
 
 
+def read_result(file: Path) -> SteDatabase | RunResult:
+    """Read a table or a run.
+
+    Raises
+    ------
+    BadInput
+        The file is neither, or is damaged.
+    """
+    study, kind = _kind(file)
+    if study is not None:
+        raise BadInput.of("file", str(file), "an STE database or a run", f"It holds {kind}.")
+    result: SteDatabase | RunResult = _read(file, kind)
+    return result
+
+
 def _kind(file: Path) -> tuple[Study | None, str]:
     """Return the study that made a file, if one did, and the kind of the file."""
     attributes = _attributes(file)

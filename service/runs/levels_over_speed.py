@@ -27,7 +27,9 @@ def order_blocks(run: RunResult, signal: Signal) -> Waterfall:
 def levels_over_speed(run: RunResult, signal: Signal, made: Waterfall) -> Figure:
     """Draw the overall level and the levels of mesh orders over speed or time, in dB re one unit."""
     axis, abscissa = run_axis(run, made.time, signal.mesh)
-    cuts = {order: signal.amplitude(made.cut(order)) for order in signal.orders or _largest(signal, made)}
+    cuts = {
+        order: signal.amplitude(made.cut(order)) for order in signal.orders or largest_orders(signal, made)
+    }
     overall = signal.magnitude(made.rms)
     largest = max(float(overall.max()), *(float(cut.max()) for cut in cuts.values()))
     floor = largest * 10.0 ** (-DEPTH / 20.0)
@@ -53,7 +55,7 @@ def levels_over_speed(run: RunResult, signal: Signal, made: Waterfall) -> Figure
     )
 
 
-def _largest(signal: Signal, made: Waterfall) -> tuple[int, ...]:
+def largest_orders(signal: Signal, made: Waterfall) -> tuple[int, ...]:
     """Return the orders that are largest anywhere in the run, by their number."""
     orders = range(1, int(made.line[-1]) + 1)
     largest = sorted(orders, key=lambda order: -float(signal.magnitude(made.cut(order)).max()))

@@ -22,7 +22,7 @@ def signal_over_time(run: RunResult, series: RunSeries, signal: Signal) -> Figur
     return Figure(
         key="signal",
         title=f"Time history of the {signal.name}",
-        caption="Components in the fixed frame." if vector else "",
+        caption="Components in the fixed frame; of a planet bearing in its carrier's." if vector else "",
         alternative=_words(run, signal, window),
         content=(_panel(run, signal, slice(None), "whole run"), _panel(run, signal, window, detail)),
         table=_table(run, signal),

@@ -1,16 +1,34 @@
-"""The verb that writes pages."""
+"""The verbs that write pages."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from service.cli.guard import computing
 from service.cli.verbs.options import AsJson
 
+if TYPE_CHECKING:
+    from service.runs.run_view import RunView
+
 verbs = typer.Typer()
+
+Quantity = Annotated[
+    str,
+    typer.Option(
+        help="What of a run is shown: force, moment, acceleration, mesh_force, transmission_error.",
+        show_default="force",
+    ),
+]
+Bearing = Annotated[str, typer.Option(help="Bearing of a run that is shown.", show_default="the loudest")]
+Mesh = Annotated[str, typer.Option(help="Mesh of a run whose orders are shown.", show_default="the first")]
+Orders = Annotated[
+    str, typer.Option(help="Mesh orders over speed, as 1,2,4 or 1:8:1.", show_default="the five largest")
+]
+Window = Annotated[str, typer.Option(help="Window of the spectra of a run: hann, flat_top, rectangular.")]
+Scale = Annotated[str, typer.Option(help="Amplitudes of a run: rms or peak.")]
 
 
 @verbs.command(epilog="Example: loa report ste.nc run.nc -o report.html")
@@ -26,33 +44,51 @@ def report(
         bool,
         typer.Option("--flank", help="Compute what happens on the flanks at the load the page names."),
     ] = False,
-    quantity: Annotated[
-        str,
-        typer.Option(
-            help="What of a run is shown: force, moment, acceleration, mesh_force, transmission_error.",
-            show_default="force",
-        ),
-    ] = "",
-    bearing: Annotated[
-        str, typer.Option(help="Bearing of a run that is shown.", show_default="the loudest")
-    ] = "",
-    mesh: Annotated[
-        str, typer.Option(help="Mesh of a run whose orders are shown.", show_default="the first")
-    ] = "",
-    orders: Annotated[
-        str, typer.Option(help="Mesh orders over speed, as 1,2,4 or 1:8:1.", show_default="the five largest")
-    ] = "",
-    window: Annotated[
-        str, typer.Option(help="Window of the spectra of a run: hann, flat_top, rectangular.")
-    ] = "hann",
-    scale: Annotated[str, typer.Option(help="Amplitudes of a run: rms or peak.")] = "rms",
+    quantity: Quantity = "",
+    bearing: Bearing = "",
+    mesh: Mesh = "",
+    orders: Orders = "",
+    window: Window = "hann",
+    scale: Scale = "rms",
     json: AsJson = False,
 ) -> None:
     """Write one HTML page with the plots of a database, flank results, studies or a run."""
-    from service.cli.number_list import number_list  # noqa: PLC0415 (start-up time)
     from service.cli.report import run_report  # noqa: PLC0415 (start-up time)
+
+    view = _view(quantity, bearing, mesh, orders, window, scale)
+    run_report(files, output, images, view, flank=flank, as_json=json)
+
+
+@verbs.command(epilog="Example: loa compare before.nc after.nc measured.csv -o comparison.html")
+@computing
+def compare(
+    files: Annotated[
+        list[Path], typer.Argument(help="Two STE databases or two runs; a CSV file of what was measured.")
+    ],
+    output: Annotated[Path, typer.Option("-o", "--output", help="Page to write.")] = Path("comparison.html"),
+    torque: Annotated[
+        float | None,
+        typer.Option(help="Torque at which ripples are drawn, N m.", show_default="the middle one"),
+    ] = None,
+    quantity: Quantity = "",
+    bearing: Bearing = "",
+    mesh: Mesh = "",
+    orders: Orders = "",
+    window: Window = "hann",
+    scale: Scale = "rms",
+    json: AsJson = False,
+) -> None:
+    """Compare two tables or two runs, or one with a measurement: differences with their errors."""
+    from service.cli.compare import run_compare  # noqa: PLC0415 (start-up time)
+
+    view = _view(quantity, bearing, mesh, orders, window, scale)
+    run_compare(files, output, view, torque, as_json=json)
+
+
+def _view(quantity: str, bearing: str, mesh: str, orders: str, window: str, scale: str) -> RunView:
+    """Return what the options name of a run."""
+    from service.cli.number_list import number_list  # noqa: PLC0415 (start-up time)
     from service.runs.run_view import RunView  # noqa: PLC0415 (start-up time)
 
     cuts = tuple(number_list("--orders", orders)) if orders else ()
-    view = RunView(quantity, bearing, mesh, cuts, window, scale)
-    run_report(files, output, images, view, flank=flank, as_json=json)
+    return RunView(quantity, bearing, mesh, cuts, window, scale)

@@ -1,0 +1,67 @@
+"""From result files to the page that compares them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from dynamics.results import RunResult
+from fe_contact.ste import SteDatabase
+from service.comparison.measured import MeasuredOrders, read_measured
+from service.comparison.of_runs import compare_runs
+from service.comparison.of_tables import compare_tables
+from service.convert.stamp import stamped
+from service.drawing.page import Page
+from service.problems import BadInput
+from service.report.inputs import read_result
+from service.runs.run_view import RunView
+
+_BOUND = "two results of one kind, or one and a CSV file"
+_ADVICE = "For example: loa compare before.nc after.nc, or loa compare ste.nc measured.csv"
+
+
+def compare(files: Sequence[Path], view: RunView, torque: float | None = None) -> Page:
+    """Compare one or two tables or runs, and what was measured where a CSV file is among them.
+
+    Raises
+    ------
+    BadInput
+        The files are not one or two of a kind with at most one measurement, are damaged, or do not hold what
+        is to be compared.
+    """
+    csv = [file for file in files if file.suffix.lower() == ".csv"]
+    results = dict(_named([file for file in files if file not in csv]))
+    if len(csv) > 1 or not results or not len(results) + len(csv) >= 2 or len(results) > 2:
+        raise BadInput.of("files", ", ".join(map(str, files)) or None, _BOUND, _ADVICE)
+    read = {name: read_result(file) for name, file in results.items()}
+    warnings = dict.fromkeys(one["message"] for file in results.values() for one in stamped(file))
+    page = _page(read, csv, view, torque)
+    return replace(page, alarms=(*(f"Implausible: {text}" for text in warnings), *page.alarms))
+
+
+def _page(
+    read: dict[str, SteDatabase | RunResult], csv: list[Path], view: RunView, torque: float | None
+) -> Page:
+    """Compare what was read."""
+    tables = {name: one for name, one in read.items() if isinstance(one, SteDatabase)}
+    runs = {name: one for name, one in read.items() if isinstance(one, RunResult)}
+    if tables and runs:
+        raise BadInput.of("files", "a table and a run", _BOUND, _ADVICE)
+    if tables:
+        teeth = next(iter(tables.values())).facts.teeth[0]
+        return compare_tables(tables, read_measured(csv[0], teeth) if csv else None, torque)
+    first = next(iter(runs.values()))
+    driver = first.case["meshes"][0]["driver"]
+    teeth = next(int(gear["teeth"]) for gear in first.case["gears"] if gear["name"] == driver)
+    measured = read_measured(csv[0], teeth) if csv else None
+    if measured is not None and not isinstance(measured, MeasuredOrders):
+        raise BadInput.of("measured", "a curve over position", "an order spectrum beside a run")
+    return compare_runs(runs, view, measured)
+
+
+def _named(files: Sequence[Path]) -> list[tuple[str, Path]]:
+    """Name results by their files: as short as tells them apart."""
+    stems = [file.stem for file in files]
+    short = len(set(stems)) == len(stems)
+    return [(file.stem if short else str(file), file) for file in files]

@@ -1,0 +1,160 @@
+"""Laws of comparisons: what is equal is not shown to differ, what is moved is found again."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dynamics.results import RunResult
+from fe_contact.ste import SteDatabase
+from fe_contact.types import Estimate
+from service.comparison.compare import compare
+from service.comparison.difference import Difference
+from service.comparison.measured import PER_PITCH, MeasuredCurve, MeasuredOrders, aligned_to, read_measured
+from service.comparison.of_runs import compare_runs
+from service.comparison.of_tables import compare_tables
+from service.problems import BadInput
+from service.runs.run_view import RunView
+
+X = np.arange(PER_PITCH) / PER_PITCH
+RIPPLE = np.cos(2 * np.pi * X) + 0.4 * np.cos(4 * np.pi * X + 1.0)
+TEETH = 23
+
+
+def difference(first: float, second: float, errors: tuple[float, float]) -> Difference:
+    pair = (Estimate(value, error, "µm") for value, error in zip((first, second), errors, strict=True))
+    return Difference("peak to peak", "100 N m", *pair)
+
+
+def written(path: Path, names: str, columns: np.ndarray) -> Path:
+    np.savetxt(path, columns, delimiter=",", header=names, comments="")
+    return path
+
+
+def rows(page, title: str) -> list[tuple[str, ...]]:
+    tables = [table for section in page.sections for table in section.tables if table.caption == title]
+    return [row for table in tables for row in table.rows]
+
+
+def test_a_difference_within_its_error_is_not_shown() -> None:
+    one = difference(1.0, 1.1, (0.05, 0.12))
+    assert one.error == pytest.approx(0.13)
+    assert str(one) == "+0.10 ± 0.13 µm: not shown to differ"
+    assert str(difference(1.0, 1.2, (0.05, 0.12))) == "+0.20 ± 0.13 µm: the second is larger"
+    assert difference(1.0, 0.8, (0.05, 0.12)).finding == "the second is smaller"
+    assert difference(1.0, 9.0, (math.nan, 0.1)).finding == "no error stated"
+
+
+def test_a_table_is_not_shown_to_differ_from_itself(database: SteDatabase) -> None:
+    page = compare_tables({"a": database, "b": database}, None)
+    found = rows(page, "Differences with their errors")
+    assert found and {row[-1] for row in found} == {"not shown to differ"}
+    assert [section.title for section in page.sections] == ["Transmission errors"]
+
+
+def test_a_table_of_twice_the_error_is_shown_to_differ_with_the_field_that_does_it(
+    database: SteDatabase,
+) -> None:
+    twice = replace(
+        database,
+        static_transmission_error=2.0 * database.static_transmission_error,
+        tangent_compliance=2.0 * database.tangent_compliance,
+    )
+    metadata = replace(twice.metadata, case={"pair": {"normal_module_mm": 2.0}})
+    page = compare_tables(
+        {"a": replace(database, metadata=replace(database.metadata, case={"pair": {"normal_module_mm": 4.0}})),
+         "b": replace(twice, metadata=metadata)},
+        None,
+        torque=100.0,
+    )  # fmt: skip
+    peak = next(row for row in rows(page, "Differences with their errors") if row[0] == "peak to peak")
+    assert peak[-1] == "the second is larger"
+    assert rows(page, "Fields that differ") == [("pair.normal_module_mm", "4", "2")]
+
+
+def test_torques_that_only_one_table_holds_are_refused(database: SteDatabase) -> None:
+    with pytest.raises(BadInput, match="--torque"):
+        compare_tables({"a": database, "b": database}, None, torque=1e4)
+
+
+@pytest.mark.parametrize("shift", [0, 31, 200])
+def test_a_moved_ripple_is_moved_back(shift: int) -> None:
+    measured = MeasuredCurve(np.roll(RIPPLE, -shift), 0.0, 1)
+    found = aligned_to(measured, RIPPLE + 12.0)
+    assert found.shift == shift / PER_PITCH
+    assert found.rms < 1e-12
+    assert found.correlation == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(("name", "scale"), [("position", 1.0), ("angle_deg", 360.0 / TEETH)])
+def test_a_measured_curve_is_averaged_over_its_base_pitches(name: str, scale: float, tmp_path: Path) -> None:
+    """Run-out averages out over a revolution; samples that do not divide the pitch are no matter."""
+    position = np.arange(0.0, TEETH + 0.2, 1.0 / 177.3) + 0.31
+    runout = 3.0 * np.sin(2 * np.pi * position / TEETH)
+    values = 40.0 + np.interp(position % 1.0, np.append(X, 1.0), np.append(RIPPLE, RIPPLE[0])) + runout
+    file = written(
+        tmp_path / "m.csv", f"{name},transmission_error_um", np.stack([position * scale, values], axis=1)
+    )
+    found = read_measured(file, TEETH)
+    assert isinstance(found, MeasuredCurve)
+    assert found.pitches == TEETH
+    np.testing.assert_allclose(found.ripple, RIPPLE, atol=0.02)
+    assert found.spread > 0.1
+
+
+def test_shaft_orders_become_mesh_orders(tmp_path: Path) -> None:
+    file = written(tmp_path / "o.csv", "order,amplitude_n", np.array([[1.0, 5.0], [23.0, 7.0], [46.4, 2.0]]))
+    found = read_measured(file, TEETH)
+    assert isinstance(found, MeasuredOrders)
+    assert (found.near(1.0), found.near(2.0), found.unit) == (7.0, 2.0, "N")
+    assert math.isnan(found.near(3.0))
+    with pytest.raises(BadInput, match="amplitudes in µm"):
+        found.require("µm")
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "a,b\n1,2\n", "position,amplitude_n\n0,1\n1,2\n", "position,transmission_error_um\n0,x\n",
+     "position,transmission_error_um\n0,1\n0.5,2\n", "order,amplitude_um\n1,nan\n"],
+)  # fmt: skip
+def test_what_is_no_measurement_is_refused(text: str, tmp_path: Path) -> None:
+    (tmp_path / "m.csv").write_text(text)
+    with pytest.raises(BadInput, match="measured"):
+        read_measured(tmp_path / "m.csv", TEETH)
+
+
+def test_a_run_of_twice_the_force_is_6_db_louder(run: RunResult) -> None:
+    page = compare_runs({"a": run, "b": replace(run, bearing_force=2.0 * run.bearing_force)}, RunView(), None)
+    assert "changes by +6.0 dB" in page.sections[0].figures[0].alternative
+    found = {row[0]: row for row in rows(page, "Differences with their errors")}
+    assert found["mesh order 2"][-1] == "no error stated"  # the receipt of this run has none of orders
+
+
+def test_stated_errors_of_orders_decide(run: RunResult) -> None:
+    receipt = {**run.receipt, "error": {"time_step": {"bearing_force_orders": [0.1, 30.0]}}}
+    stated = replace(run, receipt=receipt)
+    louder = replace(stated, bearing_force=1.5 * run.bearing_force)
+    page = compare_runs({"a": stated, "b": louder}, RunView(scale="peak"), None)
+    found = {row[0]: row for row in rows(page, "Differences with their errors")}
+    assert found["mesh order 1"][-1] == "the second is larger"  # 5 N, 0.14 N
+    assert found["mesh order 2"][-1] == "not shown to differ"  # 10 N, 42 N
+
+
+def test_files_are_compared_by_what_they_hold(database: SteDatabase, run: RunResult, tmp_path: Path) -> None:
+    database.to_netcdf(tmp_path / "ste.nc")
+    run.to_netcdf(tmp_path / "run.nc")
+    measured = written(
+        tmp_path / "m.csv",
+        "position,transmission_error_um",
+        np.stack([4 * X, np.tile(RIPPLE[::4], 4)], axis=1),
+    )
+    ste, motion = tmp_path / "ste.nc", tmp_path / "run.nc"
+    page = compare([ste, measured], RunView())
+    assert [line.name for line in page.sections[0].figures[0].content[0].lines] == ["ste", "measured"]
+    for files in ([ste], [ste, motion], [measured], [ste, ste, ste], [motion, measured]):
+        with pytest.raises(BadInput):
+            compare(files, RunView())
