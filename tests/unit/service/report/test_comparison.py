@@ -64,13 +64,11 @@ def test_a_table_of_twice_the_error_is_shown_to_differ_with_the_field_that_does_
         static_transmission_error=2.0 * database.static_transmission_error,
         tangent_compliance=2.0 * database.tangent_compliance,
     )
-    metadata = replace(twice.metadata, case={"pair": {"normal_module_mm": 2.0}})
-    page = compare_tables(
-        {"a": replace(database, metadata=replace(database.metadata, case={"pair": {"normal_module_mm": 4.0}})),
-         "b": replace(twice, metadata=metadata)},
-        None,
-        torque=100.0,
-    )  # fmt: skip
+    first, second = (
+        replace(table, metadata=replace(table.metadata, case={"pair": {"normal_module_mm": module}}))
+        for table, module in ((database, 4.0), (twice, 2.0))
+    )
+    page = compare_tables({"a": first, "b": second}, None, torque=100.0)
     peak = next(row for row in rows(page, "Differences with their errors") if row[0] == "peak to peak")
     assert peak[-1] == "the second is larger"
     assert rows(page, "Fields that differ") == [("pair.normal_module_mm", "4", "2")]
