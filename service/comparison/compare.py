@@ -34,6 +34,13 @@ def compare(files: Sequence[Path], view: RunView, torque: float | None = None) -
     results = dict(_named([file for file in files if file not in csv]))
     if len(csv) > 1 or not results or not len(results) + len(csv) >= 2 or len(results) > 2:
         raise BadInput.of("files", ", ".join(map(str, files)) or None, _BOUND, _ADVICE)
+    return compare_results(results, view, csv, torque)
+
+
+def compare_results(
+    results: dict[str, Path], view: RunView, csv: Sequence[Path] = (), torque: float | None = None
+) -> Page:
+    """Compare result files by their names; parameters and errors as for `compare`."""
     read = {name: read_result(file) for name, file in results.items()}
     warnings = dict.fromkeys(one["message"] for file in results.values() for one in stamped(file))
     page = _page(read, csv, view, torque)
@@ -41,7 +48,7 @@ def compare(files: Sequence[Path], view: RunView, torque: float | None = None) -
 
 
 def _page(
-    read: dict[str, SteDatabase | RunResult], csv: list[Path], view: RunView, torque: float | None
+    read: dict[str, SteDatabase | RunResult], csv: Sequence[Path], view: RunView, torque: float | None
 ) -> Page:
     """Compare what was read."""
     tables = {name: one for name, one in read.items() if isinstance(one, SteDatabase)}

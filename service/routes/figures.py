@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import asyncio
-from typing import Any
+from typing import Annotated, Any
 
-from fastapi import APIRouter, Request
+from fastapi import APIRouter, Query, Request
 from pydantic import BaseModel, Field
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
@@ -13,10 +13,11 @@ from starlette.responses import Response
 from service.live.order import LiveOrder
 from service.routes.context import Ctx
 from service.routes.errors import documented
-from service.routes.results import Key, known_result
+from service.routes.results import HASH, Key, known_result
 from service.version import solver_version
 
 FIGURES = "service.report.as_json:stored_figures"
+COMPARISON = "service.comparison.as_json:stored_comparison"
 
 router = APIRouter(tags=["results"])
 
@@ -43,13 +44,27 @@ class ReportBody(BaseModel):
         **documented(404, 422, 429, 500, 503),
     },
 )
-async def figures(key: Key, request: Request, context: Ctx) -> Response:
+async def figures(
+    key: Key,
+    request: Request,
+    context: Ctx,
+    against: Annotated[
+        str | None,
+        Query(
+            pattern=HASH,
+            description="Another result of the same kind, table or run: the report then compares both.",
+        ),
+    ] = None,
+) -> Response:
     """Every plot as data and layout for plotly.js, with its words and numbers."""
     stored = await run_in_threadpool(known_result, context, key)
-    tag = f'"{stored.sha256}-figures-{solver_version()}"'
+    tag, order = stored.sha256, LiveOrder(FIGURES, {"file": str(stored.path)})
+    if against is not None:
+        other = await run_in_threadpool(known_result, context, against)
+        tag, order = tag + other.sha256, LiveOrder(COMPARISON, {"files": [str(stored.path), str(other.path)]})
+    tag = f'"{tag}-figures-{solver_version()}"'
     headers = {"ETag": tag, "Cache-Control": "no-cache"}
     if tag in request.headers.get("if-none-match", ""):
         return Response(status_code=304, headers=headers)
-    order = LiveOrder(FIGURES, {"file": str(stored.path)})
     body = await asyncio.wrap_future(context.live.ask(order))
     return Response(body, media_type="application/json", headers=headers)

@@ -21,7 +21,8 @@ from service.store import StoredResult
 
 _IMMUTABLE = "public, max-age=31536000, immutable"
 
-Key = Annotated[str, Path(pattern="^[0-9a-f]{64}$", description="Content hash of the input")]
+HASH = "^[0-9a-f]{64}$"
+Key = Annotated[str, Path(pattern=HASH, description="Content hash of the input")]
 Accept = Annotated[str, Header(description=f"{NETCDF} for the file, application/json for its figures")]
 _ANSWERS: dict[int | str, dict[str, Any]] = {
     200: {

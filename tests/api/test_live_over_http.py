@@ -67,6 +67,21 @@ def test_a_live_curve_is_that_of_an_analysis_of_its_own(client: TestClient, key:
     assert live["effects"]["profile_modification"] and live["beyond_load_patches"] == 0
 
 
+def test_two_results_are_compared_as_figures(client: TestClient, key: str) -> None:
+    """With itself, nothing differs; with the relieved pair, the relief is named."""
+    where = f"/v1/results/{key}/figures"
+    itself = client.get(where, params={"against": key}).json()
+    assert {line["remark"] for line in itself["headlines"]} <= {"not shown to differ", "no error stated"}
+    other = analyzed(client, case(**RELIEF))
+    page = client.get(where, params={"against": other}).json()
+    (fields,) = (
+        table for section in page["sections"] for table in section["tables"] if "Fields" in table["caption"]
+    )
+    assert ["pair.pinion.tip_relief_um", "0", "3"] in fields["rows"]
+    assert client.get(where, params={"against": "0" * 64}).status_code == 404
+    assert client.get(where, params={"against": "nonsense"}).status_code == 422
+
+
 def test_an_answer_knows_how_wrong_it_is_and_what_it_cost(client: TestClient, key: str) -> None:
     questions = [{"torque_n_m": [0.5, 1.0], "pinion": RELIEF | {"tip_relief_um": x}} for x in (4.0, 5.0)]
     first, again = (client.post(f"/v1/databases/{key}/ste", json=question).json() for question in questions)

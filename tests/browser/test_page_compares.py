@@ -140,3 +140,19 @@ def test_one_button_computes_in_three_dimensions(browser: Browser, address: str,
     expect(page.locator("#f-accuracy-model")).to_have_value("3d")
     assert analyzed not in page.url
     assert visit.complaints == []
+
+
+def test_two_analyses_of_the_list_are_compared_with_their_errors(visit: Visit, other: str) -> None:
+    page = visit.page
+    page.reload()
+    buttons = page.get_by_role("button", name=re.compile("^Compare analyze"))
+    expect(buttons.nth(1)).to_be_visible()
+    buttons.nth(0).press("Enter")
+    expect(page.locator("#jobs-line")).to_contain_text("Choose another analyze job")
+    buttons.nth(1).press("Enter")
+    shown = page.locator("#jobs-result")
+    expect(shown).to_contain_text("first and second compared")
+    expect(shown).to_contain_text("Fields that differ")
+    expect(shown.locator("[data-figure=ripples] .plot")).to_have_attribute("data-drawn", "yes")
+    assert not (told := found_inaccessible(page)), json.dumps(told, indent=1)
+    assert visit.complaints == []

@@ -6,12 +6,18 @@ import { ENDED, WORDS, cancelled } from "./job.js";
 import { nameOf } from "./job_names.js";
 
 const AT_ONCE = 10;
+const COMPARED = new Set(["analyze", "simulate"]); // processes whose results are compared
 const AGAIN = 3000; // milliseconds after which jobs that have not ended are looked at again
 
 export class Jobs {
-  /** @param {(job: object) => Promise<void>} open shows what came of a job */
-  constructor(open) {
+  /**
+   * @param {(job: object) => Promise<void>} open shows what came of a job
+   * @param {(first: object, second: object) => Promise<void>} compare shows what differs between two
+   */
+  constructor(open, compare) {
     this.open = open;
+    this.compare = compare;
+    this.first = null; // job that another one is to be compared with
     this.shown = AT_ONCE;
     this.line = byId("jobs-line");
     document.addEventListener("jobs-changed", () => this.refresh());
@@ -62,9 +68,25 @@ export class Jobs {
       successful: () => button("Open", () => this.open(job)),
       failed: () => button("Why", () => this.open(job)),
     };
+    const both = () => (job.status === "successful" && COMPARED.has(job.processID) ? button("Compare", () => this.choose(job)) : "");
     const action = ENDED.has(job.status) ? actions[job.status]?.() : button("Cancel", () => this.cancel(job));
     const cells = [name, state(job), when, spent(job)].map((text) => make("td", {}, text));
-    return make("tr", {}, make("th", { scope: "row" }, job.processID), make("td", {}, action ?? ""), ...cells);
+    return make("tr", {}, make("th", { scope: "row" }, job.processID), make("td", {}, action ?? "", " ", both()), ...cells);
+  }
+
+  /** The first of two jobs is remembered; the second one is compared with it. */
+  async choose(job) {
+    const { first } = this;
+    const fits = first && first.jobID !== job.jobID && first.processID === job.processID;
+    this.first = fits ? null : job;
+    this.line.textContent = fits ? "" : `Choose another ${job.processID} job to compare this one with.`;
+    if (!fits) return;
+    try {
+      await this.compare(first, job);
+    } catch (problem) {
+      if (!(problem instanceof Problem)) throw problem;
+      this.line.textContent = problem.message;
+    }
   }
 
   async cancel(job) {

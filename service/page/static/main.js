@@ -9,10 +9,12 @@ import { typedIn } from "./controls.js";
 import { Design } from "./design.js";
 import { Dynamics } from "./dynamics.js";
 import { byId } from "./elements.js";
+import { referenceOf } from "./job.js";
 import { Jobs } from "./jobs.js";
 import { Live } from "./live.js";
 import { goToSection, sectionLinks } from "./menu.js";
 import { clearNotice, sayUnknown } from "./notice.js";
+import { showReport } from "./report.js";
 import { Results } from "./results.js";
 import { SceneEditor } from "./scene_editor.js";
 import { Slot } from "./slot.js";
@@ -65,7 +67,7 @@ class Page {
     button.addEventListener("click", () => this.analyze());
     this.reopened = slot("job", { progress: byId("jobs-progress"), result: byId("jobs-result") },
       (target, reference, signal) => this.showReopened(target, reference, signal));
-    this.jobs = new Jobs((job) => this.reopen(job));
+    this.jobs = new Jobs((job) => this.reopen(job), (first, second) => this.compare(first, second));
     this.jobs.refresh();
   }
 
@@ -132,6 +134,15 @@ class Page {
     this.address.push({ job });
     await this.reopened.follow(job);
     byId(this.address.get("job") ? "jobs-result" : "results").focus();
+  }
+
+  /** Show what differs between the results of two jobs, below the list. */
+  async compare(first, second) {
+    const [one, other] = await Promise.all([first, second].map(({ jobID }) => referenceOf(jobID)));
+    this.comparing?.abort();
+    this.comparing = new AbortController();
+    await showReport(byId("jobs-result"), { ...one, against: other.hash }, { making: true, signal: this.comparing.signal });
+    byId("jobs-result").focus();
   }
 
   /** An earlier job is shown: a table takes the page with its design, anything else stands below the list. */

@@ -7,12 +7,13 @@ import { figureBlock, plot } from "./plots.js";
 /**
  * Show the report of a result.
  * @param {HTMLElement} target
- * @param {{href: string, type: string, hash: string}} result reference to it
+ * @param {{href: string, type: string, hash: string, against?: string}} result reference to it, and the hash of another one to compare it with
  * @param {{making?: boolean, signal: AbortSignal}} options with the tables that say how it was made; given up when it is left
  */
 export async function showReport(target, result, { making = false, signal }) {
   target.setAttribute("aria-busy", "true");
-  const report = await patiently(() => get(`${result.href}/figures`));
+  const figuresAt = `${result.href}/figures${result.against ? `?against=${result.against}` : ""}`;
+  const report = await patiently(() => get(figuresAt));
   if (signal.aborted) return null;
   const head = make("dl", { class: "headline" });
   figures(head, report.headlines.map(({ name, value, remark }) => [name, value, remark]));
@@ -21,7 +22,7 @@ export async function showReport(target, result, { making = false, signal }) {
   const sections = report.sections.filter((one) => making || one.figures.length).map((one) => sectionBlock(one, drawn));
   const lead = report.lead ? `${report.title}: ${report.lead}.` : `${report.title}.`;
   target.replaceChildren(
-    make("p", { class: "lead" }, lead), ...alarms, head, files(result), ...sections,
+    make("p", { class: "lead" }, lead), ...alarms, head, files(result, figuresAt), ...sections,
   );
   for (const [node, figure] of drawn) {
     if (signal.aborted) return null;
@@ -44,15 +45,15 @@ function sectionBlock(section, drawn) {
   return make("div", {}, make("h3", {}, section.title), text ?? "", ...parts, ...tables, ...more);
 }
 
-/** Buttons for the files of a result. */
-function files(result) {
+/** Buttons for the files of a result; a comparison has its figures only. */
+function files(result, figuresAt) {
   const name = `lineofaction_${result.hash.slice(0, 12)}`;
   const line = make("span", { class: "fault", role: "status" });
   const row = make("div", { class: "row files" }, make("span", { class: "hint" }, "Save"));
   const button = (text, action) => row.append(make("button", { type: "button", onclick: () => said(action, line) }, text));
-  button("netCDF", async () => save(await file(result.href, result.type), `${name}.nc`));
-  button("JSON", async () => save(await file(result.href, "application/json"), `${name}.json`));
-  button("Figures as JSON", async () => save(await file(`${result.href}/figures`, "application/json"), `${name}_figures.json`));
+  if (!result.against) button("netCDF", async () => save(await file(result.href, result.type), `${name}.nc`));
+  if (!result.against) button("JSON", async () => save(await file(result.href, "application/json"), `${name}.json`));
+  button("Figures as JSON", async () => save(await file(figuresAt, "application/json"), `${name}_figures.json`));
   row.append(line);
   return row;
 }

@@ -1,0 +1,19 @@
+"""The comparison of two stored results as plain JSON."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from service.comparison.compare import compare_results
+from service.report.as_json import page_json
+from service.runs.run_view import RunView
+
+Json = dict[str, Any]
+NAMES = ("first", "second")
+
+
+def stored_comparison(inputs: Json) -> Json:
+    """Compare ``{"files": [...]}``, two tables or two runs; work of the live worker."""
+    named = dict(zip(NAMES, map(Path, inputs["files"]), strict=True))
+    return page_json(compare_results(named, RunView()))
