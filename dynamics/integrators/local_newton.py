@@ -35,17 +35,20 @@ def solve_local_forces(
     itself that it was of the one before; returns -1 if that did not fall to `tolerance` (N).
     """
     fresh, last, left = first, math.inf, 1.0
+    if first:  # later stages begin with the forces and the answer to them that the one before ended with
+        _respond(work, level)
     for iteration in range(ITERATION_LIMIT):
-        _move(work, level, span)
+        _move(work, span)
         for e in range(system.elements.law.size):
             evaluate(system.elements, work.local, e)
         if fresh:
             _invert_equations(system, work, level, span)
         size = _update_forces(work)
+        _respond(work, level)
         if iteration > 0:
             left = size / last
         if min(left, 1.0) * size <= tolerance:
-            _move(work, level, span)
+            _move(work, span)
             return iteration + 1
         fresh = iteration > 0 and not left <= SLOW
         last = size
@@ -53,16 +56,22 @@ def solve_local_forces(
 
 
 @inner
-def _move(work: Workspace, level: int, span: float) -> None:
-    """Let the forces act: they move coordinates and positions by -span^2 approach f, rates by -span ..."""
-    response, local, rows = work.response, work.local, work.force.size
+def _respond(work: Workspace, level: int) -> None:
+    """Write the accelerations of coordinates and positions by the forces, approach f, into ``response``."""
+    response = work.response
     for k in range(response.size):
         response[k] = 0.0
-    for r in range(rows):
+    for r in range(work.force.size):
         force = work.force[r]
         if force != 0.0:
             for k in range(response.size):
                 response[k] += work.approach[level, r, k] * force
+
+
+@inner
+def _move(work: Workspace, span: float) -> None:
+    """Let the forces act: they move coordinates and positions by -span^2 response, rates by -span ..."""
+    response, local, rows = work.response, work.local, work.force.size
     for k in range(rows):
         local.coordinate[k] = work.free[k] - span * span * response[k]
         local.rate[k] = work.free_rate[k] - span * response[k]

@@ -98,7 +98,7 @@ class Workspace(NamedTuple):
     free_position : (m,) array
         Positions without them.
     response : (R + m,) array
-        Scratch: accelerations of coordinates and positions by local forces.
+        Accelerations of coordinates and positions by the local forces in `force`.
     motion : (k, 4) array
         Of the laws at the current stage.
     moved : (k,) int array
