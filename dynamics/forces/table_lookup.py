@@ -100,17 +100,21 @@ def table_deflection(table: PackedTables, flank: int, position: float, force: fl
     """Return the deflection (m) at which the table's force is `force` (N); lift-off for 0 or less."""
     row, u, _ = position_interval(table, flank, position)
     first, levels = table.offset[flank, 4], table.offset[flank, 5]
-    k = 0
-    while k < levels - 2 and force >= table.level[first + k + 1]:
-        k += 1
-    low, high = cubic(table.row, row + k, 0, u), cubic(table.row, row + k + 1, 0, u)
-    if force <= 0.0:
+    k, end = 0, levels - 1
+    while end - k > 1:  # level k holds, level `end` is above or the last
+        middle = (k + end) // 2
+        if force >= table.level[first + middle]:
+            k = middle
+        else:
+            end = middle
+    low, wanted = cubic(table.row, row + k, 0, u), force - table.level[first + k]
+    if wanted <= 0.0:
         return low
+    high = cubic(table.row, row + k + 1, 0, u)
     if force >= table.level[first + k + 1]:
         return float(high + (force - table.level[first + k + 1]) / cubic(table.row, row + k + 1, 4, u))
     # Newton, kept inside the bracket: the cubic is monotone on its interval, so bisection can always step in.
     rise, c2, c3 = force_cubic(table, row + k, first + k, u, high - low)
-    wanted = force - table.level[first + k]
     w, least, most = wanted / (rise + c2 + c3), 0.0, 1.0
     for _ in range(100):
         trial = w * (rise + w * (c2 + w * c3))
