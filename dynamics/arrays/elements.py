@@ -62,9 +62,9 @@ def pack_elements(elements: Sequence[Element], laws: ElementLaws, motions: int) 
         np.cumsum([0, *sizes], dtype=np.int64),
         np.array([element.mesh for element in elements], dtype=np.int64),
         np.concatenate([np.empty(0), *(element.offset for element in elements)]),
-        np.concatenate([np.empty((0, motions)), *drift]),
+        np.ascontiguousarray(np.concatenate([np.empty((0, motions)), *drift]).T),
         np.concatenate([np.empty(0), *stiffness]),
-        np.array(speed).reshape(len(elements), 2, motions),
+        np.ascontiguousarray(np.moveaxis(np.array(speed).reshape(len(elements), 2, motions), 2, 0)),
         laws,
     )
     prepare_laws(packed)

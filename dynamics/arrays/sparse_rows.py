@@ -37,7 +37,7 @@ class SparseMatrices(NamedTuple):
     Attributes
     ----------
     damping, stiffness, direction, turn : SparseRows
-        Of `SystemArrays`.
+        Of `SystemArrays`. The first two have the same entries: those where either matrix is not 0.
     mobility : SparseRows
         Inverse of the mass matrix.
     coupling : SparseRows
@@ -53,9 +53,9 @@ class SparseMatrices(NamedTuple):
     coupling: SparseRows
 
 
-def sparse_rows(matrix: FloatArray) -> SparseRows:
-    """Lay out the entries of `matrix` (rows, columns)."""
-    row, column = np.nonzero(matrix)
+def sparse_rows(matrix: FloatArray, entries: FloatArray | None = None) -> SparseRows:
+    """Lay out the entries of `matrix` (rows, columns), or all at which `entries` is not 0."""
+    row, column = np.nonzero(matrix if entries is None else entries)
     first = np.searchsorted(row, np.arange(matrix.shape[0] + 1))
     return SparseRows(first.astype(np.int64), column.astype(np.int64), matrix[row, column])
 
@@ -68,8 +68,11 @@ def sparse_matrices(
     coupling = joined[:, None] == joined
     alone = connected_components(mass != 0.0)[1]
     mobility = np.where(alone[:, None] == alone, np.linalg.inv(mass), 0.0)
-    matrices = (damping, stiffness, direction, turn, mobility, coupling.astype(float))
-    return SparseMatrices(*map(sparse_rows, matrices))
+    either = (damping != 0.0) | (stiffness != 0.0)
+    others = (direction, turn, mobility, coupling.astype(float))
+    return SparseMatrices(
+        sparse_rows(damping, either), sparse_rows(stiffness, either), *map(sparse_rows, others)
+    )
 
 
 @inner
@@ -79,6 +82,28 @@ def row_product(rows: SparseRows, weight: FloatArray, row: int, vector: FloatArr
     for entry in range(np.uint64(rows.first[row]), np.uint64(rows.first[row + 1])):
         total += weight[entry] * vector[np.uint64(rows.column[entry])]
     return total
+
+
+@inner
+def row_products(
+    rows: SparseRows, row: int, weight: FloatArray, first: FloatArray, other: FloatArray, second: FloatArray
+) -> tuple[float, float]:
+    """Return one row with the entries `weight` times `first`, and one with `other` times `second`."""
+    by_first, by_second = 0.0, 0.0
+    for entry in range(np.uint64(rows.first[row]), np.uint64(rows.first[row + 1])):
+        column = np.uint64(rows.column[entry])
+        by_first += weight[entry] * first[column]
+        by_second += other[entry] * second[column]
+    return by_first, by_second
+
+
+@inner
+def subtract_resistance(sparse: SparseMatrices, q: FloatArray, v: FloatArray, force: FloatArray) -> None:
+    """Subtract what dampers and springs exert at `q` and `v` (n,) from `force`."""
+    damping, stiffness = sparse.damping.weight, sparse.stiffness.weight
+    for i in range(force.size):
+        damped, held = row_products(sparse.damping, i, damping, v, stiffness, q)
+        force[i] -= damped + held
 
 
 @inner

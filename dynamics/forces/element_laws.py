@@ -79,12 +79,12 @@ class Elements(NamedTuple):
         The mesh whose position it reads, or from m on the turn of frames it reads; -1: none.
     offset : (R,) array
         y0: local coordinates at q = 0, m.
-    drift : (R, k) array
+    drift : (k, R) array
         Rates of the local coordinates in the kinematic motion per unit speed of each law, m/rad; 0 for
         flanks, whose coordinates that motion does not change.
     stiffness : (R,) array
         Typical stiffness of bearings, N/m, for error norms and first guesses; 0 for all others.
-    speed : (E, 2, k) array
+    speed : (k, E, 2) array
         Spin of a shaft and speed of its frame per unit speed of each law; for rotating-frame terms.
     laws : ElementLaws
     """
@@ -102,7 +102,7 @@ class Elements(NamedTuple):
 
 def make_local(elements: Elements, meshes: int) -> LocalState:
     """Allocate for `elements` of that many meshes."""
-    rows, count, laws = elements.offset.size, elements.law.size, elements.drift.shape[1]
+    rows, count, laws = elements.offset.size, elements.law.size, elements.drift.shape[0]
     most = int(np.max(np.diff(elements.first), initial=1))
     return LocalState(
         np.zeros(meshes),

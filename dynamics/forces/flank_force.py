@@ -37,9 +37,11 @@ def flank_force(
     force = max(0, F + c s(F/reach) rate), s(r) = r^2 (3 - 2 r) up to 1: C1 through lift-off, and no tension.
     """
     elastic, stiffness, k = table_force(law.table, flank, position, deflection, hint)
-    ratio = min(elastic / law.reach[flank], 1.0)
-    fade = ratio * ratio * (3.0 - 2.0 * ratio)
-    fade_slope = 6.0 * ratio * (1.0 - ratio) / law.reach[flank]
+    fade, fade_slope = 1.0, 0.0
+    if elastic < law.reach[flank]:
+        ratio = elastic / law.reach[flank]
+        fade = ratio * ratio * (3.0 - 2.0 * ratio)
+        fade_slope = 6.0 * ratio * (1.0 - ratio) / law.reach[flank]
     force = elastic + law.damping[flank] * fade * rate
     if force < 0.0:
         return 0.0, elastic, 0.0, 0.0, k

@@ -37,7 +37,7 @@ class RotatingFrameLaws(NamedTuple):
 def rotating_frame(laws: RotatingFrameLaws, entry: int, local: LocalState, row: int, e: int) -> None:
     """Write forces and derivatives into the rows of element `e`, the first of which is `row`.
 
-    The row of the spin carries no force.
+    The row of the spin carries no force: what stays 0 is 0 from the start.
     """
     coordinate, rate, force, elastic = local.coordinate, local.rate, local.force, local.elastic
     tangent, viscous = local.tangent, local.viscous
@@ -50,10 +50,6 @@ def rotating_frame(laws: RotatingFrameLaws, entry: int, local: LocalState, row: 
     swirl = c[entry, 0] * spin + c[entry, 1] * frame
     hold = c[entry, 2] * spin * frame + c[entry, 3] * frame * frame
     drag = c[entry, 4] * frame
-    for k in range(rows):
-        force[row + k], elastic[row + k] = 0.0, 0.0
-        for j in range(rows):
-            tangent[row + k, j], viscous[row + k, j] = 0.0, 0.0
     for k in range(2):
         other, sign = 1 - k, 2.0 * k - 1.0  # J y = (-y_2, y_1)
         here, there = coordinate[row + k], coordinate[row + other]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dynamics.arrays.arrays import SystemArrays
-from dynamics.arrays.sparse_rows import row_product, subtract_columns
+from dynamics.arrays.sparse_rows import row_product, subtract_columns, subtract_resistance
 from dynamics.forces.element_laws import evaluate
 from dynamics.forces.routine import routine
 from dynamics.integrators.powers import write_powers
@@ -58,8 +58,6 @@ def accelerate(system: SystemArrays, work: Workspace, time: float, stage: int) -
     for r in range(work.force.size):
         work.force[r] = local.force[r]
     subtract_columns(sparse.direction, work.force, work.external)
-    for i in range(q.size):
-        work.external[i] -= row_product(sparse.damping, sparse.damping.weight, i, v)
-        work.external[i] -= row_product(sparse.stiffness, sparse.stiffness.weight, i, q)
+    subtract_resistance(sparse, q, v, work.external)
     for i in range(q.size):
         acceleration[i] = row_product(sparse.mobility, sparse.mobility.weight, i, work.external)

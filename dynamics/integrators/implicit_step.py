@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dynamics.arrays.arrays import SystemArrays
-from dynamics.arrays.sparse_rows import row_product, subtract_columns
+from dynamics.arrays.sparse_rows import row_product, subtract_columns, subtract_resistance
 from dynamics.forces.routine import routine
 from dynamics.integrators.local_newton import solve_local_forces
 from dynamics.integrators.powers import write_powers
@@ -65,9 +65,7 @@ def solve_stage(system: SystemArrays, work: Workspace, level: int, stage: int, t
     for i in range(size):
         q[i] += span * v[i]
     sparse, inverse, linear = system.sparse, work.inverse[level], work.linear
-    for i in range(size):
-        work.external[i] -= row_product(sparse.damping, sparse.damping.weight, i, v)
-        work.external[i] -= row_product(sparse.stiffness, sparse.stiffness.weight, i, q)
+    subtract_resistance(sparse, q, v, work.external)
     for i in range(size):
         linear[i] = row_product(sparse.coupling, inverse, i, work.external)
     for i in range(size):

@@ -72,8 +72,8 @@ def _by_frame_speed(system: SystemArrays, work: Workspace, e: int) -> float:
         return 0.0
     entry, row, spin_rate, frame_rate = system.elements.entry[e], system.elements.first[e], 0.0, 0.0
     for k in range(work.motion.shape[0]):
-        spin_rate += system.elements.speed[e, 0, k] * work.motion[k, ACCELERATION]
-        frame_rate += system.elements.speed[e, 1, k] * work.motion[k, ACCELERATION]
+        spin_rate += system.elements.speed[k, e, 0] * work.motion[k, ACCELERATION]
+        frame_rate += system.elements.speed[k, e, 1] * work.motion[k, ACCELERATION]
     spin, frame = work.local.speed[e, 0], work.local.speed[e, 1]
     laws, y = system.elements.laws.rotating_frame, work.local.coordinate
     c, load = laws.factor, laws.load

@@ -75,8 +75,7 @@ def slow_enough(system: SystemArrays, work: Workspace, level: int) -> int:
     for m in range(reference.per_radian.shape[0]):
         moving = 0.0
         for k in range(work.motion.shape[0]):
-            per_turn = reference.numerator[m, k] / reference.denominator[m, k]
-            moving += law_speed(reference, k, work.motion, work.v) / (2.0 * math.pi) * per_turn
+            moving += reference.per_radian[m, k] * law_speed(reference, k, work.motion, work.v)
         rate = max(rate, abs(moving))
     while rate * work.step_sizes[level] > POSITION_LIMIT and level < work.step_sizes.size - 2:
         level += 1

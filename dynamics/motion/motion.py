@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 from dynamics.arrays.arrays import LawArrays, Reference, SystemArrays
-from dynamics.arrays.sparse_rows import row_product
+from dynamics.arrays.sparse_rows import row_product, row_products
 from dynamics.forces.compiled import compiled, inner
-from dynamics.forces.element_laws import ROTATING_FRAME, Elements
+from dynamics.forces.element_laws import Elements
 from dynamics.forces.local_state import LocalState
 from dynamics.forces.table_lookup import wrapped
 from dynamics.types import FloatArray, IntArray
@@ -104,15 +104,15 @@ def set_drift(elements: Elements, motion: FloatArray, local: LocalState) -> None
     """Write what the kinematic motion adds to the rates of local coordinates, and the speeds of rotation."""
     for r in range(local.drift.size):
         local.drift[r] = 0.0
-        for k in range(motion.shape[0]):
-            local.drift[r] += elements.drift[r, k] * motion[k, SPEED]
     for e in range(elements.law.size):
-        if elements.law[e] != ROTATING_FRAME:
-            continue
-        for j in range(2):
-            local.speed[e, j] = 0.0
-            for k in range(motion.shape[0]):
-                local.speed[e, j] += elements.speed[e, j, k] * motion[k, SPEED]
+        local.speed[e, 0], local.speed[e, 1] = 0.0, 0.0
+    for k in range(motion.shape[0]):
+        speed = motion[k, SPEED]
+        for r in range(local.drift.size):
+            local.drift[r] += elements.drift[k, r] * speed
+        for e in range(elements.law.size):
+            local.speed[e, 0] += elements.speed[k, e, 0] * speed
+            local.speed[e, 1] += elements.speed[k, e, 1] * speed
 
 
 @inner
@@ -127,8 +127,8 @@ def add_motion(
     """Add `q` to the positions, and write the elements' local coordinates and their rates."""
     direction, turn = system.sparse.direction, system.sparse.turn
     for r in range(coordinate.size):
-        coordinate[r] = system.elements.offset[r] + row_product(direction, direction.weight, r, q)
-        rate[r] = row_product(direction, direction.weight, r, v)
+        moved, moving = row_products(direction, r, direction.weight, q, direction.weight, v)
+        coordinate[r], rate[r] = system.elements.offset[r] + moved, moving
     for m in range(position.size):
         position[m] += row_product(turn, turn.weight, m, q)
 

@@ -3,12 +3,20 @@
 import numpy as np
 
 from benchmarks.stages import stages
+from dynamics.arrays.sparse_rows import subtract_resistance
 from dynamics.assembly.assemble import assemble
 from dynamics.bodies import TimeLaw
+from dynamics.forces.by_address import by_address
+from dynamics.forces.compiled import compiled
 from dynamics.integrators.step_level import invert
 from tests.fakes.geared_scenes import spring_table
 
 SPAN = 1e-5
+
+
+@compiled
+def resistance_left(sparse, q, v, force):
+    subtract_resistance(sparse, q, v, force)
 
 
 def _arrays(count):
@@ -53,3 +61,16 @@ def test_changed_matrices_take_their_entries_along():
     arrays = _arrays(1)
     changed = arrays.with_matrices(damping=2.0 * arrays.damping)
     np.testing.assert_array_equal(_dense(changed.sparse.damping, arrays.mass.shape[0]), 2.0 * arrays.damping)
+
+
+def test_dampers_and_springs_act_by_both_matrices_wherever_either_has_entries():
+    arrays = _arrays(2)
+    size, rng = arrays.mass.shape[0], np.random.default_rng(2)
+    arrays = arrays.with_matrices(
+        damping=np.where(rng.random((size, size)) < 0.2, rng.random((size, size)), 0.0),
+        stiffness=np.where(rng.random((size, size)) < 0.2, rng.random((size, size)), 0.0),
+    )
+    q, v, force = rng.random(size), rng.random(size), rng.random(size)
+    left = force.copy()
+    resistance_left(by_address(arrays.sparse), q, v, left)
+    np.testing.assert_allclose(left, force - arrays.damping @ v - arrays.stiffness @ q, rtol=1e-13)
