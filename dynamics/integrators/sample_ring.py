@@ -62,7 +62,8 @@ class Peaks(NamedTuple):
 class SampleRing(NamedTuple):
     """Points of the inner grid: L as the filter has taps, n freedoms, R local coordinates, m meshes, k laws.
 
-    A point's C channels are the R local forces, q, v, the R local coordinates and the m static deflections.
+    A point's C channels are the R local forces, q, v and the m static deflections. Local coordinates are
+    linear in q.
 
     Attributes
     ----------
@@ -77,10 +78,10 @@ class SampleRing(NamedTuple):
     moved : (k,) int array
         Scratch: quanta of free trains before a step's end.
     peaks : Peaks
-    removed, folded : (C,) arrays
-        Sums over the output samples of the squares of what the filter took away, and of the content near
-        half the inner rate.
-    high : (C,) array
+    removed, folded : (R,) arrays
+        Sums over the output samples of the squares of what the filter took away from the local forces, and
+        of their content near half the inner rate.
+    high : (R,) array
         Scratch: that content at one output sample.
     """
 
@@ -117,13 +118,13 @@ def make_ring(arrays: SystemArrays, sampler: Sampler) -> SampleRing:
         np.zeros((laws, MOTION_COLUMNS)),
         np.zeros(laws, dtype=np.int64),
         Peaks(np.zeros((2, signals)), *(np.zeros(signals) for _ in range(3))),
-        np.zeros(channels),
-        np.zeros(channels),
-        np.zeros(channels),
+        np.zeros(rows),
+        np.zeros(rows),
+        np.zeros(rows),
     )
 
 
 def channel_count(arrays: SystemArrays, sampler: Sampler) -> int:
     """Return the number of channels of a point."""
     rows, n = arrays.direction.shape
-    return int(2 * (rows + n) + sampler.nominal_force.size)
+    return int(rows + 2 * n + sampler.nominal_force.size)

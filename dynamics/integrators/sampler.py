@@ -137,12 +137,11 @@ def _look(
     rows, n = local.force.size, q.size
     for r in range(rows):
         ring.point[row, r] = local.force[r]
-        ring.point[row, rows + 2 * n + r] = local.coordinate[r]
     for i in range(n):
         ring.point[row, rows + i], ring.point[row, rows + n + i] = q[i], v[i]
     for m in range(sampler.nominal_force.size):
         static = table_deflection(sampler.static, m, local.position[m], sampler.nominal_force[m])
-        ring.point[row, 2 * (rows + n) + m] = static
+        ring.point[row, rows + 2 * n + m] = static
 
 
 @inner
@@ -178,13 +177,9 @@ def _store_if_due(work: Workspace, sampler: Sampler, ring: SampleRing, point: in
     row = counts[Count.OUTPUT] - counts[Count.FIRST_ROW]
     if middle < 0 or middle % sampler.factor != 0 or row >= out.q.shape[0]:
         return
-    taps, filtered = sampler.taps.size, out.filtered[row]
-    oldest = (point + 1) % taps
-    for c in range(filtered.size):
-        filtered[c] = 0.0
-    for t in range(taps):
-        _add_point(ring, oldest + t, sampler.taps[t], filtered)
+    taps = sampler.taps.size
     center = middle % taps
+    _filter(ring, sampler.taps, center, out.filtered[row])
     rows, n = ring.local.force.size, ring.q.size
     for i in range(n):
         out.q[row, i], out.v[row, i] = ring.point[center, rows + i], ring.point[center, rows + n + i]
@@ -213,23 +208,38 @@ def _see_extremes(ring: SampleRing, factor: int, center: int, out: States, row: 
 def _see_removed(ring: SampleRing, center: int, point: int, out: States, row: int) -> None:
     """Add up the squares of what the filter took away and of what lies near half the inner rate."""
     taps, high = ring.point.shape[0], ring.high
-    for c in range(high.size):
-        removed = ring.point[center, c] - out.filtered[row, c]
-        ring.removed[c] += removed * removed
-        high[c] = 0.0
+    for r in range(high.size):
+        removed = ring.point[center, r] - out.filtered[row, r]
+        ring.removed[r] += removed * removed
     if point < taps:
         return
-    latest = point % taps + taps
-    for t in range(HIGH_PASS.size):
-        _add_point(ring, latest - t, HIGH_PASS[t], high)
-    for c in range(high.size):
-        ring.folded[c] += high[c] * high[c]
+    _filter(ring, HIGH_PASS, (point - HIGH_PASS.size // 2) % taps, high)
+    for r in range(high.size):
+        ring.folded[r] += high[r] * high[r]
 
 
 @inner
-def _add_point(ring: SampleRing, index: int, weight: float, total: FloatArray) -> None:
-    """Add `weight` times the point `index`, at most one turn of the ring beyond its rows, to `total` (C,)."""
-    taps = ring.point.shape[0]
-    point = ring.point[index - taps if index >= taps else index]
-    for c in range(total.size):
-        total[c] += weight * point[c]
+def _filter(ring: SampleRing, taps: FloatArray, center: int, out: FloatArray) -> None:
+    """Write the first channels, weighted by the symmetric `taps` about the point `center`, into `out`.
+
+    Two pairs of points at a time: `out` is read and written half as often as once a pair.
+    """
+    half, size, point = taps.size // 2, ring.point.shape[0], ring.point
+    middle = point[center]
+    for c in range(out.size):
+        out[c] = taps[half] * middle[c]
+    for t in range(1, half + 1, 2):
+        far = min(t + 1, half)
+        weight, far_weight = taps[half - t], taps[half - far] if far > t else 0.0
+        before, after = point[_wrapped(center - t, size)], point[_wrapped(center + t, size)]
+        first, last = point[_wrapped(center - far, size)], point[_wrapped(center + far, size)]
+        for c in range(out.size):
+            out[c] += weight * (before[c] + after[c]) + far_weight * (first[c] + last[c])
+
+
+@inner
+def _wrapped(index: int, size: int) -> int:
+    """Return the row of a point at most one turn of the ring outside it."""
+    if index < 0:
+        return index + size
+    return index - size if index >= size else index

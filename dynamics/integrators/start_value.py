@@ -41,7 +41,7 @@ class SavedState:
     point : (L, C) array
         Of its ring.
     figures : tuple of arrays
-        Running figures of its ring: the two last values, peaks and squares (..., P), sums (C,).
+        Running figures of its ring: the two last values, peaks and squares (..., P), sums (R,).
     """
 
     state: dict[str, FloatArray]
@@ -148,8 +148,8 @@ def _channels(march: March, rows_of: IntArray) -> IntArray:
     """Return the channels of `march` that those of a march with rows `rows_of` (R,) are."""
     rows, n = march.ring.local.force.size, march.work.q.size
     meshes = march.sampler.nominal_force.size
-    state, static = np.arange(rows, rows + 2 * n), np.arange(meshes) + 2 * (rows + n)
-    return np.concatenate([rows_of, state, rows + 2 * n + rows_of, static])
+    state, static = np.arange(rows, rows + 2 * n), np.arange(meshes) + rows + 2 * n
+    return np.concatenate([rows_of, state, static])
 
 
 def added_rows(before: System, after: System) -> IntArray | None:
@@ -196,20 +196,18 @@ def start_from(march: March, at: SavedState, rows_of: IntArray) -> None:
     ):
         target[...] = values
         target[rows_of] = known
-    _fill_ring(march, at, rows_of, here.coordinate)
+    _fill_ring(march, at, rows_of)
 
 
-def _fill_ring(march: March, at: SavedState, rows_of: IntArray, coordinate: FloatArray) -> None:
-    """Fill the ring; rows beside those of the other march rest at the `coordinate` (R,)."""
+def _fill_ring(march: March, at: SavedState, rows_of: IntArray) -> None:
+    """Fill the ring; rows beside those of the other march carry no force."""
     ring, rows, to = march.ring, march.ring.local.force.size, _channels(march, rows_of)
-    added = np.setdiff1d(np.arange(rows), rows_of)
     ring.point[...] = 0.0
-    ring.point[:, rows + 2 * march.work.q.size + added] = coordinate[added]
     ring.point[:, to] = at.point
     supports = np.arange(rows, ring.peaks.largest.size)
     signals = np.concatenate([rows_of, supports])
     for target, known, columns in zip(
-        _figures(ring), at.figures, (signals, signals, signals, to, to), strict=True
+        _figures(ring), at.figures, (signals, signals, signals, rows_of, rows_of), strict=True
     ):
         target[...] = 0.0
         target[..., columns] = known

@@ -45,8 +45,8 @@ def unfiltered(system: System, seen: Observed, states: States) -> Signals:
 def filtered(system: System, states: States) -> Signals:
     """Return the signals behind the anti-alias filter."""
     n, rows, channels = states.q.shape[1], states.least.shape[1], states.filtered
-    ends = np.cumsum([rows, n, n, rows])
-    force, q, v, coordinate, static = np.split(channels, ends, axis=1)
+    force, q, v, static = np.split(channels, np.cumsum([rows, n, n]), axis=1)
+    coordinate = system.arrays.elements.offset + q @ system.arrays.direction.T
     across = (np.ascontiguousarray(part.T) for part in (coordinate, force, static))
     return Signals(np.ascontiguousarray(q), np.ascontiguousarray(v), *across)
 
