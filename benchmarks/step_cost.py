@@ -31,6 +31,10 @@ def _scene(subject: str, found: dict[str, Any], per_step: dict[str, float], whol
             Figure(subject, f"a step with its samples, {method}", found[method], "us", per_step.get(method))
             for method in ("implicit", "explicit")
         ),
+        *(
+            Figure(subject, f"a step alone, {method}", found[f"{method} alone"], "us")
+            for method in ("implicit", "explicit")
+        ),
         Figure(subject, "run, default receipt", found["default"], "CPU s", whole),
         Figure(subject, "default over bare run", found["default"] / found["bare"], "-", DEFAULT_OVER_BARE),
     ]
