@@ -32,7 +32,7 @@ class Model(LoadedTrain):
     ledger: EffectLedger
 
 
-def decide_model(scene: Scene, registry: Sequence[Effect]) -> Model:
+def decide_model(scene: Scene, registry: tuple[Effect, ...]) -> Model:
     """Decide the effects of rotors, which give the freedoms, and then those of meshes, which look at them.
 
     Raises

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -53,12 +53,12 @@ class ElasticShaft:
         families = [*across, ("stretch", self.extension), ("twist", self.torsion)]
         return tuple(f"{name}_{j + 1}" for name, modes in families for j in range(modes.mass.size))
 
-    @property
+    @cached_property
     def mass(self) -> FloatArray:
         """Modal mass per coordinate, kg or kg m^2."""
         return self._each("mass")
 
-    @property
+    @cached_property
     def stiffness(self) -> FloatArray:
         """Modal stiffness per coordinate, N/m or N m/rad."""
         return self._each("stiffness")

@@ -7,12 +7,14 @@ from collections.abc import Sequence
 from dynamics.effects.effect import Effect
 from dynamics.effects.ledger import check_choices
 from dynamics.effects.registry import EFFECTS
+from dynamics.identity_cache import identity_cached
 from dynamics.mechanism.additions import Additions
 from dynamics.mechanism.mechanism import Mechanism, gather_mechanism
 from dynamics.scene.scene import Scene
 
 
-def mechanism_of(scene: Scene, registry: Sequence[Effect] = EFFECTS) -> Mechanism:
+@identity_cached
+def mechanism_of(scene: Scene, registry: tuple[Effect, ...] = EFFECTS) -> Mechanism:
     """Gather the mechanism of `scene`; every effect that is not switched off checks it.
 
     Raises

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from dynamics.forces.energy_below import energy_below
+from dynamics.forces.energy_below import ORDER, energy_below
 from dynamics.forces.grid_tables import GridTables
 from dynamics.forces.packed_tables import PackedTables, bucket_starts
 from dynamics.types import FloatArray, IntArray
@@ -23,13 +23,15 @@ def decimated(tables: PackedTables, every: int = 2) -> PackedTables:
     for flank, part in enumerate(parts):
         offset[flank, :4] = starts[0][flank], starts[1][flank], len(part[1]), starts[2][flank]
     row = np.ascontiguousarray(np.concatenate([*(part[2] for part in parts), np.empty((0, 8))]))
+    levels = [tables.level[first : first + count] for first, count in tables.offset[:, 4:]]
+    energies = [energy_below(part[2], level) for part, level in zip(parts, levels, strict=True)]
     return tables._replace(
         offset=offset,
         density=np.array([float(len(part[1])) for part in parts]) / tables.period,
         knot=np.concatenate([*(part[0] for part in parts), np.empty(0)]),
         bucket=np.concatenate([*(part[1] for part in parts), np.empty(0, dtype=np.int64)]),
         row=row,
-        energy=energy_below(row, offset, tables.level),
+        energy=np.concatenate([*energies, np.empty((0, ORDER + 1))]),
     )
 
 

@@ -5,22 +5,20 @@ from __future__ import annotations
 import numpy as np
 
 from dynamics.forces.compiled import compiled
-from dynamics.types import FloatArray, IntArray
+from dynamics.types import FloatArray
 
 ORDER = 9
 """Degree in the position: a width, cubic, squared, times a stiffness, cubic."""
 
 
-def energy_below(row: FloatArray, offset: IntArray, level: FloatArray) -> FloatArray:
-    """Return ascending coefficients, (sum of P L, ORDER + 1), J, laid out as ``PackedTables.row``.
+def energy_below(row: FloatArray, level: FloatArray) -> FloatArray:
+    """Return ascending coefficients (P L, ORDER + 1), J, of a table of P `row`s at the levels (L,).
 
     With levels F_k at deflections d_k(u) and stiffness K_k(u), an interval of width h = d_k+1 - d_k holds
     h (F_k + F_k+1)/2 + h^2 (K_k - K_k+1)/12; row k has the sum over the intervals below level k.
     """
     energy = np.zeros((row.shape[0], ORDER + 1))
-    ends = np.append(offset[1:, 3], row.shape[0])[: len(offset)]
-    for (first, first_level, levels), end in zip(offset[:, 3:], ends, strict=True):
-        _add_intervals(row[first:end], level[first_level : first_level + levels], energy[first:end])
+    _add_intervals(row, level, energy)
     return energy
 
 

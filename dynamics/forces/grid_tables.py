@@ -10,6 +10,7 @@ import numpy as np
 
 from dynamics.forces.mesh_table import LEVERS, MeshTable
 from dynamics.forces.packed_tables import PackedTables, pack_tables
+from dynamics.identity_cache import identity_cached
 from dynamics.types import FloatArray, IntArray
 
 
@@ -63,6 +64,7 @@ def pack_grids(tables: Sequence[MeshTable]) -> GridTables:
     )
 
 
+@identity_cached
 def _numbers(table: MeshTable) -> FloatArray:
     """Return (M, D, P, L, channels, orders)."""
     channels = [

@@ -8,6 +8,7 @@ import numpy as np
 
 from dynamics.checks import increasing, integer
 from dynamics.errors import InputError
+from dynamics.identity_cache import identity_cached
 from dynamics.types import FloatArray
 
 DERIVATIVES = ("deflection_derivative", "stiffness_derivative")
@@ -71,6 +72,12 @@ class MeshTable(Protocol):
 
 def check_table(field: str, table: MeshTable) -> None:
     """Raise `InputError` if `table` breaks the protocol's shapes, orders or signs."""
+    _check(table, field)
+
+
+@identity_cached
+def _check(table: MeshTable, field: str) -> None:
+    """Check a table, once."""
     if not isinstance(table, MeshTable):
         raise InputError(field, type(table).__name__, "a mesh-force table", "Use SteDatabase.force_table().")
     period = integer(f"{field}.period", table.period, 1, LARGEST_PERIOD)

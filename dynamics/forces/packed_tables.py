@@ -8,8 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from dynamics.forces.by_address import by_address
-from dynamics.forces.energy_below import energy_below
+from dynamics.forces.energy_below import ORDER, energy_below
 from dynamics.forces.mesh_table import MeshTable
+from dynamics.identity_cache import identity_cached
 from dynamics.types import FloatArray, IntArray
 
 BUCKETS_PER_KNOT = 4
@@ -54,37 +55,40 @@ class PackedTables(NamedTuple):
 
 def pack_tables(tables: Sequence[MeshTable]) -> PackedTables:
     """Lay out `tables`, each with misalignment and center-distance axes of length 1."""
-    knots = [_closed(table) for table in tables]
-    relative = [knot - knot[0] for knot in knots]
-    buckets = [bucket_starts(knot) for knot in relative]
-    rows = [_rows(table, knot) for table, knot in zip(tables, relative, strict=True)]
-    levels = [np.asarray(table.level, dtype=float) for table in tables]
-    starts = [_starts(parts) for parts in (relative, buckets, rows, levels)]
+    parts = [_laid_out(table) for table in tables]
+    knots, buckets, rows = (
+        [part[0] for part in parts],
+        [part[1] for part in parts],
+        [part[2] for part in parts],
+    )
+    levels, energies = [part[3] for part in parts], [part[4] for part in parts]
+    starts = [_starts(own) for own in (knots, buckets, rows, levels)]
     offset = [
         [starts[0][f], starts[1][f], buckets[f].size, starts[2][f], starts[3][f], levels[f].size]
         for f in range(len(tables))
     ]
     period = np.array([float(table.period) for table in tables])
-    places = np.array(offset, dtype=np.int64).reshape(-1, 6)
-    row = np.ascontiguousarray(np.concatenate([*rows, np.empty((0, 8))]))
-    level = np.concatenate([*levels, np.empty(0)])
     packed = PackedTables(
-        places,
-        np.array([knot[0] for knot in knots]),
+        np.array(offset, dtype=np.int64).reshape(-1, 6),
+        np.array([float(table.position[0]) for table in tables]),
         period,
         np.array([float(bucket.size) for bucket in buckets]) / period,
-        np.concatenate([*relative, np.empty(0)]),
+        np.concatenate([*knots, np.empty(0)]),
         np.concatenate([*buckets, np.empty(0, dtype=np.int64)]),
-        row,
-        level,
-        energy_below(row, places, level),
+        np.concatenate([*rows, np.empty((0, 8))]),
+        np.concatenate([*levels, np.empty(0)]),
+        np.concatenate([*energies, np.empty((0, ORDER + 1))]),
     )
     return by_address(packed)
 
 
-def _closed(table: MeshTable) -> FloatArray:
-    """Knots of one period, the first one repeated at its end."""
-    return np.append(np.asarray(table.position, dtype=float), table.position[0] + table.period)
+@identity_cached
+def _laid_out(table: MeshTable) -> tuple[FloatArray, IntArray, FloatArray, FloatArray, FloatArray]:
+    """Return knots from 0 to the period, buckets, rows, levels and energies of one table."""
+    knot = np.append(np.asarray(table.position, dtype=float), table.position[0] + table.period)
+    knot -= knot[0]
+    rows, level = _rows(table, knot), np.asarray(table.level, dtype=float)
+    return knot, bucket_starts(knot), rows, level, energy_below(rows, level)
 
 
 def _starts(parts: Sequence[FloatArray] | Sequence[IntArray]) -> list[int]:
@@ -105,7 +109,7 @@ def _rows(table: MeshTable, knot: FloatArray) -> FloatArray:
     width = np.diff(knot)[:, np.newaxis]
     deflection = _cubic(table.deflection[0, 0], table.deflection_slope[0, 0], width)
     stiffness = _cubic(table.stiffness[0, 0], table.stiffness_slope[0, 0], width)
-    return np.concatenate([deflection, stiffness], axis=-1).reshape(-1, 8)
+    return np.ascontiguousarray(np.concatenate([deflection, stiffness], axis=-1).reshape(-1, 8))
 
 
 def _cubic(value: FloatArray, slope: FloatArray, width: FloatArray) -> FloatArray:

@@ -12,6 +12,7 @@ from dynamics.forces.mesh_table import LEVERS, MeshTable
 from dynamics.forces.packed_tables import pack_tables
 from dynamics.forces.table_lookup import table_deflection
 from dynamics.forces.table_slope import deflection_slope
+from dynamics.identity_cache import identity_cached
 from dynamics.types import FloatArray
 
 
@@ -35,6 +36,7 @@ class PlainTable:
     stiffness_derivative: FloatArray | None = None
 
 
+@identity_cached
 def table_at(table: MeshTable, misalignment: float, center_distance_change: float) -> PlainTable:
     """Return `table` at one misalignment and center-distance change, linear between their knots.
 
@@ -66,6 +68,7 @@ def table_at(table: MeshTable, misalignment: float, center_distance_change: floa
     )
 
 
+@identity_cached
 def secant_table(table: PlainTable, force: float) -> PlainTable:
     """Return the two-level table of F = k(x) d with k(x) = force / STE(x), both at the knots of `table`.
 

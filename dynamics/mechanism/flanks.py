@@ -12,6 +12,7 @@ from dynamics.forces.flank_force import FlankLaws
 from dynamics.forces.packed_tables import PackedTables, pack_tables
 from dynamics.forces.table_lookup import table_deflection, table_force
 from dynamics.forces.technique import PlainTable, secant_table, table_at
+from dynamics.identity_cache import identity_cached
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
@@ -69,9 +70,7 @@ def flank_laws(
             raise error.within(f"meshes[{index}]") from None
     packed = pack_tables(static)
     typical = np.where(nominal > 0.0, nominal, [table.level[1] for table in static])
-    stiffness = np.array(
-        [mean_stiffness(packed, f, typical[f], static[f].position) for f in range(len(static))]
-    )
+    stiffness = np.array([mean_stiffness(table, force) for table, force in zip(static, typical, strict=True)])
     damping = np.array(
         [_damping(scene, kinematics, f, stiffness[f], polar_inertia) for f in range(len(static))]
     )
@@ -80,12 +79,12 @@ def flank_laws(
     return Flanks(nominal, stiffness, tuple(used), law, (), packed, tuple(used))
 
 
-def mean_stiffness(packed: PackedTables, flank: int, force: float, positions: FloatArray) -> float:
-    """Return the tangent stiffness at `force`, mean over `positions`, N/m."""
-    deflections = [table_deflection(packed, flank, x, force) for x in positions]
-    return float(
-        np.mean([table_force(packed, flank, x, d, 0)[1] for x, d in zip(positions, deflections, strict=True)])
-    )
+@identity_cached
+def mean_stiffness(table: PlainTable, force: float) -> float:
+    """Return the tangent stiffness at `force` (N), mean over the positions of `table`, N/m."""
+    packed = pack_tables([table])
+    deflections = [(x, table_deflection(packed, 0, x, force)) for x in table.position]
+    return float(np.mean([table_force(packed, 0, x, d, 0)[1] for x, d in deflections]))
 
 
 def with_technique(technique: str, table: PlainTable, force: float) -> PlainTable:

@@ -130,7 +130,7 @@ class SteDatabase(SteFields):
     def force_table(self, *, allow_failed: bool = False) -> ForceTable:
         """Return the table of plain arrays that dynamics takes; raises as `extraction.force_table`."""
         if not allow_failed:
-            return with_axis_derivatives(self._mesh_force)
+            return self._force_table
         return with_axis_derivatives(MeshForce(extraction.force_table(repair.without_failed(self))))
 
     def monotone_repaired(self) -> tuple[SteDatabase, repair.Repair]:
@@ -154,6 +154,11 @@ class SteDatabase(SteFields):
     def _mesh_force(self) -> MeshForce:
         """The extraction, built at the first question."""
         return MeshForce(extraction.force_table(self))
+
+    @cached_property
+    def _force_table(self) -> ForceTable:
+        """The extraction with derivatives along all axes, one object for all who take it."""
+        return with_axis_derivatives(self._mesh_force)
 
     @property
     def _to_transverse(self) -> float:
