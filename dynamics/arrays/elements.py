@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.forces.by_address import by_address
 from dynamics.forces.element_laws import ElementLaws, Elements, Law, prepare_laws
 from dynamics.types import FloatArray
 
@@ -56,16 +57,20 @@ def pack_elements(elements: Sequence[Element], laws: ElementLaws, motions: int) 
     ]
     speed = [np.zeros((2, motions)) if element.speed is None else element.speed for element in elements]
     sizes = [element.offset.size for element in elements]
-    packed = Elements(
-        np.array([int(element.law) for element in elements], dtype=np.int64),
-        np.array([element.entry for element in elements], dtype=np.int64),
-        np.cumsum([0, *sizes], dtype=np.int64),
-        np.array([element.mesh for element in elements], dtype=np.int64),
-        np.concatenate([np.empty(0), *(element.offset for element in elements)]),
-        np.ascontiguousarray(np.concatenate([np.empty((0, motions)), *drift]).T),
-        np.concatenate([np.empty(0), *stiffness]),
-        np.ascontiguousarray(np.moveaxis(np.array(speed).reshape(len(elements), 2, motions), 2, 0)),
-        laws,
+    packed = by_address(
+        Elements(
+            np.array([int(element.law) for element in elements], dtype=np.int64),
+            np.array([element.entry for element in elements], dtype=np.int64),
+            np.cumsum([0, *sizes], dtype=np.int64),
+            np.array([element.mesh for element in elements], dtype=np.int64),
+            np.concatenate([np.empty(0), *(element.offset for element in elements)]),
+            np.ascontiguousarray(np.concatenate([np.empty((0, motions)), *drift]).T),
+            np.concatenate([np.empty(0), *stiffness]),
+            np.ascontiguousarray(
+                np.moveaxis(np.array(speed).reshape(len(elements), 2, motions), 2, 0)
+            ),
+            laws,
+        )
     )
     prepare_laws(packed)
     return packed

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from dynamics.assembly.assemble import System
+from dynamics.forces.by_address import by_address
 from dynamics.forces.decimated_tables import decimated, decimated_grids
 
 
@@ -16,4 +17,5 @@ def with_decimated_tables(system: System, every: int = 2) -> System:
         flank=flank._replace(table=decimated(flank.table, every)),
         spatial_flank=spatial._replace(grid=decimated_grids(spatial.grid, every)),
     )
-    return replace(system, arrays=system.arrays._replace(elements=elements._replace(laws=laws)))
+    changed = by_address(elements._replace(laws=laws))
+    return replace(system, arrays=by_address(system.arrays._replace(elements=changed)))

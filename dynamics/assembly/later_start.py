@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from dynamics.assembly.assemble import System
+from dynamics.forces.by_address import by_address
 from dynamics.motion.motion import QUANTA_PER_TURN
 from dynamics.types import IntArray
 
@@ -27,4 +28,4 @@ def starting_at(system: System, time: float, moved: IntArray) -> System:
     )
     torque = arrays.load.torque
     load = arrays.load._replace(torque=torque._replace(start=torque.start - time))
-    return replace(system, arrays=arrays._replace(reference=moved_on, load=load))
+    return replace(system, arrays=by_address(arrays._replace(reference=moved_on, load=load)))

@@ -38,7 +38,8 @@ def error_by_source(system: System, states_of: StatesOf, samples: int) -> Json:
     if not looked:
         return {**requested, "left_out_effects": left_out}
     steps = [run_again(window, window.system, finer(integration)) for window in looked]
-    tables = [run_again(window, with_decimated_tables(window.system), integration) for window in looked]
+    coarse = with_decimated_tables(system)
+    tables = [run_again(window, window.on_laws_of(coarse), integration) for window in looked]
     seconds = clock.process_time() - began
     return {
         "time_step": _estimate(steps, TIME_STEP_REST, "runs of windows at a tenth of the tolerance")

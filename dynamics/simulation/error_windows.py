@@ -9,6 +9,7 @@ import numpy as np
 
 from dynamics.assembly.assemble import System
 from dynamics.assembly.later_start import starting_at
+from dynamics.forces.by_address import by_address
 from dynamics.integrators import StaticSolution, integrate
 from dynamics.motion.observation import observe
 from dynamics.motion.sampled_states import States
@@ -55,6 +56,11 @@ class Window:
     position: FloatArray
     error: FloatArray
     force: FloatArray
+
+    def on_laws_of(self, other: System) -> System:
+        """Return its system with the force laws of `other`, the run's system but for these."""
+        arrays = self.system.arrays._replace(elements=other.arrays.elements)
+        return replace(self.system, arrays=by_address(arrays))
 
 
 @dataclass(frozen=True)
