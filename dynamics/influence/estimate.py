@@ -70,7 +70,9 @@ class Influence(Record):
         return {"words": self.words, **facts}
 
 
-def estimate_influences(scene: Scene, settled: float = 0.0) -> dict[str, Influence]:
+def estimate_influences(
+    scene: Scene, settled: float = 0.0, system: System | None = None
+) -> dict[str, Influence]:
     """Estimate the influence of each effect: toggle it in linear theory, all others as they are.
 
     Parameters
@@ -78,6 +80,8 @@ def estimate_influences(scene: Scene, settled: float = 0.0) -> dict[str, Influen
     scene : Scene
     settled : float
         Part of the run from which on it is looked at, 0..1.
+    system : System, optional
+        The scene assembled.
 
     Returns
     -------
@@ -90,7 +94,7 @@ def estimate_influences(scene: Scene, settled: float = 0.0) -> dict[str, Influen
     -----
     The response is that of `parametric_response`: flanks that part, impacts and transients are left out.
     """
-    system = assemble(scene)
+    system = assemble(scene) if system is None else system
     try:
         conditions = operating_conditions(scene, leading_law(system), settled)
         whole = linear_figures(system, conditions)

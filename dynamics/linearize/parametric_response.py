@@ -78,12 +78,13 @@ def parametric_response(
     row = at.system.arrays.direction[at.system.driving_rows]
     still = _at_rest(at, row)
     for family in _families(at, harmonics, orders):
-        for s in range(speed.size):
-            moved = np.concatenate([still[None], steady.receptance[s, family.harmonic]])[..., family.meshes]
-            push = _push(family, row[family.meshes] @ moved, _made(family, row, steady, s))
-            u[s, family.harmonic] -= 2.0 * np.einsum("hnf,hf->hn", moved[1:], push[1:])
-            extra[family.meshes[:, None], s, family.harmonic] += 2.0 * push[1:].T
-            shift[:, s] -= row @ np.real(moved[0] @ push[0])
+        first = np.broadcast_to(still, (speed.size, 1, *still.shape))
+        moved = np.concatenate([first, steady.receptance[:, family.harmonic]], axis=1)[..., family.meshes]
+        push = _push(family, row[family.meshes] @ moved, _made(family, row, steady))
+        u[:, family.harmonic] -= 2.0 * np.einsum("shnf,shf->shn", moved[:, 1:], push[:, 1:])
+        own = np.ix_(family.meshes, np.arange(speed.size), family.harmonic)
+        extra[own] += 2.0 * np.moveaxis(push[:, 1:], 2, 0)
+        shift -= row @ np.real(np.einsum("snf,sf->ns", moved[:, 0], push[:, 0]))
     response = response_of(at, speed, replace(steady, displacement=u))
     force = response.mesh_force + extra
     least = response.mean_force[:, None] + extremes(force, response.order)[0]
@@ -128,35 +129,37 @@ def _coefficients(at: Excited, mesh: int, highest: int) -> ComplexArray:
     return coefficients
 
 
-def _made(family: Family, row: FloatArray, steady: Steady, s: int) -> ComplexArray:
-    """Fourier coefficients 1 to H (H, f) of what makes force with the mean stiffness, m."""
-    response = steady.displacement[s, family.harmonic] @ row[family.meshes].T
+def _made(family: Family, row: FloatArray, steady: Steady) -> ComplexArray:
+    """Fourier coefficients 1 to H (S, H, f) of what makes force with the mean stiffness, m."""
+    response = steady.displacement[:, family.harmonic] @ row[family.meshes].T
     return np.asarray(0.5 * (response - steady.static[family.meshes][:, family.harmonic].T))
 
 
 def _push(family: Family, receptance: ComplexArray, made: ComplexArray) -> ComplexArray:
-    """Solve the balance at one speed.
+    """Solve the balance at S speeds.
 
     Parameters
     ----------
     family : Family
-    receptance : (H + 1, f, f) complex array
+    receptance : (S, H + 1, f, f) complex array
         Of the meshes, harmonics 0 to H, m/N.
-    made : (H, f) complex array
+    made : (S, H, f) complex array
 
     Returns
     -------
-    (H + 1, f) complex array
+    (S, H + 1, f) complex array
         Fourier coefficients 0 to H of the force by which the varying part of the stiffness presses, N.
     """
-    count = family.harmonic.size
-    whole = np.concatenate([receptance[:0:-1].conj(), receptance])
-    forcing = np.concatenate([made[::-1].conj(), np.zeros((1, made.shape[1])), made])
+    speeds, count, meshes = made.shape
+    whole = np.concatenate([receptance[:, :0:-1].conj(), receptance], axis=1)
+    forcing = np.concatenate([made[:, ::-1].conj(), np.zeros((speeds, 1, meshes)), made], axis=1)
     step = np.arange(2 * count + 1)
     varying = family.stiffness[:, step[:, None] - step[None, :] + 2 * count]  # (f, 2 H + 1, 2 H + 1)
-    matrix = np.einsum("iab,bij->iajb", whole, varying).reshape(forcing.size, forcing.size)
-    w = np.linalg.solve(matrix + np.eye(forcing.size), forcing.reshape(-1)).reshape(forcing.shape)
-    return np.asarray(np.einsum("bij,jb->ib", varying, w)[count:])
+    size = step.size * meshes
+    matrix = np.einsum("siab,bij->siajb", whole, varying).reshape(speeds, size, size)
+    matrix += np.eye(size)
+    w = np.linalg.solve(matrix, forcing.reshape(speeds, size, 1)).reshape(forcing.shape)
+    return np.asarray(np.einsum("bij,sjb->sib", varying[:, count:], w))
 
 
 def _at_rest(at: Excited, row: FloatArray) -> ComplexArray:

@@ -138,8 +138,15 @@ def _omega(at: Excited, speed: FloatArray, harmonics: IntArray) -> FloatArray:
 
 
 def gyroscopic_terms(system: System, speed: FloatArray) -> list[Terms]:
-    """Return the gyroscopic and frame terms (n, n) of damping and stiffness at each leading `speed`."""
-    return [terms_at(system, law_speeds(system, abs(float(w)))) for w in speed]
+    """Return the gyroscopic and frame terms (n, n) of damping and stiffness at each leading `speed`.
+
+    They grow with the speed, centripetal ones with its square: two speeds tell all.
+    """
+    part = np.abs(speed) / np.max(np.abs(speed))
+    gyroscopic, once = terms_at(system, law_speeds(system, float(np.max(np.abs(speed)))))
+    twice = terms_at(system, law_speeds(system, 2.0 * float(np.max(np.abs(speed)))))[1]
+    swept, centripetal = 2.0 * once - 0.5 * twice, 0.5 * twice - once
+    return [(w * gyroscopic, w * swept + w * w * centripetal) for w in part]
 
 
 def _excitation(
@@ -205,12 +212,14 @@ def _solve(
         each = np.broadcast_to((rows * per_meter).T, (*pushed.shape[:3], rows.shape[0]))
         pushed = np.concatenate([pushed, each], axis=-1)
     displacement = np.empty((*omega.shape, *pushed.shape[2:]), dtype=complex)
+    parts = np.stack([total, mass, damping]).reshape(3, -1).astype(complex)
     block = max(BLOCK // max(omega.shape[1] * g.shape[1] ** 2, 1), 1)
     left = 0.0
     for start in range(0, omega.shape[0], block):
         part = slice(start, start + block)
         w = omega[part, :, None, None]
-        matrix = np.asarray(total - w * w * mass + 1j * w * damping, dtype=complex)
+        by_part = np.concatenate([np.ones_like(w), -w * w, 1j * w], axis=-1)
+        matrix = (by_part[..., 0, :] @ parts).reshape(*w.shape[:2], *total.shape)
         if terms:
             swept = [
                 np.stack([per_meter[:, None] * term[k] * per_meter for term in terms[part]]) for k in (0, 1)
@@ -218,7 +227,7 @@ def _solve(
             matrix += 1j * w * swept[0][:, None] + swept[1][:, None]
         right = np.broadcast_to(pushed, (*matrix.shape[:-1], pushed.shape[-1]))
         solved = np.linalg.solve(matrix, right)
-        miss = np.abs(matrix @ solved - right)[..., 0]
+        miss = np.abs(np.einsum("shij,shj->shi", matrix, solved[..., 0]) - right[..., 0])
         left = max(left, float(np.max(miss, initial=0.0)))
         displacement[part] = solved * per_meter[:, None]
         if progress is not None:

@@ -84,7 +84,7 @@ def known_influences(decided: Decided, system: System, end: Ending) -> Mapping[s
     work = int(end.count[Count.ACCEPTED]) * len(system.freedoms.name)
     if decided.influences or scene.outputs.receipt != "full" or work < LEAST_WORK:
         return decided.influences
-    return estimate_influences(scene)
+    return estimate_influences(scene, system=system)
 
 
 def series_of(system: System, time: FloatArray, states: States) -> tuple[dict[str, Any], dict[str, Any]]:
