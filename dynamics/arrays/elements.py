@@ -66,9 +66,7 @@ def pack_elements(elements: Sequence[Element], laws: ElementLaws, motions: int) 
             np.concatenate([np.empty(0), *(element.offset for element in elements)]),
             np.ascontiguousarray(np.concatenate([np.empty((0, motions)), *drift]).T),
             np.concatenate([np.empty(0), *stiffness]),
-            np.ascontiguousarray(
-                np.moveaxis(np.array(speed).reshape(len(elements), 2, motions), 2, 0)
-            ),
+            np.ascontiguousarray(np.moveaxis(np.array(speed).reshape(len(elements), 2, motions), 2, 0)),
             laws,
         )
     )
