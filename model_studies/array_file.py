@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
-import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from bounds.types import Json
+from model_studies.netcdf_content import NetcdfContent, Variable
 
 SCHEMA_VERSION = 1
 PARTS = "part"  # dimension of the real and the imaginary part
@@ -50,8 +48,6 @@ def write_arrays(
     rest : dict
         Plain JSON.
     """
-    import h5netcdf  # noqa: PLC0415 - needed for files only
-
     documents = json.dumps({"shapes": _shapes(arrays), "fields": rest}, allow_nan=False)
     attributes = {
         "Conventions": "CF-1.11",
@@ -60,18 +56,11 @@ def write_arrays(
         DOCUMENTS: documents,
         "sha256": _digest(documents, arrays),
     }
-    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
-    os.close(handle)
-    part = Path(name)
-    try:
-        with h5netcdf.File(part, "w") as file:
-            for key, values in arrays.items():
-                _add(file, key, stored[key], values)
-            for key, value in attributes.items():
-                file.attrs[key] = value
-        _publish(part, path)
-    finally:
-        part.unlink(missing_ok=True)
+    sizes: dict[str, int] = {}
+    variables = {
+        name: _variable(stored[name], values, sizes) for name, values in arrays.items() if values.size
+    }
+    NetcdfContent(variables, attributes).write(path)
 
 
 def read_arrays(path: Path, schemas: tuple[str, ...]) -> tuple[str, dict[str, Any], Json]:
@@ -112,28 +101,20 @@ def _shapes(arrays: Mapping[str, Any]) -> Json:
     return {name: [values.dtype.str, list(values.shape)] for name, values in arrays.items()}
 
 
-def _add(file: Any, name: str, stored: Stored, values: Any) -> None:
-    """Write one array, if it has entries."""
-    if not values.size:
-        return
+def _variable(stored: Stored, values: Any, sizes: dict[str, int]) -> Variable:
+    """Return an array as a variable; `sizes` of dimensions grow by its own."""
     dimensions = stored.dimensions
     if np.iscomplexobj(values):
         dimensions = (*dimensions, PARTS)
         values = np.stack([values.real, values.imag], axis=-1)
-    dimensions = tuple(map(partial(_dimension, file), dimensions, values.shape))
-    packed = {"compression": "gzip", "compression_opts": 4, "shuffle": True} if dimensions else {}
-    variable = file.create_variable(name, dimensions, values.dtype, **packed)
-    variable[...] = values
-    variable.attrs.update({"units": stored.units, "long_name": stored.long_name})
+    names = tuple(_dimension(sizes, name, size) for name, size in zip(dimensions, values.shape, strict=True))
+    return Variable(names, values, {"units": stored.units, "long_name": stored.long_name})
 
 
-def _dimension(file: Any, name: str, size: int) -> str:
+def _dimension(sizes: dict[str, int], name: str, size: int) -> str:
     """Return the name of a dimension; one that is there in another size gets its size into its name."""
-    known = file.dimensions.get(name)
-    if known is not None and known.size != size:
-        return _dimension(file, f"{name}_{size}", size)
-    if known is None:
-        file.dimensions[name] = size
+    if sizes.setdefault(name, size) != size:
+        return _dimension(sizes, f"{name}_{size}", size)
     return name
 
 
@@ -156,13 +137,3 @@ def _digest(documents: str, arrays: Mapping[str, Any]) -> str:
         hasher.update(name.encode())
         hasher.update(np.ascontiguousarray(values).tobytes())
     return hasher.hexdigest()
-
-
-def _publish(part: Path, path: Path) -> None:
-    """Flush to disk and rename, with ordinary permissions."""
-    mask = os.umask(0)
-    os.umask(mask)
-    part.chmod(0o666 & ~mask)
-    with part.open("rb") as written:
-        os.fsync(written.fileno())
-    part.replace(path)

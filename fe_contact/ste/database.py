@@ -139,7 +139,7 @@ class SteDatabase(SteFields):
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write one netCDF-4 file, atomically; a reader never sees half of it."""
-        netcdf.write(self, Path(path))
+        netcdf.content(self).write(Path(path))
 
     @classmethod
     def from_netcdf(cls, path: str | Path) -> SteDatabase:
@@ -148,7 +148,7 @@ class SteDatabase(SteFields):
 
     def to_xarray(self) -> xarray.Dataset:
         """Return the same content with names, units and coordinates."""
-        return netcdf.to_dataset(self)
+        return netcdf.content(self).to_xarray()
 
     @cached_property
     def _mesh_force(self) -> MeshForce:

@@ -1,11 +1,11 @@
-"""STE databases as netCDF-4 files. xarray and h5netcdf are imported only here, and only when used."""
+"""STE databases as netCDF-4 files."""
 
 from __future__ import annotations
 
 import json
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -13,14 +13,11 @@ from fe_contact.errors import DatabaseError
 from fe_contact.ste.curve_errors import AT_NODES, SOURCES
 from fe_contact.ste.facts import SCHEMA_VERSION, Metadata, PairFacts
 from fe_contact.ste.fields import CURVE_ERROR, DIMENSIONS, RESIDUALS, SteFields
-from fe_contact.ste.netcdf_file import FileFormat, digest, json_attribute, write_dataset
+from fe_contact.ste.netcdf_file import FileFormat, digest, json_attribute
 from fe_contact.types import Json, Status
-
-if TYPE_CHECKING:
-    import xarray
+from model_studies.netcdf_content import NetcdfContent, Variable
 
 FORMAT = "lineofaction STE database"
-_COORDINATES = ("position", "force", "misalignment", "center_distance_change", "pair", "support_force")
 WARNINGS = "warnings"
 _JSON_ATTRIBUTES = ("case", "effect_ledger", "receipt", "software_versions")
 FILES = FileFormat(FORMAT, "STE database", SCHEMA_VERSION, tuple(DIMENSIONS), optional=("curve_error",))
@@ -60,23 +57,13 @@ ATTRIBUTES: dict[str, tuple[str, str]] = {
 }
 
 
-def to_dataset(database: SteFields) -> xarray.Dataset:
-    """Return the database as an xarray Dataset with CF-style names, units and coordinates."""
-    import xarray  # noqa: PLC0415 - half a second, and not needed to evaluate a table
-
+def content(database: SteFields) -> NetcdfContent:
+    """Return the content of the database's file: CF-style names, units and coordinates."""
     variables = {
-        name: (DIMENSIONS[name], getattr(database, name), _variable_attributes(name)) for name in DIMENSIONS
+        name: Variable(CURVE_ERROR if name == "curve_error" else DIMENSIONS[name], values, _described(name))
+        for name, values in _stored(database).items()
     }
-    if database.curve_error.size:
-        variables["curve_error"] = (CURVE_ERROR, database.curve_error, _variable_attributes("curve_error"))
-    coordinates = {name: variables.pop(name) for name in _COORDINATES}
-    coordinates["torque"] = variables.pop("torque")
-    return xarray.Dataset(variables, coordinates, _global_attributes(database))
-
-
-def write(database: SteFields, path: Path) -> None:
-    """Write the database to `path`: into a temporary file beside it, then renamed over it."""
-    write_dataset(to_dataset(database), path)
+    return NetcdfContent(variables, _global_attributes(database), coordinates=("torque",))
 
 
 def read(path: Path) -> dict[str, Any]:
@@ -97,7 +84,7 @@ def read(path: Path) -> dict[str, Any]:
     }
 
 
-def _variable_attributes(name: str) -> Json:
+def _described(name: str) -> Json:
     """CF-style attributes of one variable."""
     units, long_name = ATTRIBUTES[name]
     attributes: Json = {"units": units, "long_name": long_name}

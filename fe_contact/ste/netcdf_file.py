@@ -1,46 +1,18 @@
-"""Result files: netCDF-4 written whole, read without decoding, checked by a digest of their arrays."""
+"""Result files: netCDF-4 read without decoding, checked by a digest of their arrays."""
 
 from __future__ import annotations
 
 import hashlib
-import io
 import json
-import os
-import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from fe_contact.errors import DatabaseError
 from fe_contact.types import Json
-
-if TYPE_CHECKING:
-    import xarray
-
-
-def write_dataset(dataset: xarray.Dataset, path: Path) -> None:
-    """Write a dataset to `path`: into a temporary file beside it, then renamed over it.
-
-    The bytes are made in memory: where a disk is full, HDF5 would leave objects that crash the process later.
-    """
-    # no _FillValue: xarray would replace NaN by its own on the way back
-    encoding: dict[Any, Json] = {name: {"_FillValue": None} for name in dataset.variables}
-    for name in dataset.data_vars:
-        if dataset[name].size:
-            encoding[name] |= {"zlib": True, "complevel": 4, "shuffle": True}
-    content = io.BytesIO()
-    dataset.to_netcdf(content, engine="h5netcdf", format="NETCDF4", encoding=encoding)
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(content.getbuffer())
-        _publish(temporary, path)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
 
 
 def read_variables(path: Path) -> tuple[dict[str, Any], Json]:
@@ -51,7 +23,7 @@ def read_variables(path: Path) -> tuple[dict[str, Any], Json]:
     DatabaseError
         The file is missing or no netCDF-4.
     """
-    import h5netcdf  # noqa: PLC0415 - a tenth of the time of xarray, which is for writing
+    import h5netcdf  # noqa: PLC0415 - needed for files only
     import h5py  # noqa: PLC0415
 
     if not path.is_file():
@@ -141,13 +113,3 @@ def digest(arrays: Mapping[str, Any], before: str = "") -> str:
         hasher.update(f"{name} {array.dtype.newbyteorder('<').str} {array.shape};".encode())
         hasher.update(array.astype(array.dtype.newbyteorder("<"), copy=False).tobytes())
     return hasher.hexdigest()
-
-
-def _publish(temporary: str, path: Path) -> None:
-    """Flush to disk and rename; ordinary file permissions instead of the temporary file's private ones."""
-    mask = os.umask(0)
-    os.umask(mask)
-    Path(temporary).chmod(0o666 & ~mask)
-    with Path(temporary).open("rb") as written:
-        os.fsync(written.fileno())
-    Path(temporary).replace(path)

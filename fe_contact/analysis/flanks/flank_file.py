@@ -12,12 +12,11 @@ import numpy as np
 from fe_contact.analysis.flanks.contact_pattern import contact_pattern
 from fe_contact.analysis.flanks.flank_scene import FlankScene
 from fe_contact.ste import Metadata
-from fe_contact.ste.netcdf_file import FileFormat, digest, json_attribute, write_dataset
+from fe_contact.ste.netcdf_file import FileFormat, digest, json_attribute
 from fe_contact.types import Json
+from model_studies.netcdf_content import NetcdfContent, Variable
 
 if TYPE_CHECKING:
-    import xarray
-
     from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 
 FORMAT = "lineofaction flank results"
@@ -43,30 +42,21 @@ STORED: dict[str, tuple[tuple[str, ...], str, str]] = {
 FILES = FileFormat(FORMAT, "flank results", SCHEMA_VERSION, tuple(STORED), (*_SCALARS, *_DOCUMENTS))
 
 
-def to_dataset(results: LoadDistribution) -> xarray.Dataset:
-    """Return flank results as an xarray Dataset, with line load, centroid, factors and contact patterns."""
-    import xarray  # noqa: PLC0415 - half a second, and needed for files only
-
+def content(results: LoadDistribution) -> NetcdfContent:
+    """Return the content of a file: flank results with line load, centroid, factors and contact patterns."""
     arrays = _arrays(results)
-    variables: dict[str, Any] = {
-        name: (dimensions, arrays[name], {"units": units, "long_name": text})
+    variables = {
+        name: Variable(dimensions, arrays[name], {"units": units, "long_name": text})
         for name, (dimensions, units, text) in STORED.items()
     }
-    coordinates = {name: variables.pop(name) for name in _GRID}
     for gear in _GEARS:
         pattern = contact_pattern(results, gear)
         along = f"pattern_roll_length_{gear}"
         text = {"units": "m", "long_name": f"roll length on the {gear}, middles of cells"}
-        coordinates[along] = ((along,), pattern.roll_length, text)
+        variables[along] = Variable((along,), pattern.roll_length, text)
         text = {"units": "Pa", "long_name": f"largest pressure on the {gear}'s flank over the positions"}
-        variables[f"contact_pattern_{gear}"] = ((along, "face_position"), pattern.pressure, text)
-    variables |= _derived(results)
-    return xarray.Dataset(variables, coordinates, _attributes(results, arrays))
-
-
-def write(results: LoadDistribution, path: Path) -> None:
-    """Write flank results: into a temporary file beside `path`, then renamed over it."""
-    write_dataset(to_dataset(results), path)
+        variables[f"contact_pattern_{gear}"] = Variable((along, "face_position"), pattern.pressure, text)
+    return NetcdfContent(variables | _derived(results), _attributes(results, arrays))
 
 
 def read(path: Path) -> dict[str, Any]:
@@ -93,18 +83,18 @@ def _arrays(results: LoadDistribution) -> dict[str, Any]:
     return arrays | {"on_path": results.on_path.astype(np.int8)}
 
 
-def _derived(results: LoadDistribution) -> dict[str, Any]:
+def _derived(results: LoadDistribution) -> dict[str, Variable]:
     """Return what follows from the rest, for readers without this library."""
     along = ("position",)
+    centroid = {"units": "m", "long_name": "along the face"}
+    per_width = {"units": "N m-1", "long_name": "force of all pairs per face width"}
     return {
-        "line_load": (_GRID, results.line_load, {"units": "N m-1", "long_name": "force per contact line"}),
-        "face_load": (
-            ("position", "face_position"),
-            results.face_load,
-            {"units": "N m-1", "long_name": "force of all pairs per face width"},
+        "line_load": Variable(
+            _GRID, results.line_load, {"units": "N m-1", "long_name": "force per contact line"}
         ),
-        "load_centroid": (along, results.load_centroid, {"units": "m", "long_name": "along the face"}),
-        "face_load_factor": (along, results.face_load_factor, {"units": "1", "long_name": "K_Hbeta"}),
+        "face_load": Variable(("position", "face_position"), results.face_load, per_width),
+        "load_centroid": Variable(along, results.load_centroid, centroid),
+        "face_load_factor": Variable(along, results.face_load_factor, {"units": "1", "long_name": "K_Hbeta"}),
     }
 
 

@@ -116,15 +116,15 @@ class LoadDistribution:
 
     def to_xarray(self) -> xarray.Dataset:
         """Return all fields with units, and what follows from them: line load, factors, contact patterns."""
-        from fe_contact.analysis.flanks.flank_file import to_dataset  # noqa: PLC0415 - xarray takes half a second
+        from fe_contact.analysis.flanks.flank_file import content  # noqa: PLC0415
 
-        return to_dataset(self)
+        return content(self).to_xarray()
 
     def to_netcdf(self, path: Path) -> None:
         """Write a netCDF-4 file, whole or not at all."""
-        from fe_contact.analysis.flanks.flank_file import write  # noqa: PLC0415
+        from fe_contact.analysis.flanks.flank_file import content  # noqa: PLC0415
 
-        write(self, Path(path))
+        content(self).write(Path(path))
 
     @classmethod
     def from_netcdf(cls, path: Path) -> LoadDistribution:

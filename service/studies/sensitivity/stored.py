@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from fe_contact.analysis.studies.sensitivity import RippleCurve, Sensitivity
-from fe_contact.ste.netcdf_file import FileFormat, digest, json_attribute, write_dataset
+from fe_contact.ste.netcdf_file import FileFormat, digest, json_attribute
+from model_studies.netcdf_content import NetcdfContent, Variable
 
 FORMAT = "lineofaction sensitivity study"
 SCHEMA_VERSION = 1
@@ -57,11 +58,9 @@ class PairStudy:
 
 def write_studies(studies: Sequence[PairStudy], path: Path) -> None:
     """Write studies of the same numbers of deviations: into a temporary file beside `path`, then renamed."""
-    import xarray  # noqa: PLC0415 - half a second, and needed for files only
-
     arrays = _arrays(studies)
     variables = {
-        name: (dimensions, arrays[name], {"units": units, "long_name": text})
+        name: Variable(dimensions, arrays[name], {"units": units, "long_name": text})
         for name, (dimensions, units, text) in STORED.items()
     }
     attributes = {
@@ -72,7 +71,7 @@ def write_studies(studies: Sequence[PairStudy], path: Path) -> None:
         "names": json.dumps([study.name for study in studies]),
         "data_sha256": digest(arrays),
     }
-    write_dataset(xarray.Dataset(variables, attrs=attributes), path)
+    NetcdfContent(variables, attributes).write(path)
 
 
 def read_studies(path: Path) -> tuple[PairStudy, ...]:
