@@ -48,13 +48,19 @@ class Recording:
         return self.workers.cost
 
     def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
-        """Yield what they yield."""
+        """Start what they do, and yield what they yield."""
         seconds: list[float] = []
         self.runs.append(seconds)
-        results = self.workers.run(function, shared, items)
-        for _ in items:
+        return self._recorded(self.workers.run(function, shared, items), seconds)
+
+    def _recorded(self, results: Iterator[Any], seconds: list[float]) -> Iterator[Any]:
+        """Yield results, and note what each cost."""
+        while True:
             before = self.cost.cpu_seconds
-            result = next(results)
+            try:
+                result = next(results)
+            except StopIteration:
+                return
             seconds.append(self.cost.cpu_seconds - before)
             yield result
 

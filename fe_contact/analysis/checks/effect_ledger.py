@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from fe_contact.analysis.checks.assumptions import Assumption
-from fe_contact.analysis.request.influences import estimated_influences
+from fe_contact.analysis.request.influences import Influences, estimated_influences
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_asked
 from fe_contact.effects import LedgerEntry
@@ -26,7 +26,7 @@ def effect_ledger(
     assumptions: Sequence[Assumption] = (),
     *,
     plan: Plan | None = None,
-    planned_request: Checked | None = None,
+    influences: Influences | None = None,
     estimates: bool = True,
 ) -> list[Json]:
     """Return one entry per effect as plain JSON.
@@ -40,14 +40,14 @@ def effect_ledger(
         What was checked after the run.
     plan : Plan, optional
         Of the run: costs are those of its mesh and slices; default: those that the accuracy asks for.
-    planned_request : Checked, optional
-        The request before the run was repeated with further effects, if it was: influences are those of the
-        plan, whatever the run found; default: `checked`.
+    influences : mapping of str to Influence, optional
+        Of the plan, whatever the run found; default: estimated here.
     estimates : bool
         Whether influence and cost are estimated, in milliseconds; without it they are None.
     """
-    influences = estimated_influences(planned_request or checked) if estimates else {}
     costs = _costs(checked, cache, plan) if estimates else {}
+    if influences is None:
+        influences = estimated_influences(checked) if estimates else {}
     return [
         _entry(entry, influences.get(entry.name), costs.get(entry.name), assumptions)
         for entry in checked.ledger

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import platform
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from importlib.metadata import version
@@ -15,6 +16,7 @@ from fe_contact.analysis.database.contact_receipt import contact_receipt
 from fe_contact.analysis.database.tolerance_receipt import tolerance_receipt
 from fe_contact.analysis.estimates.assessed_table import AssessedTable, assessed_table, unassessed_table
 from fe_contact.analysis.request.decided import Decided
+from fe_contact.analysis.request.influences import Influences, started_influences
 from fe_contact.analysis.request.request import Checked, Request
 from fe_contact.analysis.tables.solved_table import SolvedTable, condensed_bodies, solve_table
 from fe_contact.options import Run
@@ -26,6 +28,7 @@ from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.content_hash import content_hash
 from fe_contact.ste.facts import SCHEMA_VERSION
 from fe_contact.types import Json
+from fe_contact.workers import InProcess, RunCost
 
 SOLVER_VERSION = "11"
 PACKAGES = ("lineofaction", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
@@ -77,20 +80,18 @@ def compute_pass(
         lambda made, needed: solve_table(with_effects(made.checked, needed), clock, run, made),
         clock,
     )
+    full = _full(made)
+    influences = _started_influences(planned, run, before) if full else iter([{}])
     assessed, contact = _assessed(made, clock, run)
-    remote = run.workers.cost.since(before)
-    if not repeated and not remote.tasks:
+    if not repeated and not run.workers.cost.since(before).tasks:
         cost = {log_name(made.prediction.kind, name): time for name, time in clock.seconds.items()}
         record(run.cache, made.prediction.logged, cost)
     with clock.stage("effect ledger"):
+        known = next(influences)
         ledger = effect_ledger(
-            made.checked,
-            run.cache,
-            assumptions,
-            plan=made.plan,
-            planned_request=planned.checked,
-            estimates=_full(made),
+            made.checked, run.cache, assumptions, plan=made.plan, influences=known, estimates=full
         )
+    remote = run.workers.cost.since(before)
     receipt = clock.to_json() | assessed.to_json() | contact | _planned(made)
     receipt |= {"assumptions": [assumption.to_json() for assumption in assumptions], "repeated": repeated}
     if remote.tasks or remote.lost:
@@ -105,6 +106,15 @@ def compute_pass(
         metadata.receipt["tolerance"] = kept
         metadata.receipt["choice"]["met"] = kept["met"]
     return Computed(table, made.decided)
+
+
+def _started_influences(planned: SolvedTable, run: Run, before: RunCost) -> Iterator[Influences]:
+    """Start the estimate of influences: beside what is assessed, where tasks were handed out for this table.
+
+    They are those of the plan, whatever the run found.
+    """
+    workers = run.workers if run.workers.cost.since(before).tasks else InProcess()
+    return started_influences(planned.checked, workers, planned.places.nominal.bodies)
 
 
 def _full(made: SolvedTable) -> bool:

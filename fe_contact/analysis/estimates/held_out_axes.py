@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -137,8 +137,7 @@ class _Assessed:
         point = self.places.places[self._place(int(np.searchsorted(self.table.misalignment, m)), d)]
         probes = LOAD_PROBES if force.size <= WIDE_INTERVALS + 1 else MIDDLE
         loads = force[:-1, None] ** (1.0 - probes) * force[1:, None] ** probes
-        self._keep_rows(point)
-        curves = self._curves(point, self.rows, loads.ravel(), m, d)
+        (curves,) = self._curves([point], loads.ravel(), np.array([m]), d)
         error = _worst(curves).reshape(loads.shape).max(axis=1)
         change = self._changes(curves).reshape(-1, *loads.shape).max(axis=2)
         return AxisError(np.sqrt(force[1:] * force[:-1]), error[:, None], change[..., None])
@@ -147,10 +146,7 @@ class _Assessed:
         """Assess the misalignments, at some loads."""
         force, some = self.table.force, sample_of(self.table.force.size, LOADS)
         middles, d = _middles(self.table.misalignment), self._nearest("center_distance_change")
-        points = self._held_out(middles, d)
-        self._keep_rows(points[0])
-        held_out = zip(points, middles, strict=True)
-        pairs = [self._curves(point, self.rows, force[some], x, d[0]) for point, x in held_out]
+        pairs = self._curves(self._held_out(middles, d), force[some], middles, d[0])
         change = np.stack([self._changes(curves) for curves in pairs], axis=1)
         error = np.array([_worst(curves) for curves in pairs])
         return AxisError(middles, spread(force, some, error, 1), spread(force, some, change, 2))
@@ -167,20 +163,27 @@ class _Assessed:
         errors = spread(force, some, np.array(worst), 1)
         return AxisError(middles, errors, np.stack([errors, *[2.0 * errors] * (QUANTITIES - 1)]))
 
-    def _curves(self, point: OperatingPoint, rows: IntArray, load: FloatArray, *alignment: float) -> Curves:
-        """Interpolant and solutions (positions, L), m; NaN where one did not converge."""
-        position = self.table.position[rows]
-        solution = point.solve(position, load, start=self._start(rows, load, *alignment))[1]
-        return self._tabulated(position, load, *alignment), solution.deflection
+    def _curves(
+        self, points: Sequence[OperatingPoint], load: FloatArray, misalignment: FloatArray, change: float
+    ) -> list[Curves]:
+        """Interpolant and solutions (positions, L) of places at misalignments, m; NaN where not converged."""
+        position = self.table.position[self.rows]
+        first, workers = points[0], self.places.workers
+        first.contact.keep_rows(first.model, self.table.position, self.rows)
+        starts = [self._start(load, x, change) for x in misalignment]
+        where = [position] * len(points)
+        solved = deflected_operating_points(points, where, load, None, workers, starts=starts)
+        tabulated = [self._tabulated(position, load, x, change) for x in misalignment]
+        return list(zip(tabulated, solved, strict=True))
 
-    def _start(self, rows: IntArray, load: FloatArray, misalignment: float, change: float) -> Start:
+    def _start(self, load: FloatArray, misalignment: float, change: float) -> Start:
         """Start between the solutions at the nodes around the points: of loads, and of misalignments."""
         below, above, share = _around(self.table.force, load)
         low, high, part = _around(self.table.misalignment, np.array([misalignment]))
         first, second = (self.solved[self._place(int(m[0]), change)] for m in (low, high))
 
         def between(force: FloatArray) -> FloatArray:
-            lower, upper = (force[np.ix_(rows, loads)] for loads in (below, above))
+            lower, upper = (force[np.ix_(self.rows, loads)] for loads in (below, above))
             return np.asarray(lower + share[:, None] * (upper - lower))
 
         lower, upper = (between(solution.force) for _, solution in (first, second))
@@ -203,10 +206,6 @@ class _Assessed:
         """Return the node of an axis nearest to zero, as an axis of one."""
         nodes: FloatArray = getattr(self.table, name)
         return nodes[[int(np.argmin(np.abs(nodes)))]]
-
-    def _keep_rows(self, point: OperatingPoint) -> None:
-        """Let a place take the compliance at the assessed positions from that at all of the table's."""
-        point.contact.keep_rows(point.model, self.table.position, self.rows)
 
     def _held_out(self, misalignment: FloatArray, change: FloatArray) -> tuple[OperatingPoint, ...]:
         """Lay out held-out places like those of the table."""

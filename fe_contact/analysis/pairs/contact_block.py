@@ -1,8 +1,9 @@
 """Some positions of a line of the table: the task that workers are given.
 
-Positions do not depend on each other: every load is started from the one below it at the same position, and
-nothing else is. So a table may be cut between any of them and keeps its bits. What is found for all positions
-of a line together, which pairs touch at all and what counts as a tie of gaps, is found before they are cut.
+Positions do not depend on each other: every load is started from the one below it at the same position, or
+from forces that are given with it. So a table may be cut between any of them and keeps its bits. What is
+found for all positions of a line together, which pairs touch at all and what counts as a tie of gaps, is
+found before they are cut.
 """
 
 from __future__ import annotations
@@ -12,7 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_contact.analysis.pairs.pair_contact import Bodies, PairContact
-from fe_contact.contact import Candidates, ContactModel, ContactProblem, ContactSolution, solve_contact
+from fe_contact.contact import (
+    Candidates,
+    ContactModel,
+    ContactProblem,
+    ContactSolution,
+    Start,
+    solve_contact,
+)
 from fe_contact.contact.condition import condition_numbers
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning import Plan
@@ -38,6 +46,10 @@ class ContactBlock:
         Sets of normal forces in N; each is solved by itself.
     conditioned : bool
         Whether condition numbers are wanted.
+    starts : tuple of ndarray, shape (rows, L, n), optional
+        Forces in N on the candidates that each model starts from; default: each load from the one below it.
+    assembled : ContactProblem, optional
+        Of the candidates, with the compliance between them, where that is known: it need not be assembled.
     """
 
     pair: ParallelAxes
@@ -47,11 +59,17 @@ class ContactBlock:
     pitches: IntArray | None
     loads: tuple[FloatArray, ...]
     conditioned: bool = False
+    starts: tuple[FloatArray, ...] | None = None
+    assembled: ContactProblem | None = None
 
     @property
     def pitch(self) -> IntArray | None:
         """The base pitch of every row."""
         return None if self.pitches is None else np.repeat(self.pitches, self.candidates.position.size)
+
+    def start(self, model: int) -> Start | None:
+        """Return what the solution of a model is started from."""
+        return None if self.starts is None else Start(self.candidates, self.starts[model])
 
 
 @dataclass(frozen=True)
@@ -76,10 +94,16 @@ class SolvedBlock:
 def solve_block(bodies: Bodies, block: ContactBlock) -> SolvedBlock:
     """Assemble and solve a block: one task."""
     contact = PairContact.of_bodies(block.pair, block.plan, bodies)
-    contact.assemble(block.models[0], block.candidates)
+    if block.assembled is None:
+        contact.assemble(block.models[0], block.candidates)
+    else:
+        contact.take(block.models[0], block.assembled)
     where, pitch = block.candidates.position, block.pitch
     problems = tuple(contact.problem(model, where, pitch) for model in block.models)
-    solutions = tuple(tuple(solve_contact(problem, load) for load in block.loads) for problem in problems)
+    solutions = tuple(
+        tuple(solve_contact(problem, load, block.start(k)) for load in block.loads)
+        for k, problem in enumerate(problems)
+    )
     condition = condition_numbers(problems[0].compliance) if block.conditioned else None
     return SolvedBlock(problems, solutions, condition)
 

@@ -28,8 +28,8 @@ from fe_contact.planning.contact_cost import unit_work
 from fe_contact.types import FloatArray, IntArray
 from fe_contact.workers import Workers
 
-TASK_SECONDS = 0.2
-"""CPU seconds that a block is predicted to take: ten times what it costs to hand it out."""
+TASK_SECONDS = 0.1
+"""CPU seconds that a block is predicted to take: five times what it costs Dask to hand it out."""
 
 FEWEST_ROWS = 2
 """Of a block: a single row is contiguous either way, and cannot be laid out as many are."""
@@ -52,6 +52,10 @@ class Line:
     pitches : ndarray of int, shape (T,), or None
     loads : tuple of ndarray
         Sets of normal forces in N.
+    starts : tuple of ndarray, shape (P, L, n), optional
+        As those of `ContactBlock`, at all positions of the line; without pitches.
+    assembled : ContactProblem, optional
+        As that of `ContactBlock`.
     """
 
     contact: PairContact
@@ -59,6 +63,8 @@ class Line:
     candidates: Candidates
     pitches: IntArray | None
     loads: tuple[FloatArray, ...]
+    starts: tuple[FloatArray, ...] | None = None
+    assembled: ContactProblem | None = None
 
     @property
     def seconds_a_position(self) -> float:
@@ -69,14 +75,22 @@ class Line:
 
     def blocks(self, *, conditioned: bool) -> Iterator[ContactBlock]:
         """Cut it."""
-        pair, everything = self.contact.pair, self.candidates
-        whole = ContactBlock(
-            pair, self.contact.plan, everything, self.models, self.pitches, self.loads, conditioned
-        )
-        count = everything.position.size
+        pair, plan = self.contact.pair, self.contact.plan
+        whole = ContactBlock(pair, plan, self.candidates, self.models, self.pitches, self.loads, conditioned)
+        count = self.candidates.position.size
         parts = min(math.ceil(count * self.seconds_a_position / TASK_SECONDS), count // FEWEST_ROWS)
         for rows in np.array_split(np.arange(count), max(parts, 1)):
-            yield replace(whole, candidates=_laid_out_alike(everything.rows(rows), everything))
+            yield replace(whole, **self._rows(rows))
+
+    def _rows(self, rows: IntArray) -> dict[str, Any]:
+        """Return what a block of some positions has of its own."""
+        candidates = _laid_out_alike(self.candidates.rows(rows), self.candidates)
+        own: dict[str, Any] = {"candidates": candidates}
+        if self.starts is not None:
+            own["starts"] = tuple(forces[rows] for forces in self.starts)
+        if self.assembled is not None:
+            own["assembled"] = replace(self.assembled.rows(rows), candidates=candidates)
+        return own
 
 
 @dataclass(frozen=True)

@@ -111,8 +111,12 @@ class PairContact:
 
     def candidates(self, model: ContactModel, position: FloatArray) -> Candidates:
         """Return where plain involutes can touch at positions (P,) in [0, 1); nothing is assembled."""
-        kept = self._problems.get(self.key(model, position))
+        kept = self.kept(model, position)
         return self._located(model, position) if kept is None else kept.candidates
+
+    def kept(self, model: ContactModel, position: FloatArray) -> ContactProblem | None:
+        """Return the problem of plain involutes at positions (P,) if it is kept."""
+        return self._problems.get(self.key(model, position))
 
     def take(self, model: ContactModel, problem: ContactProblem) -> None:
         """Keep a problem of plain involutes that was assembled remotely."""

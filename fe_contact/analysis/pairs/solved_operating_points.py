@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from fe_contact.analysis.pairs.contact_lines import TASK_SECONDS, Line, SolvedLine, deflections, solved_lines
 from fe_contact.analysis.pairs.operating_points import OperatingPoint, OperatingPoints
-from fe_contact.contact import Candidates, ContactModel, ContactProblem, ContactSolution
+from fe_contact.contact import Candidates, ContactModel, ContactProblem, ContactSolution, Start
 from fe_contact.types import FloatArray, IntArray
 from fe_contact.workers import InProcess, Workers
 
@@ -58,6 +59,7 @@ def deflected_operating_points(
     pitches: IntArray | None,
     workers: Workers,
     known: Sequence[Candidates] | None = None,
+    starts: Sequence[Start] | None = None,
 ) -> list[FloatArray]:
     """Return the STE (T P, L) in m of places.
 
@@ -73,13 +75,15 @@ def deflected_operating_points(
     workers : Workers
     known : sequence of Candidates, optional
         Of plain involutes at the positions, for each place.
+    starts : sequence of Start, optional
+        Forces near the solution at each place; without `pitches`.
     """
     lines = _sent_lines(workers, points, position, (load,), pitches, known)
     if not lines:
-        return [
-            _deflected(point, position[k], load, pitches, None if known is None else known[k])
-            for k, point in enumerate(points)
-        ]
+        solved = _deflected_here(points, position, load, pitches, known, starts)
+        return list(solved)
+    if starts is not None:
+        lines = {key: (_started(line, numbers, starts), numbers) for key, (line, numbers) in lines.items()}
     deflected = deflections([line for line, _ in lines.values()], workers)
     by_place = {
         k: curve
@@ -96,19 +100,28 @@ def assemble_remotely(points: OperatingPoints, models: Sequence[ContactModel], p
     solved_lines([line for line, _ in lines.values()], points.workers)
 
 
-def _deflected(
-    point: OperatingPoint,
-    position: FloatArray,
+def _deflected_here(
+    points: Sequence[OperatingPoint],
+    position: Sequence[FloatArray],
     load: FloatArray,
     pitches: IntArray | None,
-    known: Candidates | None,
-) -> FloatArray:
-    """Return the STE of one place, solved here."""
-    if known is not None:
-        point.contact.assemble(point.model, known)
-    if pitches is None:
-        return point.solve(position, load)[1].deflection
-    return point.solve_pitches(position, load, pitches)[1].deflection
+    known: Sequence[Candidates] | None,
+    starts: Sequence[Start] | None,
+) -> Iterator[FloatArray]:
+    """Yield the STE of places, solved in this process; parameters of `deflected_operating_points`."""
+    for k, point in enumerate(points):
+        if known is not None:
+            point.contact.assemble(point.model, known[k])
+        if pitches is None:
+            start = None if starts is None else starts[k]
+            yield point.solve(position[k], load, start=start)[1].deflection
+        else:
+            yield point.solve_pitches(position[k], load, pitches)[1].deflection
+
+
+def _started(line: Line, numbers: Sequence[int], starts: Sequence[Start]) -> Line:
+    """Return the line of numbered places with what they start from."""
+    return replace(line, starts=tuple(starts[k].on(line.candidates) for k in numbers))
 
 
 def _sent_lines(
@@ -134,7 +147,8 @@ def _sent_lines(
         contact, first = points[numbers[0]].contact, points[numbers[0]].model
         candidates = contact.candidates(first, position[numbers[0]]) if known is None else known[numbers[0]]
         models = tuple(points[k].model for k in numbers)
-        line = Line(contact, models, candidates, pitches if first.period > 1 else None, loads)
+        kept = contact.kept(first, position[numbers[0]])
+        line = Line(contact, models, candidates, pitches if first.period > 1 else None, loads, assembled=kept)
         lines[key] = (line, numbers)
     seconds = sum(line.seconds_a_position * line.candidates.position.size for line, _ in lines.values())
     return lines if seconds > TASK_SECONDS else {}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 
 from fe_contact.analysis.request.request import Checked
 from fe_contact.effects import ContactScene
@@ -12,6 +12,9 @@ from fe_contact.effects.influence import (
     estimate_influence,
     estimate_influences,
 )
+from fe_contact.workers import InProcess, Workers
+
+Influences = Mapping[str, Influence | None]
 
 
 def estimated_influences(checked: Checked, names: Iterable[str] | None = None) -> dict[str, Influence | None]:
@@ -41,6 +44,21 @@ def estimated_influences(checked: Checked, names: Iterable[str] | None = None) -
         name: None if influence is None else _influence(influence, whole)
         for name, influence in influences.items()
     }
+
+
+def started_influences(checked: Checked, workers: Workers, shared: object) -> Iterator[Influences]:
+    """Start the estimate of every effect, and yield it.
+
+    Workers do it beside other tasks where it takes longer than to hand it out: springs over the face take
+    half a second, those of a plane hundredths. `shared` is what the workers have already.
+    """
+    by = workers if checked.model.across_face else InProcess()
+    return by.run(influences_of_request, shared, [checked])
+
+
+def influences_of_request(_shared: object, checked: Checked) -> Influences:
+    """Estimate every effect of a request: one task."""
+    return estimated_influences(checked)
 
 
 def _influence(influence: EstimatedInfluence, scene: ContactScene) -> Influence:

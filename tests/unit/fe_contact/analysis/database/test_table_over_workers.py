@@ -15,6 +15,7 @@ from analysis_requests import table_request
 
 from fe_contact import Gear, GearPair, PitchDeviation, SteDatabase, analyze, study_sensitivity
 from fe_contact.analysis.pairs import contact_lines, solved_operating_points
+from fe_contact.analysis.pairs.contact_block import ContactBlock
 from fe_contact.geometry import FlankModification, Shaft
 from fe_contact.options import Run
 from fe_contact.workers import InProcess, RunCost
@@ -29,11 +30,14 @@ class Elsewhere:
 
     cost: RunCost = field(default_factory=RunCost)
     tasks: list[str] = field(default_factory=list)
+    blocks: list[ContactBlock] = field(default_factory=list)
 
     def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
         received = pickle.loads(pickle.dumps(shared))
         for item in items:
             self.tasks.append(function.__name__)
+            if isinstance(item, ContactBlock):
+                self.blocks.append(item)
             result = function(received, pickle.loads(pickle.dumps(item)))
             self.cost.tasks, self.cost.cpu_seconds = self.cost.tasks + 1, self.cost.cpu_seconds + 100.0
             yield pickle.loads(pickle.dumps(result))
@@ -95,6 +99,19 @@ def test_a_table_cut_into_blocks_keeps_its_bits(case: str, cache: Path) -> None:
     whole, cut = analyze(pair(), **asked), analyze(pair(), **asked, workers=workers)
     assert workers.tasks.count("solve_block") > 2 and "condense" not in workers.tasks
     assert_same(whole, cut)
+
+
+def test_errors_and_influences_are_tasks_too(cache: Path) -> None:
+    """Held-out points are cut as the table is; they bring its compliance and start from its solutions."""
+    asked: dict[str, Any] = {"torques": [60.0, 150.0], "level": "draft", "cache": cache} | SKEWED
+    workers = Elsewhere()
+    table = analyze(helical(), **asked, positions=12, workers=workers)
+    begun = workers.tasks.index("influences_of_request")
+    assert workers.tasks[:begun].count("solve_block") == workers.tasks.count("solve_block")
+    held_out = [block for block in workers.blocks if block.starts is not None]
+    assert {len(block.models) for block in held_out} == {1} and len(held_out) > 2
+    assert all(block.assembled is not None for block in held_out)
+    assert set(table.metadata.receipt["held_out"]) == {"force", "misalignment", "center_distance_change"}
 
 
 def assert_same(one: SteDatabase, other: SteDatabase) -> None:
