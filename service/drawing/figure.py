@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 Dash = Literal["solid", "dash", "dot"]
+BLANK = 0.01
+"""Part of the largest value of a map with isolines below which it has no color."""
 
 
 @dataclass(frozen=True)
@@ -25,12 +27,20 @@ class Axis:
     limits: tuple[float, float] | None = None
     names: tuple[tuple[float, str], ...] = ()
 
+    def fraction(self, values: FloatArray, ends: tuple[float, float]) -> FloatArray:
+        """Return where values lie on an axis with these ends: 0 at the first, 1 at the last."""
+        low, high = ends
+        if self.scale == "log":
+            values, low, high = np.log10(values), float(np.log10(low)), float(np.log10(high))
+        return np.asarray((values - low) / max(high - low, 1e-12))
+
 
 @dataclass(frozen=True)
 class Line:
     """A curve, or points if `width` is 0. NaN breaks it. `x` and `y` have the shape (n,).
 
-    `band` is the half-height of an error band about it, one number or (n,); 0 or NaN: none.
+    `band` is the half-height of an error band about it, one number or (n,); 0 or NaN: none. `label` stands
+    at its right end, in place of `name` in the legend; its rows are parted by line feeds.
     """
 
     name: str
@@ -41,11 +51,28 @@ class Line:
     width: float = 1.8
     markers: bool = False
     band: float | FloatArray = 0.0
+    label: str = ""
 
     @property
     def has_band(self) -> bool:
         """Whether an error band is drawn."""
         return bool(np.any(np.asarray(self.band) > 0.0))
+
+
+@dataclass(frozen=True)
+class Bars:
+    """Upright bars about `x` (n,), each `width` wide, from `base` up to `top` (n,); NaN leaves one out.
+
+    What is `veiled` covers what lies below it and lets it be seen.
+    """
+
+    name: str
+    x: FloatArray
+    top: FloatArray
+    base: float
+    width: float
+    color: str
+    veiled: bool = False
 
 
 @dataclass(frozen=True)
@@ -78,7 +105,9 @@ class HeatMap:
     """Cells colored by a value; NaN stays blank.
 
     `x` (n,) and `y` (m,) are the middles of the cells, `z` (m, n); colors run from `least` to `largest`;
-    `label` has the unit after its last comma.
+    `label` has the unit after its last comma. With `isolines`, values at which curves are drawn, `x` and `y`
+    are evenly spaced, colors change smoothly from cell to cell, and what is below `BLANK` of the largest is
+    left blank.
     """
 
     x: FloatArray
@@ -87,6 +116,7 @@ class HeatMap:
     label: str
     largest: float
     least: float = 0.0
+    isolines: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -115,16 +145,7 @@ class Panel:
     title: str = ""
     shade: HeatMap | Strokes | None = None
     notes: tuple[Note, ...] = ()
-
-
-@dataclass(frozen=True)
-class Surface:
-    """A surface z(y, x): `x` (n,), `y` (m,), `z` (m, n)."""
-
-    x: FloatArray
-    y: FloatArray
-    z: FloatArray
-    axes: tuple[Axis, Axis, Axis]
+    bars: tuple[Bars, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -138,7 +159,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Figure:
-    """A plot of one or more panels, or of one surface.
+    """A plot of one or more panels, from top to bottom.
 
     Attributes
     ----------
@@ -147,9 +168,8 @@ class Figure:
     title, caption : str
         What is shown, and how to read it (signs, conventions).
     alternative : str
-        The finding in words, for those who do not see the plot.
-    content : tuple of Panel, or Surface
-        Panels are stacked from top to bottom.
+        The finding in words: the first sentences under the plot, and what stands for it where it is not seen.
+    content : tuple of Panel
     table : Table or None
         The main numbers behind the plot.
     """
@@ -158,22 +178,24 @@ class Figure:
     title: str
     caption: str
     alternative: str
-    content: tuple[Panel, ...] | Surface
+    content: tuple[Panel, ...]
     table: Table | None = None
 
 
 def legend_names(panels: Sequence[Panel]) -> list[str]:
-    """Return the names that a legend lists: of lines that neither notes nor axes of their panel name."""
+    """Return the names that a legend lists: of what neither labels nor notes nor axes of its panel name."""
     named = [
-        {note.text for note in panel.notes} | {name for axis in (panel.x, panel.y) for _, name in axis.names}
+        {note.text for note in panel.notes}
+        | {name for axis in (panel.x, panel.y) for _, name in axis.names}
+        | {line.name for line in panel.lines if line.label}
         for panel in panels
     ]
     return list(
         dict.fromkeys(
-            line.name
+            name
             for panel, notes in zip(panels, named, strict=True)
-            for line in panel.lines
-            if line.name not in notes
+            for name in [line.name for line in panel.lines] + [bars.name for bars in panel.bars]
+            if name not in notes
         )
     )
 
@@ -200,7 +222,7 @@ def number(value: float, digits: int = 4) -> str:
 
 def thousands(values: Sequence[float]) -> tuple[str, ...]:
     """Label loads: whole numbers without a decimal point, others with up to four digits."""
-    return tuple(f"{v:.0f}" if float(v).is_integer() else f"{v:.4g}" for v in values)
+    return tuple(f"{v:.0f}" if float(v).is_integer() or v >= 1e4 else f"{v:.4g}" for v in values)
 
 
 def numbers(values: FloatArray) -> list[float | None]:

@@ -20,12 +20,15 @@ from matplotlib.ticker import (
 )
 
 from service.drawing import palette
-from service.drawing.figure import Axis, Figure, Line, Panel, Reference, Surface, legend_names, repeats_below
-from service.drawing.image_shade import color_map, draw_shade
+from service.drawing.figure import Axis, Bars, Figure, Line, Panel, Reference, legend_names, repeats_below
+from service.drawing.image_shade import draw_shade
+from service.drawing.line_labels import line_labels, vertical_limits
 
-_WIDTH, _PANEL_HEIGHT, _SURFACE_HEIGHT, _DPI = 9.0, 2.7, 6.4, 150
+_WIDTH, _PANEL_HEIGHT, _DPI = 9.0, 2.7, 150
 _LEGEND_CHARACTERS, _HANDLE_CHARACTERS = 120, 9  # of the legend's type: across the sheet, beside a name
 _NOTE_ROW = 10  # points
+_LABEL_ROW = 0.075  # of a row of a label at a line, in parts of the panel's height
+_LEADER = 0.02  # of the panel's width, from the end of a line to its label
 _NARROW = 100.0  # largest over smallest value of a logarithmic axis with plain numbers
 _MOST_WHOLE = 30  # an axis of whole numbers up to here has no ticks between them
 _BOX = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.0}  # under a text on colors
@@ -34,11 +37,7 @@ _DASH = {"solid": "-", "dash": "--", "dot": ":"}
 
 def png(figure: Figure) -> bytes:
     """Draw `figure` and return the PNG file's bytes."""
-    sheet = (
-        _surface_sheet(figure.content)
-        if isinstance(figure.content, Surface)
-        else _panel_sheet(figure.content)
-    )
+    sheet = _panel_sheet(figure.content)
     sheet.suptitle(figure.title, x=0.01, ha="left", fontsize=12, fontweight="bold", color=palette.INK)
     FigureCanvasAgg(sheet)
     buffer = BytesIO()
@@ -57,10 +56,11 @@ def _panel_sheet(panels: tuple[Panel, ...]) -> Sheet:
     for index, (panel, ax) in enumerate(zip(panels, axes, strict=True)):
         if panel.shade is not None:
             draw_shade(ax, panel.shade)
-        for line in panel.lines:
-            handle = _draw(ax, line)
-            if line.name in names:
-                handles.setdefault(line.name, handle)
+        drawn = [(line.name, _draw(ax, line)) for line in panel.lines]
+        drawn += [(bars.name, _draw_bars(ax, bars)) for bars in panel.bars]
+        for name, handle in drawn:
+            if name in names:
+                handles.setdefault(name, handle)
         _finish(ax, panel)
         if repeats_below(panels, index):
             ax.set_xlabel("")
@@ -94,10 +94,42 @@ def _draw(ax: Axes, line: Line) -> Any:
     return handle
 
 
+def _draw_bars(ax: Axes, bars: Bars) -> Any:
+    """Draw bars and return their handle."""
+    look: dict[str, Any] = {"color": bars.color, "alpha": 0.35 if bars.veiled else 1.0, "lw": 0}
+    return ax.bar(bars.x, bars.top - bars.base, bars.width, bars.base, **look)
+
+
+def _label_lines(ax: Axes, panel: Panel) -> None:
+    """Write the labels at the right ends of lines, each led to from its line."""
+    for label in line_labels(panel, _LABEL_ROW):
+        ax.annotate(
+            label.text,
+            (1.0, label.end),
+            (1.0 + _LEADER, label.middle),
+            xycoords="axes fraction",
+            va="center",
+            fontsize=8,
+            linespacing=1.05,
+            arrowprops={
+                "arrowstyle": "-",
+                "color": label.color,
+                "lw": 1.2,
+                "relpos": (0, 0.5),
+                "shrinkA": 1,
+                "shrinkB": 0,
+            },
+            annotation_clip=False,
+        )
+
+
 def _finish(ax: Axes, panel: Panel) -> None:
     """Label, scale and dress one panel."""
     for axis, name in ((panel.x, "x"), (panel.y, "y")):
         _scale(ax, axis, name)
+    if any(line.label for line in panel.lines):
+        ax.set_ylim(vertical_limits(panel))
+        _label_lines(ax, panel)
     if panel.lines and _is_whole(np.concatenate([line.x for line in panel.lines])):
         ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     for reference in panel.references:
@@ -158,20 +190,3 @@ def _refer(ax: Axes, reference: Reference, *, boxed: bool) -> None:
     written.set(fontsize=8, color=palette.MUTED)
     if boxed:
         written.set(color=palette.INK, bbox=_BOX)
-
-
-def _surface_sheet(surface: Surface) -> Sheet:
-    """Draw a surface in three dimensions."""
-    sheet = Sheet(figsize=(_WIDTH, _SURFACE_HEIGHT), layout="constrained")
-    ax: Any = sheet.add_subplot(projection="3d")
-    ax.set_box_aspect((1.4, 1.2, 0.8), zoom=1.05)
-    colors = color_map()
-    x, y = np.meshgrid(surface.x, surface.y)
-    drawn = ax.plot_surface(
-        x, y, surface.z, cmap=colors, rcount=40, ccount=100, linewidth=0, antialiased=True
-    )
-    for axis, name in zip(surface.axes, "xyz", strict=True):
-        getattr(ax, f"set_{name}label")(axis.label, labelpad=8)
-    ax.view_init(elev=24, azim=-133)
-    sheet.colorbar(drawn, ax=ax, shrink=0.5, pad=0.04, label=surface.axes[2].label)
-    return sheet

@@ -10,7 +10,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 
 from service.drawing import palette
-from service.drawing.figure import HeatMap, Strokes
+from service.drawing.figure import BLANK, HeatMap, Strokes
 
 THIN, THICK = 0.7, 4.0  # points
 
@@ -29,9 +29,24 @@ def draw_shade(ax: Axes, shade: HeatMap | Strokes) -> None:
 
 def _cells(ax: Axes, shade: HeatMap) -> Any:
     """Draw a heat map."""
+    if shade.isolines:
+        return _smooth(ax, shade)
     z = np.ma.masked_invalid(shade.z)
     x, y, span = _edges(shade.x), _edges(shade.y), Normalize(shade.least, shade.largest)
     return ax.pcolormesh(x, y, z, cmap=color_map(), norm=span, rasterized=True)
+
+
+def _smooth(ax: Axes, shade: HeatMap) -> Any:
+    """Draw colors that change smoothly, and isolines with their values."""
+    (left, *_, right), (low, *_, high) = _edges(shade.x), _edges(shade.y)
+    span = Normalize(BLANK * shade.largest, shade.largest)
+    colors = color_map().with_extremes(under=(1.0, 1.0, 1.0, 0.0))
+    look: dict[str, Any] = {"cmap": colors, "norm": span, "origin": "lower", "aspect": "auto", "zorder": 1}
+    smooth: dict[str, Any] = {"interpolation": "bilinear", "interpolation_stage": "data"}
+    drawn = ax.imshow(shade.z, extent=(left, right, low, high), **look, **smooth)
+    lines = ax.contour(shade.x, shade.y, shade.z, shade.isolines, colors="white", linewidths=0.7)
+    ax.clabel(lines, fontsize=7, fmt=lambda value: f"{value:g}")
+    return drawn
 
 
 def _edges(middles: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:

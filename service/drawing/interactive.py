@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,24 +11,25 @@ import numpy as np
 from service.drawing import palette
 from service.drawing.figure import (
     Axis,
+    Bars,
     Figure,
     Line,
     Panel,
     Reference,
-    Surface,
     legend_names,
     numbers,
     repeats_below,
-    unit_of,
 )
-from service.drawing.interactive_shade import color_scale, shade_traces
+from service.drawing.interactive_shade import shade_traces
+from service.drawing.line_labels import line_labels, vertical_limits
 
 Json = dict[str, Any]
 
-_PANEL_HEIGHT, _SURFACE_HEIGHT, _BELOW, _BETWEEN = 280, 520, 60, 62  # pixels
+_PANEL_HEIGHT, _BELOW, _BETWEEN = 280, 60, 62  # pixels
 _LABEL = 26  # pixels of an axis label between panels
 _LEGEND_ROW = 22  # pixels
 _NOTE_ROW = 15  # pixels
+_LABEL_ROW, _LEADER, _LABEL_CHARACTER = 15, 18, 6.6  # pixels of a label at a line: row, way to it, character
 _BAND_ALPHA = "33"  # of an error band, after the six digits of its color
 _ROW_CHARACTERS, _HANDLE_CHARACTERS = 120, 7  # of the legend's type: across the page, beside a name
 _BOX = "rgba(255,255,255,0.8)"  # under a text on colors
@@ -36,23 +38,15 @@ _FONT = {"family": "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', san
 
 def plotly_figure(figure: Figure) -> Json:
     """Return ``{"data": [...], "layout": {...}}`` for ``Plotly.newPlot``."""
-    if isinstance(figure.content, Surface):
-        return {
-            "data": [_surface(figure.content)],
-            "layout": _layout(_SURFACE_HEIGHT) | _scene(figure.content),
-        }
-    return _panels(figure.content)
-
-
-def _panels(panels: tuple[Panel, ...]) -> Json:
-    """Stack panels, each with its own axes, the first on top."""
+    panels = figure.content
     names = legend_names(panels)
     above = (62 if panels[0].title else 44) + _LEGEND_ROW * (_legend_rows(names) - 1)
     gaps = [_BETWEEN if repeats_below(panels, i) else _BETWEEN + _LABEL for i in range(len(panels) - 1)]
     inner = _PANEL_HEIGHT * len(panels) + sum(gaps)
     layout: Json = _layout(inner + above + _BELOW)
     layout |= {"shapes": [], "annotations": [], "showlegend": len(names) > 1}
-    layout["margin"] = layout["margin"] | {"t": above}
+    layout["margin"] = layout["margin"] | {"t": above, "r": _margin(panels)}
+    layout["barmode"] = "overlay"
     data: list[Json] = []
     unnamed = set(names)
     for index, panel in enumerate(panels):
@@ -62,14 +56,16 @@ def _panels(panels: tuple[Panel, ...]) -> Json:
         layout["xaxis" + suffix] = _axis(panel.x) | {"anchor": "y" + suffix}
         if repeats_below(panels, index):
             layout["xaxis" + suffix] |= {"title": {"text": ""}}
-        layout["yaxis" + suffix] = _axis(panel.y) | frame
+        layout["yaxis" + suffix] = _axis(_upright(panel)) | frame
         layout["annotations"] += _panel_title(panel, suffix) + _notes(panel, suffix)
+        layout["annotations"] += _line_labels(panel, suffix)
         if panel.shade is not None:
             data += shade_traces(panel.shade, suffix, domain)
         for line in panel.lines:
             data += _band(line, suffix)
             data.append(_line(line, suffix, show=line.name in unnamed))
             unnamed.discard(line.name)
+        data += [_bars(bars, suffix) for bars in panel.bars]
         for reference in panel.references:
             _add_reference(layout, reference, panel, suffix)
     return {"data": data, "layout": layout}
@@ -78,6 +74,48 @@ def _panels(panels: tuple[Panel, ...]) -> Json:
 def _legend_rows(names: list[str]) -> int:
     """Rows that the legend takes on a page of full width."""
     return max(math.ceil(sum(len(name) + _HANDLE_CHARACTERS for name in names) / _ROW_CHARACTERS), 1)
+
+
+def _margin(panels: tuple[Panel, ...]) -> int:
+    """Return the pixels right of the panels, for the labels at lines."""
+    rows = [row for panel in panels for line in panel.lines for row in line.label.split("\n")]
+    return 24 + math.ceil(_LABEL_CHARACTER * max(map(len, rows), default=0))
+
+
+def _upright(panel: Panel) -> Axis:
+    """Return the vertical axis; beside labels at lines with limits, so that their places are known."""
+    if not any(line.label for line in panel.lines):
+        return panel.y
+    return replace(panel.y, limits=vertical_limits(panel))
+
+
+def _line_labels(panel: Panel, suffix: str) -> list[Json]:
+    """Put labels at the right ends of lines, each led to from its line."""
+    found = []
+    for label in line_labels(panel, _LABEL_ROW / _PANEL_HEIGHT):
+        at = {"xref": f"x{suffix} domain", "yref": f"y{suffix} domain", "x": 1, "y": label.end}
+        tail = {"ax": _LEADER, "ay": round((label.end - label.middle) * _PANEL_HEIGHT, 1)}
+        look = {"arrowhead": 0, "arrowwidth": 1.4, "arrowcolor": label.color, "font": {"size": 12}}
+        text = {"text": label.text.replace("\n", "<br>"), "align": "left", "xanchor": "left"}
+        found.append({"showarrow": True} | at | tail | look | text)
+    return found
+
+
+def _bars(bars: Bars, suffix: str) -> Json:
+    """Draw bars; a line of a legend names them."""
+    return {
+        "type": "bar",
+        "name": bars.name,
+        "x": numbers(bars.x),
+        "y": numbers(bars.top - bars.base),
+        "customdata": numbers(bars.top),
+        "base": bars.base,
+        "width": bars.width,
+        "xaxis": "x" + suffix,
+        "yaxis": "y" + suffix,
+        "marker": {"color": bars.color, "opacity": 0.35 if bars.veiled else 1.0},
+        "hovertemplate": f"{bars.name}<br>%{{x}}: %{{customdata:.4g}}<extra></extra>",
+    }
 
 
 def _domain(above: int, inner: int) -> list[float]:
@@ -189,30 +227,3 @@ def _add_reference(layout: Json, reference: Reference, panel: Panel, suffix: str
     if panel.shade is not None:
         text |= {"bgcolor": _BOX, "font": {"size": 12, "color": palette.INK}}
     layout["annotations"].append(along | position | anchor | text)
-
-
-def _surface(surface: Surface) -> Json:
-    """Draw a surface in the ordered palette."""
-    return {
-        "type": "surface",
-        "x": numbers(surface.x),
-        "y": numbers(surface.y),
-        "z": [numbers(row) for row in surface.z],
-        "colorscale": color_scale(),
-        "colorbar": {"title": {"text": unit_of(surface.axes[2].label)}, "thickness": 14, "len": 0.7},
-    }
-
-
-def _scene(surface: Surface) -> Json:
-    """Axes and point of view of a surface."""
-    names = ("xaxis", "yaxis", "zaxis")
-    axes = {
-        name: {
-            "title": {"text": axis.label, "font": {"size": 13}},
-            "type": axis.scale,
-            "gridcolor": palette.GRID,
-        }
-        for name, axis in zip(names, surface.axes, strict=True)
-    }
-    camera = {"eye": {"x": -1.15, "y": -1.4, "z": 0.7}, "center": {"x": 0, "y": 0, "z": -0.12}}
-    return {"scene": axes | {"camera": camera, "aspectratio": {"x": 1.3, "y": 1.1, "z": 0.75}}}

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from service.drawing import palette
-from service.drawing.figure import HeatMap, Strokes, number, numbers, unit_of
+from service.drawing.figure import BLANK, HeatMap, Strokes, number, numbers, unit_of
 
 Json = dict[str, Any]
 
@@ -41,8 +41,8 @@ def _color_bar(label: str, domain: list[float]) -> Json:
 
 
 def _cells(shade: HeatMap, domain: list[float]) -> Json:
-    """Draw a heat map."""
-    return {
+    """Draw a heat map; with isolines its colors change smoothly."""
+    cells: Json = {
         "type": "heatmap",
         "x": numbers(shade.x),
         "y": numbers(shade.y),
@@ -54,6 +54,18 @@ def _cells(shade: HeatMap, domain: list[float]) -> Json:
         "colorbar": _color_bar(shade.label, domain),
         "hovertemplate": f"x %{{x:.4g}}<br>y %{{y:.4g}}<br>%{{z:.4g}} {unit_of(shade.label)}<extra></extra>",
     }
+    return cells | _isolines(shade) if shade.isolines else cells
+
+
+def _isolines(shade: HeatMap) -> Json:
+    """Return what makes a map of isolines, evenly spaced, over smooth colors."""
+    step = shade.isolines[-1] / len(shade.isolines)
+    ends = {"start": shade.isolines[0], "end": shade.isolines[-1], "size": step}
+    look = {"coloring": "heatmap", "showlabels": True, "labelfont": {"size": 11, "color": "#FFFFFF"}}
+    clear = "rgba(255,255,255,0)"
+    scale = [[0.0, clear], [BLANK, clear], *([BLANK + (1.0 - BLANK) * at, c] for at, c in color_scale())]
+    line = {"color": "#FFFFFF", "width": 1}
+    return {"type": "contour", "contours": ends | look, "line": line, "colorscale": scale}
 
 
 def _strokes(shade: Strokes, domain: list[float]) -> list[Json]:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from service.drawing.figure import Axis, FloatArray, Note
+from service.drawing.figure import Axis, Note
 
 # of an 8 point text in a panel of the usual size, in parts of its width and height
 _CHARACTER, _HEIGHT, _GAP, _RISE = 0.0072, 0.07, 0.008, 0.05
@@ -45,8 +45,8 @@ def placed(notes: Sequence[Note], x: Axis, y: Axis, y_range: tuple[float, float]
     y_range : (float, float)
         Values between which the panel's curves lie.
     """
-    across = _part(np.array([note.x for note in notes]), x, x.limits or (0.0, 1.0))
-    along = _part(np.array([note.y for note in notes]), y, y_range)
+    across = x.fraction(np.array([note.x for note in notes]), x.limits or (0.0, 1.0))
+    along = y.fraction(np.array([note.y for note in notes]), y_range)
     size = 0.5 * _POINT_WIDTH, 0.5 * _POINT_HEIGHT
     taken = [
         _Box(a - size[0], a + size[0], b - size[1], b + size[1]) for a, b in zip(across, along, strict=True)
@@ -72,11 +72,3 @@ def _is_free(box: _Box, taken: Sequence[_Box], lowest: float) -> bool:
     across = box.left >= 0.0 and box.right <= 1.0
     along = box.low >= lowest and box.high <= 1.0 + _MARGIN
     return across and along and not any(box.covers(other) for other in taken)
-
-
-def _part(values: FloatArray, axis: Axis, limits: tuple[float, float]) -> FloatArray:
-    """Return the positions of values between the limits of an axis, 0 to 1."""
-    ends = np.asarray(limits)
-    if axis.scale == "log":
-        values, ends = np.log10(values), np.log10(ends)
-    return np.asarray((values - ends[0]) / max(ends[1] - ends[0], 1e-12))

@@ -56,12 +56,7 @@ for (const node of document.querySelectorAll(".plot")) {
   const figure = JSON.parse(document.getElementById(node.dataset.figure).textContent);
   const config = {responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d"]};
   const fall = () => { node.hidden = true; node.nextElementSibling.style.display = "block"; };
-  const solid = figure.data.some(trace => trace.type === "surface");
-  if (solid && !document.createElement("canvas").getContext("webgl")) {
-    fall();
-  } else {
-    drawn.push(Plotly.newPlot(node, figure.data, figure.layout, config).catch(fall));
-  }
+  drawn.push(Plotly.newPlot(node, figure.data, figure.layout, config).catch(fall));
 }
 addEventListener("beforeprint", () => {
   for (const folded of document.querySelectorAll("details")) folded.open = true;
@@ -128,7 +123,8 @@ def _figure(figure: Figure, image: bytes) -> str:
         f'<figure id="{figure.key}">\n<h3>{escape(figure.title)}</h3>\n'
         f'<div class="plot" role="img" aria-label="{alternative}" data-figure="{figure.key}-data"></div>'
         f'<img class="still" alt="{alternative}" src="data:image/png;base64,{still}">\n'
-        f"<figcaption>{escape(figure.caption)} {escape(figure.alternative)}</figcaption>\n{numbers}"
+        f"<figcaption><strong>{escape(figure.alternative)}</strong> {escape(figure.caption)}</figcaption>\n"
+        f"{numbers}"
         f'<script type="application/json" id="{figure.key}-data">{_embedded(figure)}</script>\n</figure>'
     )
 

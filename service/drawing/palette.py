@@ -31,6 +31,11 @@ def category(index: int) -> str:
     return CATEGORIES[index % len(CATEGORIES)]
 
 
+def tooth_pair(pair: int) -> str:
+    """Return the color of a tooth pair by its index; the page's live flanks take the same."""
+    return category(-pair)
+
+
 def ordered(index: int, count: int) -> str:
     """Return the color of step `index` of `count` ordered values, dark for the first."""
     return cividis(_DARKEST + (_LIGHTEST - _DARKEST) * index / max(count - 1, 1))

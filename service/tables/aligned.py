@@ -12,6 +12,7 @@ from service.drawing.figure import Axis, FloatArray, Line, thousands
 POINTS_PER_PITCH = 240
 POSITION_LABEL = "position of the driving gear, base pitches (0 = reference pair at the pitch point)"
 MOST_PITCHES = 40  # of a long period
+MOST_LINES = 5  # of loads in one panel
 _FEWEST_POINTS = 32
 _LIFT_OFF = 0.002  # loads up to this part of the largest serve lift-off
 
@@ -100,17 +101,32 @@ def shown_loads(database: SteDatabase) -> tuple[int, ...]:
     return tuple(int(k) for k in range(len(level)) if level[k] > _LIFT_OFF or len(level) == 1)
 
 
+def mean_over(position: FloatArray, values: FloatArray) -> float:
+    """Return the mean of values (n,) over their positions, which may lie unevenly; NaN is left out."""
+    step, middle = np.diff(position), 0.5 * (values[1:] + values[:-1])
+    known = np.isfinite(middle)
+    return float(step[known] @ middle[known] / step[known].sum())
+
+
 def load_labels(database: SteDatabase) -> tuple[str, ...]:
     """Name every load by its torque on the driving gear."""
     return tuple(f"{label} N m" for label in thousands([float(t) for t in database.torque]))
 
 
-def load_lines(database: SteDatabase, position: FloatArray, values: FloatArray) -> tuple[Line, ...]:
-    """Draw `values` (n, F) as one line per load shown, dark for the smallest."""
-    labels, loads = load_labels(database), shown_loads(database)
-    colors = (palette.ordered(step, len(loads)) for step in range(len(loads)))
+def few_loads(database: SteDatabase, most: int = MOST_LINES) -> tuple[int, ...]:
+    """Return the indices of at most so many of the loads shown: those nearest to evenly spaced torques."""
+    loads = np.array(shown_loads(database))
+    torque = database.torque[loads]
+    even = np.linspace(torque[0], torque[-1], min(loads.size, most))
+    return tuple(int(k) for k in np.unique(loads[np.abs(torque[:, None] - even).argmin(axis=0)]))
+
+
+def load_lines(database: SteDatabase, x: FloatArray, values: FloatArray) -> tuple[Line, ...]:
+    """Draw `values` (n, F) as one line for each of a few loads, dark for the smallest, labeled by it."""
+    labels, loads = load_labels(database), few_loads(database)
     return tuple(
-        Line(labels[k], position, values[:, k], color) for k, color in zip(loads, colors, strict=True)
+        Line(labels[k], x, values[:, k], palette.ordered(step, len(loads)), label=labels[k])
+        for step, k in enumerate(loads)
     )
 
 

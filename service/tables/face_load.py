@@ -26,7 +26,7 @@ def face_load(database: SteDatabase) -> Figure:
         key="face_load",
         title="Load along the face",
         caption="Above: distance of the load's centroid from the pinion's mid-face. Below: the largest Hertz "
-        "pressure anywhere on the flanks; at a tip edge the true pressure is singular.",
+        f"pressure anywhere on the flanks{_waves(database)}; at a tip edge the true pressure is singular.",
         alternative=f"At {label} the load acts from {number(float(np.nanmin(centroid)), 3)} to "
         f"{number(float(np.nanmax(centroid)), 3)} mm from mid-face; the largest pressure is "
         f"{number(float(np.nanmax(pressure)), 3)} MPa.",
@@ -43,16 +43,20 @@ def face_load(database: SteDatabase) -> Figure:
     )
 
 
+def _waves(database: SteDatabase) -> str:
+    """Say what of the pressure is the model's."""
+    return (
+        ", which wavers as the contact lines pass from slice to slice of the model"
+        if database.facts.base_helix_angle
+        else ""
+    )
+
+
 def _lines(database: SteDatabase, values: FloatArray) -> tuple[Line, ...]:
     """Draw `values` (P, M) over the pitches shown, dark for the first misalignment."""
     position, rows = shown_rows(database)
-    count = database.misalignment.size
+    names = [f"misalignment {number(1e6 * float(m), 3)} µm" for m in database.misalignment]
     return tuple(
-        Line(
-            f"misalignment {number(1e6 * float(database.misalignment[m]), 3)} µm",
-            position,
-            values[rows, m],
-            palette.ordered(m, count),
-        )
-        for m in range(count)
+        Line(name, position, values[rows, m], palette.ordered(m, len(names)), label=name)
+        for m, name in enumerate(names)
     )

@@ -6,10 +6,11 @@ import numpy as np
 
 from fe_contact.ste import SteDatabase
 from service.drawing import palette
-from service.drawing.figure import Axis, Figure, FloatArray, Line, Panel, Table, number
+from service.drawing.figure import Axis, Figure, FloatArray, Line, Note, Panel, Table, number
 from service.tables.aligned import (
     aligned_index,
     load_labels,
+    mean_over,
     middle_load,
     pitches_shown,
     position_axis,
@@ -18,6 +19,9 @@ from service.tables.aligned import (
 )
 from service.tables.pairs_in_contact import pair_range, pairs_in_words
 
+_MOST_NAMES = 8  # of pairs that are named in full
+_ROOM = 1.12  # of the largest share: for the names
+_END = 0.03  # of the panel's width
 _CARRIES = 1e-6  # a pair with less than this share nowhere carries load
 
 
@@ -57,14 +61,35 @@ def pair_shares(database: SteDatabase, load: int) -> tuple[FloatArray, dict[int,
 
 
 def _panel(database: SteDatabase, load: int) -> Panel:
-    """One load's shares, the pair that is ahead first."""
+    """One load's shares, each pair named at the middle of its way."""
     position, followed = pair_shares(database, load)
+    names = {pair: _name(pair, short=len(followed) > _MOST_NAMES) for pair in followed}
     lines = tuple(
-        Line(f"pair {pair:+d}" if pair else "pair 0", position, _in_mesh(share), palette.category(-pair % 6))
-        for pair, share in sorted(followed.items(), reverse=True)
+        Line(names[pair], position, _in_mesh(share), palette.tooth_pair(pair))
+        for pair, share in followed.items()
     )
-    y = Axis("share of the load", limits=(0.0, 1.05))
-    return Panel(position_axis(database), y, lines, title=load_labels(database)[load])
+    top = _ROOM * max(float(np.nanmax(share)) for share in followed.values())
+    notes = tuple(_note(line) for line in lines)
+    y = Axis("share of the load", limits=(0.0, top))
+    return Panel(position_axis(database), y, lines, title=load_labels(database)[load], notes=notes)
+
+
+def _name(pair: int, *, short: bool = False) -> str:
+    """Name a pair."""
+    number_of_pair = f"{pair:+d}" if pair else "0"
+    return number_of_pair if short else f"pair {number_of_pair}"
+
+
+def _note(line: Line) -> Note:
+    """Name a pair over its largest share; where that is at an end of the panel, at the middle of its way."""
+    drawn = np.flatnonzero(line.y > 0.0)
+    high = drawn[line.y[drawn] > 0.98 * np.nanmax(line.y)]
+    at_end = np.ptp(line.x[high]) < _END * np.ptp(line.x) and {high[0], high[-1]} & {0, line.x.size - 1}
+    among = drawn if at_end else high
+    middle = int(among[np.abs(line.x[among] - 0.5 * (line.x[among[0]] + line.x[among[-1]])).argmin()])
+    return Note(
+        float(line.x[middle]), float(line.y[middle]), line.name, left=bool(high[-1] == line.x.size - 1)
+    )
 
 
 def _in_mesh(share: FloatArray) -> FloatArray:
@@ -82,12 +107,12 @@ def _words(database: SteDatabase, loads: list[int]) -> str:
             + ": no pair is ever alone."
         )
     m, d = aligned_index(database)
+    position, rows = shown_rows(database)
     parts = []
     for load in loads:
-        alone = np.nanmax(database.load_share[:, load, m, d, :], axis=-1) > 1 - _CARRIES
-        parts.append(
-            f"{number(100 * float(np.mean(alone)), 2)} % of the positions at {load_labels(database)[load]}"
-        )
+        alone = np.nanmax(database.load_share[rows, load, m, d, :], axis=-1) > 1 - _CARRIES
+        part = 100.0 * mean_over(position, alone.astype(float))
+        parts.append(f"{number(part, 2)} % of the mesh cycle at {load_labels(database)[load]}")
     return f"One pair carries the whole load in {', '.join(parts)}; elsewhere two or more pairs share it."
 
 
@@ -100,5 +125,5 @@ def _table(database: SteDatabase) -> Table:
         (number(database.position[p], 3), *(number(v, 3) for v in database.load_share[p, load, m, d, :]))
         for p in steps
     )
-    head = ("position, base pitches", *(f"pair {int(j):+d}" if j else "pair 0" for j in database.pair))
+    head = ("position, base pitches", *(_name(int(j)) for j in database.pair))
     return Table(f"Share of the load at {load_labels(database)[load]}", head, rows)

@@ -8,7 +8,7 @@ import numpy as np
 
 from fe_contact.ste import SteDatabase
 from service.drawing.figure import Axis, Figure, FloatArray, Panel, Reference, Table, number
-from service.tables.aligned import load_labels, load_lines, middle_load, position_axis, ste_shown
+from service.tables.aligned import load_labels, load_lines, mean_over, middle_load, position_axis, ste_shown
 from service.tables.pair import iso_mesh_stiffness
 
 _N_PER_MM_UM = 1e-9  # N/m per m of face width to N/(mm µm)
@@ -19,7 +19,7 @@ def mesh_stiffness(database: SteDatabase) -> Figure:
     position, values = secant_stiffness(database)
     iso = iso_mesh_stiffness(database)
     lines = load_lines(database, position, values * _N_PER_MM_UM)
-    top = 1.08 * max(float(np.nanmax(line.y)) for line in lines)
+    top = 1.08 * max(*(float(np.nanmax(line.y)) for line in lines), (iso or 0.0) * _N_PER_MM_UM)
     references = () if iso is None else (Reference("ISO 6336-1, c γα", iso * _N_PER_MM_UM, "horizontal"),)
     y = Axis("secant mesh stiffness, N/(mm µm)", limits=(0.0, top))
     return Figure(
@@ -27,9 +27,9 @@ def mesh_stiffness(database: SteDatabase) -> Figure:
         title="Mesh stiffness",
         caption="Transverse mesh force over static transmission error and face width. The dashed line is "
         "the mean mesh stiffness of ISO 6336-1 method B, which includes a correction of 0.8 for real gears.",
-        alternative=_words(database, values, iso),
+        alternative=_words(database, position, values, iso),
         content=(Panel(position_axis(database), y, lines, references),),
-        table=_table(database, values, iso),
+        table=_table(database, position, values, iso),
     )
 
 
@@ -41,21 +41,21 @@ def secant_stiffness(database: SteDatabase) -> tuple[FloatArray, FloatArray]:
     return position, force / (values * facts.face_width)
 
 
-def _words(database: SteDatabase, values: FloatArray, iso: float | None) -> str:
+def _words(database: SteDatabase, position: FloatArray, values: FloatArray, iso: float | None) -> str:
     """Compare the middle load's mean with the standard's value."""
     load = middle_load(database)
-    mean = float(np.nanmean(values[:, load])) * _N_PER_MM_UM
+    mean = mean_over(position, values[:, load]) * _N_PER_MM_UM
     text = f"Mean {number(mean, 3)} N/(mm µm) at {load_labels(database)[load]}"
     if iso is None:
         return f"{text}."
     return f"{text}; ISO 6336-1 gives {number(iso * _N_PER_MM_UM, 4)} N/(mm µm)."
 
 
-def _table(database: SteDatabase, values: FloatArray, iso: float | None) -> Table:
+def _table(database: SteDatabase, position: FloatArray, values: FloatArray, iso: float | None) -> Table:
     """Lowest, mean and highest stiffness at every load."""
     columns = values * _N_PER_MM_UM
     rows = [
-        (label, number(np.nanmin(v), 4), number(np.nanmean(v), 4), number(np.nanmax(v), 4))
+        (label, number(np.nanmin(v), 4), number(mean_over(position, v), 4), number(np.nanmax(v), 4))
         for label, v in zip(load_labels(database), columns.T, strict=True)
     ]
     if iso is not None:

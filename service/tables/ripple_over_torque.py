@@ -5,30 +5,40 @@ from __future__ import annotations
 import numpy as np
 
 from fe_contact.ste import Curve, SteDatabase
+from fe_contact.types import BoolArray
 from service.drawing import palette
-from service.drawing.figure import Axis, Figure, FloatArray, Line, Note, Panel, Table, number
-from service.drawing.note_places import placed
+from service.drawing.figure import Axis, Figure, FloatArray, Line, Panel, Table, number
 from service.tables.aligned import load_curve, load_labels, shown_loads
 
 HARMONICS = 8
 _UM = 1e6
-_ROOM = 0.08  # of the axis beyond the last torque: for the names of the harmonics
+_DEPTH = 1e-4  # of the largest harmonic: 80 dB, the lowest level drawn
+_ROOM = 0.02  # of the range of torques, beside its ends
 
 
 def ripple_over_torque(database: SteDatabase) -> Figure:
-    """Draw peak-to-peak with its error, and harmonics in dB, over torque."""
+    """Draw peak-to-peak with its error, and harmonics as they are and in dB, over torque."""
     curves = {load: load_curve(database, load) for load in shown_loads(database)}
     torque = np.array([curve.torque for curve in curves.values()])
     room = _ROOM * float(np.ptp(torque))
-    ends = (float(torque[0]) - 0.5 * room, float(torque[-1]) + room)
-    across = Axis("torque on the driving gear, N m", limits=ends)
+    across = Axis("torque on the driving gear, N m", limits=(torque[0] - room, torque[-1] + room))
+    tones = [curve.harmonics[:HARMONICS] for curve in curves.values()]
+    value, error = (
+        _UM * np.array([[getattr(e, name) for e in row] for row in tones]) for name in ("value", "error")
+    )
+    known = ~(error >= value)  # also where no error was estimated
+    level = 20.0 * np.log10(np.maximum(value, _DEPTH * value.max()))
     return Figure(
         key="ripple",
         title="Ripple over torque",
-        caption="Peak-to-peak STE with the band of its error, and its mesh harmonics; what is below its own "
-        "error is left out.",
-        alternative=_words(database, curves),
-        content=(_ripple(across, torque, curves), _harmonics(across, torque, curves)),
+        caption="Peak-to-peak STE with the band of its error, and its mesh harmonics; dotted: below their "
+        "errors.",
+        alternative=ripple_words({f"at {load_labels(database)[k]}": c for k, c in curves.items()}),
+        content=(
+            _ripple(across, torque, curves),
+            _harmonics(across, torque, value, known, "amplitude, µm"),
+            _harmonics(across, torque, level, known, "amplitude, dB re 1 µm"),
+        ),
         table=_table(database, curves),
     )
 
@@ -42,39 +52,27 @@ def _ripple(across: Axis, torque: FloatArray, curves: dict[int, Curve]) -> Panel
     return Panel(across, Axis("peak to peak, µm", limits=(0.0, top)), (line,), title="Peak to peak")
 
 
-def _harmonics(across: Axis, torque: FloatArray, curves: dict[int, Curve]) -> Panel:
-    """Draw the level of each harmonic, named at its last point."""
-    levels = np.array([[_level(curve, order) for order in range(HARMONICS)] for curve in curves.values()])
-    kept = [order for order in range(HARMONICS) if np.isfinite(levels[:, order]).any()]
-    finite = levels[np.isfinite(levels)]
-    low, high = (float(finite.min()), float(finite.max())) if finite.size else (-60.0, 0.0)
-    axis = Axis("amplitude, dB re 1 µm", limits=(low - 3.0, high + 3.0))
-    lines, notes = [], []
-    for order in kept:
-        name, last = f"{order + 1}", int(np.flatnonzero(np.isfinite(levels[:, order]))[-1])
-        color = palette.ordered(order, HARMONICS)
-        lines.append(Line(name, torque, levels[:, order], color, markers=True))
-        notes.append(Note(float(torque[last]), float(levels[last, order]), name))
-    names = placed(notes, across, axis, (low, high))
-    return Panel(across, axis, tuple(lines), title=f"Mesh harmonics 1 to {HARMONICS}", notes=names)
+def _harmonics(across: Axis, torque: FloatArray, values: FloatArray, known: BoolArray, label: str) -> Panel:
+    """Draw the harmonics (n, H), each labeled by its number; solid lines where they are known."""
+    lines: list[Line] = []
+    for order in range(values.shape[1]):
+        name, color = f"{order + 1}", palette.ordered(order, values.shape[1])
+        lines.append(Line(name, torque, values[:, order], color, "dot", 1.2, label=name))
+        sure = np.where(known[:, order], values[:, order], np.nan)
+        if known[:, order].any():
+            lines.append(Line(name, torque, sure, color, markers=True))
+    return Panel(across, Axis(label), tuple(lines), title=f"Mesh harmonics 1 to {HARMONICS}")
 
 
-def _level(curve: Curve, order: int) -> float:
-    """Amplitude of a harmonic in dB re 1 µm; NaN where it is below its error."""
-    harmonic = curve.harmonics[order]
-    shown = harmonic.value > 0.0 and not harmonic.error >= harmonic.value
-    return 20.0 * float(np.log10(_UM * harmonic.value)) if shown else float("nan")
-
-
-def _words(database: SteDatabase, curves: dict[int, Curve]) -> str:
-    """Say where the ripple is least and largest."""
-    labels = load_labels(database)
-    ripple = {load: curve.peak_to_peak.value for load, curve in curves.items()}
-    least, most = min(ripple, key=ripple.__getitem__), max(ripple, key=ripple.__getitem__)
-    return (
-        f"Peak to peak is least at {labels[least]}, {number(_UM * ripple[least], 3)} µm, "
-        f"and largest at {labels[most]}, {number(_UM * ripple[most], 3)} µm."
-    )
+def ripple_words(curves: dict[str, Curve]) -> str:
+    """Say where, by the names of the curves, the ripple is least and largest, and whether that is shown."""
+    ripple = {name: curve.peak_to_peak for name, curve in curves.items()}
+    least, most = (ripple[end(ripple, key=lambda name: ripple[name].value)] for end in (min, max))
+    where = {name: f"{number(_UM * e.value, 3)} µm {name}" for name, e in ripple.items()}
+    ends = [next(where[name] for name, e in ripple.items() if e is end) for end in (least, most)]
+    if most.value - least.value <= least.error + most.error:
+        return f"Peak to peak, {ends[0]} to {ends[1]}, changes by no more than its errors."
+    return f"Peak to peak is least, {ends[0]}, and largest, {ends[1]}."
 
 
 def _table(database: SteDatabase, curves: dict[int, Curve]) -> Table:

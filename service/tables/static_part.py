@@ -15,13 +15,13 @@ from service.drawing.facts import facts, records, side_by_side
 from service.drawing.figure import Table, number
 from service.drawing.page import Headline, Section
 from service.tables.aligned import headline_load, load_curve, load_labels, shown_loads
-from service.tables.database_surface import database_surface
 from service.tables.deviation_curves import deviation_curves, has_deviations
 from service.tables.face_load import face_load, has_face_load
 from service.tables.load_sharing import load_sharing
 from service.tables.mesh_stiffness import mesh_stiffness
 from service.tables.ripple_over_torque import ripple_over_torque
 from service.tables.ste_curves import ste_curves
+from service.tables.ste_spectrum import ste_spectrum
 
 _RESIDUALS = ("equilibrium", "penetration", "tension", "complementarity")
 _LEDGER = (
@@ -56,13 +56,11 @@ def static_alarms(database: SteDatabase) -> tuple[str, ...]:
 def static_results(database: SteDatabase) -> tuple[Section, ...]:
     """Show what one database says of its pair."""
     over_torque = (ripple_over_torque(database),) if len(shown_loads(database)) > 1 else ()
-    drawn = (ste_curves(database), *over_torque, load_sharing(database))
+    drawn = (ste_curves(database), *over_torque, ste_spectrum(database), load_sharing(database))
     curves = Section("Static transmission error", figures=drawn)
     # over a longer period the deflection holds the teeth's errors, and a secant through them means nothing
-    secant = (mesh_stiffness(database),) if database.period == 1 else ()
-    over_load = (database_surface(database),) if len(database.force) > 1 else ()
-    stiffness = Section("Mesh stiffness and the table", figures=(*secant, *over_load))
-    return (curves, *_across_face(database), *((stiffness,) if stiffness.figures else ()))
+    secant = (Section("Mesh stiffness", figures=(mesh_stiffness(database),)),) if database.period == 1 else ()
+    return (curves, *_across_face(database), *secant)
 
 
 def _across_face(database: SteDatabase) -> tuple[Section, ...]:

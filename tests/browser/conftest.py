@@ -17,10 +17,8 @@ CLOSED_FORMS = Path(__file__).parents[1] / "unit" / "service" / "report" / "conf
 
 FLAGS = (
     "--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking",
-    "--disable-component-update", "--disable-sync", "--no-first-run",
+    "--disable-component-update", "--disable-sync", "--no-first-run", "--disable-3d-apis",
 )  # fmt: skip
-FLAT = ("--disable-3d-apis",)
-SURFACES = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 
 
@@ -36,39 +34,20 @@ def playwright() -> Iterator[Playwright]:
         yield started
 
 
-def launched(playwright: Playwright, further: tuple[str, ...]) -> Iterator[Browser]:
-    """Start a browser."""
+@pytest.fixture(scope="session")
+def browser(playwright: Playwright) -> Iterator[Browser]:
+    """Start the browser."""
     path = chromium()
     if path is None:
         pytest.skip("no Chromium on this machine: apt-get install chromium, or name one in CHROMIUM")
-    started = playwright.chromium.launch(executable_path=path, args=[*FLAGS, *further])
+    started = playwright.chromium.launch(executable_path=path, args=FLAGS)
     yield started
     started.close()
 
 
-@pytest.fixture(scope="session")
-def flat_browser(playwright: Playwright) -> Iterator[Browser]:
-    """Start one without WebGL: the page says its surface in words, which costs a third less per page."""
-    yield from launched(playwright, FLAT)
-
-
-@pytest.fixture(scope="session")
-def surface_browser(playwright: Playwright) -> Iterator[Browser]:
-    """Start one that draws surfaces, in software."""
-    yield from launched(playwright, SURFACES)
-
-
-@pytest.fixture(scope="module")
-def browser(request: pytest.FixtureRequest) -> Browser:
-    """Give the browser of a file: one that draws surfaces if the file says `SURFACES = True`."""
-    draws = getattr(request.module, "SURFACES", False)
-    found: Browser = request.getfixturevalue("surface_browser" if draws else "flat_browser")
-    return found
-
-
 @pytest.fixture(scope="module", autouse=True)
 def _closed(browser: Browser) -> Iterator[None]:
-    """Close the pages of a file at its end: one with a surface draws it anew all the time."""
+    """Close the pages of a file at its end."""
     yield
     for context in browser.contexts:
         context.close()

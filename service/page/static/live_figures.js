@@ -1,7 +1,9 @@
 /** The plots of the live flanks: curves, harmonics and load sharing, several results on one pair of axes. */
 
 const FONT = { family: "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', sans-serif", size: 13 };
-const PAIRS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"];
+const PAIRS = [ // by index, as in the report (drawing/palette.py)
+  "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9",
+];
 export const SHOWN_HARMONICS = 8;
 
 /**
@@ -64,9 +66,9 @@ export function sharingFigure(now) {
   const wanted = now.period === 1 ? [now.pair[0] - 1, ...now.pair] : now.pair;
   const lines = wanted.map((pair) => [pair, now.period === 1
     ? shareOf(now, pair) : over(now, now.load_share.map((row) => row[now.pair.indexOf(pair)]))]);
-  const data = lines.filter(([, line]) => Math.max(...line.y) > 1e-6).map(([pair, line], k) => ({
+  const data = lines.filter(([, line]) => Math.max(...line.y) > 1e-6).map(([pair, line]) => ({
     ...line, y: line.y.map((share) => (share > 1e-9 ? share : null)), type: "scatter", mode: "lines", name: `pair ${pair > 0 ? "+" : ""}${pair}`,
-    line: { color: PAIRS[k % PAIRS.length], width: 2 },
+    line: { color: PAIRS[((-pair % PAIRS.length) + PAIRS.length) % PAIRS.length], width: 2 },
   }));
   const made = layout(280, "position, base pitches", "load share");
   made.yaxis.range = [-0.02, 1.05];

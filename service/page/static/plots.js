@@ -37,7 +37,7 @@ function recolored(value) {
   return value;
 }
 
-/** Colors in a trace or a layout, turned for dark paper; scales of surfaces and maps stay. */
+/** Colors in a trace or a layout, turned for dark paper; scales of maps stay. */
 function darkened(content) {
   if (Array.isArray(content)) return content.map((item) => (typeof item === "object" && item ? darkened(item) : item));
   return Object.fromEntries(Object.entries(content).map(([key, value]) => {
@@ -54,7 +54,6 @@ function themed({ data, layout }) {
   for (const [name, axis] of Object.entries(dark)) {
     if (/^[xy]axis/.test(name)) Object.assign(axis, { gridcolor: "#333b44", linecolor: "#77818c", tickcolor: "#77818c" });
   }
-  for (const axis of Object.values(dark.scene || {})) if (axis.title) axis.gridcolor = "#4a545f";
   const ink = { font: { ...layout.font, color: "#e6e9ed" }, hoverlabel: { font: { color: "#14181d" } } };
   return { data: data.map(darkened), layout: { ...dark, ...paper, ...ink } };
 }
@@ -69,7 +68,7 @@ function wrapped(text) {
 /** Let the legend, the titles and the labels fit a narrow screen. */
 function fitted({ data, layout }, width) {
   if (width > 560) return { data, layout };
-  const narrow = { ...layout, font: { ...layout.font, size: 11 }, margin: { ...layout.margin, l: 52, r: 8 } };
+  const narrow = { ...layout, font: { ...layout.font, size: 11 }, margin: { ...layout.margin, l: 52, r: layout.margin.r > 40 ? 0.85 * layout.margin.r : 8 } };
   for (const [name, axis] of Object.entries(narrow)) {
     if (/^[xy]axis/.test(name) && axis.title) {
       const text = name.startsWith("x") ? axis.title.text.replace(/ \(.*/, "") : axis.title.text;
@@ -77,20 +76,14 @@ function fitted({ data, layout }, width) {
     }
   }
   narrow.annotations = layout.annotations?.map((one) => ({ ...one, text: wrapped(one.text) }));
-  if (narrow.scene) narrow.scene = { ...narrow.scene, camera: { ...narrow.scene.camera, eye: { x: -1.9, y: -2.2, z: 1.1 } } };
-  return { data: data.map((trace) => (trace.type === "surface" ? { ...trace, showscale: false } : trace)), layout: narrow };
-}
-
-function drawable(figure) {
-  if (!figure.data.some((trace) => trace.type === "surface")) return true;
-  return Boolean(document.createElement("canvas").getContext("webgl"));
+  return { data, layout: narrow };
 }
 
 /** Let go of plots that have left the page: what plotly.js ties to the window holds them, their data and their listeners. */
 async function swept() {
   for (const old of [...shown.keys()].filter((node) => !node.isConnected && node.dataset.drawn)) {
     shown.delete(old);
-    if (old.dataset.drawn === "yes") (await plotly()).purge(old);
+    (await plotly()).purge(old);
   }
 }
 
@@ -98,12 +91,6 @@ async function swept() {
 export async function plot(node, figure) {
   await swept();
   shown.set(node, figure);
-  if (!drawable(figure)) {
-    node.parentElement.querySelector("[data-tool=PNG]").hidden = true;
-    node.replaceChildren(make("p", { class: "hint" }, "This browser draws no surfaces (WebGL); the file and the CSV have it."));
-    node.dataset.drawn = "words";
-    return;
-  }
   const { data, layout } = fitted(themed(figure), node.clientWidth || 800);
   node.style.height = `${layout.height}px`; // a plot that is resized takes the height of its place
   await (await patiently(plotly)).react(node, data, layout, CONFIG);
@@ -157,7 +144,7 @@ export function figureBlock(figure, level = "h4") {
   );
   const block = make(
     "figure", { "data-figure": figure.key }, make(level, {}, figure.title), node, tools,
-    make("figcaption", {}, `${figure.caption} ${figure.alternative}`),
+    make("figcaption", {}, make("strong", {}, figure.alternative), ` ${figure.caption}`),
     figure.table ? folded("Numbers", dataTable(figure.table)) : null,
   );
   return { block, node };

@@ -16,7 +16,6 @@ from service.drawing.figure import (
     Figure,
     FloatArray,
     Line,
-    Note,
     Panel,
     Reference,
     Table,
@@ -25,32 +24,23 @@ from service.drawing.figure import (
 )
 from service.drawing.page import Headline, Page, Section
 from service.studies.presentation import Presentation
+from service.tables.harris_map import MOST_CURVES, HarrisScale, harris_panel
 from service.units import UM, factor
 
-MOST_CURVES = 8
 _POSITION = "position, base pitches"
-_STEP = 0.4  # between two torques of a map, over the largest ripple
-_ROOM = 1.12  # of the axis over the curves: for the names at their ends
 
 
 def harris_figure(result: Optimization) -> Figure:
-    """Draw both Harris maps on equal axes, and peak-to-peak over torque."""
-    designs = (("before", result.start), ("after", result.optimum))
-    curves = [_shown(result, design) for _, design in designs]
-    largest = max(float(np.ptp(values, axis=0).max()) for values in curves)
-    step = _STEP * largest
-    top = step * (curves[0].shape[1] - 1)
-    axis = Axis("STE offset by torque, µm", limits=(-0.6 * largest, top + 0.6 * largest))
-    maps = [
-        _map(result, name, design, values, step, axis)
-        for (name, design), values in zip(designs, curves, strict=True)
-    ]
+    """Draw both Harris maps on one scale, and peak-to-peak over torque."""
+    designs = {"before": result.start, "after": result.optimum}
+    curves = {name: _shown(result, design) for name, design in designs.items()}
+    scale = HarrisScale.of(*curves.values())
+    maps = [_map(result, name, design, curves[name], scale) for name, design in designs.items()]
     return Figure(
         key="harris_map",
         title="Transmission error before and after optimization",
-        caption="Harris maps without scatter, a curve for each torque, less its mean, set apart by "
-        f"{_STEP:g} of the largest ripple of both; and peak-to-peak over torque. "
-        f"{_scattered(result)} Dotted upright lines: torques that count.",
+        caption="Harris maps without scatter, a curve for each torque, less its mean; and peak-to-peak over "
+        f"torque. {_scattered(result)} Dotted upright lines: torques that count.",
         alternative=f"{result.reason}.",
         content=(*maps, _ripple(result)),
         table=ripple_table(result),
@@ -71,20 +61,16 @@ def _shown(result: Optimization, design: ConfirmedDesign) -> FloatArray:
 
 
 def _map(
-    result: Optimization, name: str, design: ConfirmedDesign, values: FloatArray, step: float, axis: Axis
+    result: Optimization, name: str, design: ConfirmedDesign, values: FloatArray, scale: HarrisScale
 ) -> Panel:
-    """Draw one line per torque, closed over its period, named at its end."""
-    harris, index = design.harris_map, _chosen(result)
-    names = [f"{torque} N m" for torque in thousands([float(harris.torque[k]) for k in index])]
+    """Draw one line per torque, closed over its period."""
+    harris = design.harris_map
+    names = [f"{text} N m" for text in thousands([float(harris.torque[k]) for k in _chosen(result)])]
     end = float(np.ceil(harris.position[-1] + 1e-12))
     position, closed = np.append(harris.position, end), np.vstack([values, values[:1]])
-    closed = closed + step * np.arange(len(names))
-    lines = (
-        Line(text, position, closed[:, k], palette.ordered(k, len(names))) for k, text in enumerate(names)
+    return harris_panel(
+        f"Harris map {name}", Axis(_POSITION, limits=(0.0, end)), position, closed, names, scale
     )
-    labels = (Note(end, float(closed[-1, k]), text) for k, text in enumerate(names))
-    across = Axis(_POSITION, limits=(0.0, _ROOM * end))
-    return Panel(across, axis, tuple(lines), title=f"Harris map {name}", notes=tuple(labels))
 
 
 def _scattered(result: Optimization) -> str:

@@ -18,7 +18,6 @@ from service.drawing.figure import (
     Panel,
     Reference,
     Strokes,
-    Surface,
     legend_names,
     number,
 )
@@ -107,15 +106,6 @@ def test_a_logarithmic_axis_places_limits_and_labels_in_decades() -> None:
     assert layout["xaxis"]["range"] == [1.0, 3.0]
     note = next(a for a in layout["annotations"] if a["text"] == "f")
     assert note["x"] == 2.0
-
-
-def test_a_surface_keeps_rows_over_columns() -> None:
-    z = np.arange(6.0).reshape(2, 3)
-    axes = (Axis("x"), Axis("force, N"), Axis("STE, µm"))
-    figure = replace(stacked(), content=Surface(np.arange(3.0), np.arange(2.0), z, axes))
-    drawn = plotly_figure(figure)
-    assert drawn["data"][0]["z"] == z.tolist()
-    assert drawn["layout"]["scene"]["yaxis"]["title"]["text"] == "force, N"
 
 
 @pytest.mark.parametrize("count", [1, 3])

@@ -58,7 +58,7 @@ def test_the_static_part_is_made_without_the_secant_stiffness(
     table = with_pitch_errors()
     keys = [figure.key for section in static_results(table) for figure in section.figures]
     assert "mesh_stiffness" not in keys
-    assert {"ste", "load_sharing", "database"} <= set(keys)
+    assert {"ste", "load_sharing", "ste_spectrum"} <= set(keys)
     assert "mesh_stiffness" in [f.key for section in static_results(database) for f in section.figures]
     assert len(load_sharing(table).content) == 3  # type: ignore[arg-type]
     panel = face_load(table).content[0]  # type: ignore[index]

@@ -9,9 +9,8 @@ import pytest
 from fe_contact.geometry import Gear, GearPair
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.fields import DIMENSIONS
-from service.drawing.figure import Panel, Surface, number
+from service.drawing.figure import Panel, number
 from service.tables.aligned import shown_loads, ste_shown
-from service.tables.database_surface import database_surface
 from service.tables.load_sharing import load_sharing, pair_shares
 from service.tables.mesh_stiffness import mesh_stiffness, secant_stiffness
 from service.tables.pair import iso_mesh_stiffness
@@ -39,25 +38,26 @@ def test_stored_points_are_on_the_curve(database: SteDatabase) -> None:
 
 
 def panels_of(database: SteDatabase) -> tuple[Panel, ...]:
-    content = ste_curves(database).content
-    assert not isinstance(content, Surface)
-    return content
+    return ste_curves(database).content
 
 
-def test_the_ripple_and_the_whole_are_drawn_in_micrometers_for_the_loads_asked_for(
-    database: SteDatabase,
-) -> None:
-    """What is drawn above is what is drawn below less its mean."""
-    ripple, whole = panels_of(database)
-    assert [line.name.split(":")[0] for line in ripple.lines] == ["10 N m", "100 N m", "400 N m"]
-    stored = database.static_transmission_error[0, 2, 0, 0]
-    assert whole.lines[1].y[0] == pytest.approx(1e6 * stored)
-    for load, above, below in zip(shown_loads(database), ripple.lines, whole.lines, strict=True):
-        mean = 1e6 * database.mean(force=float(database.force[load])).value
-        np.testing.assert_allclose(below.y - above.y, mean, rtol=1e-9)
-        assert above.name == below.name == f"{above.name.split(':')[0]}: mean {number(mean)} µm"
-    assert whole.y.limits is not None
-    assert whole.y.limits[0] == 0.0
+def test_the_ripple_is_drawn_in_micrometers_with_its_mean_in_the_label(database: SteDatabase) -> None:
+    """And in the Harris map every load is higher than the last by the same step."""
+    ripple, harris = panels_of(database)
+    assert [line.name for line in ripple.lines] == ["10 N m", "100 N m", "400 N m"]
+    position, ste = ste_shown(database)
+    offsets = []
+    for load, line, mapped in zip(shown_loads(database), ripple.lines, harris.lines, strict=True):
+        curve = database.curve(force=float(database.force[load]))
+        np.testing.assert_array_equal(line.x, position)
+        np.testing.assert_allclose(line.y, 1e6 * (ste[:, load] - curve.mean.value), rtol=1e-9)
+        offsets.append(mapped.y - line.y)
+        numbers = (number(1e6 * e.value, 3) for e in (curve.mean, curve.peak_to_peak))
+        assert line.label == "{}: mean {} µm,\n{} µm peak to peak".format(line.name, *numbers)
+        assert mapped.label == line.name
+    steps = np.diff(offsets, axis=0)
+    assert steps.min() > 0.0
+    np.testing.assert_allclose(steps, steps[0, 0], rtol=1e-9)
 
 
 def test_the_band_is_half_the_error_of_peak_to_peak(database: SteDatabase) -> None:
@@ -119,20 +119,12 @@ def test_a_database_without_a_case_has_no_iso_line(database: SteDatabase) -> Non
     assert mesh_stiffness(bare).content[0].references == ()  # type: ignore[index]
 
 
-def test_the_surface_stands_over_position_and_force(database: SteDatabase) -> None:
-    surface = database_surface(database).content
-    assert isinstance(surface, Surface)
-    assert surface.z.shape == (len(surface.y), len(surface.x))
-    assert (surface.y[0], surface.y[-1]) == (database.force[0], database.force[-1])
-    assert np.all(np.diff(surface.z, axis=0) > 0)
-
-
 def test_failed_points_are_gaps_and_the_rest_is_drawn(damaged: SteDatabase) -> None:
     position, values = ste_shown(damaged)
     assert math.isnan(values[5, 2])
     assert np.count_nonzero(np.isnan(values)) == 2
     assert len(position) == 129
-    for figure in (ste_curves, load_sharing, mesh_stiffness, database_surface):
+    for figure in (ste_curves, load_sharing, mesh_stiffness):
         assert figure(damaged).alternative
 
 
@@ -143,33 +135,33 @@ def test_a_request_made_from_python_has_the_same_iso_line(database: SteDatabase)
     assert iso_mesh_stiffness(from_python) == pytest.approx(iso_mesh_stiffness(database))
 
 
-def test_a_single_load_names_its_mean_and_makes_no_surface(database: SteDatabase) -> None:
+def test_a_single_load_is_drawn_without_a_map(database: SteDatabase) -> None:
     cut = {
         name: np.take(getattr(database, name), [2], axis=axes.index("force"))
         for name, axes in {"force": ("force",), **DIMENSIONS}.items()
         if "force" in axes
     }
-    single = replace(database, **cut)
-    (ripple,) = panels_of(single)
+    (ripple,) = panels_of(replace(database, **cut))
     mean = 1e6 * database.mean(force=float(database.force[2])).value
-    assert ripple.title == f"100 N m, less its mean of {number(mean)} µm"
-    over_load = [f.key for section in static_results(single) for f in section.figures]
-    assert "database" not in over_load
-    assert "database" in [f.key for section in static_results(database) for f in section.figures]
+    assert ripple.lines[0].label.startswith(f"100 N m: mean {number(mean, 3)} µm")
 
 
 def test_ripple_over_torque_is_that_of_the_curves(database: SteDatabase) -> None:
-    ripple, harmonics = ripple_over_torque(database).content  # type: ignore[misc]
+    ripple, linear, level = ripple_over_torque(database).content
     (line,) = ripple.lines
+    solid = [{drawn.name: drawn for drawn in panel.lines if not drawn.label} for panel in (linear, level)]
+    dotted = [[drawn for drawn in panel.lines if drawn.label] for panel in (linear, level)]
+    assert [[drawn.label for drawn in lines] for lines in dotted] == [list("12345678")] * 2
     for k, load in enumerate(shown_loads(database)):
         curve = database.curve(force=float(database.force[load]))
         assert line.y[k] == pytest.approx(1e6 * curve.peak_to_peak.value)
         assert line.band[k] == pytest.approx(1e6 * curve.peak_to_peak.error)
-        for drawn in harmonics.lines:
-            one = curve.harmonics[int(drawn.name) - 1]
-            if one.error >= one.value:
-                assert math.isnan(drawn.y[k])
-            else:
-                assert drawn.y[k] == pytest.approx(20.0 * math.log10(1e6 * one.value))
-    assert [note.text for note in harmonics.notes] == [drawn.name for drawn in harmonics.lines]
+        for one, *lines in zip(curve.harmonics, *dotted, strict=False):
+            values = 1e6 * one.value, 20.0 * math.log10(1e6 * one.value)
+            for value, drawn, sure in zip(values, lines, solid, strict=True):
+                assert drawn.y[k] == pytest.approx(value)
+                if drawn.name in sure:
+                    assert math.isnan(sure[drawn.name].y[k]) == (one.error >= one.value)
+                else:
+                    assert one.error >= one.value
     assert "ripple" in [f.key for s in static_results(database) for f in s.figures]

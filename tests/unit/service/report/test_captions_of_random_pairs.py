@@ -1,0 +1,208 @@
+"""What stands under a picture is true: over 30 random pairs, two in the plane and a helical one."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from random_tables import random_table
+
+from fe_contact import FlankModification, Gear, GearPair, analyze
+from fe_contact.ste import Curve, SteDatabase
+from service.drawing.figure import Figure
+from service.tables.aligned import load_labels, shown_loads
+from service.tables.static_part import static_results
+
+NUMBER = r"(-?\d+(?:\.\d+)?)"
+
+
+def figures(database: SteDatabase) -> dict[str, Figure]:
+    return {figure.key: figure for section in static_results(database) for figure in section.figures}
+
+
+def says(text: str, value: float) -> bool:
+    """Whether a text is the value, rounded to the digits that it has."""
+    digits = len(text.partition(".")[2])
+    unit = 10.0 ** (-digits) if digits else 10.0 ** max(len(text.lstrip("-")) - 3, 0)
+    return abs(float(text) - value) <= 0.501 * unit
+
+
+def curves(database: SteDatabase, misalignment: float = 0.0) -> dict[str, Curve]:
+    """Curves of the loads shown by the name of their torque."""
+    labels = load_labels(database)
+    return {
+        labels[k].removesuffix(" N m"): database.curve(
+            force=float(database.force[k]), misalignment=misalignment
+        )
+        for k in shown_loads(database)
+    }
+
+
+def check_ste(figure: Figure, database: SteDatabase) -> None:
+    found = re.findall(
+        rf"{NUMBER}(?: ± {NUMBER})? µm at {NUMBER} N m, about a mean of {NUMBER} µm", figure.alternative
+    )
+    named = curves(database)
+    torques = list(named)
+    assert [torque for *_, torque, _ in found] == list(dict.fromkeys([torques[-1], torques[0]]))
+    for ripple, error, torque, mean in found:
+        one = named[torque]
+        assert says(ripple, 1e6 * one.peak_to_peak.value) and says(mean, 1e6 * one.mean.value)
+        assert says(error, 1e6 * one.peak_to_peak.error) if error else math.isnan(one.peak_to_peak.error)
+
+
+def check_least_and_largest(text: str, named: dict[str, Curve], unit: str) -> None:
+    """A finding on peak to peak over something, by the numbers that name its values."""
+    found = re.findall(
+        rf"{NUMBER} µm at (?:misalignment |change of the center distance )?{NUMBER} {unit}", text
+    )
+    assert len(found) == 2
+    sizes = {name: one.peak_to_peak for name, one in named.items()}
+    ends = min(sizes.values(), key=lambda e: e.value), max(sizes.values(), key=lambda e: e.value)
+    for (ripple, name), end in zip(found, ends, strict=True):
+        assert says(ripple, 1e6 * end.value)
+        assert any(
+            float(name) == pytest.approx(float(n), rel=6e-3) and e.value == end.value
+            for n, e in sizes.items()
+        )
+    apart = ends[1].value - ends[0].value > ends[0].error + ends[1].error
+    assert ("is least" in text) == (apart or math.isnan(ends[0].error))
+    assert ("no more than its errors" in text) != ("is least" in text)
+
+
+def check_ripple(figure: Figure, database: SteDatabase) -> None:
+    check_least_and_largest(figure.alternative, curves(database), "N m")
+
+
+def check_deviations(figure: Figure, database: SteDatabase) -> None:
+    text, force = figure.alternative, float(database.force[-1])
+    assert text.count(f"At {load_labels(database)[-1]}") == len(figure.content)
+    parts = re.split(r"(?<=\.) (?=At )", text)
+    axes = (database.misalignment * 1e6, database.center_distance_change * 1e3)
+    units = (("misalignment", "µm"), ("center_distance_change", "mm"))
+    varied = [(at, *unit) for at, unit in zip(axes, units, strict=True) if at.size > 1]
+    for part, (at, field, unit) in zip(parts, varied, strict=True):
+        scale = 1e-6 if unit == "µm" else 1e-3
+        named = {f"{v:.6g}": database.curve(force=force, **{field: scale * v}) for v in at}
+        check_least_and_largest(part, named, unit)
+
+
+def check_spectrum(figure: Figure, database: SteDatabase) -> None:
+    (torque, order, size) = re.findall(
+        rf"At {NUMBER} N m order {NUMBER} is the largest, {NUMBER} µm", figure.alternative
+    )[0]
+    tones = curves(database)[torque].harmonics
+    assert tones[int(order) - 1].value == max(tone.value for tone in tones)
+    assert says(size, 1e6 * tones[int(order) - 1].value)
+    above = re.findall(r"(\d+) of (\d+) orders exceed their error", figure.alternative)
+    if above:
+        assert above == [(str(sum(tone.value > tone.error for tone in tones)), "20")]
+    else:
+        assert all(math.isnan(tone.error) for tone in tones)
+    bars, veil = figure.content[0].bars
+    for k, tone in enumerate(tones):
+        if not math.isnan(tone.error):
+            assert (veil.top[k] >= bars.top[k]) == (tone.error >= tone.value) or bars.top[k] == bars.base
+
+
+def check_load_sharing(figure: Figure, database: SteDatabase) -> None:
+    text, counts = figure.alternative, database.pairs_in_contact[:, :, 0, 0]
+    for low, high, torque in re.findall(rf"(\d) (?:or|to) (\d) tooth pairs carry the load at {NUMBER}", text):
+        column = counts[:, load_labels(database).index(f"{torque} N m")]
+        assert (int(low), int(high)) == (column.min(), column.max())
+    for part, torque in re.findall(rf"{NUMBER} % of the mesh cycle at {NUMBER} N m", text):
+        alone = counts[:, load_labels(database).index(f"{torque} N m")] == 1
+        width = np.diff(np.append(database.position, 1.0))  # positions crowd where the pairs change
+        assert abs(float(part) - 100.0 * float(alone @ width)) < 1.0
+    assert ("One pair carries" in text) == bool((counts == 1).any())
+    assert ("no pair is ever alone" in text) == bool((counts > 1).all())
+
+
+def check_mesh_stiffness(figure: Figure, database: SteDatabase) -> None:
+    (mean, torque) = re.findall(rf"Mean {NUMBER} N/\(mm µm\) at {NUMBER} N m", figure.alternative)[0]
+    k = load_labels(database).index(f"{torque} N m")
+    force = database.force[k] * math.cos(database.facts.base_helix_angle)
+    ste = database.ste(np.arange(2000) / 2000.0, float(database.force[k]))
+    stiffness = 1e-9 * float(np.mean(force / ste)) / database.facts.face_width
+    assert float(mean) == pytest.approx(stiffness, rel=6e-3)
+    for panel in figure.content:
+        assert panel.y.limits is not None
+        assert all(panel.y.limits[0] <= mark.value <= panel.y.limits[1] for mark in panel.references)
+
+
+def check_face_load(figure: Figure, database: SteDatabase) -> None:
+    ends = rf"At {NUMBER} N m the load acts from {NUMBER} to {NUMBER} mm from mid-face"
+    largest = rf"; the largest pressure is {NUMBER} MPa"
+    ((torque, low, high, pressure),) = re.findall(ends + largest, figure.alternative)
+    at = (slice(None), load_labels(database).index(f"{torque} N m"))
+    assert says(low, 1e3 * database.face_centroid[at].min()) and says(
+        high, 1e3 * database.face_centroid[at].max()
+    )
+    assert says(pressure, 1e-6 * database.max_pressure[at].max())
+    assert ("from slice to slice" in figure.caption) == (database.facts.base_helix_angle != 0.0)
+
+
+CHECKS = {
+    "ste": check_ste,
+    "ripple": check_ripple,
+    "ste_spectrum": check_spectrum,
+    "load_sharing": check_load_sharing,
+    "mesh_stiffness": check_mesh_stiffness,
+    "deviations": check_deviations,
+    "face_load": check_face_load,
+}
+
+
+def check(database: SteDatabase) -> None:
+    """Every finding, by the numbers of the table; no exponents; and the ripple fills half of its panel."""
+    drawn = figures(database)
+    assert drawn.keys() <= CHECKS.keys()
+    for key, figure in drawn.items():
+        CHECKS[key](figure, database)
+        assert not re.search(r"\de[-+]\d|nan|none", f"{figure.caption} {figure.alternative}")
+    ripple = drawn["ste"].content[0]
+    assert ripple.y.limits is not None
+    values = np.concatenate([line.y for line in ripple.lines])
+    low, high = ripple.y.limits
+    assert low < values.min() and values.max() < high
+    assert np.ptp(values) >= 0.5 * (high - low)
+    named = re.search(r"cut by the axis at (.*?)\. ", drawn["ste"].caption)
+    outside = [
+        line.name
+        for line in ripple.lines
+        if (line.y + line.band).max() > high or (line.y - line.band).min() < low
+    ]
+    assert (named[1].split(", ") if named else []) == outside
+    for k in range(len(ripple.lines) - 1 if len(drawn["ste"].content) > 1 else 0):
+        harris = drawn["ste"].content[1].lines
+        assert np.all(harris[k].y < harris[k + 1].y), "the order of the loads is readable"
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_findings_are_true_of_random_pairs(seed: int) -> None:
+    check(random_table(seed))
+
+
+def test_the_random_pairs_have_every_figure() -> None:
+    assert set().union(*(figures(random_table(seed)) for seed in range(6))) == CHECKS.keys()
+
+
+def computed() -> list[GearPair]:
+    """Return two pairs of the plane and a helical one."""
+    relief = FlankModification(tip_relief=20e-6, tip_relief_length=1e-3)
+    gear = Gear(teeth=23, normal_module=2e-3, face_width=12e-3, bore_diameter=20e-3)
+    helical = replace(gear, helix_angle=math.radians(25.0), modification=relief)
+    return [
+        GearPair(gear, replace(gear, teeth=31)),
+        GearPair(replace(gear, modification=relief), replace(gear, teeth=41, modification=relief)),
+        GearPair(helical, replace(helical, teeth=29, helix_angle=-helical.helix_angle)),
+    ]
+
+
+@pytest.mark.parametrize("pair", computed(), ids=["spur", "relieved", "helical"])
+def test_findings_are_true_of_computed_pairs(pair: GearPair) -> None:
+    model = "plane_strain" if pair.base_helix_angle == 0.0 else "3d"
+    check(analyze(pair, torques=[20.0, 45.0, 70.0], level="draft", model=model))
