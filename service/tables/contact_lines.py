@@ -9,6 +9,7 @@ import numpy as np
 from fe_contact.analysis import LoadDistribution
 from fe_contact.types import IntArray
 from service.drawing.figure import Axis, Figure, FloatArray, Panel, Reference, Strokes, Table, number
+from service.tables.unrolled import face_axis
 
 SHOWN = 8  # positions
 
@@ -27,7 +28,8 @@ def contact_lines(flanks: LoadDistribution) -> Figure:
         title="Contact lines in the plane of action",
         caption="Where the tooth pairs touch: face across, path of contact upwards from the pinion's root "
         "(A) to its tip (E). Color and thickness: what the line carries there; thin gray: the flanks could "
-        "touch but carry nothing.",
+        "touch but carry nothing. "
+        f"{_strip(flanks)}",
         alternative=f"At most {number(float(1e-3 * flanks.line_load.max()), 4)} N/mm; at position {at}, the "
         f"one of the largest pressure, {_carrying(flanks, worst)} tooth pairs carry load.",
         content=(
@@ -40,11 +42,10 @@ def contact_lines(flanks: LoadDistribution) -> Figure:
 
 def _axes(flanks: LoadDistribution) -> tuple[Axis, Axis]:
     """Face and path of contact, mm."""
-    low, high = (1e3 * end for end in flanks.scene.common_face)
     start, *_, end = (1e3 * point for point in flanks.scene.path_of_contact)
     room = 0.06 * (end - start)
     return (
-        Axis("face position, mm (0 = mid-face of the pinion)", limits=(low, high)),
+        face_axis(flanks),
         Axis("roll length of the pinion, mm", limits=(start - room, end + 1.5 * room)),
     )
 
@@ -69,6 +70,11 @@ def _strokes(flanks: LoadDistribution, chosen: IntArray, values: FloatArray, lab
     ends = np.stack([roll - rise, roll + rise], axis=-1)[present]
     across = np.broadcast_to(x, (*present.shape, 2))[present]
     return Strokes(across, ends, values[chosen][present], label, float(values.max()))
+
+
+def _strip(flanks: LoadDistribution) -> str:
+    """Say over what a stroke is a mean."""
+    return f"One stroke is {number(1e3 * flanks.slice_width, 2)} mm of the face, its color the mean there."
 
 
 def _carrying(flanks: LoadDistribution, position: int) -> int:

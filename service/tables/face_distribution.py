@@ -8,9 +8,9 @@ from fe_contact.analysis import LoadDistribution
 from service.drawing import palette
 from service.drawing.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Table, number
 from service.tables.aligned import POSITION_LABEL
+from service.tables.unrolled import face_axis
 
 SHOWN = 4  # positions
-_FACE = "face position, mm (0 = mid-face of the pinion)"
 
 _VISIBLE_GAP = 0.01
 """um; a plot of less shows nothing."""
@@ -21,17 +21,16 @@ _ROUNDING = 1e-9
 def line_load_figure(flanks: LoadDistribution) -> Figure:
     """Draw the load of all pairs per unit of face width, and the gap that the most loaded pair leaves."""
     chosen = np.unique(np.linspace(0, flanks.position.size, SHOWN, endpoint=False).astype(int))
-    low, high = (1e3 * end for end in flanks.scene.common_face)
-    face = Axis(_FACE, limits=(low, high))
+    face = face_axis(flanks)
     mean = 1e-3 * flanks.face_load.mean(axis=0)
     names = [f"position {flanks.position[k]:.3g}" for k in chosen]
     x = 1e3 * flanks.face_position
     colors = [palette.BLUE, palette.SKY, palette.GREEN, palette.PURPLE][: len(chosen)]
     loads = [
-        Line(name, x, 1e-3 * flanks.face_load[k], color)
+        Line(name, x, 1e-3 * flanks.face_load[k], color, label=name)
         for name, k, color in zip(names, chosen, colors, strict=True)
     ]
-    cycle = Line("mean over the positions", x, mean, palette.VERMILLION, width=3.0)
+    cycle = Line("mean over the positions", x, mean, palette.VERMILLION, width=3.0, label="mean")
     factor = flanks.mean_face_load_factor
     gaps = _gap_panel(flanks, face, dict(zip(names, chosen, strict=True)), colors)
     return Figure(
@@ -56,7 +55,9 @@ def _gap_panel(
     if not any(np.nanmax(gap, initial=0.0) > _VISIBLE_GAP for gap in gaps.values()):
         return ()
     x = 1e3 * flanks.face_position
-    lines = tuple(Line(name, x, gap, color) for (name, gap), color in zip(gaps.items(), colors, strict=True))
+    lines = tuple(
+        Line(name, x, gap, color, label=name) for (name, gap), color in zip(gaps.items(), colors, strict=True)
+    )
     return (Panel(face, Axis("gap, µm"), lines),)
 
 

@@ -22,6 +22,7 @@ from service.tables.pairs_in_contact import pair_range, pairs_in_words
 _MOST_NAMES = 8  # of pairs that are named in full
 _ROOM = 1.12  # of the largest share: for the names
 _END = 0.03  # of the panel's width
+_CHARACTER = 0.008  # of a name, in parts of the panel's width
 _CARRIES = 1e-6  # a pair with less than this share nowhere carries load
 
 

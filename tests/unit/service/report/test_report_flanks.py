@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fe_contact.analysis import LoadDistribution, contact_pattern
+from fe_contact.analysis import LoadDistribution
 from fe_contact.ste import SteDatabase
 from service.drawing.figure import HeatMap, Panel, Strokes
 from service.drawing.image import png
@@ -15,8 +15,9 @@ from service.drawing.interactive import plotly_figure
 from service.report import write_report
 from service.studies.flank.page import operating_point, page
 from service.tables.contact_lines import contact_lines
-from service.tables.contact_pattern import contact_pattern_figure
+from service.tables.contact_pattern import contact_pattern_figure, isolines
 from service.tables.face_distribution import line_load_figure, load_centroid_figure
+from service.tables.unrolled import pressure_map
 
 
 def panels(figure: object) -> tuple[Panel, ...]:
@@ -25,23 +26,58 @@ def panels(figure: object) -> tuple[Panel, ...]:
     return content
 
 
-def test_the_pattern_is_the_librarys_in_mpa_and_blank_where_nothing_touches(flanks: LoadDistribution) -> None:
-    figure = contact_pattern_figure(flanks)
-    for gear, panel in zip(("pinion", "wheel"), panels(figure), strict=True):
-        shade, pattern = panel.shade, contact_pattern(flanks, gear)  # type: ignore[arg-type]
+def test_the_pattern_passes_through_the_pressures_that_were_computed(flanks: LoadDistribution) -> None:
+    """At the roll length of every contact, and between its neighbors elsewhere; nothing in the last slice."""
+    for roll, panel in zip(
+        (flanks.roll_length_1, flanks.roll_length_2), panels(contact_pattern_figure(flanks)), strict=True
+    ):
+        shade = panel.shade
         assert isinstance(shade, HeatMap)
-        touched = pattern.pressure > 0.0
-        assert np.array_equal(np.isfinite(shade.z), touched)
-        assert not touched.all()
-        assert shade.z[touched] == pytest.approx(1e-6 * pattern.pressure[touched])
+        for k in range(flanks.face_position.size):
+            here = flanks.on_path[:, :, k]
+            for at, pressure in zip(
+                1e3 * roll[:, :, k][here], 1e-6 * flanks.pressure[:, :, k][here], strict=True
+            ):
+                assert np.interp(at, shade.y, shade.z[:, k]) == pytest.approx(pressure, rel=1e-9)
+        assert np.all(shade.z[:, -1] == 0.0)
         assert shade.largest == pytest.approx(1e-6 * flanks.pressure.max())
+        assert 0.0 < shade.isolines[0] < shade.isolines[-1] < shade.largest
         assert panel.y.limits is not None
-        assert (
-            panel.y.limits[0]
-            < 1e3 * pattern.roll_length[0]
-            < 1e3 * pattern.roll_length[-1]
-            < panel.y.limits[1]
-        )
+        assert panel.y.limits[0] < shade.y[0] < shade.y[-1] < panel.y.limits[1]
+
+
+def test_a_pressure_that_falls_along_the_path_is_interpolated_without_steps(flanks: LoadDistribution) -> None:
+    """A plane over roll length comes back as it is, at ends of the path within a step of the positions."""
+    lowest = flanks.roll_length_1[flanks.on_path].min()
+    falling = np.where(flanks.on_path, 1e9 - 1e10 * (flanks.roll_length_1 - lowest), 0.0)
+    tilted = replace(flanks, pressure=falling, force=falling)
+    rows, pressure = pressure_map(tilted, tilted.roll_length_1)
+    step = flanks.scene.facts.base_pitch / flanks.position.size
+    inside = (rows > rows[0] + step) & (rows < rows[-1] - step)
+    assert np.count_nonzero(inside) > 50
+    plane = (1e9 - 1e10 * (rows - lowest))[inside, None]
+    assert np.abs(pressure[inside] - plane).max() < 1e-3 * 1e9
+
+
+def test_a_tip_edge_that_passes_lightly_takes_nothing_from_the_pattern(flanks: LoadDistribution) -> None:
+    """It scrapes over a place before the flanks roll there; the larger pressure of both counts."""
+    roll, on_path, pressure = (np.array(x) for x in (flanks.roll_length_1, flanks.on_path, flanks.pressure))
+    force = np.array(flanks.force)
+    first = np.argwhere(~on_path[:, :, 0])[0]
+    at = (first[0], first[1], 0)
+    roll[at], force[at], pressure[at] = np.median(roll[flanks.on_path]), 1.0, 1e6
+    light = replace(flanks, roll_length_1=roll, force=force, pressure=pressure)
+    before, after = (pressure_map(one, one.roll_length_1)[1] for one in (flanks, light))
+    np.testing.assert_allclose(after, before, rtol=1e-9)
+
+
+@pytest.mark.parametrize("largest", [0.3, 1.0, 999.0, 1001.0, 1597.0, 6000.0])
+def test_isolines_are_few_and_round(largest: float) -> None:
+    levels = isolines(largest)
+    assert 1 <= len(levels) <= 6
+    assert levels[-1] < largest
+    assert f"{levels[0]:.0e}"[0] in "125"
+    assert np.diff([0.0, *levels]) == pytest.approx(levels[0])
 
 
 def test_the_marks_of_the_pattern_are_diameters_of_that_gear(flanks: LoadDistribution) -> None:
