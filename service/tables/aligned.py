@@ -114,10 +114,12 @@ def load_labels(database: SteDatabase) -> tuple[str, ...]:
 
 
 def few_loads(database: SteDatabase, most: int = MOST_LINES) -> tuple[int, ...]:
-    """Return the indices of at most so many of the loads shown: those nearest to evenly spaced torques."""
+    """Return the indices of the loads shown; of more than `most` those nearest to evenly spaced torques."""
     loads = np.array(shown_loads(database))
+    if loads.size <= most:
+        return shown_loads(database)
     torque = database.torque[loads]
-    even = np.linspace(torque[0], torque[-1], min(loads.size, most))
+    even = np.linspace(torque[0], torque[-1], most)
     return tuple(int(k) for k in np.unique(loads[np.abs(torque[:, None] - even).argmin(axis=0)]))
 
 

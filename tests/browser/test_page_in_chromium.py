@@ -157,7 +157,7 @@ def test_the_case_is_saved_as_toml_that_reads_back(visit: Visit, tmp_path: Path)
 
 
 @pytest.mark.parametrize(
-    ("tool", "begin"), [("PNG", b"\x89PNG"), ("CSV", b'"0.5 N m: mean 0.'), ("JSON", b'{"data"')]
+    ("tool", "begin"), [("PNG", b"\x89PNG"), ("CSV", b'"0.5 N m, x"'), ("JSON", b'{"data"')]
 )
 def test_a_plot_is_saved(visit: Visit, tool: str, begin: bytes) -> None:
     with visit.page.expect_download() as given:

@@ -90,7 +90,7 @@ def test_every_panel_has_both_axes_named_once(visit: Visit, key: str) -> None:
     )
     vertical = [text for name, text in named if re.fullmatch(r"y\d*title", name) and text]
     assert len(vertical) == PANELS[key]
-    assert all("," in text or "share" in text for text in vertical)  # quantity and unit
+    assert all("," in text or "share" in text or "order" in text for text in vertical)  # quantity and unit
     assert any(text for name, text in named if re.fullmatch(r"x\d*title", name))
 
 
@@ -116,7 +116,7 @@ def overlap(one: dict[str, float], other: dict[str, float]) -> bool:
 
 def test_the_still_images_load(visit: Visit) -> None:
     widths = visit.page.eval_on_selector_all("img.still", "nodes => nodes.map(n => n.naturalWidth)")
-    assert widths == [1350] * 15
+    assert widths == [1350] * 17
 
 
 def test_nothing_is_complained_about(visit: Visit) -> None:

@@ -13,7 +13,7 @@ from random_tables import random_table
 from fe_contact import FlankModification, Gear, GearPair, analyze
 from fe_contact.ste import Curve, SteDatabase
 from service.drawing.figure import Figure
-from service.tables.aligned import load_labels, shown_loads
+from service.tables.aligned import MOST_LINES, few_loads, load_labels, shown_loads
 from service.tables.static_part import static_results
 
 NUMBER = r"(-?\d+(?:\.\d+)?)"
@@ -156,8 +156,17 @@ CHECKS = {
 }
 
 
+def check_loads(database: SteDatabase) -> None:
+    """All loads of a few, and the ends of many."""
+    shown = shown_loads(database)
+    chosen = few_loads(database)
+    assert chosen == shown if len(shown) <= MOST_LINES else len(chosen) <= MOST_LINES
+    assert (chosen[0], chosen[-1]) == (shown[0], shown[-1])
+
+
 def check(database: SteDatabase) -> None:
     """Every finding, by the numbers of the table; no exponents; and the ripple fills half of its panel."""
+    check_loads(database)
     drawn = figures(database)
     assert drawn.keys() <= CHECKS.keys()
     for key, figure in drawn.items():

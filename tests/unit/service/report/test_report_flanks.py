@@ -1,6 +1,7 @@
 """What the report shows of the flanks: pressure, contact lines, load over the face."""
 
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -117,6 +118,28 @@ def test_the_load_over_the_face_and_its_factor(flanks: LoadDistribution) -> None
     assert centroid.lines[0].x[-1] == 1.0
     assert centroid.lines[0].y[:-1] == pytest.approx(1e3 * flanks.load_centroid)
     assert factor.references[0].value == pytest.approx(flanks.mean_face_load_factor)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_findings_are_true_of_random_loads(flanks: LoadDistribution, seed: int) -> None:
+    """Every number of every sentence, by the field that it is from."""
+    rng = np.random.default_rng(seed)
+    force = flanks.on_path * rng.uniform(0.0, 500.0, flanks.force.shape)
+    loaded = replace(flanks, force=force, pressure=4e7 * np.sqrt(force))
+    at = np.unravel_index(int(loaded.pressure.argmax()), force.shape)
+    where = 1e3 * loaded.roll_length_1[at], 1e3 * loaded.face_position[at[2]]
+    mean = 1e-3 * loaded.face_load.mean(axis=0)
+    centroid = 1e3 * loaded.load_centroid
+    carrying = np.count_nonzero(force[at[0]].sum(axis=-1))
+    known = {
+        contact_pattern_figure: [1e-6 * loaded.pressure[at], *where],
+        contact_lines: [1e-3 * loaded.line_load.max(), loaded.position[at[0]], carrying],
+        line_load_figure: [mean.min(), mean.max(), loaded.mean_face_load_factor],
+        load_centroid_figure: [centroid.min(), centroid.max(), loaded.mean_face_load_factor],
+    }
+    for draw, numbers in known.items():
+        said = [float(text) for text in re.findall(r"-?\d+\.?\d*", draw(loaded).alternative)]
+        assert said == pytest.approx(numbers, rel=6e-3), draw.__name__
 
 
 def test_one_slice_has_a_curve_and_nothing_over_the_face(one_slice: LoadDistribution) -> None:
