@@ -16,6 +16,7 @@ from fe_contact.geometry.path_of_contact import PathOfContact
 from fe_contact.geometry.pitch_deviation import PitchDeviation
 from fe_contact.geometry.ring_gear import RingGear
 from fe_contact.geometry.seated_gear import seat_compliance
+from fe_contact.geometry.sliding import sliding_factor, specific_sliding
 from fe_contact.geometry.tooth_profile import ToothProfile, tooth_profile
 from fe_contact.geometry.toothing import Toothing
 from fe_contact.geometry.web_compliance import web_compliance
@@ -47,6 +48,8 @@ __all__ = [
     "edge_gap",
     "iso6336_stiffness",
     "seat_compliance",
+    "sliding_factor",
+    "specific_sliding",
     "tooth_profile",
     "web_compliance",
 ]

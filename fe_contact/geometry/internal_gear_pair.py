@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 
 from fe_contact.geometry.backlash import reference_center_distance
-from fe_contact.geometry.internal_interference import tip_clearances
 from fe_contact.geometry.internal_pair_feasibility import (
     refuse_infeasible_internal_pair,
     refuse_tooth_numbers,
@@ -55,11 +54,6 @@ class InternalGearPair(ParallelAxes):
     def tooth_number_difference(self) -> int:
         """Teeth of the ring less teeth of the pinion."""
         return self.wheel.teeth - self.pinion.teeth
-
-    @property
-    def tip_clearances(self) -> tuple[float, float]:
-        """Distance in m from the pinion's tip to the ring's root circle, and from ring tip to pinion root."""
-        return tip_clearances(self)
 
     @property
     def radial_assembly_clearance(self) -> float:

@@ -50,12 +50,6 @@ def trochoidal_interference(pair: ParallelAxes) -> float:
     return max(_deepest(path, mate, on_fillet=True) for path, mate in _paths(pair))
 
 
-def tip_clearances(pair: ParallelAxes) -> tuple[float, float]:
-    """Distance in m from the pinion's tip to the ring's root circle, and from ring tip to pinion root."""
-    at_pinion_tip = pair.wheel.root_radius - pair.center_distance - pair.pinion.tip_radius
-    return at_pinion_tip, pair.wheel.tip_radius - pair.center_distance - pair.pinion.root_radius
-
-
 def pinion_edge_path(pair: ParallelAxes) -> EdgePath:
     """Path of the pinion's tip edge in the ring's tooth space, from where it enters to where it leaves."""
     pinion, ring = pair.pinion, pair.wheel

@@ -9,11 +9,7 @@ from bounds import LIMIT_SLACK, Quantity, Text, above, at_least, at_most, below
 from fe_contact.checks import declared_fields
 from fe_contact.errors import InfeasibleGeometry
 from fe_contact.geometry.backlash import base_radius_sum, tight_center_distance
-from fe_contact.geometry.internal_interference import (
-    tip_clearances,
-    tip_interference,
-    trochoidal_interference,
-)
+from fe_contact.geometry.internal_interference import tip_interference, trochoidal_interference
 from fe_contact.geometry.pair_feasibility import (
     FILLET_SLACK,
     refuse_face_overlap,
@@ -70,7 +66,7 @@ def _refuse_contact_ratio(pair: ParallelAxes) -> None:
 
 def _refuse_tip_clearance(pair: ParallelAxes) -> None:
     """Refuse a tip circle that reaches the mating root circle."""
-    at_pinion_tip, at_ring_tip = tip_clearances(pair)
+    at_pinion_tip, at_ring_tip = pair.tip_clearances
     if at_pinion_tip <= 0.0:
         largest = 2.0 * (pair.pinion.tip_radius + at_pinion_tip)
         bound = below(largest, "m", note=", where the tip reaches the ring's root circle")

@@ -186,7 +186,14 @@ class ParallelAxes:
         second = self.mating_roll_length(first)
         return np.asarray(1.0 / first + self.wheel.sign / second, dtype=float)
 
-    # Backlash
+    # Clearance and backlash
+
+    @property
+    def tip_clearances(self) -> tuple[float, float]:
+        """Distance in m from the pinion's tip to the mating root circle, and from the wheel's tip to its."""
+        pinion, wheel, a = self.pinion, self.wheel, self.center_distance
+        at_tip, at_root = (wheel.sign * (a - radius) for radius in (wheel.root_radius, wheel.tip_radius))
+        return at_tip - pinion.tip_radius, at_root - pinion.root_radius
 
     @property
     def transverse_base_backlash(self) -> float:
@@ -205,10 +212,8 @@ class ParallelAxes:
         else that of the gears as they are. 0 where teeth do not jam, or by more than rounding makes.
         """
         computed = base_circle_backlash(self.pinion, self.wheel, self.working_pressure_angle)
-        largest = (
-            backlash_rounding(self.pinion, self.wheel, self.center_distance)
-            + LIMIT_SLACK * self.center_distance
-        )
+        largest = backlash_rounding(self.pinion, self.wheel, self.center_distance)
+        largest += LIMIT_SLACK * self.center_distance
         jams = (allowance_backlash(self.pinion, self.wheel) - computed, -computed)
         return next((jam for jam in jams if 0.0 < jam <= largest), 0.0)
 

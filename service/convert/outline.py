@@ -20,11 +20,7 @@ _FLANK_POINTS, _ROOT_POINTS, _TIP_POINTS = 24, 24, 5
 
 
 def outline_json(case: Case) -> Json:
-    """Return what a drawing of the pair at position 0 needs; x to the right, y upwards, seen from +z.
-
-    Each gear has one tooth with half a space on either side, in its tooth frame (center at the origin, tooth
-    on +y), the number of its teeth and the angle by which the whole is turned counter-clockwise. A ring
-    gear's tooth is seen from the other side, so that it stands as in the mesh.
+    """Return the drawing of the pair of a case, see `pair_outline`, with its main figures.
 
     Raises
     ------
@@ -33,14 +29,24 @@ def outline_json(case: Case) -> Json:
     """
     pair = gear_pair(case)
     with boundary_errors():
-        angles = mesh_angles(pair, 0.0)
-        sign = pair.wheel.sign
-        gears = {"pinion": _gear(pair.pinion), "wheel": _gear(pair.wheel)}
+        return pair_outline(pair) | {"figures": _figures(pair)}
+
+
+def pair_outline(pair: ParallelAxes) -> Json:
+    """Return what a drawing of the pair at position 0 needs; x to the right, y upwards, seen from +z; mm.
+
+    Each gear has one tooth with half a space on either side, in its tooth frame (center at the origin, tooth
+    on +y), the number of its teeth and the angle by which the whole is turned counter-clockwise. A ring
+    gear's tooth is seen from the other side, so that it stands as in the mesh.
+    """
+    angles = mesh_angles(pair, 0.0)
+    sign = pair.wheel.sign
+    gears = {"pinion": _gear(pair.pinion), "wheel": _gear(pair.wheel)}
     centers = ((0.0, 0.0), (0.0, sign * pair.center_distance))
     turns = (-1.0, -1.0 if pair.internal else 1.0)
     for gear, angle, center, turn in zip(gears.values(), angles, centers, turns, strict=True):
         gear |= {"angle_deg": angle / DEGREE, "centre_mm": [value / MM for value in center], "turn": turn}
-    return gears | {"internal": pair.internal, "path_of_contact": _path(pair), "figures": _figures(pair)}
+    return gears | {"internal": pair.internal, "path_of_contact": _path(pair)}
 
 
 def _gear(gear: Toothing) -> Json:

@@ -136,7 +136,10 @@ class Strokes:
 
 @dataclass(frozen=True)
 class Panel:
-    """One pair of axes with its curves, or with values as colors; `title` tells it from its neighbors."""
+    """One pair of axes with its curves, or with values as colors; `title` tells it from its neighbors.
+
+    `equal`: one unit is as long in both directions, as in a drawing.
+    """
 
     x: Axis
     y: Axis
@@ -146,6 +149,7 @@ class Panel:
     shade: HeatMap | Strokes | None = None
     notes: tuple[Note, ...] = ()
     bars: tuple[Bars, ...] = ()
+    equal: bool = False
 
 
 @dataclass(frozen=True)

@@ -37,13 +37,21 @@ _DASH = {"solid": "-", "dash": "--", "dot": ":"}
 
 def png(figure: Figure) -> bytes:
     """Draw `figure` and return the PNG file's bytes."""
+    return _image(figure, "png", {"Title": figure.title, "Description": figure.alternative})
+
+
+def svg(figure: Figure) -> bytes:
+    """Draw `figure` and return the SVG file's bytes."""
+    return _image(figure, "svg", {"Title": figure.title, "Description": figure.alternative, "Date": None})
+
+
+def _image(figure: Figure, form: str, metadata: dict[str, str | None]) -> bytes:
+    """Draw `figure` and return the bytes of a file of the form "png" or "svg"."""
     sheet = _panel_sheet(figure.content)
     sheet.suptitle(figure.title, x=0.01, ha="left", fontsize=12, fontweight="bold", color=palette.INK)
     FigureCanvasAgg(sheet)
     buffer = BytesIO()
-    sheet.savefig(
-        buffer, format="png", dpi=_DPI, metadata={"Title": figure.title, "Description": figure.alternative}
-    )
+    sheet.savefig(buffer, format=form, dpi=_DPI, metadata=metadata)
     return buffer.getvalue()
 
 
@@ -145,6 +153,8 @@ def _finish(ax: Axes, panel: Panel) -> None:
     ax.grid(color=palette.GRID, lw=0.6)
     ax.spines[["top", "right"]].set_visible(False)
     ax.set_axisbelow(True)
+    if panel.equal:
+        ax.set_aspect("equal")
 
 
 def _is_whole(values: Any) -> bool:

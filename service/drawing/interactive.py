@@ -57,6 +57,8 @@ def plotly_figure(figure: Figure) -> Json:
         if repeats_below(panels, index):
             layout["xaxis" + suffix] |= {"title": {"text": ""}}
         layout["yaxis" + suffix] = _axis(_upright(panel)) | frame
+        if panel.equal:
+            layout["xaxis" + suffix] |= {"scaleanchor": "y" + suffix, "constrain": "domain"}
         layout["annotations"] += _panel_title(panel, suffix) + _notes(panel, suffix)
         layout["annotations"] += _line_labels(panel, suffix)
         if panel.shade is not None:

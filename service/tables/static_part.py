@@ -15,10 +15,12 @@ from service.drawing.facts import facts, records, side_by_side
 from service.drawing.figure import Table, number
 from service.drawing.page import Headline, Section
 from service.tables.aligned import headline_load, load_curve, load_labels, shown_loads
+from service.tables.data_sheet import data_sheet_section
 from service.tables.deviation_curves import deviation_curves, has_deviations
 from service.tables.face_load import face_load, has_face_load
 from service.tables.load_sharing import load_sharing
 from service.tables.mesh_stiffness import mesh_stiffness
+from service.tables.pair import pair_of
 from service.tables.ripple_over_torque import ripple_over_torque
 from service.tables.ste_curves import ste_curves
 from service.tables.ste_spectrum import ste_spectrum
@@ -60,7 +62,9 @@ def static_results(database: SteDatabase) -> tuple[Section, ...]:
     curves = Section("Static transmission error", figures=drawn)
     # over a longer period the deflection holds the teeth's errors, and a secant through them means nothing
     secant = (Section("Mesh stiffness", figures=(mesh_stiffness(database),)),) if database.period == 1 else ()
-    return (curves, *_across_face(database), *secant)
+    pair = pair_of(database)
+    sheet = () if pair is None else (data_sheet_section(pair),)
+    return (*sheet, curves, *_across_face(database), *secant)
 
 
 def _across_face(database: SteDatabase) -> tuple[Section, ...]:

@@ -38,6 +38,22 @@ def analyze(
     run_analyze(case, output, ExecutorChoice(workers, dask), as_json=json)
 
 
+@verbs.command(epilog="Example: loa geometry examples/sensitivity_automotive.toml -o pair.html")
+@computing
+def geometry(
+    case: Annotated[Path, typer.Argument(help="Case file (TOML, or JSON of the same shape).")],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", help="Drawing or page to write, ending in .html, .png or .svg."),
+    ] = None,
+    json: AsJson = False,
+) -> None:
+    """Print the data sheet of a pair (ISO 21771-1), and draw its mesh and its flank modifications."""
+    from service.cli.geometry import run_geometry  # noqa: PLC0415 (start-up time)
+
+    run_geometry(case, output, as_json=json)
+
+
 @verbs.command(epilog="Example: loa ste ste.nc --torque 100 --at 0,0.25,0.5")
 @computing
 def ste(

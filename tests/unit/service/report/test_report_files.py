@@ -19,7 +19,7 @@ def files(tmp_path: Path, database: SteDatabase, run: RunResult) -> tuple[Path, 
     return tmp_path / "ste.nc", tmp_path / "run.nc"
 
 
-STATIC = {"ste", "ripple", "ste_spectrum", "load_sharing", "mesh_stiffness"}
+STATIC = {"pair_drawing", "ste", "ripple", "ste_spectrum", "load_sharing", "mesh_stiffness"}
 DYNAMIC = {
     "dynamic_error",
     "signal",

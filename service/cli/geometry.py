@@ -1,0 +1,72 @@
+"""``loa geometry``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from fe_contact.geometry import ParallelAxes
+from service.cli.assessed_case import assessed_case
+from service.cli.output import check_writable, console, print_json, table
+from service.cli.warned import messages, warn
+from service.convert.case import gear_pair
+from service.convert.topology import facts_of
+from service.drawing.figure import number
+from service.drawing.image import png, svg
+from service.drawing.page import Page
+from service.problems import BadInput
+from service.report.write import write_whole
+from service.tables.data_sheet import data_sheet, data_sheet_json, data_sheet_section
+from service.tables.pair import pair_lead, pair_title
+from service.tables.pair_drawing import pair_drawing
+from service.tables.pair_remarks import pair_remarks
+from service.units import UM
+
+_ENDINGS = (".html", ".png", ".svg")
+_WORDS = ("quantity", "symbol", "unit", "point")
+
+
+def run_geometry(file: Path, output: Path | None, *, as_json: bool) -> None:
+    """Print the data sheet of a case; draw it if requested."""
+    pair = gear_pair(assessed_case(file))
+    warn(pair_remarks(pair))
+    if output is not None:
+        _write(pair, output)
+    if as_json:
+        written = {} if output is None else {"written": str(output)}
+        print_json(written | data_sheet_json(pair))
+    else:
+        _show(pair, output)
+
+
+def _write(pair: ParallelAxes, output: Path) -> None:
+    """Write the page, or the drawing alone."""
+    if output.suffix not in _ENDINGS:
+        raise BadInput.of("output", str(output), f"a file ending in one of {', '.join(_ENDINGS)}")
+    check_writable(output)
+    if output.suffix == ".html":
+        facts = facts_of(pair)
+        page = Page(pair_title(facts), pair_lead(facts), (), (data_sheet_section(pair),))
+        write_whole(page, output, warnings=messages())
+    else:
+        output.write_bytes({".png": png, ".svg": svg}[output.suffix](pair_drawing(pair)))
+
+
+def _show(pair: ParallelAxes, output: Path | None) -> None:
+    """Print the data sheet for people."""
+    out = console()
+    for part in data_sheet(pair):
+        out.print(table(part.head, part.rows, part.caption, words=_WORDS))
+        out.print()
+    for line in _summary(pair):
+        out.print(line, highlight=False)
+    if output is not None:
+        out.print(f"written to {output}", highlight=False)
+
+
+def _summary(pair: ParallelAxes) -> tuple[str, str]:
+    """Say what decides about noise and strength first."""
+    facts = facts_of(pair)
+    transverse, overlap = pair.active_contact_ratio, pair.overlap_ratio
+    ratios = f"contact ratio {transverse:.3f} + {overlap:.3f} = {transverse + overlap:.3f}"
+    backlash = f"circumferential backlash {number(pair.circumferential_backlash / UM, 3)} um"
+    return f"{pair_title(facts)}: {pair_lead(facts)}", f"{ratios}; {backlash}"

@@ -1,0 +1,169 @@
+"""``loa geometry``: the data sheet against published and hand-worked values, and the drawing."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.path import Path as Polygon
+from typer.testing import CliRunner, Result
+
+from service.cli.commands import app
+from service.convert.case import gear_pair
+from service.drawing.figure import Figure, Panel
+from service.schemas import Case, read_model
+from service.tables.pair_drawing import pair_drawing
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+SPUR, HELICAL, INTERNAL = (
+    EXAMPLES / f"{name}.toml" for name in ("palermo_spur_20_20", "sensitivity_automotive", "internal_gear")
+)
+
+
+def geometry(*arguments: object) -> Result:
+    return CliRunner().invoke(app, ["geometry", *map(str, arguments)])
+
+
+def sheet(file: Path) -> dict[str, dict[str, float]]:
+    done = geometry(file, "--json")
+    assert done.exit_code == 0, done.output
+    return dict(json.loads(done.stdout))
+
+
+def test_the_spur_pair_by_hand() -> None:
+    """Module 4, 20/20, no shift: by formula, and the paper's contact ratio and base pitch."""
+    found = sheet(SPUR)
+    gear = {
+        "reference_diameter_mm": 80.0,
+        "base_diameter_mm": 80.0 * math.cos(math.radians(20.0)),
+        "working_pitch_diameter_mm": 80.0,
+        "tip_diameter_mm": 88.0,
+        "root_diameter_mm": 70.0,
+        "transverse_tooth_thickness_mm": 2.0 * math.pi,
+        "tip_clearance_mm": 1.0,
+    }
+    for side in ("pinion", "wheel"):
+        for name, value in gear.items():
+            assert found[side][name] == pytest.approx(value, rel=1e-9), (side, name)
+    mesh = found["mesh"]
+    assert mesh["transverse_contact_ratio"] == pytest.approx(1.5568, abs=5e-5)
+    assert mesh["transverse_base_pitch_mm"] == pytest.approx(11.809, abs=5e-4)
+    assert mesh["working_pressure_angle_deg"] == pytest.approx(20.0, abs=1e-9)
+    assert mesh["normal_backlash_um"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_iso_tr_6336_30_example_1(tmp_path: Path) -> None:
+    """Published: m_t, d, eps_alpha 1.549, eps_beta 1.083 (ISO/TR 6336-30, example 1)."""
+    file = tmp_path / "case.toml"
+    file.write_text(
+        "[pair]\nnormal_module_mm = 8\nhelix_angle_deg = 15.8\ncenter_distance_mm = 500\n"
+        "[pair.pinion]\nteeth = 17\nface_width_mm = 100\nbore_diameter_mm = 50\n"
+        "profile_shift_coefficient = 0.145\ndedendum_coefficient = 1.4\nroot_radius_coefficient = 0.39\n"
+        "[pair.wheel]\nteeth = 103\nface_width_mm = 100\nbore_diameter_mm = 50\n"
+        "dedendum_coefficient = 1.4\nroot_radius_coefficient = 0.39\n[load]\ntorque_n_m = [9000]\n"
+    )
+    found = sheet(file)
+    assert found["mesh"]["transverse_contact_ratio"] == pytest.approx(1.549, abs=5e-4)
+    assert found["mesh"]["overlap_ratio"] == pytest.approx(1.083, abs=5e-4)
+    assert found["pinion"]["reference_diameter_mm"] == pytest.approx(141.34, abs=5e-3)
+    assert found["wheel"]["reference_diameter_mm"] == pytest.approx(856.35, abs=5e-3)
+    total = found["mesh"]["transverse_contact_ratio"] + found["mesh"]["overlap_ratio"]
+    assert found["mesh"]["total_contact_ratio"] == total
+
+
+def test_points_of_the_path_lie_a_pitch_apart_on_both_gears() -> None:
+    for file in (SPUR, HELICAL, INTERNAL):
+        found = sheet(file)
+        points = found["path_of_contact"]
+        for gear, side in enumerate(("pinion", "wheel")):
+            radius = 0.5 * found[side]["base_diameter_mm"]
+            roll = {name: math.radians(p["roll_angle_deg"][gear]) * radius for name, p in points.items()}
+            pitch = found["mesh"]["transverse_base_pitch_mm"]
+            assert abs(roll["E"] - roll["B"]) == pytest.approx(pitch, rel=1e-12)
+            assert abs(roll["D"] - roll["A"]) == pytest.approx(pitch, rel=1e-12)
+            for name, point in points.items():
+                assert point["diameter_mm"][gear] == pytest.approx(2.0 * math.hypot(radius, roll[name]))
+        assert points["A"]["diameter_mm"][0] == pytest.approx(found["pinion"]["active_root_diameter_mm"])
+        assert points["E"]["diameter_mm"][1] == pytest.approx(found["wheel"]["active_root_diameter_mm"])
+
+
+def test_the_table_holds_every_number_of_the_json_in_words() -> None:
+    text, found = geometry(HELICAL).stdout, sheet(HELICAL)
+    for name in ("tip_diameter_mm", "root_form_diameter_mm", "tip_clearance_mm"):
+        for side in ("pinion", "wheel"):
+            assert f"{found[side][name]:.4f}" in text, (side, name)
+    assert f"{found['mesh']['total_contact_ratio']:.4f}" in text
+
+
+def test_what_handbooks_advise_against_is_said_and_decides_a_strict_exit_code() -> None:
+    done = geometry(SPUR, "--strict")
+    assert done.exit_code == 3
+    assert "warning (backlash)" in done.stdout
+    assert "warning (specific_sliding): pair.pinion: specific sliding -4.1" in done.stdout
+    assert geometry(HELICAL, "--strict").exit_code == 0
+
+
+@pytest.mark.parametrize("ending", ["png", "svg", "html"])
+def test_a_drawing_is_written(ending: str, tmp_path: Path) -> None:
+    file = tmp_path / f"pair.{ending}"
+    assert geometry(HELICAL, "-o", file).exit_code == 0
+    assert file.read_bytes().startswith({"png": b"\x89PNG", "svg": b"<?xml", "html": b"<!DOCTYPE"}[ending])
+    if ending == "html":
+        assert "Data sheet" in file.read_text(encoding="utf-8")
+
+
+def test_other_files_are_refused(tmp_path: Path) -> None:
+    done = geometry(HELICAL, "-o", tmp_path / "pair.pdf")
+    assert done.exit_code == 2
+    assert "ending in one of .html, .png, .svg" in done.stderr
+
+
+def drawing(file: Path) -> Figure:
+    return pair_drawing(gear_pair(read_model(Case, file)))
+
+
+def section(file: Path) -> Panel:
+    panels = drawing(file).content
+    assert isinstance(panels, tuple)
+    return panels[0]
+
+
+@pytest.mark.parametrize("file", [SPUR, HELICAL, INTERNAL])
+def test_drawn_flanks_touch_at_the_pitch_point_and_do_not_overlap(file: Path) -> None:
+    panel = section(file)
+    gears = {
+        line.name: np.column_stack((line.x, line.y))
+        for line in panel.lines
+        if line.name in ("pinion", "wheel")
+    }
+    pitch_point = next(note for note in panel.notes if note.text == "C")
+    for outline in gears.values():
+        steps = np.linspace(outline[:-1], outline[1:], 50).reshape(-1, 2)  # along the drawn strokes
+        assert np.min(np.hypot(steps[:, 0] - pitch_point.x, steps[:, 1] - pitch_point.y)) < 0.02
+    inside = Polygon(gears["wheel"]).contains_points(gears["pinion"])
+    overlapping = gears["pinion"][~inside if file is INTERNAL else inside]
+    strokes = np.linspace(gears["wheel"][:-1], gears["wheel"][1:], 50).reshape(-1, 2)
+    depths = [np.min(np.hypot(*(strokes - point).T)) for point in overlapping]
+    assert max(depths, default=0.0) < 0.005  # mm; strokes are chords of curved flanks
+
+
+def test_charts_show_what_is_removed_and_only_of_modified_flanks(tmp_path: Path) -> None:
+    plain = drawing(SPUR).content
+    assert isinstance(plain, tuple)
+    assert [panel.title for panel in plain] == ["Transverse section"]
+    file = tmp_path / "case.toml"
+    added = "[pair.wheel]\ntip_relief_um = 20\ntip_relief_length_mm = 1.0\nhelix_crowning_um = 8"
+    file.write_text(SPUR.read_text().replace("[pair.wheel]", added))
+    panels = drawing(file).content
+    assert isinstance(panels, tuple)
+    _, profile, lead = panels
+    assert profile.title.startswith("Profile of the wheel")
+    (curve,) = profile.lines
+    assert curve.y[0] == 0.0
+    assert curve.y[-1] == pytest.approx(20.0)
+    assert curve.x[-1] == pytest.approx(math.degrees(math.sqrt((88 / 75.17540966) ** 2 - 1.0)), rel=1e-7)
+    (along,) = lead.lines
+    assert along.y[[0, 100, 200]] == pytest.approx((8.0, 0.0, 8.0))
