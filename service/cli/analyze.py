@@ -20,6 +20,7 @@ from service.convert.effect_lines import assumption_lines, ledger_lines
 from service.convert.plausibility import phrased_database
 from service.convert.task_workers import ExecutorChoice, open_executor
 from service.directories import cache_home
+from service.input_file import InputFile
 from service.problems import JobFailed
 from service.schemas import Case
 from service.units import UM
@@ -27,7 +28,7 @@ from service.units import UM
 _SHOWN_HARMONICS = 3
 
 
-def run_analyze(file: Path, output: Path, executor: ExecutorChoice, *, as_json: bool) -> None:
+def run_analyze(file: InputFile, output: Path, executor: ExecutorChoice, *, as_json: bool) -> None:
     """Compute, write, print."""
     case = assessed_case(file)
     check_netcdf_output(output)

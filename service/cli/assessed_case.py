@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from service.cli.warned import warn
 from service.convert.case import case_at
 from service.convert.plausibility import case_warnings
+from service.input_file import InputFile
 from service.schemas import Case, read_model
 from service.schemas.flank import FlankPoint
 
 
-def assessed_case(file: Path, point: FlankPoint | None = None) -> Case:
+def assessed_case(file: InputFile, point: FlankPoint | None = None) -> Case:
     """Return the case in a file, at one load and alignment if requested; warn of what is implausible.
 
     Raises

@@ -15,6 +15,7 @@ from service.cli.ste import positions
 from service.convert.case import analysis_options, boundary_errors, operating_point
 from service.convert.checks import check_case
 from service.directories import cache_home
+from service.input_file import InputFile
 from service.problems import BadInput
 from service.schemas import validated
 from service.schemas.flank import FlankPoint
@@ -24,7 +25,7 @@ _MOST_POSITIONS = 256
 
 
 def run_export(
-    file: Path, output: Path, point: dict[str, float | None], at: str, beside: int, *, as_json: bool
+    file: InputFile, output: Path, point: dict[str, float | None], at: str, beside: int, *, as_json: bool
 ) -> None:
     """Solve, expand, write, print; `point` holds the fields of `FlankPoint` that were given."""
     chosen = validated(FlankPoint, {name: value for name, value in point.items() if value is not None})

@@ -13,6 +13,7 @@ from service.convert.topology import facts_of
 from service.drawing.figure import number
 from service.drawing.image import png, svg
 from service.drawing.page import Page
+from service.input_file import InputFile
 from service.problems import BadInput
 from service.report.write import write_whole
 from service.tables.data_sheet import data_sheet, data_sheet_json, data_sheet_section
@@ -25,7 +26,7 @@ _ENDINGS = (".html", ".png", ".svg")
 _WORDS = ("quantity", "symbol", "unit", "point")
 
 
-def run_geometry(file: Path, output: Path | None, *, as_json: bool) -> None:
+def run_geometry(file: InputFile, output: Path | None, *, as_json: bool) -> None:
     """Print the data sheet of a case; draw it if requested."""
     pair = gear_pair(assessed_case(file))
     warn(pair_remarks(pair))

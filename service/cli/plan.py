@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from fe_contact.analysis.run_plan import RunPlan
 from fe_contact.planning.cost_model import STAGES
 from service.cli.assessed_case import assessed_case
@@ -11,10 +9,11 @@ from service.cli.output import console, print_json, table
 from service.convert.effect_lines import ledger_lines
 from service.convert.plan import plan_of
 from service.directories import cache_home
+from service.input_file import InputFile
 from service.units import UM
 
 
-def run_plan(file: Path, time_budget_s: float | None, *, as_json: bool) -> None:
+def run_plan(file: InputFile, time_budget_s: float | None, *, as_json: bool) -> None:
     """Plan, print."""
     plan = plan_of(assessed_case(file), time_budget_s, cache_home() / "compliance")
     if as_json:

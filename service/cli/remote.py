@@ -14,6 +14,7 @@ from service.cli.output import Report, check_writable, console, print_json, prog
 from service.cli.warned import warn
 from service.client import JobState, LineOfActionClient, Result
 from service.convert.stamp import stamped
+from service.input_file import InputFile
 from service.problems import BadInput, ResultNotReady
 from service.registry import studies_of
 from service.schemas import Case, read_table, validated
@@ -32,7 +33,7 @@ class ProcessRequest:
 
 
 def run_submit(
-    file: Path, service: str, request: ProcessRequest, *, wait: bool, output: Path | None, as_json: bool
+    file: InputFile, service: str, request: ProcessRequest, *, wait: bool, output: Path | None, as_json: bool
 ) -> None:
     """Submit; wait and write if requested."""
     if output is not None:
@@ -77,7 +78,7 @@ def _further(request: ProcessRequest) -> dict[str, Any]:
 
 
 def _submitted(
-    client: LineOfActionClient, file: Path, process: str | None, further: dict[str, Any]
+    client: LineOfActionClient, file: InputFile, process: str | None, further: dict[str, Any]
 ) -> JobState:
     """Submit a file as what it holds."""
     content = read_table(file)

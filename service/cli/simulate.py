@@ -16,10 +16,11 @@ from service.client.portable import scene_of
 from service.convert.effect_lines import run_lines
 from service.convert.runs import run_json, staged
 from service.convert.stamp import stamp
+from service.input_file import InputFile
 from service.problems import BadInput, JobFailed
 
 
-def run_simulate(file: Path, output: Path, service: str | None, *, resume: bool, as_json: bool) -> None:
+def run_simulate(file: InputFile, output: Path, service: str | None, *, resume: bool, as_json: bool) -> None:
     """Gather the tables, integrate here into the file, print."""
     scene, folder = scene_of(file)
     check_netcdf_output(output)

@@ -29,6 +29,7 @@ from service.convert.stamp import stamp
 from service.convert.task_workers import ExecutorChoice, open_executor
 from service.directories import cache_home
 from service.drawing.image import png
+from service.input_file import InputFile
 from service.problems import BadInput, JobFailed
 from service.registry import Study
 from service.report.write import write_whole
@@ -112,11 +113,11 @@ def _fields(study: Study, options: Json) -> Json:
     return fields
 
 
-def _read(study: Study, file: Path) -> tuple[Case | SceneInput, Path]:
+def _read(study: Study, file: InputFile) -> tuple[Case | SceneInput, Path]:
     """Return the case or the scene in a file, and its folder."""
     if study.subject == "scene" or (study.subject != "case" and "shafts" in read_table(file)):
         return scene_of(file)
-    return read_model(Case, file), file.parent
+    return read_model(Case, file), file.folder
 
 
 def _assessed(subject: Case | SceneInput) -> Case | SceneInput:
@@ -138,9 +139,9 @@ def _made(study: Study, subject: Case | SceneInput, folder: Path, options: Json,
     return study.run.of_scene(tabled_scene(subject, folder, options["service"], report))
 
 
-def _names(study: Study, files: Sequence[Path]) -> list[str]:
+def _names(study: Study, files: Sequence[InputFile]) -> list[str]:
     """Return names of results: what tells their files apart."""
-    names = [file.stem.removeprefix(f"{study.name}_").replace("_", " ") for file in files]
+    names = [file.path.stem.removeprefix(f"{study.name}_").replace("_", " ") for file in files]
     return [str(file) for file in files] if len(set(names)) < len(names) else names
 
 

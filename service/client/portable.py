@@ -6,27 +6,28 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from service.input_file import InputFile
 from service.problems import BadInput
 from service.schemas import Case, read_model, read_table, validated
 from service.schemas.scene import MeshInput, SceneInput
 
-CaseLike = Case | Mapping[str, Any] | Path
-SceneLike = SceneInput | Mapping[str, Any] | Path
+CaseLike = Case | Mapping[str, Any] | Path | InputFile
+SceneLike = SceneInput | Mapping[str, Any] | Path | InputFile
 
 
 def case_of(case: CaseLike) -> Case:
     """Return a case from a model, a table or a file; raises `BadInput`."""
     if isinstance(case, Case):
         return case
-    return read_model(Case, case) if isinstance(case, Path) else validated(Case, dict(case))
+    return read_model(Case, case) if isinstance(case, Path | InputFile) else validated(Case, dict(case))
 
 
 def scene_of(scene: SceneLike) -> tuple[SceneInput, Path]:
     """Return a scene and the folder its files are relative to; raises `BadInput`."""
     if isinstance(scene, SceneInput):
         return scene, Path()
-    if isinstance(scene, Path):
-        return read_model(SceneInput, scene), scene.parent
+    if isinstance(scene, Path | InputFile):
+        return read_model(SceneInput, scene), InputFile.of(scene).folder
     return validated(SceneInput, dict(scene)), Path()
 
 
@@ -42,9 +43,9 @@ def inputs_of(source: CaseLike | SceneLike) -> dict[str, Any]:
     return {"case": case_of(source).model_dump(mode="json")}
 
 
-def _table(source: Mapping[str, Any] | Path) -> Mapping[str, Any]:
+def _table(source: Mapping[str, Any] | Path | InputFile) -> Mapping[str, Any]:
     """Return the table that was given, or that a file holds."""
-    return read_table(source) if isinstance(source, Path) else source
+    return read_table(source) if isinstance(source, Path | InputFile) else source
 
 
 def case_of_mesh(mesh: MeshInput, field: str, folder: Path) -> Case | None:

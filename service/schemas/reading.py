@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from service.input_file import InputFile
 from service.problems import BadInput
 from service.schemas.faults import faults_of
 from service.schemas.flank_grid_csv import with_flank_grids
@@ -33,19 +34,20 @@ def validated(model: type[M], data: object) -> M:
         raise BadInput(faults_of(error, model)) from None
 
 
-def read_table(path: Path) -> dict[str, Any]:
-    """Return the table a TOML or JSON file holds.
+def read_table(source: Path | InputFile) -> dict[str, Any]:
+    """Return the table a TOML or JSON file holds, with the values set over it.
 
     Raises
     ------
     BadInput
-        The file is missing, too large, no text, or not well formed.
+        The file is missing, too large, no text, or not well formed, or it has no place for a value.
     """
-    text = read_text(path)
+    file = InputFile.of(source)
+    path, text = file.path, read_text(file.path)
     table = _json(text, str(path)) if path.suffix == ".json" else toml_table(text, str(path))
     if not isinstance(table, dict):
         raise BadInput.of(str(path), table, "a table of fields", "See docs/case-file.md.")
-    return table
+    return file.applied(table)
 
 
 def _json(text: str, field: str) -> Any:
@@ -87,8 +89,8 @@ def _check_kind(model: type[BaseModel], table: dict[str, Any], path: Path) -> No
         raise BadInput.of("file", str(path), _SIGNS[expected[0]][0], f"It holds {content}: {takers}.")
 
 
-def read_model(model: type[M], path: Path) -> M:
-    """Return the file at `path` as `model`.
+def read_model(model: type[M], source: Path | InputFile) -> M:
+    """Return a file as `model`.
 
     Raises
     ------
@@ -96,7 +98,8 @@ def read_model(model: type[M], path: Path) -> M:
         The file, or a flank grid or housing it names, cannot be read, it is a case instead of a scene (or the
         other way round), or with every fault of its contents.
     """
-    table = read_table(path)
-    _check_kind(model, table, path)
-    table = with_flank_grids(table, path.parent, read_text)
-    return validated(model, with_housing_files(table, path.parent))
+    file = InputFile.of(source)
+    table = read_table(file)
+    _check_kind(model, table, file.path)
+    table = with_flank_grids(table, file.folder, read_text)
+    return validated(model, with_housing_files(table, file.folder))

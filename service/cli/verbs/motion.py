@@ -9,14 +9,16 @@ import typer
 
 from service.cli.guard import computing
 from service.cli.verbs.options import AsJson, TableService
+from service.cli.verbs.overrides import SceneFile, overridable
 
 verbs = typer.Typer()
 
 
 @verbs.command(epilog="Example: loa simulate examples/palermo_scene.toml -o run.nc")
 @computing
+@overridable("scene", "scene")
 def simulate(
-    scene: Annotated[Path, typer.Argument(help="Scene file (TOML, or JSON of the same shape).")],
+    scene: SceneFile,
     output: Annotated[Path, typer.Option("-o", "--output", help="Run to write (netCDF).")],
     service: TableService = None,
     resume: Annotated[

@@ -12,6 +12,8 @@ from typer.core import TyperGroup
 
 from service.cli.guard import computing
 from service.cli.verbs.options import AsCsv, AsJson, DaskScheduler, TableService, TaskWorkers
+from service.cli.verbs.overrides import file_argument, overridable
+from service.input_file import InputFile
 from service.registry import FORMER, STUDIES, Study
 from service.schemas.spelling import is_list, spelling_of
 
@@ -36,7 +38,8 @@ def _command(study: Study) -> Any:
     """Return the verb of a study."""
     verb = typer.Typer(add_completion=False, rich_markup_mode=None)
     example = f"Example: loa {study.name} {study.example}"
-    verb.command(study.name, epilog=example, short_help=study.description)(computing(_verb(study)))
+    called = overridable(study.argument, study.subject)(_verb(study))
+    verb.command(study.name, epilog=example, short_help=study.description)(computing(called))
     return typer.main.get_command(verb)
 
 
@@ -55,10 +58,9 @@ def _verb(study: Study) -> Callable[..., None]:
 
 def _parameters(study: Study) -> Iterator[Parameter]:
     """Yield argument and options of a verb."""
-    text = f"{study.subject.capitalize()} file (TOML, or JSON of the same shape)."
-    name = study.subject.upper().replace(" ", "_")
-    argument = typer.Argument(help=text, metavar=name)
-    yield _parameter(study.argument, Annotated[list[Path] if study.several else Path, argument])
+    metavar = study.subject.upper().replace(" ", "_")
+    argument = file_argument(f"{study.subject.capitalize()} file", metavar)
+    yield _parameter(study.argument, Annotated[list[InputFile] if study.several else InputFile, argument])
     if study.from_file:
         yield _parameter("study", Annotated[Path, typer.Argument(help="File of what is varied and how.")])
     else:

@@ -9,6 +9,8 @@ import typer
 
 from service.cli.guard import computing, guarded
 from service.cli.verbs.options import DEFAULT_SERVICE, AsJson, Service
+from service.cli.verbs.overrides import file_argument, overridable
+from service.input_file import InputFile
 from service.registry import studies_of
 
 verbs = typer.Typer()
@@ -52,8 +54,9 @@ def work(
 
 @verbs.command(epilog="Example: loa submit examples/palermo_spur_20_20.toml --wait -o ste.nc")
 @computing
+@overridable("file", "case or scene")
 def submit(
-    file: Annotated[Path, typer.Argument(help="Case or scene file.")],
+    file: Annotated[InputFile, file_argument("Case or scene file", "FILE")],
     service: Service = DEFAULT_SERVICE,
     wait: Annotated[bool, typer.Option("--wait", help="Wait for the result.")] = False,
     output: Annotated[

@@ -9,14 +9,16 @@ import typer
 
 from service.cli.guard import computing, guarded
 from service.cli.verbs.options import AsJson
+from service.cli.verbs.overrides import CaseFile, overridable
 
 verbs = typer.Typer()
 
 
 @verbs.command(epilog="Example: loa plan examples/palermo_spur_20_20.toml --time-budget-s 5")
 @computing
+@overridable("case")
 def plan(
-    case: Annotated[Path, typer.Argument(help="Case file.")],
+    case: CaseFile,
     time_budget_s: Annotated[
         float | None, typer.Option(help="CPU seconds to hold the plan against, beside the case's tolerance.")
     ] = None,

@@ -18,14 +18,17 @@ from service.cli.verbs.options import (
     Torque,
     load_point,
 )
+from service.cli.verbs.overrides import CaseFile, file_argument, overridable
+from service.input_file import InputFile
 
 verbs = typer.Typer()
 
 
 @verbs.command(epilog="Example: loa analyze examples/palermo_spur_20_20.toml -o ste.nc")
 @computing
+@overridable("case")
 def analyze(
-    case: Annotated[Path, typer.Argument(help="Case file (TOML, or JSON of the same shape).")],
+    case: CaseFile,
     output: Annotated[Path, typer.Option("-o", "--output", help="STE database to write (netCDF).")],
     workers: TaskWorkers = 1,
     dask: DaskScheduler = None,
@@ -40,8 +43,9 @@ def analyze(
 
 @verbs.command(epilog="Example: loa geometry examples/sensitivity_automotive.toml -o pair.html")
 @computing
+@overridable("case")
 def geometry(
-    case: Annotated[Path, typer.Argument(help="Case file (TOML, or JSON of the same shape).")],
+    case: CaseFile,
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", help="Drawing or page to write, ending in .html, .png or .svg."),
@@ -80,8 +84,9 @@ def ste(
 
 @verbs.command(epilog="Example: loa export examples/palermo_spur_20_20.toml --torque 100 -o deformed")
 @computing
+@overridable("case")
 def export(
-    case: Annotated[Path, typer.Argument(help="Case file; for an FMU an STE database, or a run.")],
+    case: Annotated[InputFile, file_argument("Case file; for an FMU an STE database, or a run", "CASE")],
     output: Annotated[
         Path,
         typer.Option(
@@ -119,8 +124,8 @@ def export(
 
     point = load_point(torque, force, misalignment_um, center_distance_change_mm)
     if is_for_runs(output):
-        run_export_run(case, output, function, (start, end), as_json=json)
+        run_export_run(case.as_it_is, output, function, (start, end), as_json=json)
     elif output.suffix == ".fmu":
-        run_export_fmu(case, output, point, damping_n_s_per_m, backlash_um, as_json=json)
+        run_export_fmu(case.as_it_is, output, point, damping_n_s_per_m, backlash_um, as_json=json)
     else:
         run_export(case, output, point, at, beside, as_json=json)
