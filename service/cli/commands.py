@@ -7,11 +7,11 @@ from typing import Annotated, TextIO
 
 import typer
 
-from service.cli.verbs import keys, motion, pages, serving, studies, tables, upkeep
+from service.cli.verbs import keys, motion, new, pages, serving, studies, tables, upkeep
 from service.cli.verbs.of_studies import StudyGroup
 
 _EPILOG = (
-    "Start with: loa analyze examples/palermo_spur_20_20.toml -o ste.nc, then loa report ste.nc. "
+    "Start with: loa new -o pair.toml, loa analyze pair.toml -o ste.nc, then loa report ste.nc. "
     "Exit codes: 0 done; 1 a mesh, a solve or a job failed; 2 bad input; 3 warnings under --strict; "
     "4 no service answers; "
     "5 a defect (a log is named); 130 interrupted."
@@ -28,7 +28,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for family in (tables, motion, studies, pages, serving):
+for family in (new, tables, motion, studies, pages, serving):
     for verb in family.verbs.registered_commands:  # the whole sentence, which the list would cut off
         verb.short_help = (verb.callback.__doc__ or "").partition("\n")[0]
     app.add_typer(family.verbs)
