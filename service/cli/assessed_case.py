@@ -8,6 +8,7 @@ from service.convert.plausibility import case_warnings
 from service.input_file import InputFile
 from service.schemas import Case, read_model
 from service.schemas.flank import FlankPoint
+from service.schemas.lines import located
 
 
 def assessed_case(file: InputFile, point: FlankPoint | None = None) -> Case:
@@ -21,5 +22,6 @@ def assessed_case(file: InputFile, point: FlankPoint | None = None) -> Case:
     case = read_model(Case, file)
     if point is not None:
         case = case_at(case, point)
-    warn(case_warnings(case))
+    with located(file):
+        warn(case_warnings(case))
     return case

@@ -34,6 +34,7 @@ from service.problems import BadInput, JobFailed
 from service.registry import Study
 from service.report.write import write_whole
 from service.schemas import Case, read_model, read_table, validated
+from service.schemas.lines import located
 from service.schemas.scene import SceneInput
 from service.schemas.spelling import item_type, spelling_of
 from service.studies.computation import Means
@@ -47,7 +48,10 @@ def run_study(study: Study, options: Json) -> None:
     files = options[study.argument] if study.several else [options[study.argument]]
     read = [_read(study, file) for file in files]
     inputs = _inputs(study, options)
-    subjects = [(_assessed(study.run.narrowed(subject, inputs)), folder) for subject, folder in read]
+    subjects = []
+    for file, (subject, folder) in zip(files, read, strict=True):
+        with located(file):
+            subjects.append((_assessed(study.run.narrowed(subject, inputs)), folder))
     targets = _targets(study, options["output"])
     for subject, _ in subjects:
         study.run.check(subject, inputs)

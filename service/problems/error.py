@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import Any, ClassVar
 
 from service.problems.fault import Fault
@@ -69,7 +70,7 @@ class BadInput(ServiceError):
 
     def within(self, prefix: str) -> BadInput:
         """Return the same error with its fields named inside `prefix`."""
-        return BadInput(Fault(f"{prefix}.{f.field}", f.value, f.bound, f.suggestion) for f in self.faults)
+        return BadInput(replace(fault, field=f"{prefix}.{fault.field}") for fault in self.faults)
 
 
 class Unexpected(ServiceError):

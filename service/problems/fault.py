@@ -24,16 +24,20 @@ class Fault:
         What would be accepted, to be read after "must be".
     suggestion : str
         What to try.
+    place : str
+        File and line, for those who wrote one; empty where none is known.
     """
 
     field: str
     value: object
     bound: str
     suggestion: str = ""
+    place: str = ""
 
     def __str__(self) -> str:
         text = f"{self.field} = {_shown(self.value)}: must be {self.bound}"
-        return f"{text}. {self.suggestion}" if self.suggestion else text
+        parts = (text, self.suggestion) if self.suggestion else (text,)
+        return ". ".join(parts) + (f" ({self.place})" if self.place else "")
 
     def as_json(self) -> dict[str, Any]:
         """Return the four facts as plain JSON; a value that JSON cannot hold is shown as text."""

@@ -13,6 +13,7 @@ from service.problems import BadInput
 from service.schemas.faults import faults_of
 from service.schemas.flank_grid_csv import with_flank_grids
 from service.schemas.housing_file import with_housing_files
+from service.schemas.lines import located
 from service.schemas.toml_table import toml_table
 
 M = TypeVar("M", bound=BaseModel)
@@ -101,5 +102,6 @@ def read_model(model: type[M], source: Path | InputFile) -> M:
     file = InputFile.of(source)
     table = read_table(file)
     _check_kind(model, table, file.path)
-    table = with_flank_grids(table, file.folder, read_text)
-    return validated(model, with_housing_files(table, file.folder))
+    with located(file):
+        table = with_flank_grids(table, file.folder, read_text)
+        return validated(model, with_housing_files(table, file.folder))

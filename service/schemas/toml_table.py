@@ -6,10 +6,11 @@ import re
 import tomllib
 from typing import Any
 
-from service.problems import BadInput
+from service.problems import BadInput, Fault
 
 _MOST_PARTS = 32
 _PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
+_FORM = "Write NAME = VALUE (a number, a text in quotes, a list in brackets) or a [table]."
 _LONG_KEY = re.compile(rf"(?<![\w-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{_MOST_PARTS}}}")
 
 
@@ -35,6 +36,17 @@ def toml_table(text: str, field: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except ValueError as error:  # of TOML, or of a number with too many digits
-        raise BadInput.of(field, None, "well-formed TOML", f"{error}.") from None
+        raise BadInput([_fault(field, text, str(error))]) from None
     except RecursionError:
         raise BadInput.of(field, None, "TOML of less depth", "See docs/case-file.md.") from None
+
+
+def _fault(field: str, text: str, message: str) -> Fault:
+    """Return what is wrong with a TOML text, with the line and what is expected there."""
+    words, at, where = message.partition(" (at line ")
+    number = where.partition(",")[0]
+    if not at or not number.isdigit():
+        return Fault(field, None, "well-formed TOML", f"{message}.")
+    line = text.splitlines()[int(number) - 1].strip() if int(number) <= len(text.splitlines()) else ""
+    bound = f"well-formed TOML, which line {number} is not"
+    return Fault(field, line or None, bound, f"{words}. {_FORM}")
