@@ -26,7 +26,7 @@ from bounds.plausibility import Check, Checklist, Finding, PlausibilityWarning, 
 from bounds.reader import Reader
 from bounds.refused import RefusedValue, inside
 from bounds.text import Quantity, SiNote, Text, Words
-from bounds.unit import Unit
+from bounds.unit import Unit, engineering
 
 __all__ = [
     "DEPTHS",
@@ -56,6 +56,7 @@ __all__ = [
     "declarations",
     "declared",
     "described",
+    "engineering",
     "exactly",
     "finding_of",
     "inside",

@@ -45,6 +45,29 @@ class Unit:
         return self.after(_rounded(limit, self.factor, ROUND_FLOOR))
 
 
+def engineering(value: float, digits: int = 3, sign: str = "") -> str:
+    """Write a number for people: plainly from 1e-6 to 1e7, else with an exponent that is a multiple of three.
+
+    Parameters
+    ----------
+    value : float
+    digits : int
+        Significant digits; zeros at the end are left out.
+    sign : str
+        "+": positive numbers have their sign too.
+    """
+    text = f"{value:{sign}.{digits}g}"
+    if "e" not in text:
+        return text
+    mantissa, _, power = text.partition("e")
+    exponent = int(power)
+    if -6 <= exponent < 7:
+        decimals = max(len(mantissa.partition(".")[2]) - exponent, 0)
+        return f"{float(text):{sign}.{decimals}f}"
+    shift = exponent % 3
+    return f"{float(mantissa) * 10**shift:{sign}.6g}e{exponent - shift}"
+
+
 def _rounded(limit: float, factor: float, direction: str) -> str:
     """Return seven digits, rounding of the limit's own computation left aside; integers are written out."""
     if isinstance(limit, int) and factor == 1.0:

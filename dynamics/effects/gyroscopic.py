@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from bounds import engineering
 from dynamics.effects.effect import RotorEffect, Verdict
 from dynamics.effects.frame_term import FrameTerm, frame_lever
 from dynamics.effects.loaded_rotors import LoadedRotor
@@ -47,7 +48,7 @@ class Gyroscopic(RotorEffect):
             return Verdict(True, True, "torques alone turn the shaft: its speed is not known before", 0.0)
         share = max(_tilt_share(rotor), _frame_share(rotor))
         held = rotor.pushed / own.radial_stiffness if own.radial_stiffness > 0.0 else 0.0
-        reason = f"rotation shifts natural frequencies by up to {share:.2g} of them"
+        reason = f"rotation shifts natural frequencies by up to {engineering(share, 2)} of them"
         return Verdict(share > SHARE, True, reason, min(share, 1.0) * held)
 
     def frame_terms(self, mechanism: Mechanism, connections: Connections, index: int) -> Sequence[FrameTerm]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from bounds import engineering
 from dynamics.assembly.assemble import System, assemble
 from dynamics.errors import InputError, SolveError
 from dynamics.influence.linear_figures import LinearFigures, linear_figures
@@ -58,7 +59,8 @@ class Influence(Record):
     def words(self) -> str:
         """The relative changes, in words."""
         parts = (self.relative_mean, self.relative_peak_to_peak, self.relative_bearing_force)
-        mean, ripple, force = (f"{100 * part:.2g} %" if part > ROUNDING else "nothing" for part in parts)
+        shares = (100 * part if part > ROUNDING else 0.0 for part in parts)
+        mean, ripple, force = (f"{engineering(share, 2)} %" for share in shares)
         return (
             f"{mean} of the mean, {ripple} of the peak-to-peak transmission error, {force} of bearing forces"
         )

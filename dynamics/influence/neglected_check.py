@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from bounds import engineering
 from dynamics.influence.decide import Decided
 from dynamics.influence.estimate import Influence
 from dynamics.types import FloatArray, Json
@@ -49,7 +50,10 @@ class NeglectedChecks:
             np.max(np.abs(influence.peak_to_peak) / np.maximum(ripple, 1e-300)),
         ]
         change = max(*(float(part) for part in parts), influence.relative_bearing_force)
-        reason = f"estimated at {100.0 * change:.2g} % of the computed mean, peak-to-peak or bearing force"
+        reason = (
+            f"estimated at {engineering(100.0 * change, 2)} % "
+            "of the computed mean, peak-to-peak or bearing force"
+        )
         if self._parted:
             reason = "flanks parted: the linear theory by which it was neglected does not hold"
         return {

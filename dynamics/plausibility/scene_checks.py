@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from bounds import Finding
+from bounds import Finding, engineering
 from dynamics.bodies import GearBody, Inertia, Shaft
 from dynamics.effects.mechanism_of import mechanism_of
 from dynamics.joints import Bushing, PlanetBearing
@@ -88,7 +88,10 @@ def _meshes(scene: Scene) -> Iterator[Finding]:
         if mesh.friction is not None:
             yield from assessed("friction", f"{path}.friction", mesh.friction, "1")
         face = scene.gear(mesh.driver).face_width
-        skew, words = mesh.misalignment, f"a misalignment of {1e3 * abs(mesh.misalignment) / face:.2g} mrad"
+        skew, words = (
+            mesh.misalignment,
+            (f"a misalignment of {engineering(1e3 * abs(mesh.misalignment) / face, 2)} mrad"),
+        )
         for check, scale in (("mesh_misalignment", 1.0), ("mesh_misalignment_over_face", face)):
             for finding in assessed(
                 check, f"{path}.misalignment", skew, "m", scale=scale, reason=words, skip_zero=True

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bounds import engineering
 from dynamics.results.energy_audit import EnergyAudit
 from dynamics.types import Json
 
@@ -15,7 +16,7 @@ def energy_check(audit: EnergyAudit) -> Json:
     """Return the entry of `audit`: what is unaccounted for over the turnover, how far a loss fell in J."""
     lost = audit.fallen > FALLEN * audit.turnover
     missing = audit.relative > UNACCOUNTED
-    reason = f"{100.0 * audit.relative:.2g} % of {audit.turnover:.3g} J is not accounted for"
+    reason = f"{engineering(100.0 * audit.relative, 2)} % of {audit.turnover:.3g} J is not accounted for"
     if missing:
         reason = f"{reason}: shorten the fixed step, or lower the tolerance of the step control"
     if lost:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bounds import engineering
 from dynamics.assembly.assemble import System
 from dynamics.forces import GearMesh
 from dynamics.forces.operating_point_table import table_at_operating_point
@@ -64,7 +65,10 @@ class HeldOperatingPointChecks:
         system, quantity = self._system, WHAT[watched.axis]
         mesh, force = system.scene.meshes[watched.mesh], float(system.flanks.nominal_force[watched.mesh])
         change = _change(mesh, force, watched.axis, farthest)
-        reported = f"bodies moved by up to {farthest:.3g} m, which changes the mean by {100.0 * change:.2g} %"
+        reported = (
+            f"bodies moved by up to {farthest:.3g} m, which "
+            f"changes the mean by {engineering(100.0 * change, 2)} %"
+        )
         return {
             "effect": system.ledger.effect_adding(FIELDS[watched.axis]),
             "assumption": f"{quantity} stays where the table is read",

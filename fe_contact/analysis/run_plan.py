@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from bounds import engineering
 from fe_contact.analysis.checks.effect_ledger import effect_ledger
 from fe_contact.analysis.request.decided import Decided, model_name
 from fe_contact.analysis.request.model_choice import decide
@@ -157,4 +158,8 @@ def _conflict(decided: Decided, time_budget: float, cache: Path | None) -> str:
     if not decided.mesh.met:
         return f"{goal} {within} cannot be had: {decided.mesh.reason}"
     seconds = decided.predicted(cache).cpu_seconds
-    return "" if seconds <= time_budget else f"{goal} {within} cannot be had: it needs {seconds:.2g} CPU s"
+    return (
+        ""
+        if seconds <= time_budget
+        else (f"{goal} {within} cannot be had: it needs {engineering(seconds, 2)} CPU s")
+    )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from bounds import engineering
 from fe_contact.microgeometry.choice import SLACK, Choice
 from fe_contact.microgeometry.design_study import DesignStudy
 from fe_contact.microgeometry.optimization import Outcome
@@ -22,10 +23,12 @@ def conclusion(choice: Choice, request: OptimizationRequest) -> tuple[Outcome, s
     gain = start.objective.value - optimum.objective.value
     error = start.objective.error + optimum.objective.error
     if optimum.violation > SLACK:
-        over = f"{100.0 * optimum.violation:.2g} % of them, or of the load on tip edges"
+        over = f"{engineering(100.0 * optimum.violation, 2)} % of them, or of the load on tip edges"
         return Outcome.LIMITS_EXCEEDED, f"the best design exceeds the limits by {over}; {ended}"
     moved = "falls" if gain >= 0.0 else "rises"
-    change = f"expected peak-to-peak {moved} by {1e6 * abs(gain):.3g} um, errors {1e6 * error:.2g} um"
+    change = (
+        f"expected peak-to-peak {moved} by {1e6 * abs(gain):.3g} um, errors {engineering(1e6 * error, 2)} um"
+    )
     if gain > error:
         return Outcome.IMPROVED, f"{change}; {ended}"
     if start.violation > SLACK:
@@ -50,7 +53,9 @@ def _why_not(choice: Choice, request: OptimizationRequest, error: float) -> str:
         return f"the start lies beyond the bounds of {', '.join(request.outside)}; "
     spread = max(run.spread for run in choice.runs)
     if choice.run.converged and spread <= error:
-        return f"what is varied makes no difference: all designs lie within {1e6 * spread:.2g} um; "
+        return (
+            f"what is varied makes no difference: all designs lie within {engineering(1e6 * spread, 2)} um; "
+        )
     return ""
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import asdict, dataclass
 
-from bounds import at_most
+from bounds import at_most, engineering
 from fe_contact.errors import InputError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.plan import Plan
@@ -90,7 +90,8 @@ def refuse_long_cycle(cost: CycleCost) -> None:
     note = f" with {cost.positions} positions a pitch and {cost.alignments} alignments"
     gigabytes = cost.rows * _BYTES_PER_ROW / 1e9
     advice = (
-        f"The table would have {cost.rows} rows, about {cost.cpu_seconds:.2g} CPU s and {gigabytes:.2g} GB. "
+        f"The table would have {cost.rows} rows, about "
+        f"{engineering(cost.cpu_seconds, 2)} CPU s and {engineering(gigabytes, 2)} GB. "
         "Ask for fewer pitches (the teeth of one gear, say), fewer positions or alignments, or give one gear "
         "only its deviations."
     )

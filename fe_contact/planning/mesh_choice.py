@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from bounds import engineering
 from fe_contact.allowed_error import AllowedError
 from fe_contact.planning.error_model import ExpectedError
 from fe_contact.types import Json
@@ -95,9 +96,9 @@ def mesh_for_time(
     for option in sorted(options, key=lambda o: (o.error.total, o.effort)):
         predicted = seconds(option)
         if predicted <= budget:
-            return MeshChoice(option, True, f"predicted {predicted:.2g} CPU s")
+            return MeshChoice(option, True, f"predicted {engineering(predicted, 2)} CPU s")
     least = min(options, key=_effort)
-    reason = f"even the quickest mesh is predicted to take {seconds(least):.2g} CPU s"
+    reason = f"even the quickest mesh is predicted to take {engineering(seconds(least), 2)} CPU s"
     return MeshChoice(least, False, reason)
 
 
@@ -108,4 +109,4 @@ def _effort(option: MeshOption) -> float:
 
 def _percent(value: float) -> str:
     """In per cent, two digits."""
-    return f"{100.0 * value:.2g}"
+    return engineering(100.0 * value, 2)

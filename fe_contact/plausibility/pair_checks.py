@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from bounds import DEPTHS, Direction, Finding, Kind
+from bounds import DEPTHS, Direction, Finding, Kind, engineering
 from fe_contact.flank.modification import FLANK_FIELDS, fields_of
 from fe_contact.geometry import ParallelAxes, Shaft
 from fe_contact.geometry.toothing import Toothing
@@ -78,7 +78,7 @@ def _gear(name: str, gear: Toothing) -> Iterator[Finding]:
     bore = getattr(gear, "bore_diameter", None)
     if bore is not None:
         root = 2.0 * gear.root_radius
-        reason = f"{bore / root:.2g} of the root diameter is no common bore"
+        reason = f"{engineering(bore / root, 2)} of the root diameter is no common bore"
         for finding in assessed("bore", f"{name}.bore_diameter", bore, "m", scale=root, reason=reason):
             yield replace(finding, high=root)
     shape = gear.modification
@@ -103,7 +103,7 @@ def _amount(field: str, amount: float, module: float) -> Iterator[Finding]:
     low, high = CHECKS["relief_amount"].low or 0.0, CHECKS["relief_over_module"].high or math.inf
     findings = [*assessed("relief_amount", field, amount, "m", reason="smaller than can be made or measured")]
     if not field.endswith("thickness_allowance"):
-        reason = f"{abs(amount) / module:.2g} modules are no modification"
+        reason = f"{engineering(abs(amount) / module, 2)} modules are no modification"
         findings += assessed("relief_over_module", field, amount, "m", scale=module, reason=reason)
     for finding in findings:
         yield replace(finding, low=low, high=high * module)
@@ -124,7 +124,9 @@ def _shafts(pair: ParallelAxes) -> Iterator[Finding]:
 
 def _shaft(name: str, shaft: Shaft) -> Iterator[Finding]:
     """Check one shaft between its bearings."""
-    reason = f"{shaft.length / shaft.diameter:.2g} diameters between the bearings are no common shaft"
+    reason = (
+        f"{engineering(shaft.length / shaft.diameter, 2)} diameters between the bearings are no common shaft"
+    )
     yield from assessed(
         "shaft_slenderness", f"{name}.length", shaft.length, "m", scale=shaft.diameter, reason=reason
     )
@@ -173,7 +175,7 @@ def _loads(pair: ParallelAxes, load: FloatArray, loads_as: str) -> Iterator[Find
         ("line_load", intensity, f"no gear carries {words}"),
         ("hertz_pressure", pressure, f"a nominal contact pressure of {pressure / 1e9:.3g} GPa"),
         ("root_stress", stress, f"a nominal root stress of {stress / 1e9:.3g} GPa"),
-        ("transmission_error", deflection, f"teeth that yield by {deflection:.2g} modules"),
+        ("transmission_error", deflection, f"teeth that yield by {engineering(deflection, 2)} modules"),
     ):
         for finding in assessed(check, "", amount, CHECKS[check].unit, reason=reason):
             yield replace(finding, field=field, value=value, unit=unit, low=low, high=high)

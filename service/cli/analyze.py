@@ -5,12 +5,21 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from bounds import engineering
 from fe_contact.analysis import ste_database
 from fe_contact.options import Run
 from fe_contact.ste import SteDatabase
 from fe_contact.workers import InProcess, Workers
 from service.cli.assessed_case import assessed_case
-from service.cli.output import Report, check_netcdf_output, console, print_json, progress_bar, table
+from service.cli.output import (
+    Report,
+    check_netcdf_output,
+    console,
+    print_json,
+    print_result,
+    progress_bar,
+    table,
+)
 from service.cli.tolerance_lines import print_draft, tolerance_lines, tolerance_warnings
 from service.cli.warned import warn
 from service.convert.answers import summary_json
@@ -23,6 +32,7 @@ from service.directories import cache_home
 from service.input_file import InputFile
 from service.problems import JobFailed
 from service.schemas import Case
+from service.tables.static_part import static_headlines
 from service.units import UM
 
 _SHOWN_HARMONICS = 3
@@ -41,6 +51,7 @@ def run_analyze(file: InputFile, output: Path, executor: ExecutorChoice, *, as_j
         print_json(summary)
     else:
         _show(summary)
+        print_result(static_headlines(database), [output])
     if database.n_failed:
         raise JobFailed(f"{database.failure_message()}. The table in {output} holds NaN there.")
 
@@ -78,21 +89,23 @@ def _show(summary: dict[str, Any]) -> None:
     out.print(_cost(summary["receipt"]), highlight=False)
     out.print(f"points {summary['points']}, failed {summary['failed_points']}", highlight=False)
     out.print(f"content hash {summary['content_hash']}", highlight=False)
-    out.print(f"written to {summary['file']}", highlight=False)
 
 
 def _cost(receipt: dict[str, Any]) -> str:
     """Return time by stage and memory in one line, and what plane strain leaves out in another."""
-    stages = ", ".join(f"{name} {spent['cpu_seconds']:.2g}" for name, spent in receipt["stages"].items())
+    seconds = {name: spent["cpu_seconds"] for name, spent in receipt["stages"].items()}
+    stages = ", ".join(f"{name} {engineering(spent, 2)}" for name, spent in seconds.items())
     memory = receipt["peak_memory_bytes"] / 2**20
-    text = f"\ncost {receipt['cpu_seconds']:.3g} CPU s ({stages}), {memory:.0f} MiB"
+    text = f"\ncost {engineering(receipt['cpu_seconds'], 3)} CPU s ({stages}), {memory:.0f} MiB"
     others = receipt.get("elsewhere", {})
     if others.get("tasks"):
-        text += f"\nof these {others['cpu_seconds']:.3g} CPU s in {others['tasks']} tasks of workers"
+        text += (
+            f"\nof these {engineering(others['cpu_seconds'], 3)} CPU s in {others['tasks']} tasks of workers"
+        )
     predicted = receipt.get("predicted")
     if predicted:
         pitches, seconds = predicted["pitches"], predicted["cpu_seconds"]
-        text += f"\nperiod {pitches} base pitches; contact predicted {seconds:.2g} CPU s"
+        text += f"\nperiod {pitches} base pitches; contact predicted {engineering(seconds, 2)} CPU s"
     held_out = _held_out(receipt.get("held_out", {}))
     if held_out:
         text += f"\nlargest error at held-out points between the nodes: {held_out} (in the errors there)"
@@ -106,7 +119,10 @@ def _cost(receipt: dict[str, Any]) -> str:
         text += f"\nerrors NOT estimated: {', '.join(missing).replace('_', ' ')}"
     left_out = receipt["error_by_source"]["plane_for_finite_width_relative"]
     if left_out:
-        text += f"\nthe plane leaves out a finite width: {100 * left_out:.2g} % of the mean, in the errors"
+        text += (
+            "\nthe plane leaves out a finite width: "
+            f"{engineering(100 * left_out, 2)} % of the mean, in the errors"
+        )
     return text
 
 
@@ -115,7 +131,7 @@ def _held_out(axes: dict[str, Any]) -> str:
     words = []
     for name, measured in axes.items():
         errors = [error for row in measured["error_m"] for error in row]
-        worst = "unknown" if None in errors else f"{max(errors) / UM:.2g} um"
+        worst = "unknown" if None in errors else f"{engineering(max(errors) / UM, 2)} um"
         words.append(f"{name.replace('_', ' ')} {worst}")
     return ", ".join(words)
 
@@ -126,5 +142,6 @@ def _row(load: dict[str, Any]) -> list[str]:
     figures = [f"{value:.4g}" for value in values]
     if "mean_error_um" in load:
         errors = [load["mean_error_um"], load["peak_to_peak_error_um"], *load["harmonics_error_um"]]
-        figures = [f"{figure} ±{error:.1g}" for figure, error in zip(figures, errors, strict=False)]
+        bands = [engineering(error, 1) for error in errors]
+        figures = [f"{figure} ±{band}" for figure, band in zip(figures, bands, strict=False)]
     return [f"{load['torque_n_m']:.6g}", f"{load['normal_force_n']:.6g}", *figures]

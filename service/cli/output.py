@@ -9,7 +9,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
@@ -18,7 +18,12 @@ from rich.table import Table
 from service.cli.warned import warnings_so_far
 from service.problems import BadInput
 
+if TYPE_CHECKING:
+    from service.drawing.page import Headline
+
 Report = Callable[[str, float], None]
+
+_MOST_HEADLINES = 2
 
 
 def print_json(facts: dict[str, Any]) -> None:
@@ -42,6 +47,17 @@ def table(
     for row in rows:
         grid.add_row(*row)
     return grid
+
+
+def print_result(headlines: Sequence[Headline], files: Sequence[Path]) -> None:
+    """End a verb with its main results, a line each and two at most, and the files that were written."""
+    out = console()
+    for headline in headlines[:_MOST_HEADLINES]:
+        band = headline.remark if headline.remark.startswith("±") else f"({headline.remark})"
+        line = f"{headline.name}: {headline.value} {band}".removesuffix(" ()")
+        out.print(line, highlight=False, soft_wrap=True)
+    if files:
+        out.print(f"written to {', '.join(map(str, files))}", highlight=False, soft_wrap=True)
 
 
 def csv_text(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

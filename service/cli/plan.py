@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bounds import engineering
 from fe_contact.analysis.run_plan import RunPlan
 from fe_contact.planning.cost_model import STAGES
 from service.cli.assessed_case import assessed_case
@@ -25,15 +26,17 @@ def run_plan(file: InputFile, time_budget_s: float | None, *, as_json: bool) -> 
 def _show(plan: RunPlan) -> None:
     """Print the plan for people."""
     out = console()
+    for line in ledger_lines(plan.to_json()["effect_ledger"]):
+        out.print(line, highlight=False)
     head = ["mesh", "CPU s", *STAGES, "memory MiB", "error %", "of which model %", "mean um", "p-p um", ""]
     rows = [
         [
             entry.level if entry.slices == 1 else f"{entry.level}, {entry.slices} slices",
-            f"{entry.cost.cpu_seconds:.2g}",
-            *(f"{entry.cost.stages[stage]:.2g}" for stage in STAGES),
+            engineering(entry.cost.cpu_seconds, 2),
+            *(engineering(entry.cost.stages[stage], 2) for stage in STAGES),
             f"{entry.cost.memory_bytes / 2**20:.0f}",
-            f"{100.0 * entry.error.total:.2g}",
-            f"{100.0 * entry.error.model:.2g}",
+            engineering(100.0 * entry.error.total, 2),
+            engineering(100.0 * entry.error.model, 2),
             *(_micrometers(error) for error in (entry.error.mean, entry.error.peak_to_peak)),
             "chosen" if entry is plan.chosen else "",
         ]
@@ -48,10 +51,8 @@ def _show(plan: RunPlan) -> None:
     )
     if plan.conflict or not plan.choice.met:
         out.print(plan.conflict or f"cannot be had: {plan.choice.reason}", highlight=False)
-    for line in ledger_lines(plan.to_json()["effect_ledger"]):
-        out.print(line, highlight=False)
 
 
 def _micrometers(error: float | None) -> str:
     """Return an expected error in um: per cent of a small ripple mean little; none where no size is known."""
-    return "" if error is None else f"{error / UM:.2g}"
+    return "" if error is None else engineering(error / UM, 2)

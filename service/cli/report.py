@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from pydantic import ValidationError
 
+from bounds import engineering
 from service.cli.output import Report, check_writable, console, print_json, progress_bar
 from service.cli.warned import warn
 from service.convert.case import case_at
@@ -52,7 +53,7 @@ def run_report(
         print_json({"file": str(output), "written": [str(path) for path in written]})
         return
     if flank:
-        console().print(f"flank results {spent:.3g} CPU s", highlight=False)
+        console().print(f"flank results {engineering(spent, 3)} CPU s", highlight=False)
     for path in written:
         console().print(f"written to {path}", highlight=False)
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from bounds import engineering
+
 
 def effect_lines(ledger: Mapping[str, Any]) -> list[str]:
     """Return a line per effect that is on, or off though it moves something: part, influence in um, why.
@@ -15,7 +17,7 @@ def effect_lines(ledger: Mapping[str, Any]) -> list[str]:
     entries = [entry for entry in ledger.get("entries", ()) if entry["on"] or entry["worth"] > 0.0]
     lines = [
         f"effect {entry['effect']}, {entry['part']}: {'on' if entry['on'] else 'off'}, "
-        f"influence {1e6 * entry['worth']:.3g} um: {entry['reason']}"
+        f"influence {engineering(1e6 * entry['worth'], 3)} um: {entry['reason']}"
         for entry in entries
     ]
     prices = [

@@ -8,7 +8,7 @@ from dynamics.scene import Scene
 from dynamics.simulation import interrupted_run, simulate_to_file
 from dynamics.types import RunStatus
 from service.cli.interrupt import until_interrupted
-from service.cli.output import Report, check_netcdf_output, console, print_json, progress_bar
+from service.cli.output import Report, check_netcdf_output, console, print_json, print_result, progress_bar
 from service.cli.run_effects import effect_lines
 from service.cli.scene_tables import scene_with_tables
 from service.cli.warned import warnings_so_far
@@ -60,4 +60,8 @@ def _show(facts: dict[str, object]) -> None:
     ledger = attributes.get("effect_ledger")
     for line in (*effect_lines(ledger if isinstance(ledger, dict) else {}), *run_lines(attributes)):
         out.print(line, highlight=False)
-    out.print(f"written to {facts['file']}", highlight=False)
+    sizes = facts["dimensions"]
+    assert isinstance(sizes, dict)
+    status = str(attributes["status"]).lower().replace("_", " ")
+    out.print(f"run {status}: {sizes['time']} samples of {sizes['mesh']} meshes", highlight=False)
+    print_result((), [Path(str(facts["file"]))])

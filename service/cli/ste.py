@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from bounds import engineering
 from fe_contact.ste import SteDatabase
 from service.cli.output import console, print_json, table
 from service.cli.warned import warn
@@ -117,7 +118,7 @@ def _show(curve: dict[str, Any]) -> None:
     )
     for name in ("mean", "peak_to_peak"):
         error = curve.get(f"{name}_error_um")
-        band = "um, error not estimated" if error is None else f"±{error:.1g} um"
+        band = "um, error not estimated" if error is None else f"±{engineering(error, 1)} um"
         out.print(f"{name.replace('_', '-')} {curve[f'{name}_um']:.4f} {band}", highlight=False)
     harmonics = ", ".join(f"{value:.4f}" for value in curve["harmonics_um"][:8])
     out.print(f"harmonics {harmonics} um", highlight=False)

@@ -17,6 +17,7 @@ from service.cli.output import (
     csv_text,
     output_files,
     print_json,
+    print_result,
     progress_bar,
     table,
 )
@@ -196,5 +197,4 @@ def _show(study: Study, result: Any, targets: list[Path]) -> None:
             out.print(part, highlight=False)
         else:
             out.print(table(part.head, part.rows, part.caption))
-    for target in targets:
-        out.print(f"written to {target}", highlight=False)
+    print_result(study.page.page(result).headlines, targets)

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Iterable, Iterator
 from typing import Any
 
+from bounds import engineering
 from fe_contact.ste import SteDatabase
 from service.convert.drafts import draft_line
 from service.units import MM, NM, UM
@@ -37,7 +38,8 @@ def tolerance_lines(receipt: Json) -> Iterator[str]:
         name, unit, symbol = _AXES[beyond["axis"]]
         low, high = (f"{value / unit:.6g}" for value in beyond["between"])
         yield (
-            f"between the {name} {low} and {high} {symbol} interpolation takes {beyond['used']:.2g} of it: "
+            f"between the {name} {low} and {high} {symbol} "
+            f"interpolation takes {engineering(beyond['used'], 2)} of it: "
             "add a value there"
         )
 
@@ -53,16 +55,21 @@ def tolerance_warnings(receipt: Json) -> Iterable[Json]:
 
 def _verdict(kept: Json) -> str:
     """Return whether the tolerance is met."""
-    tolerance = f"tolerance {100 * kept['relative']:.3g} % or {kept['floor_m'] / NM:.3g} nm"
+    tolerance = (
+        f"tolerance {engineering(100 * kept['relative'], 3)} % or {engineering(kept['floor_m'] / NM, 3)} nm"
+    )
     if kept["met"] is None:
         return f"{tolerance}: errors not estimated"
-    share = "" if kept["used"] is None else f", largest error {kept['used']:.2g} of it"
+    share = "" if kept["used"] is None else f", largest error {engineering(kept['used'], 2)} of it"
     return f"{tolerance}: {'met' if kept['met'] else 'NOT met'}{share}"
 
 
 def _pass(number: int, entry: Json) -> str:
     """Return what one pass ran, cost and used."""
     mesh = entry["level"] if entry["slices"] == 1 else f"{entry['level']}, {entry['slices']} slices"
-    used = "failed" if entry["used"] is None else f"used {entry['used']:.2g}"
+    used = "failed" if entry["used"] is None else f"used {engineering(entry['used'], 2)}"
     refined = f", refined {', '.join(entry['refined'])}" if entry["refined"] else ""
-    return f"pass {number}: {entry['model']}, {mesh}, {entry['cpu_seconds']:.2g} CPU s, {used}{refined}"
+    return (
+        f"pass {number}: {entry['model']}, {mesh}, "
+        f"{engineering(entry['cpu_seconds'], 2)} CPU s, {used}{refined}"
+    )

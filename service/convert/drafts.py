@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bounds import engineering
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
 from service.units import UM
@@ -16,4 +17,4 @@ def draft_line(table: SteDatabase, refining: str) -> str:
 
 def _figure(estimate: Estimate) -> str:
     """Return a value in um with its error."""
-    return f"{estimate.value / UM:.4g} +- {estimate.error / UM:.1g}"
+    return f"{estimate.value / UM:.4g} +- {engineering(estimate.error / UM, 1)}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
+from bounds import engineering
 from service.convert.effect_sizes import by_size, influence_place, influence_words, trifles_title
 
 
@@ -29,14 +30,14 @@ def ledger_lines(ledger: Iterable[Mapping[str, Any]]) -> Iterator[str]:
 def cost_words(entry: Mapping[str, Any]) -> str:
     """Say what an effect costs."""
     seconds = entry["cost_cpu_seconds"]
-    return str(entry["cost"]) if seconds is None else f"{seconds:.2g} CPU s ({entry['cost']})"
+    return str(entry["cost"]) if seconds is None else f"{engineering(seconds, 2)} CPU s ({entry['cost']})"
 
 
 def assumption_lines(receipt: Mapping[str, Any]) -> Iterator[str]:
     """Yield what was repeated and why, and the assumptions that do not hold."""
     for run in receipt.get("repeated", ()):
         for name, reason in run["turned_on"].items():
-            yield f"repeated with {name}: {reason} ({run['cpu_seconds']:.2g} CPU s)"
+            yield f"repeated with {name}: {reason} ({engineering(run['cpu_seconds'], 2)} CPU s)"
     for check in receipt.get("assumptions", ()):
         if check["holds"] is False:
             yield f"DOES NOT HOLD: {check['assumption']}; {check['reason']}"
@@ -48,7 +49,7 @@ def run_lines(attributes: Mapping[str, Any]) -> Iterator[str]:
     if earlier:
         for name, reason in earlier["turned_on"].items():
             since = f", from {earlier['since']:.6g} s on" if earlier.get("since") else ""
-            yield f"repeated with {name}: {reason} (first run {earlier['seconds']:.2g} s{since})"
+            yield f"repeated with {name}: {reason} (first run {engineering(earlier['seconds'], 2)} s{since})"
     corrected = {**attributes, **attributes.get("receipt", {})}.get("base_radius_corrected", {})
     for gear, radius in corrected.items():
         stated, used = (1e3 * radius[name] for name in ("given", "used"))

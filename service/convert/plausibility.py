@@ -8,7 +8,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
-from bounds import Unit, finding_of
+from bounds import Unit, engineering, finding_of
 from dynamics.plausibility import scene_findings
 from dynamics.scene import Scene
 from fe_contact.plausibility import pair_findings
@@ -135,4 +135,4 @@ def limit_text(limit: float | None, unit: str) -> str:
         "1": (1.0, ""),
     }
     scale, name = scales.get(unit, (1.0, unit))
-    return f"{limit / scale:.3g} {name}".strip()
+    return f"{engineering(limit / scale, 3)} {name}".strip()

@@ -9,6 +9,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from bounds import engineering
+
 FloatArray = NDArray[np.float64]
 Dash = Literal["solid", "dash", "dot"]
 BLANK = 0.01
@@ -215,13 +217,14 @@ def unit_of(label: str) -> str:
 
 
 def number(value: float, digits: int = 4) -> str:
-    """Write `value` with `digits` significant digits, without an exponent where that is readable."""
+    """Write `value` with `digits` significant digits, zeros at the end too where it has no exponent."""
     if not np.isfinite(value):
         return "none"
     if value == 0.0:
         return "0"
     size = int(np.floor(np.log10(abs(value))))
-    return f"{value:.{digits - 1}e}" if not -4 <= size < 7 else f"{value:.{max(digits - 1 - size, 0)}f}"
+    plain = -4 <= size < 7
+    return f"{value:.{max(digits - 1 - size, 0)}f}" if plain else engineering(value, digits)
 
 
 def thousands(values: Sequence[float]) -> tuple[str, ...]:

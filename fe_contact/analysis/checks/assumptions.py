@@ -8,6 +8,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from bounds import engineering
 from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.checks.tip_edges import assemble_edges, deepest_edge
 from fe_contact.analysis.pairs.operating_points import OperatingPoint, OperatingPoints
@@ -127,7 +128,7 @@ def _tip_edges(run: SolvedRun, size: FloatArray) -> Iterator[Assumption]:
     deepest = 1e6 * float(depth.max())
     reason = "the gaps at the tip edges stay open"
     if deepest > 0.0:
-        reason = f"teeth bend {deepest:.2g} um beyond the gap at a tip edge"
+        reason = f"teeth bend {engineering(deepest, 2)} um beyond the gap at a tip edge"
     yield Assumption(effect, "tip edges stay clear", change <= allowed(run).relative, change, reason)
 
 
@@ -138,7 +139,7 @@ def _neglected(run: SolvedTable) -> Iterator[Assumption]:
         influence = estimate_influence(*run.checked.assessing(name), name)
         if influence is not None:
             change = _relative(influence, run)
-            reason = f"estimated at {100 * change:.2g} % of the computed mean or peak-to-peak"
+            reason = f"estimated at {engineering(100 * change, 2)} % of the computed mean or peak-to-peak"
             holds = change <= allowed(run).relative
             yield Assumption(name, "too small to be seen", holds, change, reason)
 
@@ -161,7 +162,7 @@ def _plane(run: SolvedRun) -> Iterator[Assumption]:
     yield Assumption(face, "load even over the face", not reasons, float("nan"), reason)
     missing = left_out(run.places.places[0].contact.pair, run.plan.discretization)
     if missing:
-        reason = f"the finite width changes about {100 * missing:.2g} % of the mean"
+        reason = f"the finite width changes about {engineering(100 * missing, 2)} % of the mean"
         holds = missing <= allowed(run).relative
         yield Assumption(width, "plane strain stands for the whole face", holds, missing, reason)
 
@@ -187,8 +188,9 @@ def _printed_data(run: SolvedRun) -> Iterator[Assumption]:
     if pair.rounding_jam > LEAST_BACKLASH:
         rounding = backlash_rounding(pair.pinion, pair.wheel, pair.center_distance)
         reason = (
-            f"jam of {1e6 * pair.rounding_jam:.2g} um is rounding of the printed data, which makes up to "
-            f"{1e6 * rounding:.2g} um; computed as zero backlash"
+            f"jam of {engineering(1e6 * pair.rounding_jam, 2)} um "
+            "is rounding of the printed data, which makes up to "
+            f"{engineering(1e6 * rounding, 2)} um; computed as zero backlash"
         )
         yield Assumption("", "nominal teeth do not jam", True, float("nan"), reason)
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from bounds import engineering
 from fe_contact.analysis.checks.assumptions import Assumption
 from fe_contact.analysis.request.influences import Influences, estimated_influences
 from fe_contact.analysis.request.request import Checked
@@ -107,7 +108,7 @@ def _price(entry: LedgerEntry, influence: Influence | None, seconds: float | Non
     if entry.on == entry.verdict.on:
         return ""
     if entry.on:
-        return f"about {seconds:.2g} CPU s" if seconds is not None else "time"
+        return f"about {engineering(seconds, 2)} CPU s" if seconds is not None else "time"
     return "not estimated" if influence is None else influence.words
 
 

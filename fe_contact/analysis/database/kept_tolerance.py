@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from bounds import engineering
 from fe_contact.analysis.database.compute_database import compute_pass
 from fe_contact.analysis.database.passes import Pass, of_all_passes
 from fe_contact.analysis.database.refinement import Refinement, next_pass
@@ -130,5 +131,6 @@ def _ended(made: Refinement, passes: Sequence[Pass], cache: Path | None) -> str:
     if needed <= left:
         return ""
     return (
-        f"{made.words} is predicted to take {needed:.2g} CPU s; {max(left, 0.0):.2g} of {budget:.3g} are left"
+        f"{made.words} is predicted to take {engineering(needed, 2)} "
+        f"CPU s; {engineering(max(left, 0.0), 2)} of {budget:.3g} are left"
     )

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from bounds import engineering
 from fe_contact.analysis.request.decided import Decided, model_name
 from fe_contact.analysis.request.model_choice import next_model
 from fe_contact.options import LEVELS
@@ -136,7 +137,10 @@ class _Resolution:
         if self.nodes.tolerance * CLOSER < usual * CLOSEST:
             return None
         nodes = replace(self.nodes, tolerance=CLOSER * self.nodes.tolerance, most=2 * self.nodes.most)
-        step = f"positions {100 * self.nodes.tolerance:.2g} -> {100 * nodes.tolerance:.2g} % of the ripple"
+        step = (
+            f"positions {engineering(100 * self.nodes.tolerance, 2)} "
+            f"-> {engineering(100 * nodes.tolerance, 2)} % of the ripple"
+        )
         return replace(self._with(_POSITION, CLOSER, step), nodes=nodes)
 
     def _with(self, source: int, part: float, step: str) -> _Resolution:
@@ -182,7 +186,7 @@ def next_pass(decided: Decided, shares: FloatArray) -> Refinement | str:
             return _of_model(model, begun)
         return _no_way(finest, barrier)
     finer = _refined(replace(begun, level_left=1))
-    reason = f"{AT_NODES[source]} takes {begun.sources[source]:.2g} of the tolerance"
+    reason = f"{AT_NODES[source]} takes {engineering(begun.sources[source], 2)} of the tolerance"
     refined = decided.refined(finer.level, finer.slices, finer.nodes, reason)
     return Refinement(refined, AT_NODES[source], finer.steps, finer.used)
 
@@ -236,4 +240,4 @@ def _no_way(finest: _Resolution, source: int) -> str:
         _POSITION: fixed if plan.positions else "positions are as close as the search places them",
     }[source]
     share = finest.sources[source]
-    return f"{AT_NODES[source]} would still take {share:.2g} of the tolerance: {why}"
+    return f"{AT_NODES[source]} would still take {engineering(share, 2)} of the tolerance: {why}"

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from bounds import engineering
 from fe_contact.analysis.request.decided import Decided, model_name
 from fe_contact.analysis.request.request import Checked, Request
 from fe_contact.analysis.request.request_check import check_asked
@@ -75,8 +76,8 @@ def _within_time(checked: Checked, cache: Path | None, *, keep_model: bool, trie
     if seconds <= budget:
         return wished
     fits = chosen(replace(options, tolerance=None))
-    needs = f"{wished.mesh.option.name} is predicted to take {seconds:.2g} CPU s of {budget:.3g}"
-    error = f"expected error {100.0 * fits.mesh.option.error.total:.2g} %"
+    needs = f"{wished.mesh.option.name} is predicted to take {engineering(seconds, 2)} CPU s of {budget:.3g}"
+    error = f"expected error {engineering(100.0 * fits.mesh.option.error.total, 2)} %"
     return replace(fits, mesh=MeshChoice(fits.mesh.option, False, f"{needs}; {fits.mesh.reason}, {error}"))
 
 
@@ -95,8 +96,8 @@ def _meshes(
 def _said_tried(checked: Checked, chosen: MeshChoice, first: MeshChoice) -> MeshChoice:
     """Say why something cheaper is tried first than what is expected to meet the tolerance."""
     dearer = f"{model_name(checked)}, {chosen.option.name}"
-    error = f"{100.0 * first.option.error.total:.2g} %"
-    part = f"{100.0 * first.option.effort / chosen.option.effort:.2g} %"
+    error = f"{engineering(100.0 * first.option.error.total, 2)} %"
+    part = f"{engineering(100.0 * first.option.effort / chosen.option.effort, 2)} %"
     reason = f"expected error {error}, tried first: it costs {part} of {dearer}"
     return MeshChoice(first.option, chosen.met, reason)
 
@@ -186,7 +187,9 @@ def _said(choice: tuple[Checked, MeshChoice]) -> tuple[Checked, MeshChoice]:
     """Write into the ledger why an effect is off that the scene calls for, or the other way round."""
     checked, mesh = choice
     request, error = checked.request, mesh.option.error
-    parts = f"{100.0 * error.total:.2g} %, of which the model {100.0 * error.model:.2g} %"
+    parts = (
+        f"{engineering(100.0 * error.total, 2)} %, of which the model {engineering(100.0 * error.model, 2)} %"
+    )
     neglected, turned_on = (
         {name: _reason(name in request.model_effects, text, parts) for name, text in overrides.items()}
         for overrides in (request.neglected, request.turned_on)

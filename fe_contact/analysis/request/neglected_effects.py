@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from bounds import engineering
 from fe_contact.allowed_error import AllowedError
 from fe_contact.effects import ContactScene, LedgerEntry
 from fe_contact.effects.influence import EstimatedInfluence, estimate_influences
@@ -50,5 +51,5 @@ def neglected_effects(
 
 def _reason(influence: EstimatedInfluence, tolerance: AllowedError) -> str:
     """Say why an effect is neglected."""
-    change = f"at most {100 * influence.largest:.2g} % of mean or peak-to-peak at any load"
+    change = f"at most {engineering(100 * influence.largest, 2)} % of mean or peak-to-peak at any load"
     return f"left off: {change}, and {tolerance.words} are requested"

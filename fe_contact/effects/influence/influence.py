@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from bounds import engineering
 from fe_contact.types import Json
 
 RIPPLE_FLOOR = 20e-9
@@ -85,4 +86,4 @@ def signed(value: float) -> str:
     """Write a change with its sign in two digits, whole numbers from 100 on."""
     if abs(value) < _NOTHING:
         return "0"
-    return f"{value:+.0f}" if abs(value) >= 99.5 else f"{value:+.2g}"
+    return f"{value:+.0f}" if abs(value) >= 99.5 else engineering(value, 2, "+")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from bounds import engineering
 from dynamics.ablation import Ablation
 from dynamics.ablation.ablate import EffectAblation
 from service.drawing.figure import FloatArray, Panel, Table, number
@@ -60,7 +61,7 @@ def _most(values: FloatArray) -> float:
 
 def _signed(value: float) -> str:
     """Write three digits with a sign; nothing is 0."""
-    return "0" if abs(value) < 5e-7 else f"{value:+.3g}"
+    return "0" if abs(value) < 5e-7 else engineering(value, 3, "+")
 
 
 LOOK = Look(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from bounds import engineering
 from fe_contact.analysis import LoadDistribution
 from fe_contact.ste import SteDatabase
 from service.convert.effect_lines import assumption_lines
@@ -82,7 +83,7 @@ def operating_point(flanks: LoadDistribution) -> str:
     if scene.misalignment:
         parts.append(f"misalignment {number(1e6 * scene.misalignment, 3)} µm")
     if scene.center_distance_change:
-        parts.append(f"center distance {1e3 * scene.center_distance_change:+.3g} mm")
+        parts.append(f"center distance {engineering(1e3 * scene.center_distance_change, 3, '+')} mm")
     return ", ".join(parts)
 
 
@@ -100,12 +101,12 @@ def text(flanks: LoadDistribution) -> Iterator[str]:
     if flanks.face_position.size > 1:
         low, high = (1e3 * end for end in (flanks.load_centroid.min(), flanks.load_centroid.max()))
         yield (
-            f"K_Hbeta {flanks.mean_face_load_factor:.3g} over the cycle, at most "
-            f"{flanks.face_load_factor.max():.3g} at one position; "
-            f"load centroid {low:.3g} to {high:.3g} mm from mid-face"
+            f"K_Hbeta {engineering(flanks.mean_face_load_factor, 3)} over the cycle, at most "
+            f"{engineering(flanks.face_load_factor.max(), 3)} at one position; "
+            f"load centroid {engineering(low, 3)} to {engineering(high, 3)} mm from mid-face"
         )
     yield from assumption_lines(receipt)
-    yield f"cost {receipt['cpu_seconds']:.3g} CPU s"
+    yield f"cost {engineering(receipt['cpu_seconds'], 3)} CPU s"
 
 
 PAGE = Presentation(contact_pattern_figure, page, text, beside=page)

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from bounds import engineering
 from dynamics.linearize import ModalAnalysis
 from service.convert.effect_lines import run_lines
 from service.drawing import palette
@@ -225,7 +226,7 @@ def _text(modes: ModalAnalysis) -> Iterator[Table | str]:
     if modes.speed.size:
         yield ""
         yield critical_table(modes)
-    yield f"cost {sum(modes.facts['seconds'].values()):.3g} CPU s"
+    yield f"cost {engineering(sum(modes.facts['seconds'].values()), 3)} CPU s"
     yield from run_lines(modes.facts)
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from bounds import engineering
 from fe_contact.microgeometry import Optimization
 from fe_contact.microgeometry.confirmation import ConfirmedDesign
 from service.convert.vocabulary import boundary_name
@@ -137,7 +138,7 @@ def optimum_table(result: Optimization) -> Table:
         unit = factor(name)
         values = result.start.values[var.name], result.optimum.values[var.name], var.low, var.high
         aside = (
-            f"{change / UM:+.2g} at {number(end / unit, 3)}"
+            f"{engineering(change / UM, 2, '+')} at {number(end / unit, 3)}"
             for change, end in ((step.change_low, step.low), (step.change_high, step.high))
         )
         rows.append((name, *(number(value / unit, 4) for value in values), *aside))
@@ -154,7 +155,8 @@ def node_table(result: Optimization) -> Table:
     rows = []
     for node, weight in enumerate(result.nodes.weight):
         units = [factor(boundary_name(name)) for name in result.nodes.names]
-        deviation = (f"{x / u:+.3g}" for x, u in zip(result.nodes.deviation[node], units, strict=True))
+        amounts = zip(result.nodes.deviation[node], units, strict=True)
+        deviation = (engineering(amount / unit, 3, "+") for amount, unit in amounts)
         ripples = (d.harris_map.peak_to_peak[node, counted] / UM for d in (result.start, result.optimum))
         cells = (number(float(x), 3) for ripple in ripples for x in ripple)
         rows.append((*deviation, number(float(weight), 3), *cells))
@@ -208,7 +210,10 @@ def _text(result: Optimization) -> Iterator[Table | str]:
     yield ripple_table(result)
     for line in result.not_tried:
         yield f"not tried: {line}"
-    search = f"{result.evaluations} designs in {result.cost['stages']['search']['cpu_seconds']:.3g} CPU s"
+    search = (
+        f"{result.evaluations} designs in "
+        f"{engineering(result.cost['stages']['search']['cpu_seconds'], 3)} CPU s"
+    )
     yield f"{result.outcome.replace('_', ' ')}: {result.reason}; {search}"
 
 

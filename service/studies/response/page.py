@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from bounds import engineering
 from dynamics.linearize import ForcedResponse, peaks
 from service.convert.effect_lines import run_lines
 from service.drawing import palette
@@ -122,9 +123,12 @@ def _text(response: ForcedResponse) -> Iterator[Table | str]:
         where = f"{parting[0]:.5g} to {parting[-1]:.5g} rpm"
         yield f"flanks part at {parting.size} of {response.speed.size} speeds, {where}: see loa steady"
     worst = 100.0 * float(response.excitation_difference.max(initial=0.0))
-    yield f"first-order theory: the other excitation changes amplitudes by up to {worst:.2g} % of the largest"
+    yield (
+        "first-order theory: the other excitation changes "
+        f"amplitudes by up to {engineering(worst, 2)} % of the largest"
+    )
     yield f"residual of the solves {response.residual:.1e}"
-    yield f"cost {sum(response.facts['seconds'].values()):.3g} CPU s"
+    yield f"cost {engineering(sum(response.facts['seconds'].values()), 3)} CPU s"
     yield from run_lines(response.facts)
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from bounds import engineering
 from service.convert.effect_lines import assumption_lines
 from service.drawing import palette
 from service.drawing.facts import facts
@@ -61,7 +62,7 @@ def peak_table(stresses: Json) -> Table:
         (
             gear,
             root,
-            f"{peak['stress_mpa']:.4g} ±{peak['error_mpa']:.1g}",
+            f"{peak['stress_mpa']:.4g} ±{engineering(peak['error_mpa'], 1)}",
             f"{peak['position']:.3f}",
             f"{peak['tangent_angle_deg']:.1f}",
             f"{peak['face_position_mm']:.2f}",
@@ -97,7 +98,7 @@ def page(stresses: Json) -> Page:
 
 def _headline(gear: str, peak: Json) -> Headline:
     """Return the largest stress of a gear."""
-    value, error = f"{number(peak['stress_mpa'])} MPa", f"± {peak['error_mpa']:.1g} MPa"
+    value, error = f"{number(peak['stress_mpa'])} MPa", f"± {engineering(peak['error_mpa'], 1)} MPa"
     return Headline(f"largest root stress, {gear}", value, error)
 
 
@@ -114,7 +115,7 @@ def text(stresses: Json) -> Iterator[Table | str]:
     yield peak_table(stresses)
     yield f"\n{_point(stresses)}"
     yield from assumption_lines(stresses["receipt"])
-    yield f"cost {stresses['receipt']['cpu_seconds']:.3g} CPU s"
+    yield f"cost {engineering(stresses['receipt']['cpu_seconds'], 3)} CPU s"
 
 
 def _of_figures(shown: Callable[[Json], Any]) -> Callable[[Roots], Any]:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from bounds import engineering
 from dynamics.periodic import SteadyStates
 from dynamics.periodic.steady_states import BRANCH, DOWN, UP
 from service.convert.effect_lines import run_lines
@@ -113,7 +114,10 @@ def _row(states: SteadyStates, index: int, mesh: int) -> tuple[str, ...]:
         states.mesh[mesh],
     )
     if states.status[index]:
-        left = f"{status_name(int(states.status[index]))}, {1e6 * float(states.residual[index]):.2g} µm left"
+        left = (
+            f"{status_name(int(states.status[index]))}, "
+            f"{engineering(1e6 * float(states.residual[index]), 2)} µm left"
+        )
         return (*start, left, *("none",) * 7)
     return (
         *start,
@@ -162,7 +166,7 @@ def _text(states: SteadyStates) -> Iterator[Table | str]:
         branch, points = answer["branch"], answer["bifurcations"]
         turns = ", ".join(f"{point['kind']} at {point['speed_rpm']:.6g} rpm" for point in points)
         yield f"branch {branch['status']}, {len(branch['points'])} motions; {turns or 'no bifurcation'}"
-    yield f"cost {sum(states.facts['seconds'].values()):.3g} CPU s"
+    yield f"cost {engineering(sum(states.facts['seconds'].values()), 3)} CPU s"
     yield from run_lines(states.facts)
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from bounds import engineering
 from dynamics.study import Study
 from service.drawing.figure import Figure, Table, number
 from service.drawing.page import Headline, Page, Section
@@ -127,7 +128,7 @@ def _text(study: Study) -> Iterator[Table | str]:
     if study.usable < len(study.reason):
         yield failed_table(study)
     yield f"runs do without: {', '.join(study.facts['neglected'])}"
-    yield f"cost {1e3 * float(study.seconds[:, 0].mean()):.3g} ms CPU a run"
+    yield f"cost {engineering(1e3 * float(study.seconds[:, 0].mean()), 3)} ms CPU a run"
 
 
 PAGE = Presentation(lambda study: study_figures(study)[0], page, _text)

@@ -171,7 +171,7 @@ def test_ordered_colors_lighten_and_stay_visible_on_white() -> None:
 
 @pytest.mark.parametrize(
     ("value", "digits", "text"),
-    [(6.24531, 4, "6.245"), (0.0001234, 3, "0.000123"), (2660.4, 5, "2660.4"), (1.2e-9, 2, "1.2e-09"),
+    [(6.24531, 4, "6.245"), (0.0001234, 3, "0.000123"), (2660.4, 5, "2660.4"), (1.2e-9, 2, "1.2e-9"),
      (0.0, 4, "0"), (float("nan"), 4, "none"), (123456.0, 3, "123456")],
 )  # fmt: skip
 def test_numbers_have_their_significant_digits(value: float, digits: int, text: str) -> None:
