@@ -8,6 +8,7 @@ import os
 import sys
 import tempfile
 import zipfile
+from contextlib import suppress
 from dataclasses import asdict, fields
 from functools import lru_cache
 from importlib.metadata import version
@@ -65,6 +66,8 @@ def read_compliance(directory: Path, key: str, kind: type[Kept]) -> Kept | None:
             arrays = {name: file[name] for name in file.files if name not in NOT_ARRAYS}
             facts = str(file["facts"])
             intact = str(file["checksum"]) == _checksum(arrays, facts)
+        with suppress(OSError):  # of another owner
+            os.utime(_file(directory, key))  # its last use, by which caches are kept small
         return _restored(kind, arrays, json.loads(facts)) if intact else None
     # What a truncated, overwritten or foreign file makes NumPy, zipfile, json and the constructors raise.
     except (OSError, EOFError, ValueError, KeyError, TypeError, zipfile.BadZipFile):

@@ -33,6 +33,7 @@ for family in (new, tables, motion, studies, pages, serving):
         verb.short_help = (verb.callback.__doc__ or "").partition("\n")[0]
     app.add_typer(family.verbs)
 app.add_typer(keys.verbs, name="keys")
+app.add_typer(upkeep.cache, name="cache")
 app.add_typer(upkeep.database, name="database")
 app.add_typer(upkeep.store, name="store")
 

@@ -24,8 +24,18 @@ Strict = Annotated[bool, typer.Option("--strict", help=_STRICT)]
 
 
 def computing(verb: Callable[..., R]) -> Callable[..., R]:
-    """Give `verb` the option ``--strict``, by which its warnings decide its exit code; guard it."""
-    guard = guarded(verb)
+    """Give `verb` the option ``--strict``, by which its warnings decide its exit code; guard it.
+
+    What it leaves in the cache is kept within the limit of `service.cli.cache`.
+    """
+
+    @functools.wraps(verb)
+    def tidied(*args: Any, **kwargs: Any) -> R:
+        answer = verb(*args, **kwargs)
+        importlib.import_module("service.cli.cache").keep_small()
+        return answer
+
+    guard = guarded(tidied)
 
     @functools.wraps(verb)
     def run(*args: Any, strict: bool = False, **kwargs: Any) -> R:

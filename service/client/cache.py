@@ -51,6 +51,8 @@ class ResultCache:
         """Return a file of a result if it is here and undamaged; a damaged one is set aside."""
         for file in sorted(self._folder(kind, key).glob(f"*{suffix}")):
             if _holds(file, file.stem):
+                with contextlib.suppress(OSError):  # of another owner
+                    os.utime(file)  # its last use, by which caches are kept small
                 return file
         return None
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
-import time
 import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -13,6 +12,7 @@ from datetime import timedelta
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
+from service.bounded_folder import evict
 from service.problems import BadInput, StoreUnavailable
 from service.store.files import PARTIAL, KeptFile, WrongContent, digest_of, place_whole
 
@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from obstore.store import ClientConfig, RetryConfig, S3Store
 
 RETRIES: RetryConfig = {"max_retries": 4, "retry_timeout": timedelta(seconds=10.0)}
-_IN_USE_S = 600.0
-"""What was read this lately stays in the cache, however full that is: an answer may be sending it."""
 
 
 class ObjectFiles:
@@ -53,7 +51,7 @@ class ObjectFiles:
         cached = self._cached(name, sha256)
         cached.parent.mkdir(parents=True, exist_ok=True)
         place_whole(file, cached)
-        self._evict()
+        evict(self._cache, self._cache_bytes)
 
     def has(self, name: str) -> bool:
         """Whether there is an object of this name."""
@@ -72,7 +70,7 @@ class ObjectFiles:
                 os.utime(cached)
                 return cached
         self._fetch(name, sha256, cached)
-        self._evict()
+        evict(self._cache, self._cache_bytes)
         return cached
 
     def digest(self, name: str) -> str:
@@ -123,21 +121,6 @@ class ObjectFiles:
     def _cached(self, name: str, sha256: str) -> Path:
         """Return the path of a digest in the cache."""
         return self._cache / sha256[:2] / f"{sha256}{PurePosixPath(name).suffix}"
-
-    def _evict(self) -> None:
-        """Remove what was not read for longest, until the rest fits."""
-        files = []
-        for path in self._cache.rglob("*"):
-            with contextlib.suppress(FileNotFoundError):  # another process was quicker
-                if path.is_file():
-                    facts = path.stat()
-                    files.append((facts.st_mtime, facts.st_size, path))
-        excess = sum(size for _, size, _ in files) - self._cache_bytes
-        for modified, size, path in sorted(files):
-            if excess <= 0 or time.time() - modified < _IN_USE_S:
-                return
-            path.unlink(missing_ok=True)
-            excess -= size
 
     def move(self, name: str, target: str) -> None:
         """Copy, then remove."""

@@ -14,6 +14,8 @@ database = typer.Typer(help="The database of jobs: its schema.", no_args_is_help
 
 store = typer.Typer(help="The store of results: verify, collect, reindex.", no_args_is_help=True)
 
+cache = typer.Typer(help="What is kept on this machine to be quicker the next time.", no_args_is_help=True)
+
 DataDirectory = Annotated[
     Path | None, typer.Option(help="Directory of jobs and results [LOA_DATA_DIRECTORY].")
 ]
@@ -85,3 +87,38 @@ def reindex(
     from service.cli.store import run_reindex  # noqa: PLC0415 (start-up time)
 
     run_reindex(as_json=json, quarantined=quarantined, data_directory=data_directory)
+
+
+@cache.command("list", epilog="Example: loa cache list --json")
+@guarded
+def list_cache(json: AsJson = False) -> None:
+    """Print how many files and bytes are kept, by kind."""
+    from service.cli.cache import run_list  # noqa: PLC0415 (start-up time)
+
+    run_list(as_json=json)
+
+
+@cache.command(epilog="Example: loa cache limit --gb 0.5")
+@guarded
+def limit(
+    gb: Annotated[float | None, typer.Option(min=0.0, help="Default: LOA_CACHE_BYTES, or 2 GB.")] = None,
+    json: AsJson = False,
+) -> None:
+    """Remove what was not used for longest until the rest fits; what was used within 10 minutes stays."""
+    from service.cli.cache import run_limit  # noqa: PLC0415 (start-up time)
+
+    run_limit(gb, as_json=json)
+
+
+@cache.command(epilog="Example: loa cache clear results")
+@guarded
+def clear(
+    kinds: Annotated[
+        list[str] | None, typer.Argument(help="compliance, results, searches, studies; none named: all.")
+    ] = None,
+    json: AsJson = False,
+) -> None:
+    """Remove all that is kept; it is computed or fetched again when it is needed."""
+    from service.cli.cache import run_clear  # noqa: PLC0415 (start-up time)
+
+    run_clear(kinds or [], as_json=json)
