@@ -74,18 +74,18 @@ def run_study(study: Study, options: Json) -> None:
     if study.several:
         result = study.run.joined(dict(zip(_names(study, files), results, strict=True)))
     warn(study.run.warnings(result) or ())
-    _tell(study, result, targets, options)
+    _tell(study, subjects[0][0], result, targets, options)
     if interrupted:
         raise KeyboardInterrupt("interrupted. What is above is the best of what was computed so far.")
     if failure := study.run.failure(result):
         raise JobFailed(failure)
 
 
-def _tell(study: Study, result: Any, targets: list[Path], options: Json) -> None:
+def _tell(study: Study, subject: Any, result: Any, targets: list[Path], options: Json) -> None:
     """Write the files, and print the result in the form that was requested."""
     for target in targets:
         target.parent.mkdir(exist_ok=True)
-        _writers(study)[target.suffix](result, target)
+        _writers(study, subject)[target.suffix](result, target)
         stamp(target, warnings_so_far())
     if options["json"]:
         print_json(_written(study, targets) | study.run.facts(result))
@@ -162,16 +162,20 @@ def _targets(study: Study, output: Path | None) -> list[Path]:
     return [output]
 
 
-def _writers(study: Study) -> dict[str, Writer]:
-    """Return what writes a result, by the ending of the file."""
+def _writers(study: Study, subject: Any) -> dict[str, Writer]:
+    """Return what writes a result, by the ending of the file; `subject` is what was studied."""
     run, page = study.run, study.page
+    further = {
+        ending: lambda result, file, write=write: write(result, subject, file)
+        for ending, write in run.writers.items()
+    }
     return {
         ".nc": run.file.write,
         ".json": run.save_facts,
         ".png": lambda result, file: file.write_bytes(png(page.figure(result))),
         ".html": lambda result, file: write_whole(page.page(result), file, warnings=messages()),
         ".csv": lambda result, file: file.write_text(_csv(study, result), encoding="utf-8"),
-        **run.writers,
+        **further,
     }
 
 

@@ -82,7 +82,7 @@ class Computation:
     kept : callable
         ``kept(result, means)``: the runs in `Means.folder`, by the hash that they are stored under.
     writers : mapping
-        Further files of the verb, by their ending.
+        Further files of the verb, by their ending: called with result, what was studied, and file.
     failure : callable
         Says what of a result was not found; empty if nothing is missing.
     """
@@ -99,7 +99,7 @@ class Computation:
     interruptible: bool = False
     resumed: bool = False
     kept: Callable[[Result, Means], Mapping[str, Path]] = lambda _result, _means: {}
-    writers: Mapping[str, Callable[[Result, Path], object]] = field(default_factory=dict)
+    writers: Mapping[str, Callable[[Result, Any, Path], object]] = field(default_factory=dict)
     failure: Callable[[Result], str] = lambda _found: ""
 
     def save_facts(self, result: Result, file: Path) -> None:

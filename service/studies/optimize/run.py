@@ -27,6 +27,7 @@ from fe_contact.microgeometry.confirmation import ConfirmedDesign
 from fe_contact.microgeometry.search import never
 from fe_contact.options import Run
 from service.convert.case import analysis_options, boundary_errors, gear_pair
+from service.convert.toml import toml_text
 from service.convert.vocabulary import boundary_name
 from service.schemas import Case
 from service.studies.computation import Computation, Means, with_defaults
@@ -221,12 +222,12 @@ def _typed(name: str, value: float) -> float:
     return float(f"{value / factor(boundary_name(name)):.12g}")
 
 
-def write_values(result: Optimization, target: Path) -> None:
-    """Write the best design as TOML: lines for the tables of both gears in the case file."""
-    lines = [f"# {result.reason}"]
+def write_case(result: Optimization, case: Case, target: Path) -> None:
+    """Write the case with the best design as a case file: what was given of the case, and the best flanks."""
+    content = case.model_dump(mode="json", exclude_unset=True)
     for gear, fields in boundary_values(result.optimum.values).items():
-        lines += ["", f"[pair.{gear}]", *(f"{name} = {value:.6g}" for name, value in fields.items())]
-    target.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        content["pair"][gear] |= {name: float(f"{value:.6g}") for name, value in fields.items()}
+    target.write_text(f"# {result.reason}\n\n{toml_text(content)}", encoding="utf-8")
 
 
 RUN = Computation(
@@ -236,5 +237,5 @@ RUN = Computation(
     check=check,
     normalized=lambda case, study: with_defaults(with_variables(case, study)),
     interruptible=True,
-    writers={".toml": write_values},
+    writers={".toml": write_case},
 )
