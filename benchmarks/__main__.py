@@ -127,11 +127,11 @@ def _keep(record: Mapping[str, Measured], order: Sequence[str]) -> None:
 
 
 def _publish(record: Mapping[str, Measured], order: Sequence[str]) -> None:
-    """Put the subjects into docs/benchmarks.json, then write docs/benchmarks.md and README.md from it."""
-    store, readme = ROOT / "docs" / "benchmarks.json", ROOT / "README.md"
+    """Put the subjects into docs/lab/benchmarks.json; write benchmarks.md beside it and README.md from it."""
+    store, readme = ROOT / "docs" / "lab" / "benchmarks.json", ROOT / "README.md"
     write_record(store, {**read_record(store), **record}, order)
     published = read_record(store)
-    (ROOT / "docs" / "benchmarks.md").write_text(page(published), encoding="utf-8")
+    (ROOT / "docs" / "lab" / "benchmarks.md").write_text(page(published), encoding="utf-8")
     readme.write_text(with_figures(readme.read_text(encoding="utf-8"), published), encoding="utf-8")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Hashable, Mapping
 from dataclasses import MISSING, dataclass, field, fields
 from enum import Flag, StrEnum, auto
@@ -107,7 +108,8 @@ def required(declaration: Declared) -> Any:
 def described(kind: type[Thing]) -> type[Thing]:
     """Append to the docstring of a dataclass what its declared fields are; a decorator."""
     entries = (f"{name} : {_unit(fact)}\n    {fact.description}" for name, fact in declarations(kind).items())
-    kind.__doc__ = "\n".join((f"{kind.__doc__}\n", "Attributes", "----------", *entries, ""))
+    text = inspect.cleandoc(kind.__doc__ or "")
+    kind.__doc__ = "\n".join((text, "", "Attributes", "----------", *entries, ""))
     return kind
 
 

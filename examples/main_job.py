@@ -42,6 +42,7 @@ def main() -> int:
         times["report"] = time.perf_counter() - start
         print(summary(out / "ste.nc", out / "run.nc", times))
         print(f"\nreport    {files[0]}\nservice   {address}, log in {out / 'service.log'}", flush=True)
+        print("loa       `source .venv/bin/activate` puts it on the path", flush=True)
         if sys.stdout.isatty() and not arguments.exit:
             print("The service stays up. Stop it with Ctrl-C.", flush=True)
             _wait_for_interrupt()

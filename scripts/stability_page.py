@@ -1,4 +1,4 @@
-"""Put the outcomes of the hard scenes, and the counts of the sweeps, into docs/stability.md.
+"""Put the outcomes of the hard scenes, and the counts of the sweeps, into docs/lab/stability.md.
 
 Usage: stability_page.py FOLDER PAGE; FOLDER holds scenes.json and sweep-KIND.jsonl. What stands between the
 marks of a part is replaced, the text around it is written by hand.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import sys
+import textwrap
 from collections import Counter
 from itertools import groupby
 from pathlib import Path
@@ -22,9 +23,8 @@ SWEEP_HEAD = (
     "| random pairs | cases | sound tables | refused | anything else | points solved | most iterations "
     "| largest residual | CPU time over predicted |\n|---|---:|---:|---:|---:|---:|---:|---:|---:|"
 )
-HEAD = (
-    "| scene | hard because | criterion | figures beside the common ones | CPU, s |\n|---|---|---|---|---:|"
-)
+LINE = 120
+"""Longest line of a page."""
 
 
 def with_part(page: str, name: str, text: str) -> str:
@@ -38,11 +38,11 @@ def with_part(page: str, name: str, text: str) -> str:
 
 
 def scenes_part(scenes: list[Json]) -> str:
-    """Return how many passed, and a table per family."""
+    """Return how many passed, and a list per family."""
     parts = [_summary(scenes)]
     for family, group in groupby(scenes, key=lambda scene: str(scene["family"])):
-        rows = "\n".join(_row(scene) for scene in group)
-        parts.append(f"### {family.capitalize()}\n\n{HEAD}\n{rows}\n")
+        rows = "\n".join(_entry(scene) for scene in group)
+        parts.append(f"### {family.capitalize()}\n\n{rows}\n")
     return "\n".join(parts)
 
 
@@ -96,16 +96,29 @@ def _summary(scenes: list[Json]) -> str:
     )
 
 
-def _row(scene: Json) -> str:
-    """Write one scene."""
+def _entry(scene: Json) -> str:
+    """Write one scene as an entry of a list."""
     figures = "; ".join(
         f"{name} {_number(value)}" + (f" ({scene['bounds'][name]})" if name in scene["bounds"] else "")
         for name, value in scene["figures"].items()
         if not name.startswith(COMMON)
     )
     verdict = "" if scene["passed"] else f"**FAILED**: {scene['failure']}; "
-    cells = (f"`{scene['name']}`", scene["hard_because"], scene["criterion"], verdict + figures)
-    return f"| {' | '.join(cells)} | {scene['cpu_seconds']:.1f} |"
+    return entry(
+        scene["name"],
+        scene["hard_because"],
+        scene["criterion"],
+        verdict + figures,
+        f"{scene['cpu_seconds']:.1f}",
+    )
+
+
+def entry(name: str, hard_because: str, criterion: str, figures: str, cpu_seconds: str) -> str:
+    """Write an entry of a list in lines of at most `LINE` characters."""
+    facts = (
+        f"- **`{name}`** ({cpu_seconds} CPU s). {hard_because} *Criterion:* {criterion} *Figures:* {figures}"
+    )
+    return textwrap.fill(facts, LINE, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)
 
 
 def _number(value: float | None) -> str:

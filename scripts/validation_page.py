@@ -1,4 +1,4 @@
-"""Make docs/validation.md from the figures that the tests recorded.
+"""Make docs/lab/validation.md from the figures that the tests recorded.
 
 Usage: validation_page.py RECORDS PAGE
 """
@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import re
 import sys
+import textwrap
 from collections.abc import Iterable
 from itertools import groupby
 from pathlib import Path
@@ -37,7 +38,10 @@ def page(records: Iterable[Record]) -> str:
         for (file, source), group in groupby(of_kind, key=_origin):
             rows = "\n".join(_row(record) for record in group)
             head = "| what | measured | target | unit |\n|---|---:|---:|---|"
-            parts.append(f"{source} (`{file}`)\n\n{head}\n{rows}\n")
+            origin = textwrap.fill(
+                f"{source} (`{file}`)", 120, break_long_words=False, break_on_hyphens=False
+            )
+            parts.append(f"{origin}\n\n{head}\n{rows}\n")
     return "\n".join(parts)
 
 

@@ -46,8 +46,8 @@ class MeshTable(Protocol):
         Centroid of the load from mid-face of the driving gear, m, towards positive z of a driving gear that
         turns clockwise seen from there.
     sliding_share, sliding_lever : (M, D, P, L) arrays
-        Sums over the pairs of load share times the sign of y, and times |y| (m), y the position of a pair's
-        contact from the pitch point, > 0 where it recedes.
+        Sums over the pairs of load share times the sign of y, and times `abs(y)` (m), y the position of a
+        pair's contact from the pitch point, > 0 where it recedes.
     """
 
     @property

@@ -23,8 +23,9 @@ LEAST_PRESS = 1e-6  # m; sets the typical load of a bearing that nothing loads
 class RollingContact:
     """The radial force of a rolling bearing, beside what its bushing or planet bearing does linearly.
 
-    The shaft moves across the axis by u, r = |u|; a planet against its pin. Beyond the clearance it is pushed
-    back along u by ``stiffness (r - clearance)^exponent``, alike in all directions, and not at all within it.
+    The shaft moves across the axis by u, r = `abs(u)`; a planet against its pin. Beyond the clearance it is
+    pushed back along u by ``stiffness (r - clearance)^exponent``, alike in all directions, and not at all
+    within it.
 
     Attributes
     ----------

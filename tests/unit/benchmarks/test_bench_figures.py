@@ -56,7 +56,7 @@ def _measured(day: str, *figures: Figure) -> Measured:
 def test_publishing_replaces_the_figures_and_nothing_else(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (tmp_path / "docs").mkdir()
+    (tmp_path / "docs" / "lab").mkdir(parents=True)
     readme = tmp_path / "README.md"
     before, after = f"# Title\n\n{MARKS[0]}\n", f"{MARKS[1]}\n\nRest.\n"
     readme.write_text(before + "stale row\n" + after)
@@ -69,18 +69,18 @@ def test_publishing_replaces_the_figures_and_nothing_else(
         assert "stale row" not in text
         assert text.count("| table | cold |") == 1
         assert "memory" not in text  # no target, so no place in the README
-    assert "| table | memory |" in (tmp_path / "docs" / "benchmarks.md").read_text()
+    assert "| table | memory |" in (tmp_path / "docs" / "lab" / "benchmarks.md").read_text()
 
 
 def test_publishing_one_subject_keeps_the_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "docs").mkdir()
+    (tmp_path / "docs" / "lab").mkdir(parents=True)
     (tmp_path / "README.md").write_text(f"{MARKS[0]}\n{MARKS[1]}\n")
     monkeypatch.setattr(bench, "ROOT", tmp_path)
     other = Figure("run", "run-up", 0.5, "CPU s", 1.0)
     bench._publish({"static_table": _measured("2026-01-02", *FIGURES)}, ORDER)
     bench._publish({"run_up": _measured("2026-01-03", other), "gone": _measured("2026-01-03")}, ORDER)
     bench._publish({"static_table": _measured("2026-01-04", FIGURES[0])}, ORDER)
-    published = (tmp_path / "docs" / "benchmarks.md").read_text()
+    published = (tmp_path / "docs" / "lab" / "benchmarks.md").read_text()
     assert [line for line in published.splitlines() if line.startswith(("## ", "2026"))] == [
         "## static_table",
         "2026-01-04",

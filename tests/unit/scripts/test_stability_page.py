@@ -57,7 +57,8 @@ def _made(script: ModuleType, folder: Path) -> str:
 def test_sweeps_that_were_not_run_stay(script: ModuleType, tmp_path: Path) -> None:
     page = _made(script, tmp_path)
     assert "old scenes" not in page
-    assert "| `zero_load` | 0/0 |" in page
+    assert "- **`zero_load`** (1.5 CPU s). 0/0 *Criterion:* tends to the gap *Figures:* STE left" in page
+    assert max(map(len, page.splitlines())) <= script.LINE
     assert "old sweeps" in page
 
 

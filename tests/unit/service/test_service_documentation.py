@@ -63,9 +63,9 @@ def test_every_setting_is_documented_with_its_default() -> None:
     text = page("service.md")
     for name, field in Settings.model_fields.items():
         assert f"`LOA_{name.upper()}`" in text
-        (line,) = [line for line in text.splitlines() if f"`LOA_{name.upper()}`" in line]
+        (entry,) = [row for row in text.split("\n* - ") if row.startswith(f"`LOA_{name.upper()}`")]
         if isinstance(field.default, int | float):
-            assert f"{field.default:.15g}" in line.replace(" ", "")
+            assert f"{field.default:.15g}" in entry.replace(" ", "")
 
 
 @pytest.mark.parametrize(
