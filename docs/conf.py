@@ -20,3 +20,4 @@ html_title = "lineofaction"
 html_copy_source = False
 html_show_sourcelink = False
 html_show_sphinx = False
+html_show_copyright = False
