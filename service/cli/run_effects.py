@@ -2,31 +2,68 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from bounds import engineering
+from fe_contact.effects.influence.influence import TRIFLE
+from service.convert.effect_sizes import trifles_title
+
+Json = Mapping[str, Any]
+LEAST = 1e-9  # m, of the static displacement of an effect whose influence is not estimated
+_RELATIVE = ("relative_mean", "relative_peak_to_peak", "relative_bearing_force")
 
 
-def effect_lines(ledger: Mapping[str, Any]) -> list[str]:
-    """Return a line per effect that is on, or off though it moves something: part, influence in um, why.
+def effect_lines(ledger: Json) -> Iterator[str]:
+    """Yield the decision about every effect, part by part where they differ, its influence and its price.
 
-    `ledger` is that of a run: influence is the static displacement along the line of action, in m. Then
-    the price of choices, and what leaving an effect out in all its parts is estimated to change.
+    `ledger` is that of a run: influence is the static displacement along the line of action, in m, and the
+    estimate of what leaving the effect out in all its parts changes. Effects that are off and change next to
+    nothing share the last line.
     """
-    entries = [entry for entry in ledger.get("entries", ()) if entry["on"] or entry["worth"] > 0.0]
-    lines = [
-        f"effect {entry['effect']}, {entry['part']}: {'on' if entry['on'] else 'off'}, "
-        f"influence {engineering(1e6 * entry['worth'], 3)} um: {entry['reason']}"
-        for entry in entries
-    ]
-    prices = [
-        f"       {entry['effect']}, {entry['part']}: price of the choice: {entry['price']}"
-        for entry in entries
-        if entry.get("price")
-    ]
-    influences = [
-        f"without {name} about {row['words']} ({row['freedoms']:+d} freedoms, {row['rows']:+d} rows with it)"
-        for name, row in ledger.get("worths", {}).items()
-    ]
-    return [*lines, *prices, *influences]
+    estimates = ledger.get("worths", {})
+    trifles = []
+    for name, entries in _by_effect(ledger).items():
+        if _is_trifle(entries, estimates.get(name)):
+            if any(entry.get("possible", True) for entry in entries):
+                trifles.append(name)
+            continue
+        yield from _decisions(name, entries)
+        estimate = estimates.get(name)
+        if estimate:
+            size = f"{estimate['freedoms']:+d} freedoms" if estimate["freedoms"] else "no freedoms"
+            yield f"       without it {estimate['words']}; {size} with it"
+        for price in dict.fromkeys(entry.get("price") for entry in entries):
+            if price and not (estimate and price.endswith(estimate["words"])):
+                yield f"       price of the choice: {price}"
+    if trifles:
+        yield f"{trifles_title(trifles)}: {', '.join(trifles)}"
+
+
+def _by_effect(ledger: Json) -> dict[str, list[Json]]:
+    """Return the entries of every effect, one for each part."""
+    effects: dict[str, list[Json]] = {}
+    for entry in ledger.get("entries", ()):
+        effects.setdefault(entry["effect"], []).append(entry)
+    return effects
+
+
+def _is_trifle(entries: list[Json], estimate: Json | None) -> bool:
+    """Whether an effect is off everywhere and changes next to nothing."""
+    if any(entry["on"] for entry in entries):
+        return False
+    if estimate is not None:
+        return all(abs(estimate[name]) < TRIFLE for name in _RELATIVE)
+    return all(entry["worth"] < LEAST for entry in entries)
+
+
+def _decisions(name: str, entries: list[Json]) -> Iterator[str]:
+    """Yield a line for each decision and reason, with the parts that share it."""
+    shared: dict[tuple[bool, str], list[Json]] = {}
+    for entry in entries:
+        shared.setdefault((entry["on"], entry["reason"]), []).append(entry)
+    for (on, reason), same in shared.items():
+        parts = ", ".join(entry["part"] for entry in same)
+        largest = max(entry["worth"] for entry in same)
+        moved = f"; {engineering(1e6 * largest, 3)} um along the line of action" if largest >= LEAST else ""
+        yield f"effect {name}: {'on' if on else 'off'} ({parts}); {reason}{moved}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from dynamics.scene import Scene
 from dynamics.simulation import interrupted_run, simulate_to_file
@@ -10,6 +11,7 @@ from dynamics.types import RunStatus
 from service.cli.interrupt import until_interrupted
 from service.cli.output import Report, check_netcdf_output, console, print_json, print_result, progress_bar
 from service.cli.run_effects import effect_lines
+from service.cli.run_headlines import run_headlines
 from service.cli.scene_tables import scene_with_tables
 from service.cli.warned import warnings_so_far
 from service.client.portable import scene_of
@@ -49,19 +51,13 @@ def _run(scene: Scene, output: Path, report: Report, *, resume: bool) -> None:
         raise JobFailed(f"The run ended early: {ended}. What was computed is in {output}.")
 
 
-def _show(facts: dict[str, object]) -> None:
+def _show(facts: dict[str, Any]) -> None:
     """Print a run for people."""
     out = console()
-    attributes = facts["attributes"]
-    assert isinstance(attributes, dict)
-    for name, value in attributes.items():
-        if isinstance(value, str | int | float) and len(str(value)) < 80:
-            out.print(f"{name} {value}", highlight=False)
-    ledger = attributes.get("effect_ledger")
-    for line in (*effect_lines(ledger if isinstance(ledger, dict) else {}), *run_lines(attributes)):
-        out.print(line, highlight=False)
-    sizes = facts["dimensions"]
-    assert isinstance(sizes, dict)
+    attributes, sizes = facts["attributes"], facts["dimensions"]
+    ledger = attributes.get("effect_ledger", {})
+    for line in (*effect_lines(ledger), *run_lines(attributes)):
+        out.print(line, highlight=False, soft_wrap=True)
     status = str(attributes["status"]).lower().replace("_", " ")
-    out.print(f"run {status}: {sizes['time']} samples of {sizes['mesh']} meshes", highlight=False)
-    print_result((), [Path(str(facts["file"]))])
+    out.print(f"run {status}: {sizes['time']} samples", highlight=False)
+    print_result(run_headlines(attributes["receipt"].get("peaks", {})), [Path(str(facts["file"]))])

@@ -18,7 +18,7 @@ def by_size(ledger: Iterable[Entry]) -> tuple[list[Entry], list[Entry]]:
     return [entry for entry in entries if entry not in trifles], trifles
 
 
-def trifles_title(trifles: Sequence[Entry]) -> str:
+def trifles_title(trifles: Sequence[object]) -> str:
     """Say how many effects are folded away, and below which size."""
     effects = "effect" if len(trifles) == 1 else "effects"
     return f"{len(trifles)} {effects} below {100 * TRIFLE:g} %"

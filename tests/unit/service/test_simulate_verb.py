@@ -15,6 +15,7 @@ from dynamics.types import RunStatus
 from service.cli.commands import app
 from service.cli.interrupt import until_interrupted
 from service.cli.run_effects import effect_lines
+from service.cli.run_headlines import run_headlines
 from service.cli.simulate import _run
 
 SCENE = gear_pair_scene(duration=0.02)
@@ -51,10 +52,30 @@ def test_a_run_says_which_effects_are_on_and_what_the_others_change():
         {"effect": "tilt", "part": "input", "on": False, "worth": 0.0, "reason": "centered"},
         {"effect": "lateral", "part": "input", "on": True, "worth": 1.33e-5, "reason": "pushed aside"},
     ]
-    assert effect_lines({"entries": entries}) == [
-        "effect flexible_shafts, input: off, influence 2 um: switched off",
-        "effect lateral, input: on, influence 13.3 um: pushed aside",
+    entries.append(entries[-1] | {"part": "output", "worth": 2e-6})
+    names = ("relative_mean", "relative_peak_to_peak", "relative_bearing_force")
+    small = dict.fromkeys(names, 2e-4) | {"words": "0.02 % of all", "freedoms": 4}
+    large = small | {"words": "17 % of all", "relative_mean": -0.17}
+    ledger = {"entries": entries, "worths": {"tilt": small, "lateral": large}}
+    assert list(effect_lines(ledger)) == [
+        "effect flexible_shafts: off (input); switched off; 2 um along the line of action",
+        "effect lateral: on (input, output); pushed aside; 13.3 um along the line of action",
+        "       without it 17 % of all; +4 freedoms with it",
+        "1 effect below 0.1 %: tilt",
     ]
+
+
+def test_a_run_ends_with_its_largest_forces():
+    peaks = {
+        "mesh_force": {"a": {"peak": 3.0, "rms": 1.0}, "b": {"peak": 5.0, "rms": 2.0}},
+        "bearing_force": {"left": {"peak": [3.0, 4.0, 0.0], "rms": [0.6, 0.8, 0.0]}},
+    }
+    told = [(line.name, line.value, line.remark) for line in run_headlines(peaks)]
+    assert told == [
+        ("largest mesh force of b", "5.000 N", "rms 2.000 N"),
+        ("largest force on bearing left, y", "4.000 N", "rms 0.8000 N"),
+    ]
+    assert run_headlines({}) == ()
 
 
 def test_resume_without_an_interrupted_run_is_refused(tmp_path):
