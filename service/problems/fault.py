@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -25,14 +26,14 @@ class Fault:
     suggestion : str
         What to try.
     place : str
-        File and line, for those who wrote one; empty where none is known.
+        File and line, for those who wrote one; empty where none is known. It makes no other fault of it.
     """
 
     field: str
     value: object
     bound: str
     suggestion: str = ""
-    place: str = ""
+    place: str = dataclasses.field(default="", compare=False)
 
     def __str__(self) -> str:
         text = f"{self.field} = {_shown(self.value)}: must be {self.bound}"
