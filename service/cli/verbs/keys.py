@@ -10,9 +10,9 @@ import typer
 from service.cli.guard import guarded
 from service.cli.verbs.options import AsJson
 
-verbs = typer.Typer(help="Access keys of a service: who may use it.", no_args_is_help=True)
+verbs = typer.Typer(help="Access keys of a service.", no_args_is_help=True)
 
-Name = Annotated[str, typer.Argument(help="Whose key it is.")]
+Name = Annotated[str, typer.Argument(help="Name of the key's owner.")]
 KeysFile = Annotated[
     Path | None,
     typer.Option("--file", help="File of keys [LOA_KEYS_FILE; keys.json in the data directory]."),
@@ -25,12 +25,12 @@ def add(
     name: Name,
     requests_per_minute: Annotated[int | None, typer.Option(help="Default: no limit.")] = None,
     unfinished_jobs: Annotated[
-        int | None, typer.Option(help="Jobs that may wait or run at the same time; default: no limit.")
+        int | None, typer.Option(help="Limit on waiting and running jobs; default: no limit.")
     ] = None,
     file: KeysFile = None,
     json: AsJson = False,
 ) -> None:
-    """Make a key, print it once, and keep its hash."""
+    """Create a key, print it once, and store its hash."""
     from service.cli.keys import run_add  # noqa: PLC0415 (start-up time)
 
     limits = {"requests_per_minute": requests_per_minute, "unfinished_jobs": unfinished_jobs}
@@ -49,7 +49,7 @@ def list_keys(file: KeysFile = None, json: AsJson = False) -> None:
 @verbs.command(epilog="Example: loa keys remove test-bench-3")
 @guarded
 def remove(name: Name, file: KeysFile = None) -> None:
-    """Take a key back; services that run heed it at the next request."""
+    """Remove a key; running services refuse it from the next request on."""
     from service.cli.keys import run_remove  # noqa: PLC0415 (start-up time)
 
     run_remove(name, file)

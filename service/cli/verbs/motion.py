@@ -22,11 +22,11 @@ def simulate(
     output: Annotated[Path, typer.Option("-o", "--output", help="Run to write (netCDF).")],
     service: TableService = None,
     resume: Annotated[
-        bool, typer.Option("--resume", help="Go on with a run that was interrupted or killed.")
+        bool, typer.Option("--resume", help="Continue a run that was interrupted or killed.")
     ] = False,
     json: AsJson = False,
 ) -> None:
-    """Run the dynamics of a scene; Ctrl-C ends it with what was computed, to be resumed."""
+    """Run the dynamics of a scene; Ctrl-C stops it, stores the results so far, and --resume continues."""
     from service.cli.simulate import run_simulate  # noqa: PLC0415 (start-up time)
 
     run_simulate(scene, output, service, resume=resume, as_json=json)

@@ -13,11 +13,11 @@ verbs = typer.Typer()
 
 Module = Annotated[float | None, typer.Option(min=0.05, max=100.0, help="Normal module in mm.")]
 Teeth = Annotated[int | None, typer.Option(min=6, max=500, help="Teeth of the pinion, or of the sun.")]
-Ratio = Annotated[float | None, typer.Option(min=1.0, max=50.0, help="Of speeds, driving to driven.")]
+Ratio = Annotated[float | None, typer.Option(min=1.0, max=50.0, help="Speed ratio, driving to driven gear.")]
 Helix = Annotated[float | None, typer.Option(min=-45.0, max=45.0, help="Helix angle in deg.")]
 Width = Annotated[float | None, typer.Option(min=0.05, max=5000.0, help="Face width in mm.")]
 NewFile = Annotated[
-    Path | None, typer.Option("-o", "--output", help="New file to write (TOML); left out: printed.")
+    Path | None, typer.Option("-o", "--output", help="New file to write (TOML); default: print it.")
 ]
 
 
@@ -36,7 +36,7 @@ def new(
     width: Width = None,
     output: NewFile = None,
 ) -> None:
-    """Write a first case or scene file; what is not given is by rule."""
+    """Write a first case or scene file; rules set all data that are not given."""
     from service.cli.new.run import run_new  # noqa: PLC0415 (start-up time)
     from service.cli.new.sketch import Wanted  # noqa: PLC0415
 

@@ -62,7 +62,7 @@ def _parameters(study: Study) -> Iterator[Parameter]:
     argument = file_argument(f"{study.subject.capitalize()} file", metavar)
     yield _parameter(study.argument, Annotated[list[InputFile] if study.several else InputFile, argument])
     if study.from_file:
-        yield _parameter("study", Annotated[Path, typer.Argument(help="File of what is varied and how.")])
+        yield _parameter("study", Annotated[Path, typer.Argument(help="Study file (TOML).")])
     else:
         yield from (_option(name, field) for name, field in study.inputs.model_fields.items())
     place = "Folder, or a file" if study.folder else "File to write,"

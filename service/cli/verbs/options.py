@@ -13,7 +13,7 @@ AsCsv = Annotated[bool, typer.Option("--csv", help="Print CSV on standard output
 Service = Annotated[str, typer.Option("--service", envvar="LOA_SERVICE", help="Address of the service.")]
 TableService = Annotated[
     str | None,
-    typer.Option("--service", help="Take the tables from this service instead of computing them here."),
+    typer.Option("--service", help="Fetch the tables from this service instead of computing them locally."),
 ]
 
 Torque = Annotated[
@@ -21,16 +21,16 @@ Torque = Annotated[
 ]
 Force = Annotated[float | None, typer.Option(help="Normal tooth force in N, instead of a torque.")]
 Misalignment = Annotated[
-    float | None, typer.Option(help="Misalignment in um; default: the case's, nearest to 0.")
+    float | None, typer.Option(help="Misalignment in um; default: the value of the case nearest to 0.")
 ]
 CenterDistanceChange = Annotated[
-    float | None, typer.Option(help="Change of the center distance in mm; default: likewise.")
+    float | None, typer.Option(help="Change of the center distance in mm; default: the value nearest to 0.")
 ]
 TaskWorkers = Annotated[
-    int, typer.Option("--workers", min=1, max=256, help="Processes here that share the tasks.")
+    int, typer.Option("--workers", min=1, max=256, help="Local processes that share the tasks.")
 ]
 DaskScheduler = Annotated[
-    str | None, typer.Option("--dask", help="Address of a Dask scheduler whose workers do the tasks.")
+    str | None, typer.Option("--dask", help="Address of a Dask scheduler whose workers run the tasks.")
 ]
 
 

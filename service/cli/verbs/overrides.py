@@ -15,9 +15,7 @@ from service.input_file import InputFile, Override
 
 R = TypeVar("R")
 
-_SET = (
-    "Value over the file's, as pair.pinion.tip_relief_um=20; repeatable, nothing after = leaves a field out."
-)
+_SET = "Override a value of the file, as pair.pinion.tip_relief_um=20; repeatable; empty: remove the field."
 _LEVEL = "Short for --set accuracy.level=: draft, standard or fine, instead of a tolerance."
 _TOLERANCE = "Short for --set accuracy.tolerance=: relative, instead of a level."
 _TORQUE = "Short for --set load.torque_n_m=[...]: torques on the driving gear in N m, as 50,100."

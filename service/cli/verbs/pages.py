@@ -18,11 +18,11 @@ verbs = typer.Typer()
 Quantity = Annotated[
     str,
     typer.Option(
-        help="What of a run is shown: force, moment, acceleration, mesh_force, transmission_error.",
+        help="Quantity of a run to show: force, moment, acceleration, mesh_force, transmission_error.",
         show_default="force",
     ),
 ]
-Bearing = Annotated[str, typer.Option(help="Bearing of a run that is shown.", show_default="the loudest")]
+Bearing = Annotated[str, typer.Option(help="Bearing of a run to show.", show_default="the loudest")]
 Mesh = Annotated[str, typer.Option(help="Mesh of a run whose orders are shown.", show_default="the first")]
 Orders = Annotated[
     str, typer.Option(help="Mesh orders over speed, as 1,2,4 or 1:8:1.", show_default="the five largest")
@@ -42,7 +42,7 @@ def report(
     images: Annotated[Path | None, typer.Option(help="Folder to write the plots to as PNG.")] = None,
     flank: Annotated[
         bool,
-        typer.Option("--flank", help="Compute what happens on the flanks at the load the page names."),
+        typer.Option("--flank", help="Compute the flank results at the load of the page."),
     ] = False,
     quantity: Quantity = "",
     bearing: Bearing = "",
@@ -63,12 +63,13 @@ def report(
 @computing
 def compare(
     files: Annotated[
-        list[Path], typer.Argument(help="Two STE databases or two runs; a CSV file of what was measured.")
+        list[Path],
+        typer.Argument(help="Two STE databases or two runs, or one and a CSV file of a measurement."),
     ],
     output: Annotated[Path, typer.Option("-o", "--output", help="Page to write.")] = Path("comparison.html"),
     torque: Annotated[
         float | None,
-        typer.Option(help="Torque at which ripples are drawn, N m.", show_default="the middle one"),
+        typer.Option(help="Torque of the ripples shown, N m.", show_default="the middle one"),
     ] = None,
     quantity: Quantity = "",
     bearing: Bearing = "",

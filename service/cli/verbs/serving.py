@@ -21,15 +21,15 @@ verbs = typer.Typer()
 def serve(
     host: Annotated[
         str | None,
-        typer.Option(help="Address; without access keys on loopback [LOA_HOST]."),
+        typer.Option(help="Address to listen on; loopback only without access keys [LOA_HOST]."),
     ] = None,
-    port: Annotated[int | None, typer.Option(help="Port; 0 takes a free one [LOA_PORT].")] = None,
+    port: Annotated[int | None, typer.Option(help="Port; 0 selects a free one [LOA_PORT].")] = None,
     data_directory: Annotated[
         Path | None, typer.Option(help="Directory of jobs and results [LOA_DATA_DIRECTORY].")
     ] = None,
     workers: Annotated[int | None, typer.Option(help="Jobs at the same time [LOA_WORKERS].")] = None,
     no_work: Annotated[
-        bool, typer.Option("--no-work", help="Only serve; jobs are run by loa work on the same database.")
+        bool, typer.Option("--no-work", help="Serve only; loa work runs the jobs of the same database.")
     ] = False,
 ) -> None:
     """Serve jobs and results over HTTP on this machine, until stopped."""
@@ -42,11 +42,11 @@ def serve(
 @guarded
 def work(
     data_directory: Annotated[
-        Path | None, typer.Option(help="Directory of workspaces, one for each loa work [LOA_DATA_DIRECTORY].")
+        Path | None, typer.Option(help="Directory of workspaces, one per loa work [LOA_DATA_DIRECTORY].")
     ] = None,
     workers: Annotated[int | None, typer.Option(help="Jobs at the same time [LOA_WORKERS].")] = None,
 ) -> None:
-    """Run the jobs of a database that others serve, until stopped."""
+    """Run the jobs of a database that loa serve --no-work fills, until stopped."""
     from service.cli.work import run_work  # noqa: PLC0415 (start-up time)
 
     run_work(data_directory=data_directory, workers=workers)
@@ -60,7 +60,7 @@ def submit(
     service: Service = DEFAULT_SERVICE,
     wait: Annotated[bool, typer.Option("--wait", help="Wait for the result.")] = False,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Wait, and write the result here.")
+        Path | None, typer.Option("-o", "--output", help="Wait for the result and write it to this file.")
     ] = None,
     process: Annotated[
         str | None,

@@ -1,4 +1,4 @@
-"""Verbs on what results are worth that are no rows of the registry: plans, hard scenes."""
+"""Verbs on accuracy and robustness that are not studies of the registry: plans, hard scenes."""
 
 from __future__ import annotations
 
@@ -20,7 +20,8 @@ verbs = typer.Typer()
 def plan(
     case: CaseFile,
     time_budget_s: Annotated[
-        float | None, typer.Option(help="CPU seconds to hold the plan against, beside the case's tolerance.")
+        float | None,
+        typer.Option(help="Budget in CPU seconds to compare the plan with, besides the case's tolerance."),
     ] = None,
     json: AsJson = False,
 ) -> None:
@@ -41,7 +42,7 @@ def hardcases(
     ] = None,
     json: AsJson = False,
 ) -> None:
-    """Run the hard scenes: cases known to break solvers, each assessed by laws of physics."""
+    """Run the hard scenes: cases known to break solvers, each checked against laws of physics."""
     from service.cli.hardcases import run_hardcases  # noqa: PLC0415 (start-up time)
 
     run_hardcases(only or [], output, as_json=json)

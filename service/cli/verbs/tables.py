@@ -66,7 +66,7 @@ def ste(
     force: Force = None,
     at: Annotated[
         str | None,
-        typer.Option(help="Positions by the driving gear in base pitches, 0 = pitch point: 0,0.25,0.5"),
+        typer.Option(help="Positions of the driving gear in base pitches, 0 = pitch point: 0,0.25,0.5"),
     ] = None,
     misalignment_um: Annotated[float | None, typer.Option(help="Misalignment in um.")] = None,
     center_distance_change_mm: Annotated[
@@ -92,29 +92,36 @@ def export(
         typer.Option(
             "-o",
             "--output",
-            help="Folder for pinion.vtu and wheel.vtu, made if missing; or MESH.fmu; of a run .unv or .csv.",
+            help="Folder for pinion.vtu and wheel.vtu, or MESH.fmu; for a run .unv or .csv.",
         ),
     ],
     torque: Torque = None,
     force: Force = None,
     misalignment_um: Misalignment = None,
     center_distance_change_mm: CenterDistanceChange = None,
-    at: Annotated[str, typer.Option(help="Positions by the driving gear in base pitches.")] = "0",
+    at: Annotated[str, typer.Option(help="Positions of the driving gear in base pitches.")] = "0",
     beside: Annotated[
         int, typer.Option(min=0, max=100, help="Unloaded teeth to show on either side, in three dimensions.")
     ] = 1,
     damping_n_s_per_m: Annotated[
-        float, typer.Option(help="Mesh damping an FMU starts with in N s/m along the line of action.")
+        float, typer.Option(help="Start value of an FMU's mesh damping along the line of action in N s/m.")
     ] = 0.0,
     backlash_um: Annotated[
         float | None,
-        typer.Option(help="Of an FMU with coast flanks: along the transverse line of action, in um."),
+        typer.Option(help="Backlash of an FMU with coast flanks, along the transverse line of action in um."),
     ] = None,
     function: Annotated[
-        str, typer.Option(help="Of a run: time, spectrum (over frequency) or orders (over mesh orders).")
+        str,
+        typer.Option(
+            help="Exported from a run: time, spectrum (over frequency) or orders (over mesh orders)."
+        ),
     ] = "time",
-    start: Annotated[float | None, typer.Option("--from", help="Of a run: from this time in s.")] = None,
-    end: Annotated[float | None, typer.Option("--to", help="Of a run: to this time in s.")] = None,
+    start: Annotated[
+        float | None, typer.Option("--from", help="Start time of the exported part of a run in s.")
+    ] = None,
+    end: Annotated[
+        float | None, typer.Option("--to", help="End time of the exported part of a run in s.")
+    ] = None,
     json: AsJson = False,
 ) -> None:
     """Write both gears as they bend in mesh (ParaView), the mesh force as an FMU, or a run as UFF or CSV."""

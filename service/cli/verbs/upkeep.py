@@ -14,7 +14,9 @@ database = typer.Typer(help="The database of jobs: its schema.", no_args_is_help
 
 store = typer.Typer(help="The store of results: verify, collect, reindex.", no_args_is_help=True)
 
-cache = typer.Typer(help="What is kept on this machine to be quicker the next time.", no_args_is_help=True)
+cache = typer.Typer(
+    help="The cache of gears, results, searches and studies on this machine.", no_args_is_help=True
+)
 
 DataDirectory = Annotated[
     Path | None, typer.Option(help="Directory of jobs and results [LOA_DATA_DIRECTORY].")
@@ -24,7 +26,7 @@ DataDirectory = Annotated[
 @database.command(epilog="Example: LOA_DATABASE_URL=postgresql://loa@db/loa loa database upgrade")
 @guarded
 def upgrade(data_directory: DataDirectory = None, json: AsJson = False) -> None:
-    """Bring the tables up to date, or make them; nothing is lost."""
+    """Upgrade the tables, or create them; no data are lost."""
     from service.cli.database import run_upgrade  # noqa: PLC0415 (start-up time)
 
     run_upgrade(as_json=json, data_directory=data_directory)
@@ -33,7 +35,7 @@ def upgrade(data_directory: DataDirectory = None, json: AsJson = False) -> None:
 @database.command(epilog="Example: loa database status --json")
 @guarded
 def status(data_directory: DataDirectory = None, json: AsJson = False) -> None:
-    """Tell the schema of the database and that of this program; exit code 1 if they differ."""
+    """Print the schema of the database and of this program; exit code 1 if they differ."""
     from service.cli.database import run_status  # noqa: PLC0415 (start-up time)
 
     run_status(as_json=json, data_directory=data_directory)
@@ -42,7 +44,7 @@ def status(data_directory: DataDirectory = None, json: AsJson = False) -> None:
 @store.command(epilog="Example: loa store verify --json")
 @guarded
 def verify(data_directory: DataDirectory = None, json: AsJson = False) -> None:
-    """Compare every file with its digest, set damaged ones aside; exit code 1 if one is damaged or gone."""
+    """Compare files with their digests, set damaged ones aside; exit code 1 if one is damaged or missing."""
     from service.cli.store import run_verify  # noqa: PLC0415 (start-up time)
 
     run_verify(as_json=json, data_directory=data_directory)
@@ -52,16 +54,17 @@ def verify(data_directory: DataDirectory = None, json: AsJson = False) -> None:
 @guarded
 def gc(
     data_directory: DataDirectory = None,
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Tell what would be removed.")] = False,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="List what would be removed.")] = False,
     older_than: Annotated[
         float | None,
         typer.Option(
-            min=0.0, help="Also results and ended jobs not requested in so many days [LOA_RETENTION_DAYS]."
+            min=0.0,
+            help="Also remove results and ended jobs not requested for this many days [LOA_RETENTION_DAYS].",
         ),
     ] = None,
     json: AsJson = False,
 ) -> None:
-    """Remove what is left over: files without index, lines without file, workspaces, logs, what expired.
+    """Remove orphaned files and index lines, old workspaces and logs, and expired results.
 
     Files of results go to quarantine, for LOA_QUARANTINE_DAYS.
     """
@@ -75,11 +78,11 @@ def gc(
 def reindex(
     data_directory: DataDirectory = None,
     quarantined: Annotated[
-        bool, typer.Option("--quarantined", help="First move back what is in quarantine.")
+        bool, typer.Option("--quarantined", help="First restore the files in quarantine.")
     ] = False,
     json: AsJson = False,
 ) -> None:
-    """Rebuild the index from the files: after the loss of the database, or with one from before.
+    """Rebuild the index from the files, after the loss of the database or with an older database.
 
     The files become those of this database: a service that had them removes none of them any more, and is
     refused at its next start. Exit code 3 if a file is damaged.
@@ -92,7 +95,7 @@ def reindex(
 @cache.command("list", epilog="Example: loa cache list --json")
 @guarded
 def list_cache(json: AsJson = False) -> None:
-    """Print how many files and bytes are kept, by kind."""
+    """Print the number of files and their size, by kind."""
     from service.cli.cache import run_list  # noqa: PLC0415 (start-up time)
 
     run_list(as_json=json)
@@ -104,7 +107,7 @@ def limit(
     gb: Annotated[float | None, typer.Option(min=0.0, help="Default: LOA_CACHE_BYTES, or 2 GB.")] = None,
     json: AsJson = False,
 ) -> None:
-    """Remove what was not used for longest until the rest fits; what was used within 10 minutes stays."""
+    """Remove the least recently used entries until the rest fits; entries used within 10 minutes stay."""
     from service.cli.cache import run_limit  # noqa: PLC0415 (start-up time)
 
     run_limit(gb, as_json=json)
@@ -114,11 +117,11 @@ def limit(
 @guarded
 def clear(
     kinds: Annotated[
-        list[str] | None, typer.Argument(help="compliance, results, searches, studies; none named: all.")
+        list[str] | None, typer.Argument(help="compliance, results, searches, studies; default: all.")
     ] = None,
     json: AsJson = False,
 ) -> None:
-    """Remove all that is kept; it is computed or fetched again when it is needed."""
+    """Remove all entries; they are computed or fetched again when needed."""
     from service.cli.cache import run_clear  # noqa: PLC0415 (start-up time)
 
     run_clear(kinds or [], as_json=json)

@@ -17,6 +17,6 @@ class Inputs(BoundaryModel):
         default=None,
         min_length=1,
         max_length=64,
-        description="Effects to toggle, by name; left out: all",
+        description="Effects to toggle, by name; default: all",
         examples=[["tooth_coupling", "profile_modification"]],
     )

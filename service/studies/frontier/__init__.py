@@ -19,7 +19,7 @@ class Inputs(BoundaryModel):
         default=None,
         min_length=1,
         max_length=64,
-        description="Fidelities to run, by name, at least two; left out: all that are valid",
+        description="Fidelities to run, by name, at least two; default: all valid ones",
         examples=[["thin_slices", "corrected", "3d_standard"]],
     )
     up_to: Literal["corrected_fine", "3d_draft", "3d_standard", "3d_fine"] = Field(

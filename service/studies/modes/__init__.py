@@ -15,7 +15,7 @@ class Inputs(OverSpeeds):
     speed_rpm: Annotated[tuple[Speed, ...], Strict(False)] = Field(
         default=(),
         max_length=MOST_SPEEDS,
-        description="Speeds of the first shaft that is driven, in rpm, increasing; left out: at rest only",
+        description="Speeds of the first driven shaft in rpm, increasing; default: at rest only",
         examples=[[0.0, 1500.0, 3000.0]],
     )
     orders: Orders = Field(default=10, description="Multiples of the mesh frequencies", examples=[10])
@@ -23,6 +23,6 @@ class Inputs(OverSpeeds):
         default=None,
         gt=0.0,
         le=1e7,
-        description="To which shafts are resolved; left out: the highest of the orders at the highest speed",
+        description="Highest frequency for flexible shafts; default: the highest order at the highest speed",
         examples=[5000.0],
     )

@@ -122,7 +122,7 @@ class LimitsInput(BoundaryModel):
         default=None,
         ge=0.0,
         lt=1.0,
-        description="Largest part of the load on tip edges; 0 forbids their contact",
+        description="Largest share of the load on tip edges; 0 forbids their contact",
         examples=[0.0],
     )
 
@@ -132,40 +132,42 @@ class SearchInput(BoundaryModel):
 
     method: Literal["sequential_linear_programming", "differential_evolution", "nelder_mead"] = Field(
         default="sequential_linear_programming",
-        description="By derivatives from the best of a sample, global without them, or local without them",
+        description="With derivatives from the best of a sample, or without them: global or local",
         examples=["differential_evolution"],
     )
     sample: int = Field(
         default=64,
         ge=0,
         le=4096,
-        description="Of sequential_linear_programming: designs that are ranked before any is followed",
+        description="Start designs that sequential_linear_programming ranks first",
         examples=[64],
     )
     trials: int = Field(
-        default=3, ge=0, le=64, description="Of them the best that are followed", examples=[3]
+        default=3, ge=0, le=64, description="Number of the best start designs that are followed", examples=[3]
     )
     population: int = Field(
-        default=5, ge=3, le=50, description="Of differential_evolution, for each variable", examples=[5]
+        default=5, ge=3, le=50, description="Population of differential_evolution per variable", examples=[5]
     )
-    seed: int = Field(default=0, ge=0, le=2**32 - 1, description="Equal seeds, equal results", examples=[0])
+    seed: int = Field(
+        default=0, ge=0, le=2**32 - 1, description="Equal seeds give equal results", examples=[0]
+    )
     starts: int = Field(default=1, ge=1, le=256, description="Independent searches", examples=[1])
     evaluations: int = Field(
         default=1000,
         title="Designs tried, at most",
         ge=1,
         le=1_000_000,
-        description="Most designs of each search",
+        description="Largest number of designs per search",
         examples=[1000],
     )
     positions: int = Field(
-        default=64, ge=8, le=4096, description="In a base pitch, for the search", examples=[64]
+        default=64, ge=8, le=4096, description="Positions in a base pitch during the search", examples=[64]
     )
     exploration: int = Field(
         default=16,
         ge=8,
         le=4096,
-        description="Positions by which they, or those of evolution, are ranked",
+        description="Positions for the ranking of start designs and of evolution",
         examples=[16],
     )
 
@@ -175,27 +177,27 @@ class Inputs(BoundaryModel):
 
     torque_n_m: Torques | None = Field(
         default=None,
-        description="Torques that count, N m on the driving gear, increasing; left out: those of the case",
+        description="Design torques in N m on the driving gear, increasing; default: those of the case",
         examples=[[100.0, 200.0, 300.0]],
     )
     misalignment_um: float = Field(
         default=0.0,
         ge=-10_000.0,
         le=10_000.0,
-        description="Misalignment in um about which it scatters",
+        description="Mean misalignment in um",
         examples=[0.0],
     )
     variables: VariablesInput = Field(
         default=VariablesInput(),
-        description="Figures of the modifications that are free; left out: those of most_tip_relief_um",
+        description="Modifications to vary, with bounds; default: those of most_tip_relief_um",
         examples=[{"pinion": {"tip_relief_um": [0.0, 60.0], "tip_relief_length_mm": [0.5, 3.0]}}],
     )
     scatter: ScatterInput = Field(
         default=ScatterInput(), description="Deviations of assembly and manufacture"
     )
-    objective: ObjectiveInput = Field(default=ObjectiveInput(), description="What is minimized")
-    limits: LimitsInput = Field(default=LimitsInput(), description="What has to be kept")
-    search: SearchInput = Field(default=SearchInput(), description="How it is searched")
+    objective: ObjectiveInput = Field(default=ObjectiveInput(), description="Objective to minimize")
+    limits: LimitsInput = Field(default=LimitsInput(), description="Limits to meet")
+    search: SearchInput = Field(default=SearchInput(), description="Search method and its settings")
 
     @model_validator(mode="after")
     def _increasing(self) -> Self:

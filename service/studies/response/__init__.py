@@ -15,7 +15,7 @@ class Inputs(OverSpeeds):
     speed_rpm: Annotated[tuple[TurningSpeed, ...], Strict(False)] = Field(
         min_length=1,
         max_length=MOST_SPEEDS,
-        description="Speeds of the first shaft that is driven, in rpm, increasing",
+        description="Speeds of the first driven shaft in rpm, increasing",
         examples=[[300.0, 600.0, 900.0]],
     )
     orders: Orders = Field(default=10, description="Harmonics of the mesh frequency", examples=[10])
