@@ -17,7 +17,7 @@ _POSITION = Declared(
     Kind.LENGTH,
     "m",
     between(-1000.0, 1000.0),
-    "Place along the first shaft, from its left end, for the matrices and for torsion of flexible shafts",
+    "Position along the first shaft, from its left end, for the matrices and for torsion of flexible shafts",
     0.2,
 )
 

@@ -15,14 +15,14 @@ _SPEED = Declared(
     Kind.SPEED,
     "rad/s",
     between(-_FASTEST, _FASTEST),
-    "Speed at the start, about the fixed +z axis; after that it turns as torques make it",
+    "Speed at the start, about the fixed +z axis; afterwards the torques determine it",
     105.0,
 )
 _SENSE = Declared(
     Kind.CHOICE,
     "",
     one_of(("+z", "-z")),
-    "Where it turns if it starts from rest; it sets the driving flanks",
+    "Sense of rotation after a start from rest; it sets the driving flanks",
     "+z",
 )
 

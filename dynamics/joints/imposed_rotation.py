@@ -21,7 +21,7 @@ _POSITION = Declared(
     Kind.LENGTH,
     "m",
     between(-1000.0, 1000.0),
-    "Where along a flexible shaft the motion is imposed, from its left end",
+    "Position along a flexible shaft where the motion is imposed, from its left end",
     0.0,
 )
 

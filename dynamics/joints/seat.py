@@ -15,7 +15,7 @@ SEAT = 5
 """Directions in which a bearing holds a shaft: x, y, z, tilt_x, tilt_y."""
 
 POSITION = Declared(
-    Kind.LENGTH, "m", between(-1000.0, 1000.0), "Place along the shaft, from its left end", 0.0
+    Kind.LENGTH, "m", between(-1000.0, 1000.0), "Position along the shaft, from its left end", 0.0
 )
 RADIAL_STIFFNESS = Declared(
     Kind.STIFFNESS, "N/m", between(0.0, 1e15), "Radial stiffness; in all directions across the axis", 1e8

@@ -20,7 +20,7 @@ _TOLERANCE = Declared(
     Kind.LENGTH,
     "m",
     up_to(1e-3),
-    "Step error of the displacements wanted over the run, rms; rotations count times the base radius",
+    "Allowed step error of the displacements over the run, rms; rotations count times the base radius",
     1e-9,
     written="nm",
 )

@@ -45,7 +45,7 @@ _FILTER = Declared(
     Kind.SWITCH,
     "",
     None,
-    "Filter the output, so that nothing above half the rate folds into it; false: points of the motion",
+    "Filter the output against aliasing from above half the rate; false: unfiltered samples",
     True,
 )
 
