@@ -14,6 +14,7 @@ part of a helical tooth's force moves the body too (`axial_compliance`).
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -36,8 +37,36 @@ WEB_EXCESS = 2.1
 """Compliance that a web adds over its own twist: 1.9 to 2.3 measured (docs/effects/thin_rim.md)."""
 
 
+class GearCompliance(NamedTuple):
+    """Normal approach (P, n, n) in m of each slice per N on each other, of one gear.
+
+    Attributes
+    ----------
+    tooth : ndarray
+        Bending, shear and compression of the tooth, and what it is clamped in.
+    contact : ndarray
+        From under the load patch to the tooth's middle.
+    body : ndarray
+        Body, web and seat.
+    """
+
+    tooth: FloatArray
+    contact: FloatArray
+    body: FloatArray
+
+
 def slice_compliance(pair: ParallelAxes, slices: LoadedSlices, model: ContactModel) -> FloatArray:
     """Return the normal approach (P, n, n) in m of each slice per N on each other, both gears.
+
+    The sum of `slice_compliances`, whose parameters it has.
+    """
+    return np.asarray(sum(part for gear in slice_compliances(pair, slices, model) for part in gear))
+
+
+def slice_compliances(
+    pair: ParallelAxes, slices: LoadedSlices, model: ContactModel
+) -> tuple[GearCompliance, GearCompliance]:
+    """Return the compliance between slices of the driving and of the driven gear by what yields.
 
     Parameters
     ----------
@@ -48,25 +77,32 @@ def slice_compliance(pair: ParallelAxes, slices: LoadedSlices, model: ContactMod
         What of it a compliance can show: coupling, finite width, rim, seats.
     """
     touch = slices.touch
-    sides = (
-        (pair.pinion, touch.s_1, touch.lever_1, slices.mean(slices.patch_1.law_width)),
-        (pair.wheel, touch.s_2, touch.lever_2, slices.mean(slices.patch_2.law_width)),
+    wider = finite_width_excess(pair) if model.finite_width or model.across_face else 0.0
+    patches = (slices.mean(patch.law_width) for patch in (slices.patch_1, slices.patch_2))
+    sides = zip(
+        (pair.pinion, pair.wheel),
+        (touch.s_1, touch.s_2),
+        (touch.lever_1, touch.lever_2),
+        patches,
+        strict=True,
     )
-    total = np.zeros((*touch.gap.shape, slices.pair.size))
-    for gear, s, lever, patch in sides:
+    first, second = (
         # off the line of action the gear with the edge moves less, as in `contact_problem`
-        share = lever[:, :, None] * lever[:, None, :]
-        share *= _of_gear(gear, slices, model, s, patch)
-        total += share
-    if model.finite_width or model.across_face:
-        total *= 1.0 + finite_width_excess(pair)
-    return total
+        GearCompliance(
+            *(
+                (1.0 + wider) * lever[:, :, None] * lever[:, None, :] * part
+                for part in _of_gear(gear, slices, model, s, patch)
+            )
+        )
+        for gear, s, lever, patch in sides
+    )
+    return first, second
 
 
 def _of_gear(
     gear: Toothing, slices: LoadedSlices, model: ContactModel, s: FloatArray, patch: FloatArray
-) -> FloatArray:
-    """One gear's share."""
+) -> GearCompliance:
+    """One gear's compliance on its own line of action."""
     bending = tooth_bending(gear)
     blank = blank_factor(gear.with_parts(model.parts))
     root = np.sqrt(bending.at(bending.tooth, s) + bending.at(bending.foundation, s) / blank)
@@ -74,19 +110,17 @@ def _of_gear(
     face = slices.face_position
     decay = TOOTH_DECAY * gear.normal_module
     own = (apart == 0) * _along_face(face, decay, slices.slice_width)
-    compliance = root[:, :, None] * root[:, None, :]
-    compliance *= own
+    tooth = root[:, :, None] * root[:, None, :] * own
     depth = 2.0 * bending.at(bending.depth, s) / patch
     ratio = gear.material.poissons_ratio
     local = np.log(depth) - 0.5 * ratio / (1.0 - ratio) - 0.25
     # what is within the reference length is in the local law, and never more than there is
     local = np.maximum(local, np.log(slices.law_length / patch))
-    diagonal = np.arange(face.size)
     local *= math.cos(gear.helix_angle) * half_plane(gear) / slices.slice_width
-    compliance[:, diagonal, diagonal] += local
     body = _body(gear, slices, model)
-    compliance += body if model.couple_teeth else (apart == 0) * body
-    return np.asarray(compliance)
+    return GearCompliance(
+        tooth, local[:, :, None] * np.eye(face.size), body if model.couple_teeth else (apart == 0) * body
+    )
 
 
 def _body(gear: Toothing, slices: LoadedSlices, model: ContactModel) -> FloatArray:

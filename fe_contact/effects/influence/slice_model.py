@@ -61,14 +61,17 @@ class Springs:
         Everything but the compliance is that of the contact analysis: candidates, gaps, shafts, local
         approach.
         """
-        problem, count = self._springs(model), _positions(model)
-        problem = with_compliances(self.pair, problem, model)
-        problem = problem.touching(with_gaps(self.pair, problem.candidates, model))
+        problem, count = self.problem(model), _positions(model)
         if model.tooth_gaps:
             pitches = np.arange(min(model.period, MOST_PITCHES))
             problem = in_pitches(problem, model, np.repeat(pitches, count))
         curve = self._solved(problem, model, load)
         return EstimatedCurve(np.nanmean(curve, axis=0), np.nanmax(curve, axis=0) - np.nanmin(curve, axis=0))
+
+    def problem(self, model: ContactModel) -> ContactProblem:
+        """Return the contact problem of one base pitch with the gaps and compliances of a model."""
+        problem = with_compliances(self.pair, self._springs(model), model)
+        return problem.touching(with_gaps(self.pair, problem.candidates, model))
 
     def _solved(self, problem: ContactProblem, model: ContactModel, load: FloatArray) -> FloatArray:
         """Solve a problem (P, L) in m, started from the last one with the same gaps."""
