@@ -29,9 +29,10 @@ _WORDS = ("quantity", "symbol", "unit", "point")
 def run_geometry(file: InputFile, output: Path | None, *, as_json: bool) -> None:
     """Print the data sheet of a case; draw it if requested."""
     pair = gear_pair(assessed_case(file))
+    implausible = messages()
     warn(pair_remarks(pair))
     if output is not None:
-        _write(pair, output)
+        _write(pair, output, implausible)
     if as_json:
         written = {} if output is None else {"written": str(output)}
         print_json(written | data_sheet_json(pair))
@@ -39,7 +40,7 @@ def run_geometry(file: InputFile, output: Path | None, *, as_json: bool) -> None
         _show(pair, output)
 
 
-def _write(pair: ParallelAxes, output: Path) -> None:
+def _write(pair: ParallelAxes, output: Path, implausible: list[str]) -> None:
     """Write the page, or the drawing alone."""
     if output.suffix not in _ENDINGS:
         raise BadInput.of("output", str(output), f"a file ending in one of {', '.join(_ENDINGS)}")
@@ -47,7 +48,7 @@ def _write(pair: ParallelAxes, output: Path) -> None:
     if output.suffix == ".html":
         facts = facts_of(pair)
         page = Page(pair_title(facts), pair_lead(facts), (), (data_sheet_section(pair),))
-        write_whole(page, output, warnings=messages())
+        write_whole(page, output, warnings=implausible)
     else:
         output.write_bytes({".png": png, ".svg": svg}[output.suffix](pair_drawing(pair)))
 

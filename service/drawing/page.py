@@ -7,6 +7,7 @@ import json
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import IntEnum
 from html import escape
 
 from service.drawing.figure import Figure, Table
@@ -15,11 +16,22 @@ from service.drawing.plotly_script import plotly_script
 from service.drawing.style import STYLE
 
 
+class Part(IntEnum):
+    """Parts of a report, in their order."""
+
+    RESULTS = 1
+    EFFECTS = 2
+    ACCURACY = 3
+    INPUT = 4
+    RECEIPT = 5
+
+
 @dataclass(frozen=True)
 class Section:
     """A heading with the figures and tables under it.
 
-    `text` introduces them in a sentence; `folded` tables are shown when requested, and in print.
+    `text` introduces them in a sentence; `folded` tables are shown when requested, and in print; `part` is
+    where in a report it belongs.
     """
 
     title: str
@@ -27,6 +39,7 @@ class Section:
     figures: tuple[Figure, ...] = ()
     tables: tuple[Table, ...] = ()
     folded: tuple[Table, ...] = ()
+    part: Part = Part.RESULTS
 
 
 @dataclass(frozen=True)

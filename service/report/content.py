@@ -1,10 +1,11 @@
-"""The content of the page, by what was read."""
+"""The content of the page, by what was read: results, effects, accuracy, input, receipts."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
 
+from service.drawing.effects_section import one_effects_section
 from service.drawing.page import Headline, Page, Section
 from service.report.inputs import Inputs
 from service.runs.dynamic_part import dynamic_alarms, dynamic_headlines, dynamic_making, dynamic_results
@@ -13,12 +14,14 @@ from service.tables.static_part import static_alarms, static_headlines, static_m
 
 
 def page_of(read: Inputs) -> Page:
-    """Put the page together: what is implausible, results, how they were made.
+    """Put the page together: what is implausible, then all sections in the order of their parts.
 
     A study alone has its own page.
     """
     page = _page_of(read)
-    return replace(page, alarms=(*(f"Implausible: {text}" for text in read.warnings), *page.alarms))
+    alarms = (*(f"Implausible: {text}" for text in read.warnings), *page.alarms)
+    sections = sorted(one_effects_section(page.sections), key=lambda section: section.part)
+    return replace(page, alarms=alarms, sections=tuple(sections))
 
 
 def _page_of(read: Inputs) -> Page:
@@ -27,24 +30,21 @@ def _page_of(read: Inputs) -> Page:
         return read.only_page
     database, run = read.database, read.run
     headlines: list[Headline] = []
-    results: list[Section] = []
-    making: list[Section] = []
+    sections: list[Section] = []
     alarms: list[str] = []
     if database is not None:
         headlines += static_headlines(database, nominal_force(read))
-        results += static_results(database)
-        making += static_making(database)
+        sections += (*static_results(database, nominal_force(read)), *static_making(database))
         alarms += static_alarms(database)
     for study in read.pages.values():
         headlines += study.headlines
-        results += study.sections
+        sections += study.sections
         alarms += study.alarms
     if run is not None:
         headlines += dynamic_headlines(run)
-        results += dynamic_results(run, read.view)
-        making += dynamic_making(run)
+        sections += (*dynamic_results(run, read.view), *dynamic_making(run))
         alarms += dynamic_alarms(run)
-    return Page(_title(read), _lead(read), tuple(headlines), (*results, *making), tuple(alarms))
+    return Page(_title(read), _lead(read), tuple(headlines), tuple(sections), tuple(alarms))
 
 
 def nominal_force(read: Inputs) -> float | None:

@@ -69,7 +69,11 @@ def read_inputs(files: Sequence[Path]) -> Inputs:
     warnings = tuple(dict.fromkeys(one["message"] for file in files for one in stamped(file)))
     read = {kind: _read(file, kind) for kind, (study, file) in by_kind.items() if study is None}
     database = read.get("database")
-    pages = {kind: study_page(study, file, database) for kind, (study, file) in by_kind.items() if study}
+    studies = sorted(
+        ((study, file) for study, file in by_kind.values() if study is not None),
+        key=lambda pair: list(STUDIES).index(pair[0].name),
+    )
+    pages = {study.kind: study_page(study, file, database) for study, file in studies}
     return Inputs(**read, pages=pages, warnings=warnings)
 
 

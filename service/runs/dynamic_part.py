@@ -8,9 +8,10 @@ import numpy as np
 
 from dynamics.results import RunResult
 from dynamics.results.contact_state import contact_shares
-from service.drawing.facts import facts, records
+from service.drawing.effects_section import EffectRow, effects_section
+from service.drawing.facts import facts
 from service.drawing.figure import Table, number
-from service.drawing.page import Headline, Section
+from service.drawing.page import Headline, Part, Section
 from service.drawing.sampling import peak_table, sampling_table
 from service.runs.campbell import campbell, frequency_blocks
 from service.runs.dynamic_error import dynamic_error
@@ -26,7 +27,6 @@ from service.runs.signal_over_time import signal_over_time
 from service.runs.signal_spectrum import signal_spectrum
 
 LEAST_PITCHES = 64  # of a run whose orders are shown
-_LEDGER = {"effect": "effect", "part": "part", "on": "simulated", "reason": "because"}
 _ERRORS = {
     "time_step": ("step error", "nm rms"),
     "table_interpolation": ("table error", "nm rms"),
@@ -82,12 +82,16 @@ def _heading(signal: Signal) -> str:
 def dynamic_making(run: RunResult) -> tuple[Section, ...]:
     """Show how exact the run is, what it cost, and what it was made from."""
     accuracy = Section(
-        "Accuracy and cost of the run",
-        tables=(_accuracy(run), sampling_table(run), peak_table(run), _seconds(run)),
-        folded=(facts("Step statistics", run.statistics.to_json()), _energy(run)),
+        "Accuracy of the run",
+        tables=(_accuracy(run), sampling_table(run), peak_table(run)),
+        folded=(_energy(run),),
+        part=Part.ACCURACY,
     )
-    scene = Section("Scene", "As it was resolved, in SI.", folded=(facts("Scene", run.case),))
-    return accuracy, _effects(run), scene
+    text = "As it was resolved, in SI."
+    scene = Section("Scene", text, folded=(facts("Scene", run.case),), part=Part.INPUT)
+    steps = facts("Step statistics", run.statistics.to_json())
+    receipt = Section("Receipt of the run", tables=(_seconds(run),), folded=(steps,), part=Part.RECEIPT)
+    return _effects(run), accuracy, scene, receipt
 
 
 def _orders(run: RunResult, signal: Signal) -> tuple[Section, ...]:
@@ -134,18 +138,18 @@ def _contact(run: RunResult) -> Table:
 
 def _effects(run: RunResult) -> Section:
     """Tabulate what was simulated and what the model leaves out."""
-    entries = run.effect_ledger.get("entries", ())
     rows = [
-        {title: entry.get(name) for name, title in _LEDGER.items()} | _influence(entry) for entry in entries
+        EffectRow(
+            entry["effect"],
+            entry["part"],
+            entry["on"],
+            f"{number(1e6 * float(entry['worth']), 3)} µm at the line of action",
+            entry["reason"],
+        )
+        for entry in run.effect_ledger.get("entries", ())
     ]
     left_out = run.effect_ledger.get("left_out", {})
-    tables = (records("Effect ledger of the run", rows), facts("Not in this model", left_out))
-    return Section("Effects in the run", tables=tables)
-
-
-def _influence(entry: dict[str, Any]) -> dict[str, str]:
-    """Write what an effect moves the mesh by."""
-    return {"influence at the line of action": f"{number(1e6 * float(entry['worth']), 3)} µm"}
+    return effects_section("", rows, (facts("Not in the model of the run", left_out),))
 
 
 def _accuracy(run: RunResult) -> Table:

@@ -11,6 +11,7 @@ from fe_contact.geometry import ParallelAxes, Toothing, sliding_factor, specific
 from service.drawing.figure import Table
 from service.drawing.page import Section
 from service.tables.pair_drawing import pair_drawing
+from service.tables.pair_remarks import pair_remarks
 from service.units import DEGREE, MM, UM
 
 Json = dict[str, Any]
@@ -189,8 +190,10 @@ def _point_row(point: PathPoint) -> tuple[str, ...]:
 
 
 def data_sheet_section(pair: ParallelAxes) -> Section:
-    """Return the sheet as a part of a page: the drawing, then the tables."""
-    return Section("Data sheet", figures=(pair_drawing(pair),), tables=data_sheet(pair))
+    """Return the sheet as a section: what handbooks advise against, the drawing, then the tables."""
+    remarks = " ".join(f"Warning: {remark['message']}" for remark in pair_remarks(pair))
+    text = remarks or "No warnings: undercut, tip thickness and clearance, sliding, contact ratio, backlash."
+    return Section("Data sheet", text, figures=(pair_drawing(pair),), tables=data_sheet(pair))
 
 
 def data_sheet_json(pair: ParallelAxes) -> Json:

@@ -57,6 +57,12 @@ def _lines(database: SteDatabase, values: FloatArray) -> tuple[Line, ...]:
     position, rows = shown_rows(database)
     names = [f"misalignment {number(1e6 * float(m), 3)} µm" for m in database.misalignment]
     return tuple(
-        Line(name, position, values[rows, m], palette.ordered(m, len(names)), label=name)
+        Line(
+            name,
+            position,
+            values[rows, m],
+            palette.ordered(m, len(names)),
+            label=name if len(names) > 1 else "",
+        )
         for m, name in enumerate(names)
     )

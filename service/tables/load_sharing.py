@@ -1,4 +1,4 @@
-"""Share of the load that each tooth pair carries as it passes through the mesh."""
+"""Force that each tooth pair carries as it passes through the mesh, and its share of the load."""
 
 from __future__ import annotations
 
@@ -27,14 +27,15 @@ _CARRIES = 1e-6  # a pair with less than this share nowhere carries load
 
 
 def load_sharing(database: SteDatabase) -> Figure:
-    """Draw the share of each pair against position at the lowest, middle and highest load."""
+    """Draw the force on each pair against position at the lowest, middle and highest load."""
     shown = shown_loads(database)
     loads = sorted({shown[0], middle_load(database), shown[-1]})
     return Figure(
         key="load_sharing",
         title="Load sharing between tooth pairs",
         caption="One line is one pair of teeth from entering the mesh to leaving it; at every position the "
-        "shares sum to one. Pair 0 touches at the pitch point at position 0; pair +1 is one pitch ahead.",
+        "normal forces sum to that of the torque. Pair 0 touches at the pitch point at position 0; pair +1 "
+        "is one pitch ahead.",
         alternative=_words(database, loads),
         content=tuple(_panel(database, load) for load in loads),
         table=_table(database),
@@ -62,16 +63,22 @@ def pair_shares(database: SteDatabase, load: int) -> tuple[FloatArray, dict[int,
 
 
 def _panel(database: SteDatabase, load: int) -> Panel:
-    """One load's shares, each pair named at the middle of its way."""
+    """One load's forces, each pair named at the middle of its way."""
     position, followed = pair_shares(database, load)
     names = {pair: _name(pair, short=len(followed) > _MOST_NAMES) for pair in followed}
+    force = float(database.force[load])
     lines = tuple(
-        Line(names[pair], position, _in_mesh(share), palette.tooth_pair(pair))
+        Line(names[pair], position, force * _in_mesh(share), palette.tooth_pair(pair))
         for pair, share in followed.items()
     )
     top = _ROOM * max(float(np.nanmax(share)) for share in followed.values())
     notes = tuple(_note(line) for line in lines)
-    y = Axis("share of the load", limits=(0.0, top))
+    marks = tuple(
+        (force * share, f"{number(force * share, 3)} N, {100.0 * share:.0f} %")
+        for share in (0.0, 0.25, 0.5, 0.75, 1.0)
+        if share <= top
+    )
+    y = Axis("normal force on a pair", limits=(0.0, force * top), names=marks)
     return Panel(position_axis(database), y, lines, title=load_labels(database)[load], notes=notes)
 
 
@@ -101,6 +108,14 @@ def _in_mesh(share: FloatArray) -> FloatArray:
 
 
 def _words(database: SteDatabase, loads: list[int]) -> str:
+    """Say how much a pair carries at the highest load, and how long it is alone."""
+    load = loads[-1]
+    share = max(float(np.nanmax(one)) for one in pair_shares(database, load)[1].values())
+    largest = f"{number(share * float(database.force[load]), 3)} N, {number(100.0 * share, 3)} % of the load"
+    return f"A pair carries at most {largest}, at {load_labels(database)[load]}. {_alone(database, loads)}"
+
+
+def _alone(database: SteDatabase, loads: list[int]) -> str:
     """Say for how much of a pitch one pair carries everything, or how many share the load."""
     if all(pair_range(database, load)[0] > 1 for load in loads):
         return (
@@ -118,13 +133,19 @@ def _words(database: SteDatabase, loads: list[int]) -> str:
 
 
 def _table(database: SteDatabase) -> Table:
-    """Shares at the middle load, eight positions in a pitch."""
+    """Tabulate forces and shares at the middle load, eight positions in a pitch."""
     m, d = aligned_index(database)
     load = middle_load(database)
     steps = np.linspace(0, len(database.position), 8, endpoint=False).astype(int)
+    force = float(database.force[load])
     rows = tuple(
-        (number(database.position[p], 3), *(number(v, 3) for v in database.load_share[p, load, m, d, :]))
+        (number(database.position[p], 3), *(_both(force, v) for v in database.load_share[p, load, m, d, :]))
         for p in steps
     )
     head = ("position, base pitches", *(_name(int(j)) for j in database.pair))
-    return Table(f"Share of the load at {load_labels(database)[load]}", head, rows)
+    return Table(f"Normal force on each pair at {load_labels(database)[load]}, N", head, rows)
+
+
+def _both(force: float, share: float) -> str:
+    """Write the force on a pair and its share of the load."""
+    return f"{number(force * share, 3)} ({100.0 * share:.1f} %)"

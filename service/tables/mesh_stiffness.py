@@ -12,6 +12,11 @@ from service.tables.aligned import load_labels, load_lines, mean_over, middle_lo
 from service.tables.pair import iso_mesh_stiffness
 
 _N_PER_MM_UM = 1e-9  # N/m per m of face width to N/(mm µm)
+_CAPTION = "Transverse mesh force over static transmission error and face width."
+_STANDARD = (
+    " The dashed line is the mean mesh stiffness c γα of ISO 6336-1 method B, which includes a correction of "
+    "0.8 for real gears."
+)
 
 
 def mesh_stiffness(database: SteDatabase) -> Figure:
@@ -25,8 +30,7 @@ def mesh_stiffness(database: SteDatabase) -> Figure:
     return Figure(
         key="mesh_stiffness",
         title="Mesh stiffness",
-        caption="Transverse mesh force over static transmission error and face width. The dashed line is "
-        "the mean mesh stiffness of ISO 6336-1 method B, which includes a correction of 0.8 for real gears.",
+        caption=_CAPTION + (_STANDARD if iso is not None else ""),
         alternative=_words(database, position, values, iso),
         content=(Panel(position_axis(database), y, lines, references),),
         table=_table(database, position, values, iso),
@@ -48,7 +52,10 @@ def _words(database: SteDatabase, position: FloatArray, values: FloatArray, iso:
     text = f"Mean {number(mean, 3)} N/(mm µm) at {load_labels(database)[load]}"
     if iso is None:
         return f"{text}."
-    return f"{text}; ISO 6336-1 gives {number(iso * _N_PER_MM_UM, 4)} N/(mm µm)."
+    standard = iso * _N_PER_MM_UM
+    beyond = 100.0 * (mean / standard - 1.0)
+    side = "above" if beyond > 0.0 else "below"
+    return f"{text}, {number(abs(beyond), 2)} % {side} the {number(standard, 4)} N/(mm µm) of ISO 6336-1."
 
 
 def _table(database: SteDatabase, position: FloatArray, values: FloatArray, iso: float | None) -> Table:

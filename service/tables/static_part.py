@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -11,13 +11,16 @@ import numpy as np
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
 from service.convert.effect_sizes import by_size, influence_place, influence_words, trifles_title
+from service.drawing.effects_section import EffectRow, effect_table, effects_section
 from service.drawing.facts import facts, records, side_by_side
-from service.drawing.figure import Table, number
-from service.drawing.page import Headline, Section
+from service.drawing.figure import Figure, Table, number
+from service.drawing.page import Headline, Part, Section
 from service.tables.aligned import headline_load, load_curve, load_labels, shown_loads
 from service.tables.data_sheet import data_sheet_section
+from service.tables.deflection_budget import budget_figure
 from service.tables.deviation_curves import deviation_curves, has_deviations
 from service.tables.face_load import face_load, has_face_load
+from service.tables.flanks_over_torque import flanks_over_torque
 from service.tables.load_sharing import load_sharing
 from service.tables.mesh_stiffness import mesh_stiffness
 from service.tables.pair import pair_of
@@ -26,16 +29,13 @@ from service.tables.ste_curves import ste_curves
 from service.tables.ste_spectrum import ste_spectrum
 
 _RESIDUALS = ("equilibrium", "penetration", "tension", "complementarity")
-_LEDGER = (
-    ("name", "effect"),
-    ("on", "simulated"),
-    ("reason", "because"),
-    ("without", "without it"),
-    ("cost", "cost"),
-    ("decision", "decision"),
-    ("price", "price of the choice"),
-    ("checked", "checked"),
-)
+_DECISIONS = {
+    "name": "effect",
+    "cost": "cost",
+    "decision": "decision",
+    "price": "price of the choice",
+    "checked": "checked",
+}
 
 
 def static_headlines(database: SteDatabase, force: float | None = None) -> tuple[Headline, ...]:
@@ -55,63 +55,79 @@ def static_alarms(database: SteDatabase) -> tuple[str, ...]:
     return (database.failure_message(),) if database.n_failed else ()
 
 
-def static_results(database: SteDatabase) -> tuple[Section, ...]:
-    """Show what one database says of its pair."""
-    over_torque = (ripple_over_torque(database),) if len(shown_loads(database)) > 1 else ()
-    drawn = (ste_curves(database), *over_torque, ste_spectrum(database), load_sharing(database))
-    curves = Section("Static transmission error", figures=drawn)
-    # over a longer period the deflection holds the teeth's errors, and a secant through them means nothing
-    secant = (Section("Mesh stiffness", figures=(mesh_stiffness(database),)),) if database.period == 1 else ()
+def static_results(database: SteDatabase, force: float | None = None) -> tuple[Section, ...]:
+    """Show what one database says of its pair; the deflection is split at the load nearest to `force` (N)."""
     pair = pair_of(database)
     sheet = () if pair is None else (data_sheet_section(pair),)
-    return (*sheet, curves, *_across_face(database), *secant)
+    sharing = Section("Load sharing", figures=(load_sharing(database),))
+    return (*sheet, _transmission_error(database), sharing, *_stiffness(database, force), *_flanks(database))
 
 
-def _across_face(database: SteDatabase) -> tuple[Section, ...]:
-    """Show the deviations and the face, where the database has any of them."""
-    figures = [deviation_curves(database)] if has_deviations(database) else []
+def _transmission_error(database: SteDatabase) -> Section:
+    """Show STE and its ripple over position, torque, order, misalignment and center distance."""
+    figures = [ste_curves(database)]
+    figures += [ripple_over_torque(database)] if len(shown_loads(database)) > 1 else []
+    figures += [ste_spectrum(database)]
+    figures += [deviation_curves(database)] if has_deviations(database) else []
+    return Section("Static transmission error", figures=tuple(figures))
+
+
+def _stiffness(database: SteDatabase, force: float | None) -> tuple[Section, ...]:
+    """Show the mesh stiffness and what yields.
+
+    Over a longer period the deflection holds the teeth's errors, and a secant through them means nothing.
+    """
+    if database.period > 1:
+        return ()
+    text, figures = "", [mesh_stiffness(database)]
+    budget = budget_figure(database, headline_load(database, force))
+    if budget is None:
+        text = "The table does not hold its pair, so its deflection is not split into parts."
+    else:
+        figures.append(budget)
+    return (Section("Mesh stiffness and deflection", text, figures=tuple(figures)),)
+
+
+def _flanks(database: SteDatabase) -> tuple[Section, ...]:
+    """Show pressure and place of the load over torque and over position."""
+    figures: list[Figure] = [flanks_over_torque(database)] if len(shown_loads(database)) > 1 else []
     figures += [face_load(database)] if has_face_load(database) else []
-    title = "Misalignment, center distance and the face"
-    return (Section(title, figures=tuple(figures)),) if figures else ()
+    return (Section("Flank pressure and load along the face", figures=tuple(figures)),) if figures else ()
 
 
 def static_making(database: SteDatabase) -> tuple[Section, ...]:
     """Show how exact the database is, what it cost, and what it was made from."""
     metadata = database.metadata
-    accuracy = Section(
-        "Accuracy and cost of the table",
-        "Errors are half-widths of the band around each number; the receipt says where the time went.",
-        tables=(_accuracy(database), _stages(metadata.receipt)),
-        folded=(facts("Receipt", _without(metadata.receipt, "stages")), _software(database)),
-    )
-    effects = effects_section(metadata.effect_ledger)
+    text = "Errors are half-widths of the band around each number."
+    accuracy = Section("Accuracy of the table", text, tables=(_accuracy(database),), part=Part.ACCURACY)
     text = "With every default that was taken. Numbers without a unit are in SI."
-    case = Section("Case", text, tables=case_tables(metadata.case))
-    return accuracy, effects, case
+    case = Section("Case", text, folded=case_tables(metadata.case), part=Part.INPUT)
+    receipt = Section(
+        "Receipt of the table",
+        tables=(_stages(metadata.receipt),),
+        folded=(facts("Receipt", _without(metadata.receipt, "stages")), _software(database)),
+        part=Part.RECEIPT,
+    )
+    return contact_effects(metadata.effect_ledger), accuracy, case, receipt
 
 
-def effects_section(ledger: Any) -> Section:
-    """Tabulate which effects were simulated, why, and their influence; trifles are folded away."""
+def contact_effects(ledger: Any) -> Section:
+    """Tabulate which effects were simulated, why, and their influence; trifles and decisions are folded."""
     entries = [{"name": k, **v} for k, v in ledger.items()] if isinstance(ledger, dict) else ledger
     shown, trifles = by_size(entries)
     where = influence_place(entries)
-    caption = f"Effect ledger; without an effect: change by leaving it out, estimated {where}"
-    main = _ledger_table(caption, shown) if where else records("Effect ledger", _columns(entries))
-    folded = (_ledger_table(trifles_title(trifles), trifles),) if trifles else ()
-    return Section("Effects", tables=(main,), folded=folded)
+    text = f"Of effects in the contact: the change by leaving one out, estimated {where}." if where else ""
+    folded: tuple[Table, ...] = (
+        (effect_table(trifles_title(trifles), map(_effect_row, trifles)),) if trifles else ()
+    )
+    decided = [{title: entry.get(field) for field, title in _DECISIONS.items()} for entry in entries]
+    folded += (records("Decisions on the effects in the contact", decided),)
+    return effects_section(text, map(_effect_row, shown), folded)
 
 
-def _ledger_table(caption: str, entries: Sequence[Mapping[str, Any]]) -> Table:
-    """Tabulate effects."""
-    return records(caption, _columns([{**entry, "without": influence_words(entry)} for entry in entries]))
-
-
-def _columns(entries: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Return what is tabulated of a ledger; without estimates there is no column for them."""
-    fields = [
-        (field, title) for field, title in _LEDGER if field != "without" or any(field in e for e in entries)
-    ]
-    return [{title: entry.get(field) for field, title in fields} for entry in entries]
+def _effect_row(entry: Mapping[str, Any]) -> EffectRow:
+    """Return an effect of the contact."""
+    return EffectRow(entry["name"], "contact", entry["on"], influence_words(entry), entry["reason"])
 
 
 def case_tables(case: dict[str, Any]) -> tuple[Table, ...]:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from dataclasses import asdict, replace
 
 import numpy as np
 
-from fe_contact.ste import Metadata, PairFacts, SteDatabase
+from fe_contact.analysis.pairs.tabulate import pair_facts
+from fe_contact.geometry import FlankModification, Gear, GearPair
+from fe_contact.ste import Metadata, SteDatabase
 
 POSITIONS = 48
 
@@ -15,7 +17,8 @@ POSITIONS = 48
 def random_table(seed: int) -> SteDatabase:
     """Return the table of a pair that is drawn at random: 1 to 7 loads, 1 to 5 tooth pairs in contact."""
     rng = np.random.default_rng(seed)
-    facts, torque = _facts(rng), np.sort(np.round(rng.uniform(1.0, 900.0, rng.integers(1, 8)), 1))
+    pair = _pair(rng)
+    facts, torque = pair_facts(pair), np.sort(np.round(rng.uniform(1.0, 900.0, rng.integers(1, 8)), 1))
     force = torque / (facts.base_radius[0] * math.cos(facts.base_helix_angle))
     skew = 1e-6 * np.array([-20.0, 0.0, 40.0]) if rng.random() < 0.5 else np.zeros(1)
     change = 1e-3 * np.array([0.0, 0.1]) if rng.random() < 0.3 else np.zeros(1)
@@ -44,24 +47,27 @@ def random_table(seed: int) -> SteDatabase:
         error_estimate=ste * (math.nan if rng.random() < 0.2 else 10.0 ** rng.uniform(-4.0, -1.0)),
         residuals=np.zeros((*grid, 4)),
         facts=facts,
-        metadata=Metadata(case={"name": "random"}),
+        metadata=Metadata(case={"pair": asdict(pair)} if rng.random() < 0.9 else {"name": "random"}),
     )
 
 
-def _facts(rng: np.random.Generator) -> PairFacts:
-    """Draw a pair."""
-    teeth = int(rng.integers(15, 60)), int(rng.integers(15, 90))
+def _pair(rng: np.random.Generator) -> GearPair:
+    """Draw a pair, in two of three cases with relief and crowning."""
+    teeth = int(rng.integers(18, 60)), int(rng.integers(18, 90))
     helix = float(rng.choice([0.0, rng.uniform(0.1, 0.5)]))
-    radius = [0.5 * 3e-3 * z * math.cos(math.radians(20.0)) for z in teeth]
-    more: dict[str, Any] = {"face_width": float(rng.uniform(0.01, 0.05)), "helix_hand": int(helix > 0.0)}
-    return PairFacts(
-        teeth=teeth,
-        base_radius=(radius[0], radius[1]),
-        base_pitch=2.0 * math.pi * radius[0] / teeth[0],
-        base_helix_angle=helix,
-        center_distance=sum(radius) / math.cos(math.radians(20.0)),
-        working_pressure_angle=math.radians(20.0),
-        **more,
+    relief, crowning = rng.choice([0.0, 1.0, 1.0]) * rng.uniform(1e-6, 40e-6, 2)
+    pinion = Gear(
+        teeth=teeth[0],
+        normal_module=3e-3,
+        face_width=float(rng.uniform(0.01, 0.05)),
+        bore_diameter=1.5e-3 * teeth[0],
+        helix_angle=helix,
+        modification=FlankModification(
+            tip_relief=relief, tip_relief_length=1.5e-3, helix_crowning=crowning * (helix > 0.0)
+        ),
+    )
+    return GearPair(
+        pinion, replace(pinion, teeth=teeth[1], bore_diameter=1.5e-3 * teeth[1], helix_angle=-helix)
     )
 
 

@@ -10,13 +10,13 @@ from fe_contact.ste import SteDatabase
 from service.convert.effect_lines import assumption_lines
 from service.drawing.facts import facts
 from service.drawing.figure import Figure, number
-from service.drawing.page import Headline, Page, Section
+from service.drawing.page import Headline, Page, Part, Section
 from service.studies.presentation import Presentation
 from service.tables.contact_lines import contact_lines
 from service.tables.contact_pattern import contact_pattern_figure
 from service.tables.face_distribution import line_load_figure, load_centroid_figure
 from service.tables.pair import pair_lead, pair_title
-from service.tables.static_part import case_tables, effects_section
+from service.tables.static_part import case_tables, contact_effects
 from service.units import UM
 
 
@@ -56,12 +56,15 @@ def _making(flanks: LoadDistribution, *, alone: bool) -> tuple[Section, ...]:
     cost = {name: value for name, value in metadata.receipt.items() if name != "plan"}
     made = {**metadata.software_versions, "content_hash": metadata.content_hash}
     section = Section(
-        "Cost of the flank results", tables=(facts("Cost", cost),), folded=(facts("Made with", made),)
+        "Receipt of the flank results",
+        tables=(facts("Cost", cost),),
+        folded=(facts("Made with", made),),
+        part=Part.RECEIPT,
     )
     if not alone:
         return (section,)
-    effects = effects_section(metadata.effect_ledger)
-    return section, effects, Section("Case", tables=case_tables(metadata.case))
+    case = Section("Case", folded=case_tables(metadata.case), part=Part.INPUT)
+    return contact_effects(metadata.effect_ledger), case, section
 
 
 def _alarms(flanks: LoadDistribution, database: SteDatabase | None) -> tuple[str, ...]:

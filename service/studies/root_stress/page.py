@@ -12,7 +12,7 @@ from service.convert.effect_lines import assumption_lines
 from service.drawing import palette
 from service.drawing.facts import facts
 from service.drawing.figure import Axis, Figure, Line, Panel, Reference, Table, number
-from service.drawing.page import Headline, Page, Section
+from service.drawing.page import Headline, Page, Part, Section
 from service.studies.presentation import Presentation
 from service.studies.root_stress.run import GEARS, Roots, root_stress_json
 
@@ -91,7 +91,7 @@ def page(stresses: Json) -> Page:
     cost = {name: value for name, value in stresses["receipt"].items() if name != "plan"}
     sections = (
         Section("Tooth roots", "", (root_stress_figure(stresses),), (peak_table(stresses),)),
-        Section("Cost of the root stress", tables=(facts("Cost", cost),)),
+        Section("Receipt of the root stress", tables=(facts("Cost", cost),), part=Part.RECEIPT),
     )
     return Page("Tooth-root stress", _point(stresses), heads, sections)
 

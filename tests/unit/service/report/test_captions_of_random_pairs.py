@@ -11,9 +11,11 @@ import pytest
 from random_tables import random_table
 
 from fe_contact import FlankModification, Gear, GearPair, analyze
+from fe_contact.geometry.iso6336_stiffness import iso6336_stiffness
 from fe_contact.ste import Curve, SteDatabase
 from service.drawing.figure import Figure
 from service.tables.aligned import MOST_LINES, few_loads, load_labels, shown_loads
+from service.tables.pair import pair_of
 from service.tables.static_part import static_results
 
 NUMBER = r"(-?\d+(?:\.\d+)?)"
@@ -110,6 +112,21 @@ def check_spectrum(figure: Figure, database: SteDatabase) -> None:
 
 def check_load_sharing(figure: Figure, database: SteDatabase) -> None:
     text, counts = figure.alternative, database.pairs_in_contact[:, :, 0, 0]
+    ((force, share, torque),) = re.findall(
+        rf"at most {NUMBER} N, {NUMBER} % of the load, at {NUMBER} N m", text
+    )
+    last = load_labels(database).index(f"{torque} N m")
+    m = int(np.argmin(np.abs(database.misalignment)))
+    largest = float(database.load_share[:, last, m, 0].max())
+    assert last == database.force.size - 1
+    assert says(share, 100.0 * largest) and says(force, largest * database.force[last])
+    for panel in figure.content:
+        load = load_labels(database).index(panel.title)
+        total = np.nansum([line.y for line in panel.lines], axis=0)
+        np.testing.assert_allclose(total, database.force[load], rtol=1e-9)
+        for value, mark in panel.y.names:
+            newton, percent = re.fullmatch(rf"{NUMBER} N, {NUMBER} %", mark).groups()  # type: ignore[union-attr]
+            assert says(newton, value) and says(percent, 100.0 * value / database.force[load])
     for low, high, torque in re.findall(rf"(\d) (?:or|to) (\d) tooth pairs carry the load at {NUMBER}", text):
         column = counts[:, load_labels(database).index(f"{torque} N m")]
         assert (int(low), int(high)) == (column.min(), column.max())
@@ -128,9 +145,67 @@ def check_mesh_stiffness(figure: Figure, database: SteDatabase) -> None:
     ste = database.ste(np.arange(2000) / 2000.0, float(database.force[k]))
     stiffness = 1e-9 * float(np.mean(force / ste)) / database.facts.face_width
     assert float(mean) == pytest.approx(stiffness, rel=6e-3)
+    against = re.search(rf", {NUMBER} % (above|below) the {NUMBER} N/\(mm µm\) of ISO", figure.alternative)
+    pair = pair_of(database)
+    assert (against is None) == (pair is None) == ("ISO" not in figure.caption)
+    if against and isinstance(pair, GearPair):
+        standard = 1e-9 * iso6336_stiffness(pair).mesh_stiffness
+        beyond = 100.0 * (stiffness / standard - 1.0) * (1.0 if against[2] == "above" else -1.0)
+        assert float(against[1]) == pytest.approx(beyond, abs=1.0)
+        assert says(against[3], standard)
     for panel in figure.content:
         assert panel.y.limits is not None
         assert all(panel.y.limits[0] <= mark.value <= panel.y.limits[1] for mark in panel.references)
+
+
+def check_budget(figure: Figure, database: SteDatabase) -> None:
+    """The named part is the largest one, and the parts are the mean, in the bars as in the table."""
+    found = rf"At {NUMBER} N m .* is of (.*): {NUMBER} of {NUMBER} µm, {NUMBER} %\."
+    ((torque, name, size, mean, share),) = re.findall(found, figure.alternative)
+    (panel,) = figure.content
+    (bars,) = panel.bars
+    parts = {text: float(bars.top[int(x)]) for x, text in panel.x.names}
+    assert name == max(parts, key=lambda part: parts[part]) and says(size, parts[name])
+    assert sum(parts.values()) == pytest.approx(float(mean), rel=2e-3)
+    assert says(share, 100.0 * parts[name] / sum(parts.values()))
+    assert figure.table is not None
+    rows = {row[0]: row[1:] for row in figure.table.rows}
+    for part, (pinion, wheel, both, _) in rows.items():
+        assert says(both, parts[part])
+        assert not pinion or float(pinion) + float(wheel) == pytest.approx(float(both), rel=1e-2)
+    force = float(database.force[load_labels(database).index(f"{torque} N m")])
+    (springs, table) = re.findall(rf"mean is {NUMBER} µm, that of the table {NUMBER} µm", figure.caption)[0]
+    assert springs == mean and says(table, 1e6 * database.mean(force=force).value)
+    pair = pair_of(database)
+    assert pair is not None
+    modified = not (pair.pinion.modification.neutral and pair.wheel.modification.neutral)
+    assert modified or "flank modifications" not in parts
+
+
+def check_flanks(figure: Figure, database: SteDatabase) -> None:
+    ends = rf"from {NUMBER} MPa at {NUMBER} N m to {NUMBER} MPa at {NUMBER} N m"
+    found = rf"{ends}: {NUMBER} times for {NUMBER} times"
+    ((least, first, most, last, growth, by),) = re.findall(found, figure.alternative)
+    ends = [load_labels(database).index(f"{torque} N m") for torque in (first, last)]
+    assert ends == [shown_loads(database)[0], shown_loads(database)[-1]]
+    low, high = (1e-6 * float(database.max_pressure[:, k, 0, 0].max()) for k in ends)
+    assert says(least, low) and says(most, high) and says(growth, high / low)
+    assert says(by, float(database.torque[ends[1]] / database.torque[ends[0]]))
+    assert ("mid-face" in figure.caption) == (len(figure.content) == 2)
+
+
+def check_drawing(figure: Figure, database: SteDatabase) -> None:
+    pair = pair_of(database)
+    assert pair is not None
+    for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
+        flat = f"The {name} is not modified." in figure.alternative
+        assert flat == gear.modification.neutral
+        if not flat:
+            ((most,),) = [re.findall(rf"At most {NUMBER} µm are removed from the {name}", figure.alternative)]
+            corner = gear.modification.material_removed(
+                gear, gear.tip_form_roll_length, 0.5 * gear.face_width
+            )
+            assert says(most, 1e6 * float(corner))
 
 
 def check_face_load(figure: Figure, database: SteDatabase) -> None:
@@ -149,7 +224,10 @@ CHECKS = {
     "ste": check_ste,
     "ripple": check_ripple,
     "ste_spectrum": check_spectrum,
+    "pair_drawing": check_drawing,
     "load_sharing": check_load_sharing,
+    "deflection_budget": check_budget,
+    "flanks_over_torque": check_flanks,
     "mesh_stiffness": check_mesh_stiffness,
     "deviations": check_deviations,
     "face_load": check_face_load,

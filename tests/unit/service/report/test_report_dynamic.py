@@ -131,7 +131,8 @@ def test_the_audit_and_the_step_error_are_told(run: RunResult) -> None:
     accuracy = dict(tables["Accuracy of the run"].rows)  # type: ignore[arg-type]
     assert accuracy["step error, nm rms (step control)"] == "1.00"
     assert ("residual", "0") in tables["Energy audit, J"].rows
-    assert tables["Effect ledger of the run"].rows[0][:3] == ("lateral", "input", "yes")
+    (row,) = tables["Effects"].rows
+    assert row == ("lateral", "input", "yes", "1.00 µm at the line of action", "r")
     assert dynamic_headlines(run)[0].remark == "nominal 2660 N"
 
 

@@ -19,7 +19,16 @@ def files(tmp_path: Path, database: SteDatabase, run: RunResult) -> tuple[Path, 
     return tmp_path / "ste.nc", tmp_path / "run.nc"
 
 
-STATIC = {"pair_drawing", "ste", "ripple", "ste_spectrum", "load_sharing", "mesh_stiffness"}
+STATIC = {
+    "pair_drawing",
+    "ste",
+    "ripple",
+    "ste_spectrum",
+    "load_sharing",
+    "mesh_stiffness",
+    "deflection_budget",
+    "flanks_over_torque",
+}
 DYNAMIC = {
     "dynamic_error",
     "signal",

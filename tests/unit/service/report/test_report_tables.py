@@ -7,7 +7,7 @@ from service.drawing.facts import facts, side_by_side
 from service.drawing.page import _is_number
 from service.tables.static_part import (
     case_tables,
-    effects_section,
+    contact_effects,
     static_alarms,
     static_headlines,
     static_making,
@@ -42,20 +42,22 @@ def test_the_case_is_told_in_full(database: SteDatabase) -> None:
 
 
 def test_the_ledger_says_what_is_simulated_and_why(database: SteDatabase) -> None:
-    section = effects_section(database.metadata.effect_ledger)
-    (table,), (trifles,) = section.tables, section.folded
-    assert table.caption.endswith("estimated at 400 N m, misalignment 0 um")
-    assert table.head[:5] == ("effect", "simulated", "because", "without it", "cost")
-    assert table.head[5:] == ("decision", "price of the choice", "checked")
+    section = contact_effects(database.metadata.effect_ledger)
+    (table,), (trifles, decisions) = section.tables, section.folded
+    assert section.text.endswith("estimated at 400 N m, misalignment 0 um.")
+    assert table.head == ("effect", "in", "simulated", "without it", "because")
+    assert decisions.head == ("effect", "cost", "decision", "price of the choice", "checked")
     words = "mean +0.2 um (+2 %), peak-to-peak -0.05 um (-5 %)"
-    assert table.rows == (("corner_contact", "yes", "tips touch", words, *["none"] * 4),)
+    assert table.rows == (("corner_contact", "contact", "yes", words, "tips touch"),)
+    assert [row[0] for row in decisions.rows] == ["corner_contact", "misalignment"]
     assert trifles.caption == "1 effect below 0.1 %"
     assert [row[0] for row in trifles.rows] == ["misalignment"]
 
 
-def test_a_ledger_without_estimates_has_no_column_for_them() -> None:
-    (table,) = effects_section([{"name": "misalignment", "on": False, "reason": "aligned"}]).tables
-    assert "without it" not in table.head
+def test_a_ledger_without_estimates_says_so() -> None:
+    section = contact_effects([{"name": "misalignment", "on": False, "reason": "aligned"}])
+    assert section.text == ""
+    assert section.tables[0].rows == (("misalignment", "contact", "no", "not estimated", "aligned"),)
 
 
 def test_headlines_are_those_of_the_load_asked_for(database: SteDatabase) -> None:
