@@ -90,5 +90,5 @@ def difference(bodies: CondensedPair, name: str, by: FloatArray) -> float:
     gear, _, quantity = name.partition(".")
     value = getattr(getattr(pair, gear).modification, quantity)
     ends = [modified(pair, {name: value + way * STEP}) for way in (1.0, -1.0)]
-    one, other = (bodies.solve(end, TORQUES)[3].deflection for end in ends)
+    one, other = (bodies.solve(end, TORQUES).solution.deflection for end in ends)
     return float(np.median(np.abs((one - other) / (2.0 * STEP) - by)) / np.abs(by).max())

@@ -5,6 +5,7 @@ from fe_contact.analysis.flanks.contact_pattern import ContactPattern, contact_p
 from fe_contact.analysis.flanks.deformed_pair import DeformedPair, deformed_pairs
 from fe_contact.analysis.flanks.flank_results import flank_results
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution, load_distribution
+from fe_contact.analysis.flanks.pressure_map import pressure_map
 from fe_contact.analysis.flanks.root_stress import RootStress, root_stress
 from fe_contact.analysis.flanks.root_stress_history import RootPassage, RootPeak, RootStressHistory
 from fe_contact.analysis.live.condensed_lookup import condensed_pair
@@ -40,6 +41,7 @@ __all__ = [
     "frontier",
     "load_distribution",
     "plan_run",
+    "pressure_map",
     "root_stress",
     "ste_database",
     "study_sensitivity",

@@ -149,18 +149,19 @@ def curve_derivatives(
     By the center distance the curve is solved once more, as its compliance changes.
     """
     loads = np.asarray(torques, dtype=float)
-    at_distance, checked, problem, solution = bodies.solve(pair, loads, misalignment, center_distance_change)
+    solved = bodies.solve(pair, loads, misalignment, center_distance_change)
+    checked, problem, solution = solved.checked, solved.problem, solved.solution
     _require_solved(solution)
     names = _all_names(pair, checked) if by is None else tuple(by)
     for name in names:
         _check_name(name, pair, checked)
-    strips = CarryingStrips.of(at_distance, problem.candidates, adjoint(problem, solution))
+    strips = CarryingStrips.of(solved.pair, problem.candidates, adjoint(problem, solution))
 
     def derivative(name: str) -> FloatArray:
         if name == TORQUE:
             return np.asarray(solution.tangent * (solution.load / loads))
         if name == CENTER_DISTANCE:
-            further = bodies.solve(pair, loads, misalignment, center_distance_change + DISTANCE_STEP)[3]
+            further = bodies.solve(pair, loads, misalignment, center_distance_change + DISTANCE_STEP).solution
             _require_solved(further)
             return (further.deflection - solution.deflection) / DISTANCE_STEP
         return strips.change(opened_by(strips, pair, name))

@@ -11,7 +11,7 @@ from service.client.raw_columns import Column, query_columns, read_answer
 from service.client.status import JobState, Watch
 from service.client.studies import Studies
 from service.schemas import Case
-from service.schemas.live import LiveOutput
+from service.schemas.live_answer import LiveOutput
 from service.schemas.query import QueryOutput
 
 if TYPE_CHECKING:
@@ -129,6 +129,7 @@ class LineOfActionClient(Studies):
         pinion: Mapping[str, Any] | None = None,
         wheel: Mapping[str, Any] | None = None,
         derivatives: bool = False,
+        flanks: bool = False,
         condense: bool = False,
         caller: str | None = None,
     ) -> LiveOutput:
@@ -145,6 +146,8 @@ class LineOfActionClient(Studies):
             Flank modifications as in a case file (``tip_relief_um`` ...); what is left out is as in the case.
         derivatives : bool
             Also return the derivatives of each curve by its flanks, the misalignment and the torque.
+        flanks : bool
+            Also return pressure over the driving gear's flank, load over the face, K_Hbeta.
         condense : bool
             Compute the compliance first if the service has none in its cache.
         caller : str, optional
@@ -171,6 +174,7 @@ class LineOfActionClient(Studies):
             "pinion": dict(pinion or {}),
             "wheel": dict(wheel or {}),
             "derivatives": derivatives,
+            "flanks": flanks,
             "condense": condense,
             "caller": caller,
         }

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import json
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
 
-from fe_contact.analysis import CondensedPair, condensed_pair
+from fe_contact.analysis import CondensedPair, condensed_pair, load_distribution
+from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry import curve_derivatives
 from fe_contact.ste import SteDatabase
 from service.convert.answers import curve_json
 from service.convert.case import boundary_errors, gear_pair
 from service.convert.derivatives import derivatives_json
+from service.convert.live_flanks import flanks_json
 from service.problems import BadInput, Fault, NotAnalyzed, NotFound
 from service.schemas import Case
 from service.schemas.live import LiveInput
@@ -56,21 +59,33 @@ def live_curves(case: Case, bodies: CondensedPair, change: LiveInput) -> Json:
     """Return the curves of the changed flanks; raises `BadInput` by the fields of the question."""
     try:
         pair = gear_pair(changed_case(case, change))
-        torques, skew = np.array(change.torque_n_m), change.misalignment_um * UM
         with boundary_errors():
-            table = bodies.table(pair, torques, skew, change.center_distance_change_mm * MM)
-        curves = [_curve(table, k) for k in range(table.force.size)]
-        answer = {"curves": curves, **_receipt(table)}
-        if change.derivatives:
-            begin = time.process_time()
-            point = torques, None, skew, change.center_distance_change_mm * MM
-            with boundary_errors():
-                changes = curve_derivatives(bodies, pair, *point)
-            for curve, derivatives in zip(curves, derivatives_json(changes), strict=True):
-                curve["derivatives"] = derivatives
-            answer["cost"]["derivatives_cpu_seconds"] = time.process_time() - begin
+            return _answer(bodies, pair, change)
     except BadInput as error:
         raise BadInput(_as_asked(fault) for fault in error.faults) from None
+
+
+def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput) -> Json:
+    """Return the curves, and of each what else the question is about, with its cost."""
+    torques = np.array(change.torque_n_m)
+    alignment = change.misalignment_um * UM, change.center_distance_change_mm * MM
+    table, solved = bodies.solve_table(pair, torques, *alignment)
+    curves = [_curve(table, k) for k in range(table.force.size)]
+    answer = {"curves": curves, **_receipt(table)}
+
+    def on_flanks() -> Iterator[Json]:
+        for k in range(table.force.size):
+            yield flanks_json(load_distribution(solved.pair, solved.problem, solved.solution, k))
+
+    def derivatives() -> Iterator[Json]:
+        return iter(derivatives_json(curve_derivatives(bodies, pair, torques, None, *alignment)))
+
+    for name, made in (("flanks", on_flanks), ("derivatives", derivatives)):
+        if getattr(change, name):
+            begin = time.process_time()
+            for curve, part in zip(curves, made(), strict=True):
+                curve[name] = part
+            answer["cost"][f"{name}_cpu_seconds"] = time.process_time() - begin
     return answer
 
 

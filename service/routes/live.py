@@ -13,7 +13,8 @@ from service.live.order import LiveOrder
 from service.routes.context import Context, Ctx
 from service.routes.errors import documented
 from service.routes.results import Key
-from service.schemas.live import LiveInput, LiveOutput, PlanRequest
+from service.schemas.live import LiveInput, PlanRequest
+from service.schemas.live_answer import LiveOutput
 
 router = APIRouter(tags=["live"])
 

@@ -6,10 +6,10 @@ from typing import Literal
 
 import numpy as np
 
-from fe_contact.analysis import LoadDistribution
+from fe_contact.analysis import LoadDistribution, pressure_map
 from service.drawing import palette
 from service.drawing.figure import Axis, Figure, FloatArray, HeatMap, Line, Panel, Reference, Table, number
-from service.tables.unrolled import face_axis, pressure_map
+from service.tables.unrolled import face_axis
 
 Gear = Literal["pinion", "wheel"]
 GEARS: tuple[Gear, ...] = ("pinion", "wheel")

@@ -12,12 +12,17 @@ import pytest
 from fastapi.testclient import TestClient
 from running_service import PATIENCE_S, REFERENCES, until
 
+from fe_contact.analysis import flank_results
+from fe_contact.options import AnalysisOptions, OperatingPoint
 from service.app import create_app
 from service.client import LineOfActionClient
+from service.convert.case import gear_pair
 from service.live.order import LiveOrder
 from service.problems import ServiceError
 from service.routes.live import STE
-from service.schemas.live import LiveOutput
+from service.schemas import Case
+from service.schemas.live_answer import LiveOutput
+from service.schemas.reading import validated
 from service.settings import Settings
 
 GEAR: dict[str, Any] = {"teeth": 20, "face_width_mm": 4.0, "bore_diameter_mm": 10.0}
@@ -103,6 +108,29 @@ def test_an_answer_knows_how_wrong_it_is_and_what_it_cost(client: TestClient, ke
     assert sum(again["cost"].values()) <= again["cpu_seconds"]
     assert again["cost"]["compliance_cpu_seconds"] < 0.5 * sum(again["cost"].values())
     LiveOutput.model_validate_json(json.dumps(first))
+
+
+def test_the_flanks_of_an_answer_are_those_of_the_study_of_flanks(client: TestClient, key: str) -> None:
+    question = {"torque_n_m": [0.5, 1.0], "pinion": RELIEF}
+    plain, full = (
+        client.post(f"/v1/databases/{key}/ste", json=question | more).json()
+        for more in ({}, {"flanks": True})
+    )
+    assert all("flanks" not in curve for curve in plain["curves"])
+    assert full["cost"]["flanks_cpu_seconds"] > 0.0 and "flanks_cpu_seconds" not in plain["cost"]
+    pair = gear_pair(validated(Case, case(**RELIEF)))
+    options = AnalysisOptions(level="draft", model="plane_strain", effects={"corner_contact": "on"})
+    for curve in full["curves"]:
+        found = curve["flanks"]
+        point = OperatingPoint(torque=curve["torque_n_m"])
+        whole = flank_results(pair, point, options, at=np.array(curve["position"]))
+        assert found["largest_pressure_mpa"] == pytest.approx(1e-6 * float(whole.pressure.max()), rel=1e-9)
+        assert np.max(found["pressure_mpa"]) == pytest.approx(found["largest_pressure_mpa"], rel=0.05)
+        assert found["mean_load_n_per_mm"] == pytest.approx(
+            (1e-3 * whole.face_load.mean(axis=0)).tolist(), rel=1e-4
+        )
+        assert found["k_h_beta"] is None  # in the plane
+    LiveOutput.model_validate_json(json.dumps(full))
 
 
 def test_a_live_center_distance_is_that_of_an_analysis_of_its_own(client: TestClient, key: str) -> None:

@@ -8,33 +8,32 @@ import re
 from pathlib import Path
 
 import pytest
-from page_visit import CASE, GEAR, Visit, answers, computed, found_inaccessible, opened, shown, unfold
+from page_visit import (
+    OVER_FACE,
+    Visit,
+    answers,
+    computed,
+    found_inaccessible,
+    moved,
+    opened,
+    shown,
+    unfold,
+)
 from playwright.sync_api import Browser, Page, expect
 from running_service import until
 
 ORDINATE = ", transmission error less its mean, µm"
-OTHER = CASE | {
-    "pair": CASE["pair"] | {"center_distance_mm": 22.0, "wheel": GEAR | {"teeth": 24}},
-    "accuracy": CASE["accuracy"] | {"model": "3d", "positions": 8},
-}
 
 
 @pytest.fixture(scope="module")
 def other(address: str) -> str:
     """Hash of another pair's table, in three dimensions."""
-    return computed(address, case=OTHER)
+    return computed(address, case=OVER_FACE)
 
 
 @pytest.fixture
 def visit(browser: Browser, address: str, analyzed: str) -> Visit:
     return shown(browser, address, analyzed)
-
-
-def moved(page: Page, slider: str, key: str) -> None:
-    """Move a slider by a key and wait for the answer."""
-    count = answers(page)
-    page.locator(slider).press(key)
-    until(lambda: answers(page) > count)
 
 
 def curves(page: Page, folder: Path) -> dict[str, list[float]]:

@@ -14,7 +14,7 @@ from typing import Any
 
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Browser, Page, expect
-from running_service import PATIENCE_S
+from running_service import PATIENCE_S, until
 
 from service.client import LineOfActionClient
 
@@ -23,6 +23,10 @@ CASE: dict[str, Any] = {
     "pair": {"normal_module_mm": 1.0, "center_distance_mm": 20.0, "pinion": GEAR, "wheel": GEAR},
     "load": {"torque_n_m": [0.5, 1.0]},
     "accuracy": {"level": "draft", "model": "plane_strain", "positions": 16, "receipt": "minimal"},
+}
+OVER_FACE = CASE | {
+    "pair": CASE["pair"] | {"center_distance_mm": 22.0, "wheel": GEAR | {"teeth": 24}},
+    "accuracy": CASE["accuracy"] | {"model": "3d", "positions": 8},
 }
 PATIENCE = 1e3 * PATIENCE_S  # milliseconds
 
@@ -101,6 +105,13 @@ def shown(browser: Browser, address: str, key: str) -> Visit:
 def answers(page: Page) -> int:
     """Count the live answers so far."""
     return int(page.locator("#live-body").get_attribute("data-answers") or 0)
+
+
+def moved(page: Page, slider: str, key: str) -> None:
+    """Move a slider by a key and wait for the answer."""
+    count = answers(page)
+    page.locator(slider).press(key)
+    until(lambda: answers(page) > count)
 
 
 def unfold(page: Page) -> None:

@@ -20,13 +20,13 @@ from fe_contact.analysis.live.condensed_assumptions import CondensedRun, check_c
 from fe_contact.analysis.live.condensed_contacts import CondensedContacts
 from fe_contact.analysis.live.condensed_errors import condensed_errors
 from fe_contact.analysis.live.condensed_receipt import condensed_receipt
+from fe_contact.analysis.live.condensed_solution import CondensedSolution
 from fe_contact.analysis.pairs.operating_points import OperatingPoints, operating_points
 from fe_contact.analysis.pairs.pair_contact import PairContact
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_asked
 from fe_contact.analysis.tables.position_nodes import PositionNodes, unmeasured_nodes
 from fe_contact.analysis.tables.solved_table import assembled_table
-from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.errors import InputError
 from fe_contact.geometry import FlankModification, ParallelAxes
 from fe_contact.options import TableAxes
@@ -109,6 +109,16 @@ class CondensedPair:
             Other bodies, loads beyond those of the table, flanks that its model cannot hold, or a center
             distance at which more teeth meet than are condensed.
         """
+        return self.solve_table(pair, torques, misalignment, center_distance_change)[0]
+
+    def solve_table(
+        self,
+        pair: ParallelAxes,
+        torques: FloatArray,
+        misalignment: float = 0.0,
+        center_distance_change: float = 0.0,
+    ) -> tuple[SteDatabase, CondensedSolution]:
+        """Return the table, as `table` does, and the contact solution that it is of."""
         clock = StageClock()
         checked = self._asked(pair, torques, misalignment, center_distance_change)
         nodes, plan = self._laid_out(checked)
@@ -118,18 +128,18 @@ class CondensedPair:
             contacts, points = self._placed(checked)
             contacts.assemble(points.places[0].model, sample)
         with clock.stage("contact"):
-            solved = points.places[0].solve_pitches(nodes.position, load, np.arange(points.period))
-            table = assembled_table(checked.request, points, nodes, [solved], [])
+            solved = CondensedSolution.of(checked, points, nodes, load)
+            pairs = [(solved.problem, solved.solution)]
+            table = assembled_table(checked.request, points, nodes, pairs, [])
         with clock.stage("error estimate"):
-            assessed = condensed_errors(table, points, solved[1], contacts, sample, plan)
-        assumptions = check_condensed(CondensedRun(checked, plan, points, [solved]), self.neglected)
-        receipt = condensed_receipt(plan, solved[1], assessed, assumptions, clock)
+            assessed = condensed_errors(table, points, solved.solution, contacts, sample, plan)
+        assumptions = check_condensed(CondensedRun(checked, plan, points, pairs), self.neglected)
+        receipt = condensed_receipt(plan, solved.solution, assessed, assumptions, clock)
         receipt["discretisation_error"] = "expected" if contacts.coarse is None else "measured"
         ledger = [{"name": entry.name, "on": entry.on} for entry in checked.ledger]
         metadata = Metadata(effect_ledger=ledger, receipt=receipt)
-        return replace(
-            table, error_estimate=assessed.band, curve_error=assessed.curve_error, metadata=metadata
-        )
+        band, curves = assessed.band, assessed.curve_error
+        return replace(table, error_estimate=band, curve_error=curves, metadata=metadata), solved
 
     def solve(
         self,
@@ -137,25 +147,14 @@ class CondensedPair:
         torques: FloatArray,
         misalignment: float = 0.0,
         center_distance_change: float = 0.0,
-    ) -> tuple[ParallelAxes, Checked, ContactProblem, ContactSolution]:
-        """Solve the contact alone: no table, no errors.
+    ) -> CondensedSolution:
+        """Solve the contact alone, at the positions of `table`: no table, no errors.
 
         Parameters and errors are those of `table`.
-
-        Returns
-        -------
-        pair : GearPair or InternalGearPair
-            At its center distance.
-        checked : Checked
-        problem, solution
-            At the positions of `table`.
         """
         checked = self._asked(pair, torques, misalignment, center_distance_change)
         nodes, plan = self._laid_out(checked)
-        _, points = self._placed(checked)
-        point = points.places[0]
-        solved = point.solve_pitches(nodes.position, plan.load, np.arange(points.period))
-        return point.contact.pair, checked, *solved
+        return CondensedSolution.of(checked, self._placed(checked)[1], nodes, plan.load)
 
     def _asked(self, pair: ParallelAxes, torques: FloatArray, misalignment: float, change: float) -> Checked:
         """Check a question, and compose its model."""

@@ -3,6 +3,8 @@
 import { Problem, pause, post } from "./api.js";
 import { byId, dataTable, figures, folded, make, number } from "./elements.js";
 import { SHOWN_HARMONICS, harmonicsFigure, sharingFigure, steFigure } from "./live_figures.js";
+import { LiveFlanks } from "./live_flanks.js";
+import { mainFigures, numbersOf } from "./live_numbers.js";
 import { figureBlock, plot } from "./plots.js";
 import { Reference } from "./reference.js";
 import { Sliders } from "./sliders.js";
@@ -136,7 +138,7 @@ export class Live {
       const begin = performance.now();
       await this.baseline(waiting.torque_n_m, key);
       const kept = await this.kept?.at(waiting.torque_n_m[0], `${this.caller}-kept`) ?? null;
-      const found = await post(`/v1/databases/${key}/ste`, { ...waiting, caller: this.caller });
+      const found = await post(`/v1/databases/${key}/ste`, { ...waiting, flanks: true, caller: this.caller });
       const round = performance.now() - begin;
       if (key !== this.known?.key) return;
       await this.draw(found.curves[0], kept);
@@ -157,7 +159,7 @@ export class Live {
   /** The curve as analyzed at this torque, to compare with. */
   async baseline(torque, key) {
     if (this.before?.asked === torque[0] && this.before?.key === key) return;
-    const found = await post(`/v1/databases/${key}/ste`, { torque_n_m: torque, caller: `${this.caller}-before` });
+    const found = await post(`/v1/databases/${key}/ste`, { torque_n_m: torque, flanks: true, caller: `${this.caller}-before` });
     this.before = { ...found.curves[0], key, asked: torque[0] };
   }
 
@@ -190,31 +192,24 @@ export class Live {
     };
     const pair = make("div", { class: "live-pair" }, this.blocks.ste.block, this.blocks.harmonics.block);
     this.numbers = folded("Numbers");
-    byId("live-plots").replaceChildren(pair, this.numbers, this.blocks.sharing.block);
+    this.flanks = new LiveFlanks();
+    const onFlanks = make("div", { class: "live-pair even" }, ...this.flanks.blocks);
+    byId("live-plots").replaceChildren(pair, this.numbers, onFlanks, this.blocks.sharing.block);
   }
 
   async draw(now, kept) {
     const { before } = this;
     const curves = Object.entries({ before, kept, now }).filter(([, curve]) => curve);
     const shown = curves.map(([style, curve]) => ({ ...STYLES[style], curve }));
-    this.headline(now, kept ?? before);
+    figures(byId("live-figures"), mainFigures(now, kept ?? before));
     await Promise.all([
       plot(this.blocks.ste.node, steFigure(shown)),
       plot(this.blocks.harmonics.node, harmonicsFigure(shown)),
       plot(this.blocks.sharing.node, sharingFigure(now)),
+      this.flanks.draw(shown),
     ]);
     this.numbers.replaceChildren(make("summary", {}, "Numbers"), dataTable(numbersOf(shown)));
     this.describe(shown);
-  }
-
-  /** Main figures, each with its error and its change. */
-  headline(now, from) {
-    const entry = (name, value, error, other) => [name, `${number(value, 3)} µm`, [plusMinus(error), change(value, other)].filter(Boolean).join("; ")];
-    figures(byId("live-figures"), [
-      entry("peak to peak", now.peak_to_peak_um, now.peak_to_peak_error_um, from.peak_to_peak_um),
-      entry("mean", now.mean_um, now.mean_error_um, from.mean_um),
-      entry("first harmonic", now.harmonics_um[0], now.harmonics_error_um?.[0], from.harmonics_um[0]),
-    ]);
   }
 
   describe(shown) {
@@ -232,22 +227,4 @@ export class Live {
 /** Say something, if it is not said already: a screen reader hears changes only. */
 function said(node, text) {
   if (node.textContent !== text) node.textContent = text;
-}
-
-const plusMinus = (error) => (Number.isFinite(error) ? `± ${number(error, 2)}` : "");
-
-function change(value, from) {
-  if (!from) return "";
-  return `${value >= from ? "+" : "−"}${number(Math.abs(100 * (value / from - 1)), 3)} %`;
-}
-
-/** Figures of every curve beside each other. */
-function numbersOf(shown) {
-  const row = (name, of) => [name, ...shown.map(({ curve }) => number(of(curve), 4))];
-  const tones = Array.from({ length: SHOWN_HARMONICS }, (_, k) => row(`harmonic ${k + 1}`, (curve) => curve.harmonics_um[k] ?? NaN));
-  return {
-    caption: "Transmission error, µm",
-    head: ["figure", ...shown.map(({ name }) => name)],
-    rows: [row("peak to peak", (curve) => curve.peak_to_peak_um), row("mean", (curve) => curve.mean_um), ...tones],
-  };
 }

@@ -18,7 +18,7 @@ function over(curve, values) {
   return { x: [...x, curve.position[0] + turns.length * curve.period], y: [...y, values[0]] };
 }
 
-function layout(height, x, y, more = {}) {
+export function layout(height, x, y, more = {}) {
   const axis = (text) => ({
     title: { text, standoff: 8, font: { size: 13 } }, gridcolor: "#DDE1E6", linecolor: "#59636E", zeroline: false, ticks: "outside",
     tickcolor: "#59636E", automargin: true,

@@ -46,7 +46,7 @@ export class Reference {
   async at(torque, caller) {
     if (this.asked === torque) return this.curve;
     try {
-      const body = { ...this.question, torque_n_m: [torque], caller };
+      const body = { ...this.question, torque_n_m: [torque], flanks: true, caller };
       [this.curve] = (await post(`/v1/databases/${this.known.key}/ste`, body)).curves;
       this.refusal = "";
       this.asked = torque;

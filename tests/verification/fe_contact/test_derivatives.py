@@ -76,7 +76,7 @@ PAIRS: dict[str, Callable[[], ParallelAxes]] = {"helical": helical, "spur": spur
 def solved(bodies: CondensedPair, values: dict[str, float]) -> np.ndarray:
     """Curves of other flanks, (P, F) in m."""
     pair = bodies.checked.request.pair
-    return bodies.solve(modified(pair, values), TORQUES)[3].deflection
+    return bodies.solve(modified(pair, values), TORQUES).solution.deflection
 
 
 def central(bodies: CondensedPair, name: str, step: float) -> np.ndarray:
@@ -90,7 +90,8 @@ def central(bodies: CondensedPair, name: str, step: float) -> np.ndarray:
 @pytest.mark.parametrize("name", PAIRS)
 def test_a_gap_opened_at_one_contact_counts_by_its_weight(name, condensed):
     bodies = condensed(name)
-    _, _, problem, solution = bodies.solve(bodies.checked.request.pair, TORQUES)
+    solved = bodies.solve(bodies.checked.request.pair, TORQUES)
+    problem, solution = solved.problem, solved.solution
     found, c = adjoint(problem, solution), problem.candidates
     lever = np.einsum("pkm,pm->pk", found.weight, c.motion_arm)
     assert lever == pytest.approx(np.ones(lever.shape), rel=1e-12)  # all moved apart: the gear lags
@@ -107,7 +108,8 @@ def test_a_gap_opened_at_one_contact_counts_by_its_weight(name, condensed):
 @pytest.mark.parametrize("name", PAIRS)
 def test_forces_change_as_their_derivatives_say(name, condensed):
     bodies = condensed(name)
-    _, _, problem, solution = bodies.solve(bodies.checked.request.pair, TORQUES)
+    solved = bodies.solve(bodies.checked.request.pair, TORQUES)
+    problem, solution = solved.problem, solved.solution
     c = problem.candidates
     opened = np.random.default_rng(2).normal(size=c.touch.gap.shape)
     apart = np.broadcast_to((opened * c.motion_arm)[:, None, :], solution.force.shape)
@@ -154,15 +156,15 @@ def test_by_the_length_of_a_relief_curves_change_as_differences_say(pair, conden
 def test_by_misalignment_torque_and_center_distance_curves_change_as_differences_say(condensed):
     bodies, pair = condensed("helical"), helical()
     found = curve_derivatives(bodies, pair, TORQUES, ["misalignment", "torque", "center_distance_change"])
-    base = bodies.solve(pair, TORQUES)[3].deflection
-    misaligned = [bodies.solve(pair, TORQUES, way * 1e-9)[3].deflection for way in (1.0, -1.0)]
+    base = bodies.solve(pair, TORQUES).solution.deflection
+    misaligned = [bodies.solve(pair, TORQUES, way * 1e-9).solution.deflection for way in (1.0, -1.0)]
     assert (
         np.median(np.abs(found.by[0] - (misaligned[0] - misaligned[1]) / 2e-9))
         < 1e-6 * np.abs(found.by[0]).max()
     )
-    more, less = (bodies.solve(pair, TORQUES * (1.0 + way * 1e-6))[3].deflection for way in (1.0, -1.0))
+    more, less = (bodies.solve(pair, TORQUES * (1.0 + way * 1e-6)).solution.deflection for way in (1.0, -1.0))
     assert found.by[1] == pytest.approx((more - less) / (2e-6 * TORQUES), rel=1e-4)
-    apart = bodies.solve(pair, TORQUES, 0.0, 2e-6)[3].deflection
+    apart = bodies.solve(pair, TORQUES, 0.0, 2e-6).solution.deflection
     change = np.abs(found.by[2] - (apart - base) / 2e-6)
     assert np.median(change) < 0.02 * np.abs(found.by[2]).max()
 
@@ -208,7 +210,7 @@ def test_a_figure_that_is_zero_has_its_derivative_to_the_one_side(condensed):
     plain = modified(spur(), {"pinion.profile_crowning": 0.0, "wheel.profile_crowning": 0.0})
     found = curve_derivatives(bodies, plain, TORQUES, ["pinion.profile_crowning"])
     step = 1e-8
-    more = bodies.solve(modified(plain, {"pinion.profile_crowning": step}), TORQUES)[3].deflection
+    more = bodies.solve(modified(plain, {"pinion.profile_crowning": step}), TORQUES).solution.deflection
     off = np.abs(found.by[0] - (more - found.ste) / step)
     assert np.median(off) < 1e-2 * np.abs(found.by[0]).max()
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fe_contact.analysis import LoadDistribution
+from fe_contact.analysis import LoadDistribution, pressure_map
 from fe_contact.ste import SteDatabase
 from service.drawing.figure import HeatMap, Panel, Strokes
 from service.drawing.image import png
@@ -18,7 +18,6 @@ from service.studies.flank.page import operating_point, page
 from service.tables.contact_lines import contact_lines
 from service.tables.contact_pattern import contact_pattern_figure, isolines
 from service.tables.face_distribution import line_load_figure, load_centroid_figure
-from service.tables.unrolled import pressure_map
 
 
 def panels(figure: object) -> tuple[Panel, ...]:

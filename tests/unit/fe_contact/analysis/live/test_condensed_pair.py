@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair, analyze
-from fe_contact.analysis import CondensedPair, condensed_pair
+from fe_contact.analysis import CondensedPair, condensed_pair, flank_results, load_distribution
 from fe_contact.errors import InputError
 from fe_contact.geometry import FlankModification, PitchDeviation
+from fe_contact.options import AnalysisOptions, OperatingPoint, Run
 from fe_contact.ste import SteDatabase
 
 GEAR = Gear(teeth=20, normal_module=1e-3, face_width=4e-3, bore_diameter=10e-3)
@@ -69,6 +70,21 @@ def test_crowning_and_misalignment_have_the_curve_of_their_own_analysis(cache: P
     whole = table_of(crowned, cache, "3d", misalignments=[5e-6])
     assert np.array_equal(quick.static_transmission_error, whole.static_transmission_error)
     assert np.array_equal(quick.face_centroid, whole.face_centroid)
+
+
+def test_crowned_and_misaligned_flanks_carry_what_they_carry_in_results_of_their_own(cache: Path) -> None:
+    crowned = with_flank(PAIR, FlankModification(helix_crowning=2e-6))
+    table, solved = condensed(PAIR, cache, "3d").solve_table(crowned, TORQUES, misalignment=5e-6)
+    quick = load_distribution(solved.pair, solved.problem, solved.solution, 1)
+    options = AnalysisOptions(level="draft", model="3d", effects={"corner_contact": "on"})
+    point = OperatingPoint(torque=1.0, misalignment=5e-6)
+    whole = flank_results(crowned, point, options, Run(cache=cache), at=quick.position)
+    for field in ("force", "pressure", "roll_length_1"):
+        values, other = getattr(quick, field), getattr(whole, field)
+        np.testing.assert_allclose(values, other, rtol=0.0, atol=1e-12 * other.max())
+    assert np.array_equal(quick.deflection, table.static_transmission_error[:, 1, 0, 0])
+    assert quick.mean_face_load_factor == pytest.approx(whole.mean_face_load_factor, rel=1e-12, abs=0.0)
+    assert quick.mean_face_load_factor > 1.5
 
 
 def test_what_is_assembled_once_serves_all_flanks(cache: Path) -> None:

@@ -1,0 +1,74 @@
+/** The plots of what happens on the live flanks: pressure over the driving gear's flank, load over the face. */
+
+import { number } from "./elements.js";
+import { layout } from "./live_figures.js";
+import { figureBlock, plot } from "./plots.js";
+
+const FACE = "face position, mm (0 = mid-face of the pinion)";
+const ROLL = "roll length of the pinion, mm";
+const ISOLINES = 6;
+
+/** @typedef {import("./live_figures.js").Shown} Shown */
+
+const largestOf = (rows) => Math.max(...rows.map((row) => Math.max(...row)));
+const overFace = (flanks) => flanks.face_position_mm.length > 1;
+
+/** A round step between isolines, so that there are at most six. */
+function isolineStep(largest) {
+  const size = 10 ** Math.floor(Math.log10(largest || 1));
+  return size * [0.2, 0.5, 1, 2, 5].find((part) => largest / (part * size) <= ISOLINES + 1);
+}
+
+/** The pressure that passes over the flank as it is now: over face and roll length, in the plane along the profile. */
+function pressureFigure(flanks) {
+  const { face_position_mm: x, roll_length_mm: y, pressure_mpa: z } = flanks;
+  if (!overFace(flanks)) {
+    const line = { type: "scatter", mode: "lines", name: "pressure", x: y, y: z.map(([value]) => value), line: { color: "#0072B2", width: 2.4 } };
+    return { data: [line], layout: layout(360, ROLL, "Hertz pressure, MPa") };
+  }
+  const largest = largestOf(z);
+  const size = isolineStep(largest);
+  const map = {
+    type: "contour", x, y, z: z.map((row) => row.map((value) => (value > 0.01 * largest ? value : null))), zmin: 0, zmax: largest,
+    colorscale: "Cividis", colorbar: { title: { text: "MPa", side: "top" }, thickness: 14 }, line: { color: "#FFFFFF", width: 1 },
+    contours: { coloring: "heatmap", start: size, end: 0.92 * largest, size, showlabels: true, labelfont: { size: 11, color: "#FFFFFF" } },
+    hovertemplate: "face %{x:.3g} mm<br>roll length %{y:.3g} mm<br>%{z:.4g} MPa<extra></extra>",
+  };
+  return { data: [map], layout: layout(360, FACE, ROLL, { hovermode: "closest" }) };
+}
+
+/** Load over the face of every curve, and of the one now at its worst position too. @param {Shown[]} shown */
+function faceLoadFigure(shown) {
+  const line = (name, x, y, look) => ({ type: "scatter", mode: "lines", name, x, y, line: look });
+  const means = shown.map(({ name, curve: { flanks }, color, width, dash }) => (
+    line(`${name}, mean`, flanks.face_position_mm, flanks.mean_load_n_per_mm, { color, width, dash })));
+  const { curve: { flanks }, name } = shown.at(-1);
+  const worst = line(`${name}, worst position`, flanks.face_position_mm, flanks.worst_load_n_per_mm, { color: "#56B4E9", width: 1.5, dash: "solid" });
+  const made = layout(360, FACE, "load per face width, N/mm");
+  made.yaxis.rangemode = "tozero";
+  return { data: [...means, worst], layout: made };
+}
+
+/** What the pressure and the face load are now, and what they were. */
+export class LiveFlanks {
+  constructor() {
+    const block = (key, title, caption) => figureBlock({ key, title, caption, alternative: "", plot: { data: [], layout: {} } }, "h3");
+    this.pressure = block("live_pressure", "Pressure over the driving gear's flank", "Hertz pressure that passes over each point, root below. At a tip edge the true pressure is singular. No error is stated.");
+    this.load = block("live_face_load", "Load over the face", "All pairs together: averaged over the positions, whose largest over mean is K_Hbeta, and at the position of the largest load. No error is stated.");
+    this.blocks = [this.pressure.block, this.load.block];
+  }
+
+  /** @param {Shown[]} shown */
+  async draw(shown) {
+    const now = shown.at(-1).curve.flanks;
+    const facing = shown.filter(({ curve }) => overFace(curve.flanks));
+    this.load.block.hidden = !overFace(now);
+    const place = now.at_tip_edge ? ", at a tip edge" : "";
+    const factor = now.k_h_beta === null ? "" : `K_Hbeta ${number(now.k_h_beta, 4)}, `;
+    this.pressure.node.setAttribute("aria-label", `Pressure over the driving gear's flank: at most ${number(now.largest_pressure_mpa, 4)} MPa${place}.`);
+    const load = now.worst_load_n_per_mm;
+    this.load.node.setAttribute("aria-label", `Load over the face: ${factor}at most ${number(Math.max(...load), 3)} N/mm.`);
+    await plot(this.pressure.node, pressureFigure(now));
+    if (overFace(now)) await plot(this.load.node, faceLoadFigure(facing));
+  }
+}
