@@ -107,12 +107,14 @@ def test_in_the_plane_nothing_across_the_face_is_offered(visit: Visit) -> None:
     assert visit.page.locator("#live-pinion-helix_crowning_um").is_disabled()
 
 
-def test_every_depth_of_either_flank_has_a_slider_and_acts_along_what_it_is_declared_to(visit: Visit) -> None:
+def test_every_depth_and_length_of_either_flank_has_a_slider_and_acts_along_what_it_is_declared_to(
+    visit: Visit,
+) -> None:
     page = visit.page
-    depths = figures(FlankModification, *DEPTHS)
+    depths, lengths = figures(FlankModification, *DEPTHS), figures(FlankModification, Kind.LENGTH)
     sliders = page.locator("#sliders input[type=range]")
-    assert sliders.count() == 2 + 2 * len(depths)
-    for depth in depths:
+    assert sliders.count() == 2 + 2 * len(depths) + 2 * len(lengths)
+    for depth in depths + lengths:
         for gear in ("pinion", "wheel"):
             slider = page.locator(f"#live-{gear}-{depth.field}")
             assert slider.is_disabled() == (Direction.FACE in depth.what.along), depth.field
@@ -123,7 +125,7 @@ def test_every_depth_of_either_flank_has_a_slider_and_acts_along_what_it_is_decl
 def test_a_folded_slider_redraws_the_curve_and_takes_the_length_that_its_relief_needs(visit: Visit) -> None:
     page = visit.page
     before, count = peak_to_peak(page), answers(page)
-    page.locator("#sliders summary").press("Enter")
+    page.locator("#sliders summary").first.press("Enter")
     page.locator("#live-pinion-root_relief_um").press("End")
     until(lambda: answers(page) > count)
     expect(page.locator("#live-figures dd").first).not_to_have_text(before)

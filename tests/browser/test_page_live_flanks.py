@@ -53,6 +53,22 @@ def test_in_the_plane_there_is_a_pressure_along_the_profile_and_no_face(
     page.close()
 
 
+def test_the_length_of_a_relief_acts_where_there_is_a_relief(
+    browser: Browser, address: str, analyzed: str
+) -> None:
+    page = shown(browser, address, analyzed).page
+    plain = page.locator("#live-figures").text_content()
+    moved(page, "#live-pinion-tip_relief_length_mm", "End")
+    expect(page.locator("#live-figures")).to_have_text(plain or "")
+    moved(page, "#live-pinion-tip_relief_um", "End")
+    before = figure(page, "peak to peak")
+    moved(page, "#live-pinion-tip_relief_length_mm", "Home")
+    assert abs(figure(page, "peak to peak") / before - 1.0) > 0.05
+    page.get_by_role("button", name="Take these flanks").press("Enter")
+    expect(page.locator("#f-pair-pinion-tip_relief_length_mm")).to_have_value("0.01")
+    page.close()
+
+
 def test_they_are_accessible_and_nothing_is_complained_about(visit: Visit) -> None:
     unfold(visit.page)
     assert not (told := found_inaccessible(visit.page)), json.dumps(told, indent=1)

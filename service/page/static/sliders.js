@@ -1,31 +1,46 @@
-/** The sliders of the live flanks: torque, misalignment and every depth of the flanks, each with its exact number. */
+/** The sliders of the live flanks: torque, misalignment, every depth and length of the flanks, each with its exact number. */
 
 import { folded, make } from "./elements.js";
+import { unitOf } from "./field.js";
+import { ofFlank } from "./schema.js";
 
-const MAIN = ["pinion.tip_relief_um", "wheel.tip_relief_um", "pinion.helix_crowning_um"]; // the others are folded away
-const DEPTHS = ["amount", "slope"]; // kinds of figures that have a slider
+const MAIN = [ // the others are folded away
+  "torque_n_m", "pinion.tip_relief_um", "pinion.tip_relief_length_mm", "wheel.tip_relief_um", "wheel.tip_relief_length_mm",
+  "pinion.helix_crowning_um", "misalignment_um",
+];
+const KINDS = ["amount", "slope", "length"]; // of figures that have a slider
 const ACROSS = 30; // most of a depth across the face, µm
-const RELIEF_LENGTH = { profile: 0.5, face: 0.1 }; // normal modules, face widths; where the case has no relief to take it from
+const USUAL_LENGTH = { profile: 0.5, face: 0.1 }; // normal modules, face widths; where the case has none
+const MOST_LENGTH = { profile: 1, face: 0.5 };
 
-const rounded = (value, step) => Math.round(value / step) * step;
+const rounded = (value, step) => Number((Math.round(value / step) * step).toPrecision(12));
+const depthOf = (name) => name.replace("_length_mm", "_um");
 
-/** The slider of a depth of one flank, as its field declares it. */
-function depth(field, content) {
-  const [, gear, name] = field.path;
-  const value = content.pair[gear][name];
-  const across = field.schema["x-along"].includes("face");
-  const most = Math.max(across ? ACROSS : Math.max(20, rounded(12 * content.pair.normal_module_mm, 5)), Math.abs(value));
-  const low = field.schema["x-kind"] === "slope" ? -most : 0;
-  return { key: `${gear}.${name}`, label: `${field.label}, ${gear}`, unit: "µm", low, high: most, value, across };
+/** The slider of a figure of one flank, as its field declares it. */
+function figure(field, content) {
+  const { schema, path: [, gear, name] } = field;
+  const own = content.pair[gear][name];
+  const along = schema["x-along"].includes("face") ? "face" : "profile";
+  const knob = { key: `${gear}.${name}`, label: `${field.label}, ${gear}`, unit: unitOf(name), own, across: along === "face" };
+  if (schema["x-kind"] !== "length") return { ...knob, value: own, ...depthRange(knob, schema, content) };
+  const scale = along === "face" ? content.pair[gear].face_width_mm : content.pair.normal_module_mm;
+  const most = Math.max(MOST_LENGTH[along] * scale, own);
+  const step = 10 ** Math.floor(Math.log10(most / 100));
+  return { ...knob, depth: `${gear}.${depthOf(name)}`, value: own || rounded(USUAL_LENGTH[along] * scale, step), low: step, high: most, step };
+}
+
+function depthRange({ own, across }, schema, content) {
+  const most = Math.max(across ? ACROSS : Math.max(20, rounded(12 * content.pair.normal_module_mm, 5)), Math.abs(own));
+  return { low: schema["x-kind"] === "slope" ? -most : 0, high: most };
 }
 
 /** What the sliders change: name of the value, label, unit, range by case. */
 function knobs(known, fields) {
-  const flanks = fields.filter(({ schema }) => DEPTHS.includes(schema["x-kind"]));
+  const flanks = fields.filter(({ name, schema }) => ofFlank(name, schema) && KINDS.includes(schema["x-kind"]));
   return [
     { key: "torque_n_m", label: "Torque on the pinion", unit: "N m", low: 0, high: 2 * known.highest, value: known.torque },
     { key: "misalignment_um", label: "Misalignment", unit: "µm", low: -50, high: 50, value: 0, across: true },
-    ...flanks.map((field) => depth(field, known.case)),
+    ...flanks.map((field) => figure(field, known.case)),
   ];
 }
 
@@ -43,14 +58,14 @@ export class Sliders {
 
   get blocks() {
     const block = (key) => this.controls.find(({ knob }) => knob.key === key).block;
-    const main = ["torque_n_m", ...MAIN, "misalignment_um"];
-    const rest = this.controls.filter(({ knob }) => !main.includes(knob.key));
-    return [...main.map(block), folded("More flank modifications", ...rest.map((control) => control.block))];
+    const rest = (gear) => this.controls.filter(({ knob: { key } }) => key.startsWith(`${gear}.`) && !MAIN.includes(key));
+    const more = ["pinion", "wheel"].map((gear) => folded(`More of the ${gear}'s flanks`, ...rest(gear).map((control) => control.block)));
+    return [...MAIN.map(block), ...more];
   }
 
   control(knob) {
     const id = `live-${knob.key.replace(".", "-")}`;
-    const step = knob.high > 500 ? 5 : knob.high > 100 ? 1 : knob.high > 20 ? 0.5 : knob.high / 100;
+    const step = knob.step ?? (knob.high > 500 ? 5 : knob.high > 100 ? 1 : knob.high > 20 ? 0.5 : knob.high / 100);
     const low = knob.key === "torque_n_m" ? step : knob.low;
     const disabled = this.known.plane && knob.across;
     const facts = { min: low, max: knob.high, step, disabled };
@@ -94,18 +109,14 @@ export class Sliders {
     return exact.value.trim() === "" ? knob.value : Number(exact.value);
   }
 
-  /** Modifications that differ from those of the case, by gear and field. */
+  /** Modifications that differ from those of the case, by gear and field; a length goes with a depth that is not 0. */
   get flanks() {
     const changes = { pinion: {}, wheel: {} };
     for (const { knob } of this.controls) {
       const [gear, name] = knob.key.split(".");
-      if (!name || this.value(knob.key) === knob.value) continue;
-      changes[gear][name] = this.value(knob.key);
-      const { pair } = this.known.case;
-      const length = name.replace("_um", "_length_mm");
-      if (pair[gear][length] === 0) {
-        changes[gear][length] = knob.across ? RELIEF_LENGTH.face * pair[gear].face_width_mm : RELIEF_LENGTH.profile * pair.normal_module_mm;
-      }
+      const value = this.value(knob.key);
+      if (!name || value === knob.own || (knob.depth && this.value(knob.depth) === 0)) continue;
+      changes[gear][name] = value;
     }
     return changes;
   }
