@@ -10,19 +10,22 @@ from typing import Any
 
 _DIRECTORY = Path(__file__).parent / "examples"
 _OFFERED = (
-    ("palermo_spur_20_20", "Spur 20/20, module 4 mm", "Published pair (ISMA 2010), in the plane: seconds."),
+    ("helical_ev_23_67", "EV reducer: helical 23/67, module 1.8 mm", "With relief and crowning."),
+    ("industrial_spur_21_59", "Industrial gearbox: spur 21/59, module 5 mm", "With tip relief."),
+    ("palermo_spur_20_20", "Spur 20/20, module 4 mm", "Published pair (ISMA 2010), in the plane."),
     (
         "helical_automotive",
         "Helical 39/40, module 3 mm",
-        "Automotive pair (ISMA 2010) with relief and crowning, in three dimensions: about a minute.",
+        "Automotive pair (ISMA 2010) with relief and crowning.",
     ),
-    ("internal_gear", "Planet 36 in ring 96, module 2 mm", "An internal pair in the plane: seconds."),
+    ("internal_gear", "Planet 36 in ring 96, module 2 mm", "An internal pair in the plane."),
     (
         "pitch_error",
         "Spur with pitch deviations",
         "Every tooth of the pinion has its own place: 20 base pitches.",
     ),
 )
+"""The first is computed when the page opens with an empty address."""
 
 
 @dataclass(frozen=True)

@@ -107,7 +107,7 @@ def test_in_the_plane_nothing_across_the_face_is_offered(visit: Visit) -> None:
     assert visit.page.locator("#live-pinion-helix_crowning_um").is_disabled()
 
 
-def test_every_depth_and_length_of_either_flank_has_a_slider_and_acts_along_what_it_is_declared_to(
+def test_every_depth_and_length_has_a_slider_and_acts_along_what_it_is_declared_to(
     visit: Visit,
 ) -> None:
     page = visit.page

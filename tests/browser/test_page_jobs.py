@@ -72,7 +72,6 @@ def test_a_job_under_way_outlasts_a_service_that_is_away(visit: Visit, address: 
     with LineOfActionClient(address) as client:
         client.dismiss(busy.id)
     expect(page.locator("#away")).to_be_empty()
-    expect(page.locator("#analyze-job")).to_contain_text("analyze done")
     until(lambda: answers(page) > count)
     expect(page.locator("#live-torque_n_m")).to_have_attribute("max", "2.6")
     assert page.locator("[role=alert]:visible").count() == 0

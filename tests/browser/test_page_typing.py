@@ -108,6 +108,7 @@ def test_an_example_says_which_settings_it_replaces(visit: Visit) -> None:
 
 def test_a_helix_with_a_model_of_the_plane_is_told_what_it_is(visit: Visit) -> None:
     page = visit.page
+    page.locator("#example").select_option("palermo_spur_20_20")
     typed(page, "pair-helix_angle_deg", "15")
     told = page.locator("#form-errors")
     expect(told).to_contain_text(re.compile("helical.*“plane strain”.*spur pair"))

@@ -30,7 +30,7 @@ def test_the_first_screen_is_light_and_has_no_plots_and_no_description_of_the_se
     paths: list[str] = []
     session.on("Network.loadingFinished", lambda event: received.append(event["encodedDataLength"]))
     page.on("request", lambda request: paths.append(request.url.removeprefix(address)))
-    page.goto(address)
+    page.goto(f"{address}/#pair")  # where nothing is computed
     page.wait_for_selector("#plan dl")
     page.wait_for_load_state("networkidle")
     assert len(received) > 20

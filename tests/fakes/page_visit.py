@@ -66,7 +66,7 @@ def served(home: Path, **further: str) -> Iterator[str]:
 
 
 def opened(browser: Browser, address: str, scheme: str = "light", width: int = 1400) -> Visit:
-    """Open the page and note what it does."""
+    """Open the page and note what it does; without a fragment at a section, where nothing is computed."""
     page = browser.new_page(viewport={"width": width, "height": 900}, color_scheme=scheme)  # type: ignore[arg-type]
     page.set_default_timeout(PATIENCE)
     expect.set_options(timeout=PATIENCE)
@@ -74,7 +74,7 @@ def opened(browser: Browser, address: str, scheme: str = "light", width: int = 1
     page.on("console", lambda message: seen.console.append(f"{message.type}: {message.text}"))
     page.on("pageerror", lambda error: seen.console.append(f"error: {error}"))
     page.on("request", lambda request: seen.requests.append(request.url))
-    page.goto(address)
+    page.goto(address if "#" in address else f"{address}/#pair")
     page.wait_for_selector("html[data-ready=yes]")
     return seen
 

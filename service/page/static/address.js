@@ -90,6 +90,11 @@ export class Address {
     this.faults = [];
   }
 
+  /** Whether it says nothing at all. */
+  get empty() {
+    return !this.names.size && !this.section && !this.faults.length;
+  }
+
   get text() {
     if (this.faults.length || (this.section && !this.names.size)) return location.href;
     const fragment = [...this.names].map((pair) => pair.join("=")).join("&");

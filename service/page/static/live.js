@@ -33,14 +33,14 @@ export class Live {
 
   /**
    * Begin with the result of an analysis, or with none; `restored` draws it.
-   * @param {{key: string, case: object, torques: number[], plane: boolean} | null} known
+   * @param {{key: string, case: object, torques: number[], torque: number, plane: boolean} | null} known
    */
   show(known) {
     this.before = null;
     this.waiting = null;
     byId("live-none").hidden = known !== null;
     byId("live-body").hidden = known === null;
-    this.known = known && { ...known, highest: known.torques.at(-1), torque: known.torques[Math.floor(known.torques.length / 2)] };
+    this.known = known && { ...known, highest: known.torques.at(-1) };
     if (known) {
       this.controls();
       this.plots();

@@ -2,14 +2,15 @@
 /** The page: what its address says is shown, what is typed is kept with it. */
 
 import { Address } from "./address.js";
-import { get, patiently } from "./api.js";
+import { Problem, get, patiently } from "./api.js";
 import { watchService } from "./away.js";
 import { CaseFiles } from "./case_files.js";
 import { typedIn } from "./controls.js";
 import { Design } from "./design.js";
 import { Dynamics } from "./dynamics.js";
 import { byId } from "./elements.js";
-import { referenceOf } from "./job.js";
+import { Glance } from "./glance.js";
+import { referenceOf, submitted } from "./job.js";
 import { Jobs } from "./jobs.js";
 import { Live } from "./live.js";
 import { goToSection, sectionLinks } from "./menu.js";
@@ -59,7 +60,8 @@ class Page {
     const dynamics = new Dynamics({ slot, show });
     const scenes = new SceneEditor({ slot, show });
     const live = new Live(this, { take, inThreeDimensions: () => this.inThreeDimensions() });
-    this.results = new Results(this, live, [dynamics, scenes]);
+    this.glance = new Glance(this.caller);
+    this.results = new Results(this, this.glance, live, [dynamics, scenes]);
     const button = byId("analyze");
     this.analysis = slot("analyze", { progress: byId("analyze-job"), result: byId("analyze-result"), button },
       (target, reference) => this.analyzed(reference));
@@ -88,7 +90,26 @@ class Page {
     else this.design.stands = false;
     for (const [name, slot] of this.slots) slot.follow(this.address.get(name));
     await this.results.show(this.address.get("database"));
-    if (turn === this.turn && !this.design.stands) this.design.begin();
+    if (turn !== this.turn || this.design.stands) return;
+    this.design.begin();
+    if (this.address.empty) this.first();
+  }
+
+  /** Analyze the pair that a page without an address begins with: there is a result with nothing to press. */
+  async first() {
+    this.glance.waits();
+    const job = submitted(byId("analyze-job"), "analyze", { case: this.design.case });
+    const { jobID } = await job.catch((problem) => this.notFirst(problem));
+    if (!jobID || !this.address.empty) return;
+    this.address.replace({ analyze: jobID });
+    this.analysis.follow(jobID);
+  }
+
+  notFirst(problem) {
+    if (!(problem instanceof Problem)) throw problem;
+    this.glance.show(null);
+    this.analysis.refused(problem);
+    return {};
   }
 
   /** Keep what is typed with the entry of the history that it is typed in: at once, and no more often than browsers allow. */
@@ -121,6 +142,7 @@ class Page {
   async analyzed({ hash }) {
     this.address.replace({ analyze: null, database: hash, ...OF_RESULT });
     for (const name of Object.keys(OF_RESULT)) this.slots.get(name).follow(null);
+    byId("analyze-job").replaceChildren();
     await this.results.show(hash);
   }
 

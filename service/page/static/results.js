@@ -17,11 +17,12 @@ export class Results {
    * @param {object} page
    * @param {import("./address.js").Address} page.address
    * @param {import("./design.js").Design} page.design
+   * @param {import("./glance.js").Glance} glance
    * @param {import("./live.js").Live} live
    * @param {{show: (known: object | null) => void}[]} others what is offered for an analyzed pair
    */
-  constructor({ address, design }, live, others) {
-    Object.assign(this, { address, design, live, others });
+  constructor({ address, design }, glance, live, others) {
+    Object.assign(this, { address, design, glance, live, others });
     this.key = null;
     this.shown = null;
     this.stopping = new AbortController();
@@ -69,7 +70,9 @@ export class Results {
     if (signal.aborted) return;
     if (!this.design.stands) this.design.show(facts.case);
     const plane = PLANE.test(facts.receipt?.plan?.model ?? "");
-    const known = { key, case: facts.case, torques: facts.torque_n_m, plane };
+    const torques = facts.torque_n_m;
+    const known = { key, case: facts.case, torques, torque: torques[Math.floor(torques.length / 2)], plane };
+    this.glance.show(known); // asked first: the report takes longer
     byId("results-none").hidden = true;
     await showReport(byId("results-body"), { href, type: "application/x-netcdf", hash: key }, { making: true, signal });
     if (signal.aborted) return;
@@ -87,6 +90,7 @@ export class Results {
   clear() {
     byId("results-none").hidden = false;
     byId("results-body").replaceChildren();
+    this.glance.show(null);
     this.offer(null);
   }
 
