@@ -78,7 +78,7 @@ def _panel(database: SteDatabase, load: int) -> Panel:
         for share in (0.0, 0.25, 0.5, 0.75, 1.0)
         if share <= top
     )
-    y = Axis("normal force on a pair", limits=(0.0, force * top), names=marks)
+    y = Axis("normal force on a pair, N and %", limits=(0.0, force * top), names=marks)
     return Panel(position_axis(database), y, lines, title=load_labels(database)[load], notes=notes)
 
 
