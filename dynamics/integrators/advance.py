@@ -132,8 +132,9 @@ def _accept(system: SystemArrays, work: Workspace, control: Control, level: int,
 def _move_on(work: Workspace, implicit: bool, step: float, end: float) -> None:
     """Make the end of the step the state; what rounding leaves of time and rates is kept for the next step.
 
-    Else ten million steps would add up ten million roundings of the time and of a free train's speed. A motion
-    that has died away is at rest: processors take a hundred times as long for numbers that underflow.
+    Else ten million steps would add up ten million roundings of the time and of a free train's speed.
+    A motion that has died away is at rest: processors take a hundred times as long for numbers that
+    underflow.
     """
     weights = IMPLICIT_WEIGHTS if implicit else EXPLICIT_WEIGHTS
     for i in range(work.q.size):
