@@ -58,7 +58,7 @@ def test_every_stop_is_seen_and_the_order_is_that_of_the_page(visit: Visit) -> N
     assert first[1]["own"] == "import-file"
     assert first[1]["ring"]
     page.evaluate("document.querySelector('#run').focus()")
-    found = stops(page, 60)
+    found = stops(page, 120)
     assert not [stop for stop in found if not stop["body"] and not (stop["ring"] and stop["inside"])]
     names = [str(stop["own"]) for stop in found]
     places = [names.index(name) for name in ("analyze", "live-torque_n_m", "keep")]
