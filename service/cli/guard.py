@@ -14,6 +14,7 @@ from typing import Annotated, Any, NoReturn, ParamSpec, TypeVar
 
 import typer
 
+from service.cli.signature import parameters_of, with_parameters
 from service.cli.warned import begin, warnings_so_far
 from service.problems import EXIT_INTERRUPTED, EXIT_WARNINGS, ServiceError, Unexpected
 
@@ -46,11 +47,7 @@ def computing(verb: Callable[..., R]) -> Callable[..., R]:
         return answer
 
     option = inspect.Parameter("strict", inspect.Parameter.KEYWORD_ONLY, default=False, annotation=Strict)
-    own = inspect.signature(verb, eval_str=True)
-    signature = own.replace(parameters=[*own.parameters.values(), option])
-    run.__signature__ = signature  # type: ignore[attr-defined]
-    run.__annotations__ = {name: part.annotation for name, part in signature.parameters.items()}
-    return run
+    return with_parameters(run, [*parameters_of(verb), option])
 
 
 def guarded(verb: Callable[P, R]) -> Callable[P, R]:

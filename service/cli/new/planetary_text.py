@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from service.cli.new.case_text import case_tables
 from service.cli.new.scene_text import ACCURACY, HEAD
-from service.cli.new.sketch import GearSketch, PairSketch, Wanted, bore_of, face_width, ring_pair
+from service.cli.new.sketch import GearSketch, PairSketch, bore_of, face_width, ring_pair
+from service.cli.new.wanted import Wanted
 from service.problems import BadInput
 from service.units import DEGREE
 

@@ -9,7 +9,8 @@ from pathlib import Path
 from service.cli.new.case_text import case_text
 from service.cli.new.planetary_text import planetary_stage, planetary_text
 from service.cli.new.scene_text import pair_scene_text
-from service.cli.new.sketch import Wanted, external_pair, internal_pair
+from service.cli.new.sketch import external_pair, internal_pair
+from service.cli.new.wanted import Wanted
 from service.cli.output import check_writable, console
 from service.convert.case import boundary_errors, gear_pair
 from service.problems import BadInput

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from fe_contact.geometry import Gear
 from fe_contact.geometry.backlash import reference_center_distance
 from fe_contact.geometry.balanced_shift import balanced_shifts
+from service.cli.new.wanted import Wanted
 from service.units import DEGREE, MM
 
 OVERLAP = 1.5
@@ -19,17 +20,6 @@ _BORE = 0.45
 """Of the root diameter."""
 _RIM = 3.0
 """Modules between the ring's root circle and the outside of its rim."""
-
-
-@dataclass(frozen=True)
-class Wanted:
-    """What the caller says; None is by rule. Lengths in mm, angles in deg."""
-
-    module: float | None = None
-    teeth: int | None = None
-    ratio: float | None = None
-    helix: float | None = None
-    width: float | None = None
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Annotated
 
 import typer
@@ -16,16 +17,6 @@ TableService = Annotated[
     typer.Option("--service", help="Fetch the tables from this service instead of computing them locally."),
 ]
 
-Torque = Annotated[
-    float | None, typer.Option(help="Torque on the driving gear in N m; default: the highest load.")
-]
-Force = Annotated[float | None, typer.Option(help="Normal tooth force in N, instead of a torque.")]
-Misalignment = Annotated[
-    float | None, typer.Option(help="Misalignment in um; default: the value of the case nearest to 0.")
-]
-CenterDistanceChange = Annotated[
-    float | None, typer.Option(help="Change of the center distance in mm; default: the value nearest to 0.")
-]
 TaskWorkers = Annotated[
     int, typer.Option("--workers", min=1, max=256, help="Local processes that share the tasks.")
 ]
@@ -34,13 +25,31 @@ DaskScheduler = Annotated[
 ]
 
 
-def load_point(
-    torque: float | None, force: float | None, misalignment_um: float | None, change_mm: float | None
-) -> dict[str, float | None]:
-    """Return one load and alignment under the names of their fields."""
-    return {
-        "torque_n_m": torque,
-        "normal_force_n": force,
-        "misalignment_um": misalignment_um,
-        "center_distance_change_mm": change_mm,
-    }
+Force = Annotated[float | None, typer.Option(help="Normal tooth force in N, instead of a torque.")]
+
+
+@dataclass(frozen=True)
+class LoadPoint:
+    """One load and alignment."""
+
+    torque: Annotated[
+        float | None, typer.Option(help="Torque on the driving gear in N m; default: the highest load.")
+    ] = None
+    force: Force = None
+    misalignment_um: Annotated[
+        float | None, typer.Option(help="Misalignment in um; default: the value of the case nearest to 0.")
+    ] = None
+    center_distance_change_mm: Annotated[
+        float | None,
+        typer.Option(help="Change of the center distance in mm; default: the value nearest to 0."),
+    ] = None
+
+    @property
+    def inputs(self) -> dict[str, float | None]:
+        """The load and the alignment under the names of their fields."""
+        return {
+            "torque_n_m": self.torque,
+            "normal_force_n": self.force,
+            "misalignment_um": self.misalignment_um,
+            "center_distance_change_mm": self.center_distance_change_mm,
+        }

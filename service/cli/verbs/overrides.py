@@ -11,6 +11,7 @@ from typing import Annotated, Any, TypeVar
 import typer
 from typer.models import OptionInfo
 
+from service.cli.signature import parameters_of, with_parameters
 from service.input_file import InputFile, Override
 
 R = TypeVar("R")
@@ -66,8 +67,8 @@ def overridable(argument: str, subject: str = "case") -> Callable[[Callable[...,
     """
 
     def decorate(verb: Callable[..., R]) -> Callable[..., R]:
-        own = inspect.signature(verb, eval_str=True)
-        taken = {spelling for option in own.parameters.values() for spelling in _spellings(option)}
+        own = parameters_of(verb)
+        taken = {spelling for option in own for spelling in _spellings(option)}
         added = [option for option in _options(subject) if not taken & set(_spellings(option))]
 
         @functools.wraps(verb)
@@ -76,10 +77,7 @@ def overridable(argument: str, subject: str = "case") -> Callable[[Callable[...,
             options[argument] = _with(options[argument], _overrides(typed))
             return verb(**options)
 
-        signature = own.replace(parameters=[*own.parameters.values(), *added])
-        run.__signature__ = signature  # type: ignore[attr-defined]
-        run.__annotations__ = {name: part.annotation for name, part in signature.parameters.items()}
-        return run
+        return with_parameters(run, [*own, *added])
 
     return decorate
 

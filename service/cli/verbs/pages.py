@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from service.cli.guard import computing
+from service.cli.signature import grouped
 from service.cli.verbs.options import AsJson
 
 if TYPE_CHECKING:
@@ -15,25 +17,46 @@ if TYPE_CHECKING:
 
 verbs = typer.Typer()
 
-Quantity = Annotated[
-    str,
-    typer.Option(
-        help="Quantity of a run to show: force, moment, acceleration, mesh_force, transmission_error.",
-        show_default="force",
-    ),
-]
-Bearing = Annotated[str, typer.Option(help="Bearing of a run to show.", show_default="the loudest")]
-Mesh = Annotated[str, typer.Option(help="Mesh of a run whose orders are shown.", show_default="the first")]
-Orders = Annotated[
-    str, typer.Option(help="Mesh orders over speed, as 1,2,4 or 1:8:1.", show_default="the five largest")
-]
-Window = Annotated[str, typer.Option(help="Window of the spectra of a run: hann, flat_top, rectangular.")]
-Scale = Annotated[str, typer.Option(help="Amplitudes of a run: rms or peak.")]
+
+@dataclass(frozen=True)
+class ViewOptions:
+    """What of a run is shown."""
+
+    quantity: Annotated[
+        str,
+        typer.Option(
+            help="Quantity of a run to show: force, moment, acceleration, mesh_force, transmission_error.",
+            show_default="force",
+        ),
+    ] = ""
+    bearing: Annotated[str, typer.Option(help="Bearing of a run to show.", show_default="the loudest")] = ""
+    mesh: Annotated[
+        str, typer.Option(help="Mesh of a run whose orders are shown.", show_default="the first")
+    ] = ""
+    orders: Annotated[
+        str,
+        typer.Option(help="Mesh orders over speed, as 1,2,4 or 1:8:1.", show_default="the five largest"),
+    ] = ""
+    window: Annotated[
+        str, typer.Option(help="Window of the spectra of a run: hann, flat_top, rectangular.")
+    ] = "hann"
+    scale: Annotated[str, typer.Option(help="Amplitudes of a run: rms or peak.")] = "rms"
+
+    @property
+    def view(self) -> RunView:
+        """The view that the options name."""
+        from service.cli.number_list import number_list  # noqa: PLC0415 (start-up time)
+        from service.runs.run_view import RunView  # noqa: PLC0415 (start-up time)
+
+        cuts = tuple(number_list("--orders", self.orders)) if self.orders else ()
+        return RunView(self.quantity, self.bearing, self.mesh, cuts, self.window, self.scale)
 
 
 @verbs.command(epilog="Example: loa report ste.nc run.nc -o report.html")
 @computing
+@grouped
 def report(
+    *,
     files: Annotated[
         list[Path],
         typer.Argument(help="STE database, flank results, studies, run, netCDF or JSON; one of each kind."),
@@ -44,24 +67,20 @@ def report(
         bool,
         typer.Option("--flank", help="Compute the flank results at the load of the page."),
     ] = False,
-    quantity: Quantity = "",
-    bearing: Bearing = "",
-    mesh: Mesh = "",
-    orders: Orders = "",
-    window: Window = "hann",
-    scale: Scale = "rms",
+    view: ViewOptions,
     json: AsJson = False,
 ) -> None:
     """Write one HTML page with the plots of a database, flank results, studies or a run."""
     from service.cli.report import run_report  # noqa: PLC0415 (start-up time)
 
-    view = _view(quantity, bearing, mesh, orders, window, scale)
-    run_report(files, output, images, view, flank=flank, as_json=json)
+    run_report(files, output, images, view.view, flank=flank, as_json=json)
 
 
 @verbs.command(epilog="Example: loa compare before.nc after.nc measured.csv -o comparison.html")
 @computing
+@grouped
 def compare(
+    *,
     files: Annotated[
         list[Path],
         typer.Argument(help="Two STE databases or two runs, or one and a CSV file of a measurement."),
@@ -71,25 +90,10 @@ def compare(
         float | None,
         typer.Option(help="Torque of the ripples shown, N m.", show_default="the middle one"),
     ] = None,
-    quantity: Quantity = "",
-    bearing: Bearing = "",
-    mesh: Mesh = "",
-    orders: Orders = "",
-    window: Window = "hann",
-    scale: Scale = "rms",
+    view: ViewOptions,
     json: AsJson = False,
 ) -> None:
     """Compare two tables or two runs, or one with a measurement: differences with their errors."""
     from service.cli.compare import run_compare  # noqa: PLC0415 (start-up time)
 
-    view = _view(quantity, bearing, mesh, orders, window, scale)
-    run_compare(files, output, view, torque, as_json=json)
-
-
-def _view(quantity: str, bearing: str, mesh: str, orders: str, window: str, scale: str) -> RunView:
-    """Return what the options name of a run."""
-    from service.cli.number_list import number_list  # noqa: PLC0415 (start-up time)
-    from service.runs.run_view import RunView  # noqa: PLC0415 (start-up time)
-
-    cuts = tuple(number_list("--orders", orders)) if orders else ()
-    return RunView(quantity, bearing, mesh, cuts, window, scale)
+    run_compare(files, output, view.view, torque, as_json=json)

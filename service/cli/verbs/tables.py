@@ -2,22 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from service.cli.guard import computing
-from service.cli.verbs.options import (
-    AsJson,
-    CenterDistanceChange,
-    DaskScheduler,
-    Force,
-    Misalignment,
-    TaskWorkers,
-    Torque,
-    load_point,
-)
+from service.cli.signature import grouped
+from service.cli.verbs.options import AsJson, DaskScheduler, Force, LoadPoint, TaskWorkers
 from service.cli.verbs.overrides import CaseFile, file_argument, overridable
 from service.input_file import InputFile
 
@@ -82,10 +75,43 @@ def ste(
     run_ste(database, request, as_csv=csv, as_json=json)
 
 
+@dataclass(frozen=True)
+class FmuOptions:
+    """Start values of an exported FMU."""
+
+    damping_n_s_per_m: Annotated[
+        float, typer.Option(help="Start value of an FMU's mesh damping along the line of action in N s/m.")
+    ] = 0.0
+    backlash_um: Annotated[
+        float | None,
+        typer.Option(help="Backlash of an FMU with coast flanks, along the transverse line of action in um."),
+    ] = None
+
+
+@dataclass(frozen=True)
+class RunPart:
+    """What of a run is exported."""
+
+    function: Annotated[
+        str,
+        typer.Option(
+            help="Exported from a run: time, spectrum (over frequency) or orders (over mesh orders)."
+        ),
+    ] = "time"
+    start: Annotated[
+        float | None, typer.Option("--from", help="Start time of the exported part of a run in s.")
+    ] = None
+    end: Annotated[
+        float | None, typer.Option("--to", help="End time of the exported part of a run in s.")
+    ] = None
+
+
 @verbs.command(epilog="Example: loa export examples/palermo_spur_20_20.toml --torque 100 -o deformed")
 @computing
 @overridable("case")
+@grouped
 def export(
+    *,
     case: Annotated[InputFile, file_argument("Case file; for an FMU an STE database, or a run", "CASE")],
     output: Annotated[
         Path,
@@ -95,33 +121,13 @@ def export(
             help="Folder for pinion.vtu and wheel.vtu, or MESH.fmu; for a run .unv or .csv.",
         ),
     ],
-    torque: Torque = None,
-    force: Force = None,
-    misalignment_um: Misalignment = None,
-    center_distance_change_mm: CenterDistanceChange = None,
+    point: LoadPoint,
     at: Annotated[str, typer.Option(help="Positions of the driving gear in base pitches.")] = "0",
     beside: Annotated[
         int, typer.Option(min=0, max=100, help="Unloaded teeth to show on either side, in three dimensions.")
     ] = 1,
-    damping_n_s_per_m: Annotated[
-        float, typer.Option(help="Start value of an FMU's mesh damping along the line of action in N s/m.")
-    ] = 0.0,
-    backlash_um: Annotated[
-        float | None,
-        typer.Option(help="Backlash of an FMU with coast flanks, along the transverse line of action in um."),
-    ] = None,
-    function: Annotated[
-        str,
-        typer.Option(
-            help="Exported from a run: time, spectrum (over frequency) or orders (over mesh orders)."
-        ),
-    ] = "time",
-    start: Annotated[
-        float | None, typer.Option("--from", help="Start time of the exported part of a run in s.")
-    ] = None,
-    end: Annotated[
-        float | None, typer.Option("--to", help="End time of the exported part of a run in s.")
-    ] = None,
+    fmu: FmuOptions,
+    part: RunPart,
     json: AsJson = False,
 ) -> None:
     """Write both gears as they bend in mesh (ParaView), the mesh force as an FMU, or a run as UFF or CSV."""
@@ -129,10 +135,10 @@ def export(
     from service.cli.export_fmu import run_export_fmu  # noqa: PLC0415
     from service.cli.export_run import is_for_runs, run_export_run  # noqa: PLC0415
 
-    point = load_point(torque, force, misalignment_um, center_distance_change_mm)
     if is_for_runs(output):
-        run_export_run(case.as_it_is, output, function, (start, end), as_json=json)
+        run_export_run(case.as_it_is, output, part.function, (part.start, part.end), as_json=json)
     elif output.suffix == ".fmu":
-        run_export_fmu(case.as_it_is, output, point, damping_n_s_per_m, backlash_um, as_json=json)
+        facts = point.inputs, fmu.damping_n_s_per_m, fmu.backlash_um
+        run_export_fmu(case.as_it_is, output, *facts, as_json=json)
     else:
-        run_export(case, output, point, at, beside, as_json=json)
+        run_export(case, output, point.inputs, at, beside, as_json=json)

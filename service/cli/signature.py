@@ -1,0 +1,64 @@
+"""Verbs whose options are more than the parameters of their function."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Sequence
+from dataclasses import MISSING, fields, is_dataclass
+from functools import wraps
+from typing import Any, TypeVar, get_type_hints
+
+R = TypeVar("R")
+
+
+def with_parameters(verb: Callable[..., R], parameters: Sequence[inspect.Parameter]) -> Callable[..., R]:
+    """Give a verb the signature that the command line reads."""
+    verb.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    verb.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
+    return verb
+
+
+def parameters_of(verb: Callable[..., Any]) -> list[inspect.Parameter]:
+    """Return the parameters of a verb, their annotations evaluated."""
+    return list(inspect.signature(verb, eval_str=True).parameters.values())
+
+
+def grouped(verb: Callable[..., R]) -> Callable[..., R]:
+    """Spread parameters that are dataclasses: each of their fields is an option, annotated as one.
+
+    The verb is called with the dataclasses.
+    """
+    own = parameters_of(verb)
+    groups = {part.name: part.annotation for part in own if _is_group(part.annotation)}
+
+    @wraps(verb)
+    def run(**options: Any) -> R:
+        for name, group in groups.items():
+            options[name] = group(**{field.name: options.pop(field.name) for field in fields(group)})
+        return verb(**options)
+
+    parameters = [
+        parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY)
+        for part in own
+        for parameter in (_options(groups[part.name]) if part.name in groups else [part])
+    ]
+    return with_parameters(run, parameters)
+
+
+def _is_group(annotation: Any) -> bool:
+    """Whether a parameter is a dataclass of options."""
+    return isinstance(annotation, type) and is_dataclass(annotation)
+
+
+def _options(group: Any) -> list[inspect.Parameter]:
+    """Return the fields of a group as parameters."""
+    hints = get_type_hints(group, include_extras=True)
+    return [
+        inspect.Parameter(
+            field.name,
+            inspect.Parameter.KEYWORD_ONLY,
+            default=inspect.Parameter.empty if field.default is MISSING else field.default,
+            annotation=hints[field.name],
+        )
+        for field in fields(group)
+    ]
