@@ -56,6 +56,16 @@ def test_a_reload_shows_what_was_typed_and_moved(visit: Visit) -> None:
     assert visit.complaints == []
 
 
+def test_a_reload_shows_what_was_typed_if_the_browser_loses_its_entry(visit: Visit) -> None:
+    page = visit.page
+    type_relief(page)
+    page.wait_for_timeout(500)  # nothing is to be kept any more
+    page.evaluate("history.replaceState(null, '')")
+    page.reload()
+    expect(page.locator("#f-pair-pinion-tip_relief_um")).to_have_value("7")
+    expect(page.locator("#results-design")).to_contain_text(EDITED)
+
+
 def test_back_and_forward_show_what_they_showed(visit: Visit, analyzed: str) -> None:
     page = visit.page
     type_relief(page)

@@ -4,6 +4,7 @@
 
 const HASH = /^[0-9a-f]{64}$/;
 const JOB = /^[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}$/;
+const LEFT = "left";
 
 /**
  * @typedef {object} Kept what the entry of the history holds; it goes with the tab, not with the address
@@ -22,6 +23,7 @@ export class Address {
     this.places = new Set(places);
     this.typed = typed;
     this.read();
+    this.kept = left() ?? this.kept;
   }
 
   /** Read the address and its entry, as they are now. */
@@ -81,6 +83,11 @@ export class Address {
     history.replaceState(this.kept, "", this.text);
   }
 
+  /** Hold what is typed for a reload: browsers lose the state of an entry that changes while its reload is under way. */
+  leave() {
+    sessionStorage.setItem(LEFT, JSON.stringify({ ...this.kept, ...this.typed() }));
+  }
+
   /** @param {Record<string, string | null>} changes */
   name(changes) {
     for (const [name, value] of Object.entries(changes)) {
@@ -100,4 +107,12 @@ export class Address {
     const fragment = [...this.names].map((pair) => pair.join("=")).join("&");
     return `${location.pathname}${location.search}${fragment ? `#${fragment}` : ""}`;
   }
+}
+
+/** What the page held when it was left, if a reload brought it back. @returns {Kept | null} */
+function left() {
+  const text = sessionStorage.getItem(LEFT);
+  sessionStorage.removeItem(LEFT);
+  const [navigation] = /** @type {PerformanceNavigationTiming[]} */ (performance.getEntriesByType("navigation"));
+  return text && navigation.type === "reload" ? JSON.parse(text) : null;
 }

@@ -126,7 +126,7 @@ class Page {
     };
     document.addEventListener("input", keep);
     document.addEventListener("typed", keep);
-    addEventListener("beforeunload", () => this.address.keep(this.typed));
+    addEventListener("pagehide", () => this.address.leave());
   }
 
   get typed() {
