@@ -8,6 +8,7 @@ version = release = installed("lineofaction")
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
 source_suffix = {".md": "markdown"}
+myst_enable_extensions = ["deflist"]
 myst_heading_anchors = 4
 
 autodoc_typehints = "none"  # signatures have them

@@ -1,4 +1,4 @@
-"""Write the tables of declared fields in docs/case-file.md from the declarations.
+"""Write the lists of declared fields in docs/case-file.md from the declarations.
 
 Usage: case_file_page.py PAGE
 """
@@ -9,6 +9,7 @@ import re
 import sys
 from dataclasses import MISSING
 from pathlib import Path
+from textwrap import fill
 
 from bounds import Choice
 from fe_contact.geometry import Gear, GearPair, RingGear
@@ -18,57 +19,53 @@ from service.schemas.declared import Figure, figures
 from service.schemas.gear import of_gear
 from service.schemas.wheel import RING
 
-TABLES = {kind: figures(kind) for kind in DECLARED} | {GearPair: OF_PAIR, Gear: of_gear(Gear), RingGear: RING}
-BY_NAME = {f"{kind.__module__.partition('.')[0]}.{kind.__name__}": own for kind, own in TABLES.items()}
-TABLE = re.compile(r"(<!-- fields of ([\w.]+) -->\n)(.*?)(<!-- end of fields -->)", re.DOTALL)
-HEAD = "| field | meaning | accepted | default |\n|---|---|---|---|\n"
+LISTS = {kind: figures(kind) for kind in DECLARED} | {GearPair: OF_PAIR, Gear: of_gear(Gear), RingGear: RING}
+BY_NAME = {f"{kind.__module__.partition('.')[0]}.{kind.__name__}": own for kind, own in LISTS.items()}
+LIST = re.compile(r"(<!-- fields of ([\w.]+) -->\n\n)(.*?)(\n\n<!-- end of fields -->)", re.DOTALL)
+LINE = 120
 
 
 def page(text: str) -> str:
-    """Return the page with its tables anew."""
-    return TABLE.sub(lambda found: f"{found[1]}{table(BY_NAME[found[2]], found[3])}{found[4]}", text)
+    """Return the page with its lists anew."""
+    return LIST.sub(lambda found: f"{found[1]}{definitions(BY_NAME[found[2]], found[3])}{found[4]}", text)
 
 
-def table(declared: tuple[Figure, ...], before: str = "") -> str:
-    """Return the table of declared fields, after the rows of others that it had before."""
-    own = {f"| `{figure.field}`" for figure in declared}
-    lines = before.splitlines(keepends=True)
-    others = [line for line in lines if line.startswith("| `") and line.partition(" | ")[0] not in own]
-    return HEAD + "".join((*others, *(f"{row(figure)}\n" for figure in declared)))
+def definitions(declared: tuple[Figure, ...], before: str = "") -> str:
+    """Return the list of declared fields, after the entries of others that it had before."""
+    own = {f"`{figure.field}`" for figure in declared}
+    others = [entry for entry in before.split("\n\n") if entry and entry.partition("\n")[0] not in own]
+    return "\n\n".join((*others, *map(definition, declared)))
 
 
-def row(figure: Figure) -> str:
-    """Return the row of a field."""
-    cells = (
-        f"`{figure.field}`",
-        figure.what.description,
-        accepted(figure),
-        written(figure),
-    )
-    return f"| {' | '.join(cells)} |"
+def definition(figure: Figure) -> str:
+    """Return the entry of a field: its name; what it means, accepts and is if left out."""
+    text = f"{figure.what.description}. {accepted(figure)}; {default(figure)}."
+    lines = fill(text, LINE, initial_indent=": ", subsequent_indent="  ", break_on_hyphens=False)
+    return f"`{figure.field}`\n{lines}"
 
 
 def accepted(figure: Figure) -> str:
     """Say what is accepted."""
     bound, limits = figure.what.bound, figure.limits
     if bound is None:
-        return "`true`, `false`"
+        return "`true` or `false`"
     if isinstance(bound, Choice):
         return ", ".join(f'`"{name}"`' for name in bound.names)
-    low = f"above {limits['gt']:.7g}, up" if "gt" in limits else f"{limits['ge']:.7g}"
-    return f"{low} to {limits['le']:.7g}"
+    if "gt" in limits:
+        return f"Above {limits['gt']:.7g}, at most {limits['le']:.7g}"
+    return f"{limits['ge']:.7g} to {limits['le']:.7g}"
 
 
-def written(figure: Figure) -> str:
-    """Write a default as a case file has it."""
+def default(figure: Figure) -> str:
+    """Say what the field is if it is left out, as a case file has it."""
     if figure.default is MISSING:
         return "required"
     if figure.default is None:
-        return "left out"
-    default = figure.own(figure.default)
-    if isinstance(default, bool):
-        return f"`{str(default).lower()}`"
-    return f'`"{default}"`' if isinstance(default, str) else f"{default:.7g}"
+        return "optional"
+    value = figure.own(figure.default)
+    if isinstance(value, bool):
+        return f"default `{str(value).lower()}`"
+    return f'default `"{value}"`' if isinstance(value, str) else f"default {value:.7g}"
 
 
 if __name__ == "__main__":

@@ -9,9 +9,9 @@ from dynamics.joints import seat
 from dynamics.joints.matrix import Matrix
 
 _RADIAL = Declared(
-    Kind.SLOPE, "m", between(-1e-2, 1e-2), "Pin off its place, away from the carrier's axis", 0.0
+    Kind.SLOPE, "m", between(-1e-2, 1e-2), "Position error of the pin, away from the carrier's axis", 0.0
 )
-_TANGENTIAL = Declared(Kind.SLOPE, "m", between(-1e-2, 1e-2), "Pin off its place, about +z", 20e-6)
+_TANGENTIAL = Declared(Kind.SLOPE, "m", between(-1e-2, 1e-2), "Position error of the pin, about +z", 20e-6)
 
 
 @described

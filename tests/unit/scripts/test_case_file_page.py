@@ -1,4 +1,4 @@
-"""The tables of the case file are those of the declared fields."""
+"""The lists of fields on the page of case files are those of the declarations."""
 
 from __future__ import annotations
 
@@ -25,21 +25,25 @@ def script() -> ModuleType:
     return module
 
 
-def test_the_tables_are_current(script: ModuleType) -> None:
+def test_the_lists_are_current(script: ModuleType) -> None:
     assert script.page(PAGE) == PAGE, "write them anew: python scripts/case_file_page.py docs/case-file.md"
 
 
-def test_every_declared_dataclass_has_a_table(script: ModuleType) -> None:
-    named = [found[2] for found in script.TABLE.finditer(PAGE)]
+def test_every_declared_dataclass_has_a_list(script: ModuleType) -> None:
+    named = [found[2] for found in script.LIST.finditer(PAGE)]
     assert sorted(named) == sorted(script.BY_NAME)
 
 
-def test_a_table_says_the_unit_the_bounds_and_the_default(script: ModuleType) -> None:
-    table = script.table(figures(FlankModification))
-    assert "| `helix_slope_um` | Helix slope over the face width; > 0 " in table
-    assert " | -1000 to 1000 | 0 |\n" in table
-    assert (
-        '| `tip_relief_shape` | Tip relief over its length | `"linear"`, `"parabolic"` | `"linear"` |'
-        in table
-    )
-    assert " | 5 to 85 | 30 |\n" in table
+def test_an_entry_says_the_unit_the_bounds_and_the_default(script: ModuleType) -> None:
+    entries = script.definitions(figures(FlankModification)).split("\n\n")
+    assert "`tip_relief_um`\n: Tip relief at the tip diameter. 0 to 1000; default 0." in entries
+    shape = '`tip_relief_shape`\n: Tip relief over its length. `"linear"`, `"parabolic"`; default `"linear"`.'
+    assert shape in entries
+    assert any(entry.endswith(" 5 to 85; default 30.") for entry in entries)
+
+
+def test_a_list_keeps_the_entries_of_others_and_renews_its_own(script: ModuleType) -> None:
+    declared = figures(FlankModification)
+    before = "`seat`\n: How the bore sits.\n\n`tip_relief_um`\n: As it was."
+    renewed = script.definitions(declared, before)
+    assert renewed == f"`seat`\n: How the bore sits.\n\n{script.definitions(declared)}"
