@@ -94,13 +94,13 @@ def _bearings(run: RunFigures) -> FloatArray:
 
 
 def markdown(found: Sequence[AssessedEffect]) -> str:
-    """Return the section of docs/effects/influence.md."""
+    """Return the section of docs/lab/influence.md."""
     scenes = list(dict.fromkeys(one.where for one in found))
     head = (
         f"{len(found)} ablations in time: {len(scenes)} scenes, every effect that can be switched in them. "
         f"**{per_cent_right(found):.0f} %** have mean, peak-to-peak and bearing forces right\n"
         f"within a factor {FACTOR:g} and in sign (target {SHARE:g} %); "
-        f"changes below {100 * FLOOR:g} % count as nothing.\n\n"
+        f"changes below {100 * FLOOR:g} % count as zero.\n\n"
     )
     head += "\n".join(f"- {figure.what}: {figure.value:.2g} %" for figure in STUDY.by_quantity(found))
     return f"{head}\n\n{_table_of_effects(found)}\n{_table_of_scenes(found)}"
@@ -121,8 +121,8 @@ def _table_of_effects(found: Sequence[AssessedEffect]) -> str:
 def _table_of_scenes(found: Sequence[AssessedEffect]) -> str:
     """Every ablation that changes something: estimated / measured change in %."""
     lines = [
-        "What leaving an effect out changes, estimated / measured in % of the value with it (bearing forces: "
-        "of the largest).\n**Bold** is beyond a factor 2; ablations that change nothing by 1 % are left out.",
+        "Change without the effect, estimated / measured in % of the value with it (bearing forces: "
+        "of the largest).\n**Bold** is beyond a factor 2; ablations without a change of 1 % are omitted.",
         "",
         "| scene | effect | " + " | ".join(STUDY.quantities) + " |",
         "|---|---|" + "---:|" * len(STUDY.quantities),

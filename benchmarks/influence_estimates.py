@@ -33,7 +33,7 @@ from fe_contact.effects.finite_width import FiniteWidth
 from fe_contact.effects.influence import EstimatedInfluence, estimate_influences
 from fe_contact.options import Run
 
-PAGE = Path(__file__).parents[1] / "docs" / "effects" / "influence.md"
+PAGE = Path(__file__).parents[1] / "docs" / "lab" / "influence.md"
 SECTION = "influence estimates"
 TOLERANCES = (0.01, 0.05)
 STUDY = InfluenceStudy(
@@ -112,13 +112,13 @@ def _assessed(
 
 
 def markdown(found: Sequence[LoadedInfluence]) -> str:
-    """Return the section of docs/effects/influence.md."""
+    """Return the section of docs/lab/influence.md."""
     cases = list(dict.fromkeys(one.where for one in found))
     head = (
         f"{len(found)} ablations: {len(cases)} pairs, every effect that they hold, two loads "
         f"(0.3 and 1 of the rated one), finite elements of the level draft.\n"
         f"**{per_cent_right(found):.0f} %** have mean and peak-to-peak right within a factor {FACTOR:g} and "
-        f"in sign (target {SHARE:g} %); changes below {100 * FLOOR:g} % count as nothing.\n\n"
+        f"in sign (target {SHARE:g} %); changes below {100 * FLOOR:g} % count as zero.\n\n"
     )
     head += "\n".join(f"- {figure.what}: {figure.value:.2g} %" for figure in STUDY.by_quantity(found))
     return f"{head}\n\n{_table_of_effects(found)}\n{_table_of_cases(found)}"
@@ -143,7 +143,7 @@ def _table_of_effects(found: Sequence[LoadedInfluence]) -> str:
 def _table_of_cases(found: Sequence[LoadedInfluence]) -> str:
     """Every ablation at the full load: estimated / measured change in % of the value with the effect."""
     lines = [
-        "What leaving an effect out changes at the rated load, estimated / measured in % of the value.",
+        "Change without the effect at the rated load, estimated / measured in % of the value.",
         "**Bold** is beyond a factor 2.",
         "",
         "| case | effect | mean | peak-to-peak |",

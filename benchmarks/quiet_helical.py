@@ -116,15 +116,15 @@ def _curve(checked: Checked, folder: Path) -> tuple[float, float]:
 
 
 def markdown(found: Sequence[AssessedInfluence]) -> str:
-    """Return the section of docs/effects/influence.md."""
+    """Return the section of docs/lab/influence.md."""
     said = ", ".join(
-        f"{share_right(group):.0f} % of {len(group)} on pairs {title} when they were made"
+        f"{share_right(group):.0f} % of {len(group)} on pairs {title} when the estimates were made"
         for title, group in groups(found).items()
     )
     lines = [
         f"Modified helical pairs at their nominal load, draft finite elements in {SLICES} slices.",
         f"Right within a factor {FACTOR:g} and in sign in both figures: **{said}** (target {SHARE:g} %);",
-        f"changes below 1 % and {1e9 * RIPPLE_FLOOR:g} nm count as nothing. Estimated / computed in um,",
+        f"changes below 1 % and {1e9 * RIPPLE_FLOOR:g} nm count as zero. Estimated / computed in um,",
         "**bold** beyond a factor 2, *pairs* unseen.",
         "",
         "| pair | ripple | effect | mean | peak-to-peak |",

@@ -21,13 +21,13 @@ from fe_contact.options import LEVELS, AnalysisOptions
 from fe_contact.planning import ExpectedCurves, MeshChoice, chosen_mesh, make_plan
 
 WIDTH_SHARE = 0.8
-"""Part of the tolerance up to which the finite width may be estimated: estimates of its change of
-peak-to-peak read 0.8 of what is measured in the median (docs/effects/influence.md)."""
+"""Part of the tolerance that the estimated change by the finite width may reach: estimates for
+peak-to-peak are 0.8 of the measured change in the median (docs/lab/influence.md)."""
 
 
 TRIED = ((2.0, 0.1), (1.25, 0.5))
-"""Expected error over the tolerance up to which a mesh is tried, and its work over that of what is expected
-to meet it: a pass in vain costs less than what is saved where it is enough."""
+"""Ratio of expected error to tolerance up to which a mesh is tried, and ratio of its work to that of the mesh
+expected to meet the tolerance: the saving where it suffices exceeds the cost of a failed pass."""
 
 
 def decide(
