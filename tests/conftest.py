@@ -11,6 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from coarse_sectors import coarse_sectors
 from compiled_once import compile_once
 from condensed_once import condensed_bodies, condensed_once
 from hypothesis import settings
@@ -22,7 +23,7 @@ SERVICES = ("api", "browser", "flow")
 
 RecordFigure = Callable[..., None]
 
-__all__ = ["condensed_bodies", "condensed_once"]
+__all__ = ["coarse_sectors", "condensed_bodies", "condensed_once"]
 
 # The same examples on every machine with every change; random ones, and more of them, at night.
 settings.register_profile("suite", deadline=None, derandomize=True, max_examples=12)

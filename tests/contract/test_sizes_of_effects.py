@@ -27,6 +27,8 @@ from service.studies.ablate.page import ablation_table
 from service.studies.ablate.run import ablation_of, facts
 from service.studies.computation import Means
 
+pytestmark = pytest.mark.usefixtures("coarse_sectors")
+
 Json = dict[str, Any]
 SPUR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0}
 RING = {

@@ -10,6 +10,8 @@ import pytest
 from fe_contact import Gear, GearPair, Shaft, SteDatabase, analyze
 from fe_contact.effects.shaft_compliance import SeatCompliance
 
+pytestmark = pytest.mark.usefixtures("coarse_sectors")
+
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 SHAFT = Shaft(length=0.2, diameter=0.04, position=0.1, bearing_stiffness=4e8)
 FORCES = np.array([500.0, 4000.0])

@@ -19,7 +19,7 @@ from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.stage_clock import StageClock
 
 LOAD = np.array([2500.0])
-POSITIONS = 32
+POSITIONS = 16
 SOURCE = "the same bodies in more slices"
 HELIX = math.radians(22.0)
 

@@ -18,6 +18,8 @@ from fe_contact.microgeometry import curve_derivatives
 from fe_contact.microgeometry.variables import modified
 from fe_contact.ste.curve_quantities import quantity_derivatives
 
+pytestmark = pytest.mark.usefixtures("coarse_sectors")
+
 TORQUES = np.array([30.0, 60.0])
 RELIEF = FlankModification(tip_relief=12e-6, tip_relief_length=0.8e-3, profile_crowning=3e-6)
 CROWNED = replace(RELIEF, helix_crowning=6e-6, helix_slope=2e-6)
@@ -62,7 +64,7 @@ def condensed(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Conde
     def of(name: str) -> CondensedPair:
         if name not in known:
             pair, model = PAIRS[name](), "3d" if name == "helical" else "plane_strain"
-            wish = {"level": "draft", "model": model, "positions": 16, "receipt": "minimal"}
+            wish = {"level": "draft", "model": model, "positions": 12, "receipt": "minimal"}
             table = analyze(pair, torques=TORQUES, cache=cache, **wish)
             known[name] = condensed_pair(pair, table, {}, cache)
         return known[name]

@@ -13,7 +13,7 @@ CALCULIX = find_calculix()
 TORQUE = 400.0
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 CROWNED = replace(GEAR, modification=FlankModification(profile_crowning=20e-6))
-COARSE = Resolution(2.0)
+COARSE = Resolution(1.5)
 
 pytestmark = pytest.mark.skipif(CALCULIX is None, reason="CalculiX (ccx) is not installed")
 

@@ -34,11 +34,13 @@ from fe_contact.microgeometry.variables import modified
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.stage_clock import StageClock
 
+pytestmark = pytest.mark.usefixtures("coarse_sectors")
+
 CROWNING, SLOPE = "pinion.helix_crowning", "pinion.helix_slope"
 RELIEF, LENGTH = "pinion.tip_relief", "pinion.tip_relief_length"
 DESIGN = {CROWNING: 4e-6, SLOPE: 6e-6, RELIEF: 10e-6, LENGTH: 1e-3}
 SKEW = 8e-6
-POSITIONS = 16
+POSITIONS = 8
 
 
 def helical(hand: int) -> GearPair:

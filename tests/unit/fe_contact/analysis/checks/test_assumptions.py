@@ -17,6 +17,8 @@ from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Json
 
+pytestmark = pytest.mark.usefixtures("coarse_sectors")
+
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 PAIR = GearPair(GEAR, GEAR)
 # tips relieved by more than twice the even deflection, but not by that of a misaligned face

@@ -17,6 +17,8 @@ from fe_contact.errors import SolveError
 from fe_contact.options import Run, TableAxes
 from fe_contact.types import Json
 
+pytestmark = pytest.mark.usefixtures("coarse_sectors")
+
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 # tips relieved by more than twice the even deflection, but not by that of a misaligned face
 RELIEVED = replace(GEAR, modification=FlankModification(tip_relief=12e-6, tip_relief_length=0.3e-3))

@@ -27,6 +27,8 @@ from fe_contact.geometry import InternalGearPair, RingGear, Toothing, tooth_prof
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
 from fe_contact.stage_clock import StageClock
 
+pytestmark = pytest.mark.usefixtures("coarse_sectors")
+
 
 @pytest.fixture(scope="module")
 def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:

@@ -13,6 +13,8 @@ from fe_contact.errors import InputError
 from fe_contact.hertz import contact_modulus, relative_radius
 from fe_contact.options import Run
 
+pytestmark = pytest.mark.usefixtures("coarse_sectors")
+
 FORCE = 2000.0
 NO_CORNERS = {"corner_contact": "off"}
 

@@ -19,6 +19,8 @@ from fe_contact.ste import SteDatabase
 from fe_contact.ste.curve_errors import AT_NODES, SOURCES
 from fe_contact.types import FloatArray
 
+pytestmark = pytest.mark.usefixtures("coarse_sectors")
+
 GEAR = Gear(teeth=20, normal_module=1e-3, face_width=4e-3, bore_diameter=10e-3)
 PAIR = GearPair(GEAR, GEAR, center_distance=20e-3)
 TORQUES = np.array([0.5, 1.0])

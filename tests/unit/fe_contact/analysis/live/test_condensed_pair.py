@@ -16,6 +16,8 @@ from fe_contact.geometry import FlankModification, PitchDeviation
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
 from fe_contact.ste import SteDatabase
 
+pytestmark = pytest.mark.usefixtures("coarse_sectors")
+
 GEAR = Gear(teeth=20, normal_module=1e-3, face_width=4e-3, bore_diameter=10e-3)
 PAIR = GearPair(GEAR, GEAR, center_distance=20e-3)
 RELIEF = FlankModification(tip_relief=3e-6, tip_relief_length=0.4e-3)

@@ -1,0 +1,116 @@
+"""Laws of tables over the face: symmetries of space, scaling, and loads that grow."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from fe_contact import FlankModification, Gear, GearPair, SteDatabase, analyze
+
+pytestmark = pytest.mark.usefixtures("coarse_sectors")
+
+
+@pytest.fixture(scope="module")
+def cache(tmp_path_factory):
+    return tmp_path_factory.mktemp("compliance")
+
+
+def helical(hand: int = 1, scale: float = 1.0, **changes: object) -> GearPair:
+    pinion = Gear(
+        teeth=19,
+        normal_module=3e-3 * scale,
+        face_width=20e-3 * scale,
+        bore_diameter=30e-3 * scale,
+        helix_angle=hand * math.radians(20.0),
+        **changes,
+    )
+    modification = FlankModification()
+    return GearPair(
+        pinion,
+        dataclasses.replace(pinion, teeth=26, helix_angle=-pinion.helix_angle, modification=modification),
+    )
+
+
+def draft(pair: GearPair, cache, force: float = 2000.0, **options: object) -> SteDatabase:
+    return analyze(pair, normal_forces=[force], level="draft", positions=12, cache=cache, **options)
+
+
+def test_opposite_hand_is_the_mirror_image(cache):
+    """Mirroring both gears and the misalignment in the transverse plane changes nothing."""
+    skew = 20e-6
+    first = draft(helical(+1), cache, misalignments=[-skew, 0.0, skew])
+    second = draft(helical(-1), cache, misalignments=[-skew, 0.0, skew])
+    assert second.static_transmission_error == pytest.approx(
+        first.static_transmission_error[:, :, ::-1], rel=1e-9, abs=0.0
+    )
+    assert second.face_centroid == pytest.approx(-first.face_centroid[:, :, ::-1], abs=1e-9)
+
+
+def test_lengths_by_s_and_forces_by_s2(cache):
+    s = 3.0
+    small, large = draft(helical(), cache), draft(helical(scale=s), cache, force=2000.0 * s**2)
+    assert large.static_transmission_error == pytest.approx(
+        s * small.static_transmission_error, rel=1e-6, abs=0.0
+    )
+    assert large.load_share == pytest.approx(small.load_share, abs=1e-6)
+
+
+def test_swapped_gears_have_the_mirrored_curve(cache):
+    """With the wheel driving, positions run backwards; in double contact the shift by STE is invisible."""
+    pair = helical()
+    swapped = pair.swapped()
+    swapped = dataclasses.replace(
+        swapped,
+        pinion=dataclasses.replace(swapped.pinion, helix_angle=-swapped.pinion.helix_angle),
+        wheel=dataclasses.replace(swapped.wheel, helix_angle=-swapped.wheel.helix_angle),
+    )
+    options = {"effects": {"corner_contact": "off"}}
+    first, second = draft(pair, cache, **options), draft(swapped, cache, **options)
+    ours = first.static_transmission_error[:, 0, 0, 0]
+    theirs = second.static_transmission_error[:, 0, 0, 0]
+    mirrored = np.roll(theirs[::-1], 1)
+    assert mirrored == pytest.approx(ours, rel=1e-6, abs=0.0)
+
+
+def test_laws_hold_over_the_face(cache):
+    loads = [20.0, 200.0, 2000.0, 8000.0]
+    pair = helical(
+        modification=FlankModification(helix_crowning=8e-6, tip_relief=6e-6, tip_relief_length=0.8e-3)
+    )
+    table = analyze(
+        pair,
+        normal_forces=loads,
+        misalignments=[-30e-6, 0.0, 30e-6],
+        level="draft",
+        positions=12,
+        cache=cache,
+    )
+    assert table.n_failed == 0
+    assert table.residuals.max() < 1e-9
+    assert np.all(np.diff(table.static_transmission_error, axis=1) > 0.0)
+    assert table.load_share.sum(axis=-1) == pytest.approx(1.0, abs=1e-12)
+    assert np.abs(table.face_centroid).max() <= 10e-3
+    # the gap grows with the face position, so the load sits on the other side
+    assert np.all(table.face_centroid[:, 1:, 2] < table.face_centroid[:, 1:, 0])
+
+
+def test_force_extraction_covers_all_axes(cache):
+    table = draft(helical(), cache, misalignments=[0.0, 20e-6], center_distance_changes=[0.0, 50e-6])
+    x = np.linspace(0.0, 1.0, 9)
+    force = table.force[0]
+    for m, d in ((0.0, 0.0), (20e-6, 50e-6), (8e-6, 20e-6)):
+        deflection = table.ste(x, force, misalignment=m, center_distance_change=d)
+        sample = table.force_at(x, deflection, misalignment=m, center_distance_change=d)
+        assert sample.force == pytest.approx(force * math.cos(table.facts.base_helix_angle), rel=1e-9)
+
+
+def test_a_wheel_beside_its_pinion_carries_on_the_common_face(cache):
+    gear = Gear(teeth=20, normal_module=4e-3, face_width=20e-3, bore_diameter=40e-3)
+    pair = GearPair(gear, gear, 80e-3, axial_offset=8e-3)
+    table = draft(pair, cache)
+    assert table.facts.face_width == pytest.approx(12e-3)
+    assert np.all((table.face_centroid > -2e-3) & (table.face_centroid < 10e-3))
+    assert table.n_failed == 0
