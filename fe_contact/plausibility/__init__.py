@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from fe_contact.plausibility.check import CHECKS
 from fe_contact.plausibility.merged import merged, unexpected
+from fe_contact.plausibility.mesh_checks import mesh_findings
 from fe_contact.plausibility.pair_checks import pair_findings
 from fe_contact.plausibility.result_checks import flank_findings, root_findings, table_findings
 
@@ -14,6 +15,7 @@ __all__ = [
     "CHECKS",
     "flank_findings",
     "merged",
+    "mesh_findings",
     "pair_findings",
     "root_findings",
     "table_findings",

@@ -165,7 +165,17 @@ _LOADS = (
         "ISO 6336-1: steel teeth deflect by 0.001 to 0.01 modules; linear elasticity ends here",
     ),
 )
-CHECKS: dict[str, Check] = {check.name: check for check in (*_PARTS, *_DEVIATIONS, *_SHAFTS, *_LOADS)}
+_MESH = (
+    Check(
+        "tip_clearance",
+        "tip clearance over normal module",
+        0.1,
+        None,
+        "1",
+        "ISO 53: the basic racks leave 0.25 to 0.4",
+    ),
+)
+CHECKS: dict[str, Check] = {check.name: check for check in (*_PARTS, *_DEVIATIONS, *_SHAFTS, *_LOADS, *_MESH)}
 """All checks by name."""
 
 assessed = Checklist(CHECKS).assessed

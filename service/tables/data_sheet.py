@@ -190,9 +190,9 @@ def _point_row(point: PathPoint) -> tuple[str, ...]:
 
 
 def data_sheet_section(pair: ParallelAxes) -> Section:
-    """Return the sheet as a section: what handbooks advise against, the drawing, then the tables."""
+    """Return the sheet as a section: what speaks against it, the drawing, then the tables."""
     remarks = " ".join(f"Warning: {remark['message']}" for remark in pair_remarks(pair))
-    text = remarks or "No warnings: undercut, tip thickness and clearance, sliding, contact ratio, backlash."
+    text = remarks or "No warnings: undercut, backlash, tip clearance."
     return Section("Data sheet", text, figures=(pair_drawing(pair),), tables=data_sheet(pair))
 
 

@@ -11,6 +11,7 @@ import pytest
 from matplotlib.path import Path as Polygon
 from typer.testing import CliRunner, Result
 
+from fe_contact.plausibility import CHECKS
 from service.cli.commands import app
 from service.convert.case import gear_pair
 from service.drawing.figure import Figure, Panel
@@ -98,12 +99,18 @@ def test_the_table_holds_every_number_of_the_json_in_words() -> None:
     assert f"{found['mesh']['total_contact_ratio']:.4f}" in text
 
 
-def test_what_handbooks_advise_against_is_said_and_decides_a_strict_exit_code() -> None:
+def test_what_speaks_against_a_pair_is_said_and_decides_a_strict_exit_code() -> None:
     done = geometry(SPUR, "--strict")
     assert done.exit_code == 3
     assert "warning (backlash)" in done.stdout
-    assert "warning (specific_sliding): pair.pinion: specific sliding -4.1" in done.stdout
     assert geometry(HELICAL, "--strict").exit_code == 0
+
+
+def test_a_tip_near_the_mating_root_is_a_row_of_the_checks() -> None:
+    assert "tip_clearance" not in geometry(SPUR).stdout
+    done = geometry(SPUR, "--set", "pair.pinion.tip_diameter_mm=89.4")  # 0.3 mm of clearance, module 4 mm
+    assert "warning (tip_clearance): pinion tip clearance over module = 0.075" in done.stdout
+    assert CHECKS["tip_clearance"].source in " ".join(done.stdout.split())
 
 
 @pytest.mark.parametrize("ending", ["png", "svg", "html"])

@@ -56,7 +56,7 @@ def test_effects_of_contact_and_run_stand_in_one_table(database: SteDatabase, ru
     assert captions[0] == "1 effect below 0.1 %" and captions[-1] == "Not in the model of the run"
 
 
-def test_the_data_sheet_has_the_remarks_of_handbooks(database: SteDatabase) -> None:
+def test_the_data_sheet_begins_with_what_speaks_against_the_pair(database: SteDatabase) -> None:
     pair = pair_of(database)
     assert pair is not None
     messages = [remark["message"] for remark in pair_remarks(pair)]
