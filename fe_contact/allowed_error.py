@@ -18,7 +18,7 @@ LARGEST_RELATIVE, LARGEST_FLOOR = 0.5, 1e-3
 class AllowedError:
     """The larger of a part of a quantity and an absolute floor.
 
-    One per cent of a ripple of 30 nm is no error that anybody measures: below `scale` the floor counts.
+    One per cent of a ripple of 30 nm cannot be measured: below `scale` the floor counts.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ class AllowedError:
         return np.maximum(np.abs(value), self.least_scale)
 
     def stretched(self, factor: float) -> AllowedError:
-        """Return what allows so many times the error, up to the largest there is, of the same scale."""
+        """Return the tolerance of a multiple of the error, up to the largest allowed, with the same scale."""
         most = min(self.relative * factor, LARGEST_RELATIVE) / self.relative
         return AllowedError(self.relative * most, min(self.floor * most, LARGEST_FLOOR))
 

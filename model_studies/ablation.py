@@ -58,7 +58,7 @@ class EffectAblation(Record, Generic[F, E]):
     with_effect, without_effect : Figures
         One of them is the request itself.
     estimate : optional
-        What leaving it out is estimated to change; None: nothing is known.
+        Estimated change without it; None: not known.
     """
 
     name: str
@@ -75,12 +75,12 @@ class EffectAblation(Record, Generic[F, E]):
 
     @property
     def mean_change(self) -> FloatArray:
-        """Change (n,) of the mean transmission error by leaving the effect out, m."""
+        """Change (n,) of the mean transmission error without the effect, m."""
         return self.change("mean")
 
     @property
     def peak_to_peak_change(self) -> FloatArray:
-        """Change (n,) of the peak-to-peak transmission error by leaving the effect out, m."""
+        """Change (n,) of the peak-to-peak transmission error without the effect, m."""
         return self.change("peak_to_peak")
 
     @property
@@ -89,7 +89,7 @@ class EffectAblation(Record, Generic[F, E]):
         return self.with_effect.cost / self.without_effect.cost
 
     def change(self, figure: str) -> FloatArray:
-        """Return the change of an array of the figures by leaving the effect out, in its unit."""
+        """Return the change of an array of the figures without the effect, in its unit."""
         without, whole = (getattr(each, figure) for each in (self.without_effect, self.with_effect))
         return np.asarray(without - whole)
 

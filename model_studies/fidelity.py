@@ -18,7 +18,7 @@ Errors = Mapping[str, float]
 
 
 class Fidelity(Protocol[Q_contra]):
-    """A model or setting, coarse or fine, that answers a request."""
+    """A model or setting, coarse or fine, that computes a request."""
 
     @property
     def name(self) -> str:
@@ -33,7 +33,7 @@ class Fidelity(Protocol[Q_contra]):
         """The parameter it varies: errors within a family fall towards its finest."""
 
     def refusal(self, request: Q_contra) -> str | None:
-        """Say why this fidelity says nothing about a request; None if it does."""
+        """Return why this fidelity is not valid for a request; None if it is."""
 
 
 F = TypeVar("F", bound=Fidelity[Any])
@@ -56,16 +56,16 @@ def run_fidelities(
     failures: tuple[type[Exception], ...],
     progress: Progress,
 ) -> tuple[list[Outcome[F, R]], dict[str, str]]:
-    """Run every fidelity that says something about a request.
+    """Run every fidelity that is valid for a request.
 
     Parameters
     ----------
     fidelities : sequence of Fidelity
         By their usual cost.
     warm_up : callable
-        Loads and compiles what these fidelities run, so that it is not in their time.
+        Loads and compiles the code of these fidelities beforehand, outside of their time.
     failures : tuple of exception types
-        Leave a fidelity out; the last of them is raised with fewer than two results.
+        Exceptions that omit a fidelity; the last of them is raised with fewer than two results.
 
     Returns
     -------
@@ -95,10 +95,10 @@ def against_finest(
     errors: Callable[[R, R], Errors],
     remaining: Callable[[Sequence[tuple[F, Errors]], F], Errors],
 ) -> list[Errors]:
-    """Return the errors of every outcome against the last one, and what that one leaves behind itself.
+    """Return the errors of every outcome against the last one, and the remaining errors of that one.
 
-    `errors` compares a result with the reference; `remaining` tells the finest one's own errors by those of
-    the coarser fidelities of its family.
+    `errors` compares a result with the reference; `remaining` estimates the errors of the finest fidelity
+    from those of the coarser fidelities of its family.
     """
     *coarser, finest = outcomes
     measured = [errors(outcome.result, finest.result) for outcome in coarser]

@@ -15,7 +15,7 @@ from model_studies.record import Record, called
 
 @dataclass(frozen=True)
 class FidelityResult(Record):
-    """The outcome of one fidelity; a library adds its errors and what else it has to say.
+    """The outcome of one fidelity; a library adds its errors and further figures.
 
     Attributes
     ----------
@@ -40,7 +40,7 @@ class FidelityResult(Record):
 
     @property
     def error(self) -> float:
-        """The worst of the errors that are known, which a tolerance speaks of; NaN without any."""
+        """The largest known error, which a tolerance limits; NaN without any."""
         return max(self.errors.values(), default=float("nan"))
 
 
@@ -58,10 +58,10 @@ class Frontier(Record, Generic[R_co]):
     left_out : dict
         Name of a fidelity to the reason why it has no result.
     knee : str or None
-        The fidelity after which time buys least, by the worst of the errors; None with fewer than three
-        fidelities, or where the front does not bend.
+        The fidelity after which time buys least, by the largest error; None with fewer than three fidelities,
+        or if the front does not bend.
     chosen : str or None
-        The fidelity that the request asks for.
+        The fidelity of the request.
     """
 
     results: tuple[R_co, ...] = field(metadata=called("rungs"))
@@ -80,7 +80,7 @@ class Frontier(Record, Generic[R_co]):
 
 
 def knee_above(results: Sequence[FidelityResult], *shared: float) -> str | None:
-    """Return the knee; differences below the reference's own error, or below `shared` ones, say nothing."""
+    """Return the knee; differences below the reference's own error, or below `shared` errors, are ignored."""
     own = [error for error in (results[-1].error, *shared) if np.isfinite(error)]
     floor = max(own, default=0.0)
     known = [result for result in results if np.isfinite(result.error)]

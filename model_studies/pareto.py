@@ -8,7 +8,7 @@ import numpy as np
 
 
 def front_of(points: Mapping[str, tuple[float, float]]) -> tuple[str, ...]:
-    """Return the names of points (time, error) that no other beats in both, the quickest first."""
+    """Return the names of the Pareto-optimal points (time, error), the fastest first."""
     best = float("inf")
     front = []
     for name in sorted(points, key=lambda key: points[key]):
@@ -22,7 +22,7 @@ def knee_of(points: Mapping[str, tuple[float, float]]) -> str | None:
     """Return the point after which time buys least: the deepest below the line between the ends, log-log.
 
     The curve is the front, and from its last point on level to the slowest point. None with fewer than three
-    points in all, or where it bends nowhere below the line.
+    points, or if it nowhere bends below the line.
     """
     front = front_of(points)
     if len(points) < 3 or any(value <= 0.0 for point in points.values() for value in point):

@@ -32,7 +32,7 @@ NOT_STORED = {"stored": False}
 
 @dataclass(frozen=True)
 class Record:
-    """Numbers, names, arrays and records; a number that is not known is NaN, and left out of the JSON."""
+    """Numbers, names, arrays and records; an unknown number is NaN and omitted from the JSON."""
 
     def to_json(self) -> Json:
         """Return plain JSON in SI units."""

@@ -12,7 +12,7 @@ R = TypeVar("R")
 
 
 class LeftOut(Exception):
-    """A variant says nothing here, and why."""
+    """A variant is not valid here, and why."""
 
 
 def run_variants(

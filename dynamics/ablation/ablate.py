@@ -73,8 +73,7 @@ def ablate(scene: Scene, only: Sequence[str] | None = None, progress: Progress =
     Parameters
     ----------
     scene : Scene
-        Its ``on_violation`` plays no part: runs are taken as they are. Its tolerance decides once, for the
-        scene itself.
+        Its ``on_violation`` is ignored: no run is repeated. Its tolerance decides once, for the scene itself.
     only : sequence of str, optional
         Effects to toggle; default all.
     progress : callable, optional

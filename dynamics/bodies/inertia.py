@@ -28,7 +28,7 @@ _TRANSVERSE = Declared(
 class Inertia:
     """Inertia of a body of revolution about its own center of mass.
 
-    Of several bodies together it may be above the upper bounds of one.
+    The inertia of several bodies together may exceed the bounds of one.
     """
 
     mass: float = declared(0.0, _MASS)
@@ -48,7 +48,7 @@ def hollow_cylinder(
     Parameters
     ----------
     outer_diameter, length, bore_diameter : float
-        m. For a gear, reference diameter and face width are the usual fakes for its teeth and rim.
+        m. For a gear use reference diameter and face width.
     density : float
         kg/m^3.
 

@@ -32,8 +32,8 @@ class Shaft:
     (x, y, z). `frame` is the carrier's shaft in whose rotating frame origin and displacements are described:
     that of all members of a planetary set (sun, ring, planets and the carrier itself, which names itself);
     `origin` is then the position at t = 0. None: the fixed frame. `inertia` is that of the bare shaft, its
-    center of mass at mid-length; the gears on it are added. It is left out where `sections` are given: from
-    the left end, together as long as the shaft, for the effect ``"flexible_shafts"`` and for the inertia.
+    center of mass at mid-length; the gears on it are added. It is left out if `sections` are given: from the
+    left end, together as long as the shaft, for the effect ``"flexible_shafts"`` and for the inertia.
     """
 
     name: str

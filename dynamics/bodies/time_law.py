@@ -41,14 +41,14 @@ class TimeLaw:
 
     @classmethod
     def constant(cls, value: float) -> TimeLaw:
-        """Return the law that never changes."""
+        """Return a constant law."""
         return cls((0.0,), (finite("value", value),))
 
     @classmethod
     def ramp(
         cls, start: float, end: float, duration: float, begin: float = 0.0, shape: str = "linear"
     ) -> TimeLaw:
-        """Return a change from `start` to `end` that takes `duration` seconds from the time `begin` on."""
+        """Return a change from `start` to `end` over `duration` seconds from the time `begin` on."""
         begin = not_negative("begin", begin)
         return cls((begin, begin + positive("duration", duration)), (start, end), shape)
 

@@ -21,7 +21,7 @@ from dynamics.types import FloatArray
 
 @dataclass(frozen=True)
 class CoastFlank:
-    """Contact on the backs of the teeth.
+    """Contact on the coast flanks.
 
     Attributes
     ----------
@@ -32,8 +32,8 @@ class CoastFlank:
         Thickness of the driver's teeth over the pitch, both on the operating pitch circle.
     table : MeshTable or None
         Of the pair driven on its coast flanks, positions counted in the driver's sense then, 0 where the
-        reference pair touches at the pitch point, faces seen from the other end. None: the driving flank's,
-        which takes both sides of the teeth, their modifications included, to be alike.
+        reference pair touches at the pitch point, faces seen from the other end. None: that of the driving
+        flank, which assumes symmetric teeth, modifications included.
     """
 
     backlash: float

@@ -21,31 +21,31 @@ class GearMesh:
     name : str
         Unique among the meshes.
     driver, driven : str
-        The gears. `driver` pushes in the sense in which its shaft turns.
+        The gears. The force of `driver` acts in the sense in which its shaft turns.
     table : MeshTable
         Position counted by the driver's angle.
     technique : str
         ``"variable_torque"``: force F(position, DTE) from the table. ``"constant_torque"``:
         F = k(position) DTE with k = nominal force / STE(position), the secant stiffness at that force.
     damping : float or None
-        N s/m along the line of action, acting only in contact and never pulling. None:
-        ``2 damping_ratio sqrt(k m)`` with k the mean tangent stiffness at the nominal force and 1/m the
-        sum of base_radius^2 / (polar inertia) over the shafts that are free to turn.
+        N s/m along the line of action, in contact only and never in tension. None: ``2 damping_ratio sqrt(k
+        m)`` with k the mean tangent stiffness at the nominal force and 1/m the sum of base_radius^2 / (polar
+        inertia) over the shafts that are free to turn.
     damping_ratio : float
         Used where `damping` is None.
     nominal_force : float or None
-        Transverse mesh force F_bt in N for the secant, the damping and the static reference curve. None:
-        what carries the load at t = 0.
+        Transverse mesh force F_bt in N for the secant, the damping and the static reference curve. None: the
+        force that carries the load at t = 0.
     position_offset : float
         Position in base pitches at t = 0.
     misalignment, center_distance_change : float
         m; where the table has such axes, the constant operating point at which it is used.
     coast : CoastFlank or None
-        The backs of the teeth, for the effect ``"backlash"``. None: only the driving flank carries force.
+        The coast flank, for the effect ``"backlash"``. None: only the driving flank carries force.
     friction : float or None
         Coefficient of sliding friction, for the effect ``"friction"``. None: none.
     bent_shafts : bool
-        Whether the table has the bending of the gears' shafts in it: then these are rigid here.
+        Whether the table includes the bending of the gears' shafts; they are then rigid here.
     """
 
     name: str

@@ -10,7 +10,7 @@ from dynamics.checks import finite
 
 @dataclass(frozen=True)
 class LoadTorque:
-    """A resisting torque, the same at any speed.
+    """A resisting torque, independent of the speed.
 
     Attributes
     ----------

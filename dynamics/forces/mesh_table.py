@@ -26,7 +26,7 @@ class MeshTable(Protocol):
     position : (P,) array
         Knots in transverse base pitches of the driving gear, increasing in [0, period).
     period : int
-        Whole base pitches after which the table repeats: 1 where all teeth are alike.
+        Whole base pitches after which the table repeats: 1 if all teeth are equal.
     level : (L,) array
         Transverse mesh force in N at the levels, increasing, ``level[0] = 0`` (lift-off).
     misalignment, center_distance_change : (M,), (D,) arrays
@@ -38,7 +38,7 @@ class MeshTable(Protocol):
     stiffness, stiffness_slope : (M, D, P, L) arrays
         Tangent stiffness dF/d(deflection) in N/m at the knots and its derivative in position.
 
-    A table may also have, for effects that need them (None or left out: it has not):
+    Optional, for effects that need them (None or left out: absent):
 
     deflection_derivative, stiffness_derivative : (2, 2, 2, M, D, P, L) arrays
         Differentiated once (1) or not (0) in misalignment, center-distance change and position.
@@ -47,7 +47,7 @@ class MeshTable(Protocol):
         turns clockwise seen from there.
     sliding_share, sliding_lever : (M, D, P, L) arrays
         Sums over the pairs of load share times the sign of y, and times `abs(y)` (m), y the position of a
-        pair's contact from the pitch point, > 0 where it recedes.
+        pair's contact from the pitch point, > 0 in recess.
     """
 
     @property

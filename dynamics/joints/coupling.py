@@ -32,8 +32,8 @@ class Coupling:
 
     The 6 by 6 matrices `stiffness` and `damping` are added to the torsional ones: symmetric, positive
     semidefinite, in N, m, rad, s; for coaxial shafts. In a carrier's frame, and between shafts of different
-    frames, they must be the same in all directions across the axis. Rates across frames are those seen in the
-    fixed one, or in that of `first`.
+    frames, they must be isotropic across the axis. Rates across frames are those seen in the fixed frame, or
+    in that of `first`.
     """
 
     name: str

@@ -30,7 +30,7 @@ _SENSE = Declared(
 @described
 @dataclass(frozen=True)
 class FreeRotation:
-    """A shaft that starts at a given speed and then turns as torques make it.
+    """A shaft that starts at a given speed and then follows the torques.
 
     All shafts geared to it and to no drive turn freely with it, without limit; `shaft` is any one of them.
     """
@@ -52,7 +52,7 @@ class FreeRotation:
 
     @property
     def speed(self) -> TimeLaw:
-        """The reference motion: the initial speed for ever."""
+        """The reference motion at the initial speed."""
         return TimeLaw.constant(self.initial_speed)
 
     @property

@@ -20,7 +20,7 @@ PRECISION = 1e-6  # relative; a finite-element program writes its matrices with 
 
 @dataclass(frozen=True)
 class Housing:
-    """A massless housing that bearings share: its seats give way, and one bearing moves another.
+    """A massless elastic housing, which couples its bearings.
 
     Attributes
     ----------

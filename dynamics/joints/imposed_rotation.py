@@ -29,7 +29,7 @@ _POSITION = Declared(
 @described
 @dataclass(frozen=True)
 class ImposedRotation:
-    """A drive: a shaft turns by a given law, whatever torque that takes.
+    """A drive: a shaft turns by a given law, at any torque.
 
     `speed` is in rad/s about the fixed +z axis; 0: held. The angle is its exact integral from t = 0, where it
     is 0. An `AngleLaw` gives it by the angle over time.

@@ -81,16 +81,16 @@ def forced_response(
     orders : int
         Harmonics of the mesh frequency of the first mesh that turns.
     time : float
-        When loads are taken, s.
+        Time at which loads are evaluated, s.
     progress : callable, optional
-        Called with the fraction done; what it raises ends the study.
+        Called with the fraction done; an exception in it ends the study.
 
     Raises
     ------
     InputError
         If a value is out of range, or the meshes have no common period.
     SolveError
-        If there is no static equilibrium, or one beyond a table (`ForceChecks`) that may not pass.
+        If there is no static equilibrium, or one beyond the table (`ForceChecks`) that is not accepted.
     """
     speeds = checked_speeds(np.asarray(speed, dtype=float), above_zero=True)
     if not speeds.size:

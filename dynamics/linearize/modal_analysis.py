@@ -152,21 +152,21 @@ def modal_analysis(
     speed : (S,) sequence
         Of the first drive or free rotation that turns, rad/s, increasing, >= 0; empty: none.
     orders : int
-        Multiples of the mesh frequencies to look for crossings with.
+        Multiples of the mesh frequencies whose crossings with modes are found.
     time : float
-        When loads are taken, s.
+        Time at which loads are evaluated, s.
     progress : callable, optional
-        Called with the fraction done; what it raises ends the analysis.
+        Called with the fraction done; an exception in it ends the analysis.
     highest_frequency : float, optional
-        Hz to which shafts that bend and twist are resolved, whatever the scene's output needs; left out:
-        the highest of the `orders` at the highest of the speeds, or of the scene's where none is given.
+        Hz to which flexible shafts are resolved, independent of the scene's output; left out: the highest of
+        the `orders` at the highest of the speeds, or of the scene if none is given.
 
     Raises
     ------
     InputError
         If a value is out of range, or nothing turns where speeds are given.
     SolveError
-        If there is no static equilibrium, or one beyond a table (`ForceChecks`) that may not pass.
+        If there is no static equilibrium, or one beyond the table (`ForceChecks`) that is not accepted.
     """
     integer("orders", orders, 1, MOST_ORDERS)
     speeds = checked_speeds(np.asarray(speed, dtype=float), above_zero=False)

@@ -31,7 +31,7 @@ def with_planets(
     angles: Sequence[float] | None = None,
     pin_errors: Sequence[tuple[float, float]] | None = None,
 ) -> Scene:
-    """Return `scene` with the planet on `shaft` there `number` times, phases of all meshes exact.
+    """Return `scene` with `number` copies of the planet on `shaft`, with exact phases of all meshes.
 
     Parameters
     ----------
@@ -41,11 +41,11 @@ def with_planets(
         Its shaft; it stays where it is. The others are called ``"<name> 2"``, ``"<name> 3"`` and so on, and
         likewise their gears, bearings with their laws, and meshes.
     number : int
-        How many in all.
+        Number of planets in all.
     angles : sequence of floats, optional
         Of all planets from the first about +z, rad, the first one 0. Left out: equally spaced.
     pin_errors : sequence of (radial, tangential), optional
-        Of all pins, m, in place of what the first planet's bearings say.
+        Of all pins, m, instead of those of the first planet's bearings.
 
     Raises
     ------

@@ -106,7 +106,7 @@ def window_spectrum(
 def mesh_orders(
     result: RunResult, start: float, end: float, count: int = 5, mesh: int = 0
 ) -> tuple[MeshOrder, ...]:
-    """Return the first `count` multiples of a mesh's frequency as they run through the window."""
+    """Return the first `count` multiples of a mesh's frequency over the window."""
     integer("count", count, 1, 1000)
     integer("mesh", mesh, 0, len(result.mesh) - 1)
     frequency = result.mesh_frequency[mesh, result.window(start, end)]

@@ -106,7 +106,7 @@ def steady_states(
     time: float = 0.0,
     progress: Callable[[str, float], None] | None = None,
 ) -> SteadyStates:
-    """Return what `system` settles on at constant speeds, rising and falling, and the branch between them.
+    """Return the steady states of `system` at rising and falling speeds, and the branch between them.
 
     Parameters
     ----------
@@ -116,20 +116,20 @@ def steady_states(
     branch : bool
         Whether to follow the branch from the lowest to the highest speed, through folds and unstable parts.
     repeat : int
-        Common periods after which motions are to repeat.
+        Period of the motions in common periods.
     periods : int
-        Periods that a sweep settles for at each speed before Newton's method.
+        Periods of settling at each speed of a sweep before Newton's method.
     time : float
-        When loads are taken, s.
+        Time at which loads are evaluated, s.
     progress : callable, optional
-        Called with the curve (`CURVES`) and the fraction of it done; what it raises ends the study.
+        Called with the curve (`CURVES`) and the fraction of it done; an exception in it ends the study.
 
     Raises
     ------
     InputError
         If a value is out of range, there is nothing to vibrate, or the meshes have no common period.
     SolveError
-        If there is no static equilibrium, or a motion goes beyond a table (`ForceChecks`) and may not.
+        If there is no static equilibrium, or a motion beyond the table (`ForceChecks`) is not accepted.
     """
     speeds = checked_speeds(np.asarray(speed, dtype=float), above_zero=True)
     if not speeds.size:

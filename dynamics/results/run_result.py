@@ -36,11 +36,11 @@ class RunResult:
         m; r_b1 theta_1 - r_b2 theta_2 plus the gears' displacements along the line of action; > 0: the
         driven gear lags.
     static_transmission_error : (m, T) array
-        m; the table's at the nominal force and the same position, misaligned and apart as the bodies rest at
-        t = 0: the static reference.
+        m; the static reference: the table's at the nominal force and the same position, with misalignment and
+        center distance of the static equilibrium at t = 0.
     mesh_force : (m, T) array
-        Transverse force of the driving flank in N, damping included; behind the anti-alias filter, which may
-        ring a little below 0 where flanks part.
+        Transverse force of the driving flank in N, damping included; filtered against aliasing, which may
+        ring slightly below 0 at lift-off.
     coast_force : (m, T) array
         Transverse force of the coast flank in N; m = 0 here if backlash is off in all meshes.
     least_mesh_force, largest_mesh_force : (m, T) arrays
@@ -64,7 +64,7 @@ class RunResult:
         carrier's rotating frame; b = 0 if not requested.
     bearing_moment : (b, 3, T) array
         Moment of the shaft on the ground about each bearing's center, N m, in the same frames; the one about
-        the axis is 0, since the shaft turns. b = 0 if not requested or if no bearing holds tilt.
+        the axis is 0, since the shaft turns. b = 0 if not requested or if no bearing has tilt stiffness.
     displacement, velocity : (n, T) arrays
         Deviations from the kinematic motion, m and rad (and per s); n = 0 if not requested.
     nominal_force : (m,) array
@@ -85,7 +85,7 @@ class RunResult:
         `mesh_frequency` of every mesh, Hz) from rest to the largest of the run, `freedom` and `moves` at
         the last.
     warnings : list of dict
-        What is implausible about the scene; empty where nothing is.
+        Implausible values of the scene; empty if there are none.
     acceleration : (n, T) array
         Second rate of the deviations, m/s2 and rad/s2; n = 0 if not requested.
     bearing_acceleration : (b, 3, T) array
@@ -158,14 +158,14 @@ class RunResult:
         return to_dataset(self)
 
     def to_netcdf(self, path: str | Path) -> None:
-        """Write a netCDF-4 file, compressed without loss; the file appears whole or not at all."""
+        """Write a netCDF-4 file atomically, with lossless compression."""
         from dynamics.results.netcdf import write_netcdf  # noqa: PLC0415
 
         write_netcdf(self, Path(path))
 
     @classmethod
     def from_netcdf(cls, path: str | Path) -> RunResult:
-        """Read what `to_netcdf` wrote, bit by bit the same.
+        """Read a file of `to_netcdf`; equal to the last bit.
 
         Raises
         ------

@@ -19,11 +19,11 @@ def pair_scene(
     shaft_inertia: Inertia | None = None,
     bushing_stiffness: float = 1e8,
 ) -> Scene:
-    """Return the scene of a pair: a driven shaft, and one that a torque resists.
+    """Return the scene of a pair: a shaft with imposed speed, and one with a resisting torque.
 
-    The driver's shaft lies on the z axis from z = 0, the driven one beside it at x = `center_distance`. Both
-    are twice as long as their gear is from their end. The mesh is named "mesh", the drive "drive", the
-    load "load". Change what else differs with `dataclasses.replace`.
+    The driver's shaft lies on the z axis from z = 0, the driven shaft beside it at x = `center_distance`.
+    Both have their gear at mid-length. The mesh is named "mesh", the drive "drive", the load "load". Change
+    other fields with `dataclasses.replace`.
 
     Parameters
     ----------

@@ -60,19 +60,18 @@ class PlanetarySet:
     sun_inertia, planet_inertia, ring_inertia, carrier_inertia : Inertia
         The carrier's without planets.
     sun_stiffness, ring_stiffness, carrier_stiffness : BearingStiffness, float or None
-        Of the central members' bearings, the same in all directions across the axis; a number: radial alone,
-        N/m. None: held in place rigidly. Small: floating. What resists nothing axially, or no tilt, is held
-        rigidly in that direction.
+        Of the central members' bearings, isotropic across the axis; a number: radial alone, N/m. None: fixed
+        rigidly. Small: floating. A bearing without axial or tilt stiffness is rigid in that direction.
     planet_stiffness : BearingStiffness, float or None
         Of the planet bearings, likewise.
     damping_ratio : float
-        Of all bearings and meshes where nothing else is given.
+        Of all bearings and meshes without a damping of their own.
     pin_errors : tuple of (radial, tangential) or None
         Of each pin, m.
     driver : str
-        ``"sun"``: the sun drives the planets and these the ring (or against it); ``"ring"``: the other way.
+        ``"sun"``: the sun drives the planets and these the ring (or react on it); ``"ring"``: the reverse.
     sun_sense : str
-        ``"+z"`` or ``"-z"``: how the sun turns against the carrier; it sets the order of the phases.
+        ``"+z"`` or ``"-z"``: sense of the sun relative to the carrier; it sets the order of the phases.
     ring_phase : float
         Position of a planet's ring mesh less that of its sun mesh, base pitches (see `ring_phase`).
     technique : str

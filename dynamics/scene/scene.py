@@ -43,31 +43,31 @@ class Reference(Protocol):
 
 @dataclass(frozen=True)
 class Scene:
-    """A geared system and the run to make with it.
+    """A geared system and its run.
 
     Attributes
     ----------
     shafts, gears, bushings, planet_bearings, couplings, meshes, drives, free_rotations, loads : tuples
     speed_torques, housings : tuples
         Parts, each with a name unique among its kind. Drives and free rotations together set the kinematic
-        motion of all shafts: as many of them as the gearing leaves independent speeds.
+        motion of all shafts: one for each independent speed of the gearing.
     rolling_contacts, spring_curves : tuples
-        What bearings do that is not linear: they name their bushing or planet bearing.
+        Nonlinear laws of bearings; each names its bushing or planet bearing.
     duration : float
         s.
     effects : mapping of str to str
-        Effect name to ``"auto"``, ``"on"`` or ``"off"``; what is not named is ``"auto"``.
+        Effect name to ``"auto"``, ``"on"`` or ``"off"``; effects that are not named are ``"auto"``.
     outputs : Outputs
     integration : Integration
     on_violation : str
-        Where a run or a study shows that something it took for granted is wrong: ``"repeat"`` runs again
-        with the automatic effect that it needs, and raises where the result is wrong and no effect mends it;
-        ``"fail"`` raises at any, ``"report"`` says so in the ledger's checks.
+        If a run or a study violates an assumption: ``"repeat"`` runs again with the automatic effect that it
+        needs, and raises if the result is invalid and no effect corrects it; ``"fail"`` raises at any
+        violation, ``"report"`` reports it in the ledger's checks.
     tolerance : float or None
-        Relative change of mean and peak-to-peak transmission error and of bearing forces that automatic
-        effects may make by being off; None: they are as the scene calls for them. Runs decide by it.
+        Relative change of mean and peak-to-peak transmission error and of bearing forces that neglected
+        automatic effects may cause in a run; None: effects are as the scene calls for them.
     highest_frequency : float or None
-        Hz to which shafts that bend and twist are resolved; None: half the output rate.
+        Hz to which flexible shafts are resolved; None: half the output rate.
     """
 
     shafts: tuple[Shaft, ...]

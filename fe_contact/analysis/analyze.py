@@ -97,7 +97,7 @@ def ste_database(
     axes : TableAxes
     options : AnalysisOptions
     run : Run
-        Under a tolerance progress begins anew with every pass.
+        With a tolerance, progress starts again with every pass.
     case : dict, optional
         The case as the caller phrased it, echoed into the result and hashed; default: the request in SI
         units.
@@ -118,13 +118,13 @@ def ste_database(
         No acceptable mesh, a linear system that cannot be solved, or an assumption that does not hold where
         `on_violation` is "fail".
     WorkersLost
-        Nobody is left to do the tasks.
+        No worker is left for the tasks.
 
     Warns
     -----
     PlausibilityWarning
-        Once for each thing that is far from practice, of the request before the run and of its results
-        after it; all are in `SteDatabase.warnings`.
+        Once for each implausible value, of the request before the run and of its results after it; all are in
+        `SteDatabase.warnings`.
     """
     checked = check_request(pair, axes, options)
     phrased = case or checked.request.to_json()

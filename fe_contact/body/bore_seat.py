@@ -53,9 +53,9 @@ class Key:
 class BoreSeat:
     """A seat all round the bore, rigid or elastic, over the whole face or part of it.
 
-    Foundation moduli are traction per displacement; they pull as well as they push, as a fit does until it
-    opens. With a key the tangential foundation is that of the key and acts over its width only; elsewhere the
-    bore slides around the shaft. It then has to be given: about G / h for a key of height h.
+    Foundation moduli are traction per displacement, in tension and compression, as of a fit until it opens.
+    With a key the tangential foundation is that of the key, acts over its width only and must be given (about
+    G / h for a key of height h); elsewhere the bore slides around the shaft.
 
     Raises
     ------
@@ -90,7 +90,7 @@ class BoreSeat:
 
     @property
     def elastic(self) -> bool:
-        """Whether any direction gives way."""
+        """Whether any direction is elastic."""
         return any(math.isfinite(k) for k in self.stiffness)
 
     def ends(self, face_width: float) -> tuple[float, float]:

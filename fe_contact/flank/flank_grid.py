@@ -19,7 +19,7 @@ _LARGEST = 0.01  # m; catches micrometers given as meters
 
 @dataclass(frozen=True)
 class FlankGrid:
-    """Material removed at the nodes of a grid; any sequences are taken and kept as tuples.
+    """Material removed at the nodes of a grid; sequences are stored as tuples.
 
     Attributes
     ----------
@@ -38,10 +38,10 @@ class FlankGrid:
     Notes
     -----
     Between the nodes: the cubic Hermite interpolant of either direction, with the slopes of the parabola
-    through three neighboring nodes. It is C1, as the search for the touching point needs (at the kinks of a
-    bilinear surface contact would stay for a while and then jump), reproduces twist and parabolic crowning
-    to rounding, and spreads an error of one node over two cells. Beside a step between even nodes it swings
-    by 2/27 of it, at the border of the grid by 1/8. Beyond the grid the end value holds.
+    through three neighboring nodes. It is C1, as the search for the touching point needs (contact would stay
+    at the kinks of a bilinear surface and then jump), reproduces twist and parabolic crowning to rounding,
+    and spreads an error of one node over two cells. Beside a step between even nodes it overshoots by 2/27 of
+    it, at the border of the grid by 1/8. Beyond the grid the end value applies.
     """
 
     roll_length: tuple[float, ...]

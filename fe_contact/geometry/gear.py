@@ -115,10 +115,10 @@ class Gear(Toothing):
         return replace(self, helix_angle=-self.helix_angle, blank=blank, seat=self.seat.mirrored())
 
     def macro_geometry(self) -> Json:
-        """All that decides the shape of the unmodified gear, as plain numbers (for content hashes).
+        """Return the shape of the unmodified gear as plain numbers (for content hashes).
 
-        The addendum coefficient is absent, since it acts only through the tip diameter; and so is the blank
-        of a gear that is solid.
+        The addendum coefficient is absent, since it acts only through the tip diameter; so is the blank of a
+        solid gear.
         """
         names = (
             "normal_module",

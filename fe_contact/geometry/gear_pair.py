@@ -14,9 +14,8 @@ from fe_contact.geometry.parallel_axes import ParallelAxes
 class GearPair(ParallelAxes):
     """Gear 1 (`pinion`) drives gear 2 (`wheel`).
 
-    Both gears are external; `InternalGearPair` has a ring gear. `ParallelAxes` says what a pair can answer.
-
-    They are of equal normal module and pressure angle, and of opposite helix angle.
+    Both gears are external; `InternalGearPair` has a ring gear. `ParallelAxes` lists the properties of a
+    pair. Both have equal normal module and pressure angle, and opposite helix angles.
 
     Raises
     ------

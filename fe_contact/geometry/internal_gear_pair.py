@@ -21,12 +21,11 @@ from fe_contact.geometry.trimming import radial_clearance
 class InternalGearPair(ParallelAxes):
     """The external gear (`pinion`, gear 1) drives the ring gear (`wheel`, gear 2); see `ParallelAxes`.
 
-    When the ring drives, the same contacts are run through in the opposite order: deflections and forces at a
-    position are the same, the position falls with time.
-
-    Both are of equal normal module, pressure angle and helix angle: the hand is the same. The center distance
-    is positive (the standard's -a); backlash falls as it grows. With `radial_assembly` the pinion is put in
-    its place radially, which "trimming interference" may forbid; else it is put in along the axis.
+    When the ring drives, the same contacts follow in the opposite order: deflections and forces at a position
+    are the same, and the position falls with time. Both have equal normal module, pressure angle and helix
+    angle, so the hand is the same. The center distance is positive (the standard's -a); backlash falls as it
+    grows. With `radial_assembly` the pinion is mounted radially, which "trimming interference" may prevent;
+    otherwise it is mounted along the axis.
 
     Raises
     ------

@@ -62,11 +62,11 @@ class Optimization:
     start, optimum : ConfirmedDesign
     runs : tuple of SearchRun
         One for each start, and one more each time the best design had to be brought back within the limits;
-        `best_run` is the index of the one that counts.
+        `best_run` is the index of the decisive one.
     best_run : int
     sensitivity : tuple of Perturbation
     not_tried : tuple of str
-        What the optimum is the best without: assumptions that were left as they are, in words.
+        What the search did not vary, in words.
     cost : dict
         Evaluations and CPU seconds by stage; the search's are those of all its processes.
     asked : dict
@@ -90,7 +90,7 @@ class Optimization:
 
     @property
     def gain(self) -> Estimate:
-        """Fall of the objective, m; both errors count in full, though one mesh serves both."""
+        """Reduction of the objective, m; the errors are added, although both designs have one mesh."""
         start, optimum = self.start.objective, self.optimum.objective
         return Estimate(start.value - optimum.value, start.error + optimum.error, "m")
 

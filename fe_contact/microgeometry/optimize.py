@@ -24,21 +24,21 @@ def optimize(
 ) -> Optimization:
     """Minimize the expected peak-to-peak transmission error over torques under scatter.
 
-    The compliance of both gears is computed once; every design is then a contact solve with other gaps. The
-    best design and the one to begin with are analyzed in full at the end, and the gain is stated with the
-    errors of both.
+    The compliance of both gears is computed once; every design is a contact solve with other gaps. The best
+    design and the start design are analyzed in full at the end, and the gain is stated with the errors of
+    both.
 
     Parameters
     ----------
     request : OptimizationRequest
     run : Run
-        Its workers search from the starts.
+        Its workers run the searches, one per start.
     cancel : callable
         Asked before every design whether to end the search: the best so far is then analyzed in full, and
         the reason says so. Remote workers end their starts first.
     memory : Path, optional
-        Directory of designs that were assessed before: a search that was killed, or is repeated with more
-        evaluations, continues, and finds what it would have found without. Only of searches in this process.
+        Directory of assessed designs: a search that was killed, or is repeated with more evaluations,
+        continues with an identical result. Only for searches in this process.
 
     Raises
     ------

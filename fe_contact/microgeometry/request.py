@@ -24,14 +24,14 @@ CLOSE = 0.03
 
 @dataclass(frozen=True)
 class OptimizationRequest:
-    """A pair, its design variables, and by what its designs are assessed.
+    """A pair, its design variables, and the assessment of its designs.
 
     Attributes
     ----------
     pair : GearPair or InternalGearPair
-        Its own modifications are the start; those that are no variables stay.
+        Its own modifications are the start; those that are not varied stay.
     torques : sequence of float
-        That count, N m on the driving gear, increasing.
+        Design torques, N m on the driving gear, increasing.
     variables : tuple of DesignVariable
     scatter : Scatter
         Of misalignment and modifications, about the design.
@@ -44,11 +44,11 @@ class OptimizationRequest:
     search : Search
         Method, seed, starts, evaluations, positions.
     options : AnalysisOptions
-        `positions`, `receipt` and `on_violation` do not count. Effects are decided once, for a design in
-        which every variable is at the middle of its bounds, misaligned as it scatters: all designs are
-        assessed by one model.
+        `positions`, `receipt` and `on_violation` are ignored. Effects are decided once, for the design with
+        every variable at the middle of its bounds and the scattered misalignment: all designs are assessed by
+        one model.
     map_torques : sequence of float, optional
-        Further torques of the Harris maps, N m; default: up to 1.25 times the largest that counts.
+        Further torques of the Harris maps, N m; default: up to 1.25 times the largest design torque.
     """
 
     pair: ParallelAxes
@@ -64,7 +64,7 @@ class OptimizationRequest:
 
     @property
     def own(self) -> tuple[float, ...]:
-        """The design to begin with: the variables as they are in the pair, m."""
+        """The start design: the variables as they are in the pair, m."""
         return start_of(self.pair, self.variables)
 
     @property
@@ -76,7 +76,7 @@ class OptimizationRequest:
 
     @property
     def outside(self) -> tuple[str, ...]:
-        """Variables that begin beyond their bounds; a length without a relief does not count."""
+        """Variables that start beyond their bounds; a length without a relief is ignored."""
         begun = zip(self.variables, self.own, strict=True)
         return tuple(
             v.name

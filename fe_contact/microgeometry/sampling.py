@@ -17,7 +17,7 @@ class Sampling:
     samples : int
         Pairs, 2 to 1 000 000.
     seed : int
-        Equal seeds give equal results to the last bit, whoever does the work.
+        Equal seeds give equal results to the last bit, with any workers.
     confidence : float
         Of the bounds of the quantiles.
     fractions : sequence of float

@@ -113,15 +113,15 @@ class SobolSample:
 
 @dataclass(frozen=True)
 class Scatter:
-    """Independent normal deviations from what is designed.
+    """Independent normal deviations from the design.
 
     Attributes
     ----------
     misalignment : float
         Standard deviation of the misalignment in m, >= 0.
     modification : mapping
-        ``gear.quantity`` to the standard deviation of that figure in m, > 0. Material removed is not
-        scattered below zero: such a deviate is taken as zero removed.
+        ``gear.quantity`` to the standard deviation of that quantity in m, > 0. Removed material is not
+        scattered below zero: such a deviate counts as zero.
     rule : ScatterRule
         Nodes of the expectation.
     """

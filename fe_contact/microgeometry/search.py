@@ -37,11 +37,11 @@ class Search:
     ----------
     method : Method
     seed : int
-        Of all that is random: equal searches give equal results.
+        Of all random numbers: equal searches give equal results.
     starts : int
-        Independent searches; the first begins at the pair as it is, others at points of a Sobol' sequence.
+        Independent searches; the first starts at the given pair, others at points of a Sobol' sequence.
     evaluations : int
-        Most designs that each of them evaluates.
+        Largest number of designs that each of them evaluates.
     positions : int
         Equally spaced in a base pitch; the analysis at the end places its own.
     exploration : int

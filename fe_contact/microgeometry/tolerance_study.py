@@ -38,7 +38,7 @@ class ToleranceStudy:
     torque : ndarray, shape (L,)
         N m.
     names : tuple of str
-        What deviates: "misalignment" and ``gear.quantity``.
+        The deviations: "misalignment" and ``gear.quantity``.
     deviation : ndarray, shape (N, d)
         m.
     peak_to_peak : ndarray, shape (N, L)
@@ -47,7 +47,7 @@ class ToleranceStudy:
         Without deviations, and the error of the analysis there, m.
     quantiles : tuple of Quantile
     first_order : ndarray, shape (N, L)
-        Peak-to-peak of the same pairs from the nominal curves and their derivatives, m: known at once.
+        Peak-to-peak of the same pairs from the nominal curves and their derivatives, m.
     confidence : float
         Of the bounds of the quantiles.
     cost : dict
@@ -125,9 +125,9 @@ def scatter(
         See `iso1328_tolerances`. Material removed does not become negative by a deviation.
     sampling : Sampling
     options : AnalysisOptions
-        One model for all pairs; `positions`, `receipt` and `on_violation` do not count.
+        One model for all pairs; `positions`, `receipt` and `on_violation` are ignored.
     run : Run
-        Its workers do the tasks of 25 pairs.
+        Its workers run tasks of 25 pairs.
     misalignment : float
         As designed, m.
 

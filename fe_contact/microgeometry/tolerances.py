@@ -32,7 +32,7 @@ class Tolerances:
     modification : mapping
         ``gear.quantity`` to m, > 0.
     distribution : {"normal", "uniform"}
-        Normal: three standard deviations are the tolerance, and what lies beyond is rejected.
+        Normal: three standard deviations are the tolerance, and deviations beyond are rejected.
     """
 
     misalignment: float = 0.0
@@ -52,7 +52,7 @@ class Tolerances:
 
     @property
     def widths(self) -> dict[str, float]:
-        """Half width of everything that deviates, m, in one fixed order."""
+        """Half width of every deviation, m, in a fixed order."""
         own = {MISALIGNMENT: self.misalignment} if self.misalignment else {}
         return own | dict(sorted(self.modification.items()))
 

@@ -24,7 +24,7 @@ ACROSS_FACE = tuple(name for name in QUANTITIES if Direction.FACE in FLANK_FIELD
 
 @dataclass(frozen=True)
 class DesignVariable(Record):
-    """One figure of one gear's modification, free between bounds.
+    """One quantity of one gear's modification, free between bounds.
 
     Attributes
     ----------

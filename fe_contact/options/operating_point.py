@@ -9,7 +9,7 @@ from fe_contact.options.table_axes import TableAxes
 
 @dataclass(frozen=True)
 class OperatingPoint:
-    """One load and one alignment of a pair: where flanks, roots and deformed gears are looked at.
+    """One load and one alignment of a pair, for results on flanks, roots and deformed gears.
 
     Attributes
     ----------

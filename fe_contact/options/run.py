@@ -16,12 +16,12 @@ class Run:
     Attributes
     ----------
     workers : Workers
-        Who condenses the gears, solves the contact, searches and samples: this process, an executor or a
-        cluster. Receipts count the CPU time of all of them.
+        Executor of condensation, contact, searches and samples: this process, a pool or a cluster. Receipts
+        count the CPU time of all workers.
     cache : Path, optional
         Directory of flank compliances: with it a gear is condensed once.
     progress : callable
-        Called as progress(stage, fraction); what consists of several tables begins anew with each.
+        Called as progress(stage, fraction); studies of several tables start again with each table.
     """
 
     workers: Workers = InProcess()  # noqa: RUF009 (frozen)

@@ -29,8 +29,8 @@ class TableAxes:
         m, increasing. Misalignment is the growth of the gap over the common face width in the plane of
         action, zero at its middle.
     pitches : int, optional
-        Base pitches that the table covers where gears have pitch deviations; default: until all repeats. A
-        smaller number closes the table on itself: teeth that never meet stand side by side at its seam.
+        Base pitches that the table covers if gears have pitch deviations; default: the full period. A smaller
+        number closes the table on itself: at its seam teeth are adjacent that never mesh.
 
     Raises
     ------

@@ -128,17 +128,17 @@ class SteDatabase(SteFields):
         return self.curve(**point).spectrum
 
     def force_table(self, *, allow_failed: bool = False) -> ForceTable:
-        """Return the table of plain arrays that dynamics takes; raises as `extraction.force_table`."""
+        """Return the table of plain arrays for dynamics; raises as `extraction.force_table`."""
         if not allow_failed:
             return self._force_table
         return with_axis_derivatives(MeshForce(extraction.force_table(repair.without_failed(self))))
 
     def monotone_repaired(self) -> tuple[SteDatabase, repair.Repair]:
-        """Return a table whose transmission error increases with load, and what had to change."""
+        """Return a table whose transmission error increases with load, and the changes."""
         return repair.monotone_repaired(self)
 
     def to_netcdf(self, path: str | Path) -> None:
-        """Write one netCDF-4 file, atomically; a reader never sees half of it."""
+        """Write one netCDF-4 file atomically."""
         netcdf.content(self).write(Path(path))
 
     @classmethod

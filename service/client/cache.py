@@ -23,14 +23,14 @@ SET_ASIDE = ".damaged"
 
 
 class ResultCache:
-    """A directory of result files; processes may share it: a file comes whole, its digest in its name."""
+    """A directory of result files that processes may share: each appears complete, its digest in its name."""
 
     def __init__(self, directory: Path) -> None:
         self._directory = directory
 
     @contextmanager
     def incoming(self) -> Iterator[BinaryIO]:
-        """Yield a file to write a result into; it is gone afterwards unless it was kept.
+        """Yield a file to write a result into; it is removed afterwards unless it was kept.
 
         Raises
         ------
@@ -41,7 +41,7 @@ class ResultCache:
             yield stream
 
     def keep(self, kind: str, key: str, stream: BinaryIO, digest: str, suffix: str = SUFFIX) -> Path:
-        """Keep what was written into the file of `incoming`; `digest` is its SHA-256, hexadecimal."""
+        """Keep the file of `incoming`; `digest` is its SHA-256, hexadecimal."""
         file = self._folder(kind, key) / f"{digest}{suffix}"
         file.parent.mkdir(parents=True, exist_ok=True)
         _settle(stream, file)
@@ -57,14 +57,14 @@ class ResultCache:
         return None
 
     def remember(self, service: str, process: str, inputs: dict[str, Any], result: Result) -> None:
-        """Note which result a service gave for these inputs, for the time it cannot be reached."""
+        """Record the result of these inputs, for times when the service cannot be reached."""
         file = self._note(service, process, inputs)
         with self._part(file.parent) as stream:
             stream.write(json.dumps({"key": result.key, "kind": result.kind, "href": result.href}).encode())
             _settle(stream, file)
 
     def recall(self, service: str, process: str, inputs: dict[str, Any]) -> Result | None:
-        """Return the result that was given for these inputs before, if its file is here and undamaged."""
+        """Return the earlier result of these inputs, if its file is here and undamaged."""
         try:
             facts = json.loads(self._note(service, process, inputs).read_text())
             result = Result(str(facts["key"]), str(facts["kind"]), str(facts["href"]))

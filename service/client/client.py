@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class LineOfActionClient(Studies):
-    """Analyze cases and simulate scenes at a service; as `JobClient`, which has its parameters."""
+    """Analyze cases and simulate scenes at a service; parameters as of `JobClient`."""
 
     def submit_case(self, case: CaseLike) -> JobState:
         """Enter the analysis of a case: a model, a table of the same shape, or a file."""
@@ -36,7 +36,7 @@ class LineOfActionClient(Studies):
     def analyze(self, case: CaseLike, progress: Watch | None = None) -> SteDatabase:
         """Return the STE database of a case: submit, wait, fetch; raises as `obtain` and `fetch_file`.
 
-        When the service cannot be reached, what it gave for the same case before is taken from the cache.
+        If the service cannot be reached, an earlier result of the same case is taken from the cache.
         """
         return self.fetch(self.analysis_key(case, progress))
 
@@ -45,7 +45,7 @@ class LineOfActionClient(Studies):
         return self.obtain("analyze", {"case": case_of(case).model_dump(mode="json")}, progress).key
 
     def fetch(self, key: str) -> SteDatabase:
-        """Return the STE database of a content hash; what is cached needs no service."""
+        """Return the STE database of a content hash; a cached one needs no service."""
         from fe_contact.ste import SteDatabase  # noqa: PLC0415 (keeps the import of the client light)
 
         return SteDatabase.from_netcdf(self.fetch_file(key))
@@ -72,7 +72,7 @@ class LineOfActionClient(Studies):
         return RunResult.from_netcdf(self.fetch_file(result.key, result.kind))
 
     def scene(self, scene: SceneLike, progress: Watch | None = None) -> Scene:
-        """Return a scene in SI on tables of the service, to be run here by `dynamics.simulation.simulate`.
+        """Return a scene in SI on tables of the service, for a local run by `dynamics.simulation.simulate`.
 
         Its meshes take their tables by ``case``, ``case_file``, ``database_hash`` or ``database_file``; those
         of cases are as from `analyze`, those of files are read here.
@@ -87,7 +87,7 @@ class LineOfActionClient(Studies):
         return scene_on_tables(inputs, MeshTables(folder, self.tables(progress)))
 
     def tables(self, progress: Watch | None = None) -> ServiceTables:
-        """Return this service as who holds and computes the STE databases of scenes."""
+        """Return this service as the source of the STE databases of scenes."""
         return ServiceTables(self, progress)
 
     def query(
@@ -143,7 +143,7 @@ class LineOfActionClient(Studies):
             Increasing, at most twice the highest of the case.
         misalignment_um, center_distance_change_mm : float
         pinion, wheel : mapping, optional
-            Flank modifications as in a case file (``tip_relief_um`` ...); what is left out is as in the case.
+            Flank modifications as in a case file (``tip_relief_um`` ...); others are as in the case.
         derivatives : bool
             Also return the derivatives of each curve by its flanks, the misalignment and the torque.
         flanks : bool
@@ -151,20 +151,19 @@ class LineOfActionClient(Studies):
         condense : bool
             Compute the compliance first if the service has none in its cache.
         caller : str, optional
-            A name: a later question under it takes the place of one that still waits (`Superseded`).
+            Name of the caller: a later request replaces its waiting one (`Superseded`).
 
         Returns
         -------
         LiveOutput
-            ``curves`` with mean, peak-to-peak and harmonics, each with its error; what was taken for granted;
-            cost.
+            ``curves`` with mean, peak-to-peak and harmonics, each with its error; assumptions; cost.
 
         Raises
         ------
         BadInput
-            Named by the fields of the question.
+            Named by the fields of the request.
         NotAnalyzed
-            The compliance is not in the cache of the service: ask with `condense`.
+            The compliance is not in the cache of the service: repeat with `condense`.
         NotFound, QueueFull, Superseded, LiveUnavailable, Unreachable, ServiceError
         """
         question = {

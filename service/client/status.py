@@ -20,7 +20,7 @@ class JobState:
     stage_progress : int
         Per cent of the stage.
     warnings : tuple of dict
-        What is implausible about its inputs: check, field, value, unit, message; empty in lists of jobs.
+        Implausible inputs: check, field, value, unit, message; empty in lists of jobs.
     """
 
     id: str
@@ -34,7 +34,7 @@ class JobState:
 
     @property
     def ended(self) -> bool:
-        """Whether nothing more will happen to it."""
+        """Whether the job has ended."""
         return self.status in ("successful", "failed", "dismissed")
 
     @classmethod
@@ -60,10 +60,10 @@ class Result:
 
     @classmethod
     def from_json(cls, facts: dict[str, Any]) -> Result:
-        """Read the results of a job, which are one."""
+        """Read the one result of a job."""
         ((kind, reference),) = facts.items()
         return cls(reference["hash"], kind, reference["href"])
 
 
 class OfflineWarning(UserWarning):
-    """A result was taken from the cache because no service answers: it is what the service gave before."""
+    """A result is from the cache because no service answers."""

@@ -44,7 +44,7 @@ class Workload:
     states : dict
         Computations by state.
     oldest_waiting_s : float
-        Age of the oldest computation that waits; 0 if none does.
+        Age of the oldest waiting computation; 0 if none does.
     durations : tuple of Durations
     results : tuple of (str, int, int)
         Kind, number and bytes.

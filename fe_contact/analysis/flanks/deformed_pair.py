@@ -87,17 +87,17 @@ def deformed_pairs(
     """Solve the contact at some positions and expand it to the finite elements of both gears.
 
     A plane model gives the whole transverse section, three dimensions give the loaded teeth and their
-    neighbors. What shafts bend is not in the fields.
+    neighbors. The bending of shafts is not included.
 
     Parameters
     ----------
     pair : GearPair or InternalGearPair
     point : OperatingPoint
     options : AnalysisOptions
-        `positions`, `receipt` and `on_violation` do not count.
+        `positions`, `receipt` and `on_violation` are ignored.
     run : Run
-        Only this process works. The fields are not in the cache: in three dimensions they cost once more what
-        the compliances of both gears cost.
+        Workers are not used. The fields are not cached: in three dimensions they cost as much as the
+        compliances of both gears.
     at : array_like
         Positions in base pitches.
     beside : int

@@ -31,16 +31,16 @@ def flank_results(
     at: ArrayLike | None = None,
     case: Json | None = None,
 ) -> LoadDistribution:
-    """Solve the contact of one load and alignment, and keep what happens on the flanks.
+    """Solve the contact of one load and alignment, and return load, pressure and gap on the flanks.
 
     Parameters
     ----------
     pair : GearPair or InternalGearPair
     point : OperatingPoint
     options : AnalysisOptions
-        `positions` and `receipt` are for tables and do not count.
+        `positions` and `receipt` are ignored.
     run : Run
-        Only this process works.
+        Workers are not used.
     at : array_like, optional
         Positions in base pitches; default: 64 over one mesh cycle, as `contact_pattern` needs them. Teeth
         with pitch deviations are those that mesh there: the first ones of the lists in 0 to 1.
@@ -51,9 +51,8 @@ def flank_results(
     ------
     InputError
         A value that cannot be used, by field name.
-    MeshError, SolveError
-        No acceptable mesh, positions without a solution, or an assumption that does not hold where
-        `on_violation` is "fail".
+    MeshError, SolveError No acceptable mesh, positions without a solution, or a violated assumption if
+    `on_violation` is "fail".
     """
     solved, receipt = solved_point(pair, point, options, at, StageClock(), run)
     checked, request = solved.checked, solved.checked.request

@@ -45,7 +45,7 @@ class LoadDistribution:
     pressure : ndarray, shape (P, N, K)
         Hertz's peak pressure of the line load in Pa; at a tip edge the true pressure is singular.
     gap : ndarray, shape (P, N, K)
-        What is left between the loaded flanks, along their normal, m: 0 in contact, infinite where they
+        Remaining gap between the loaded flanks along their normal, m: 0 in contact, infinite where they
         cannot touch.
     slice_width : float
         Of a stretch along the face, m.
@@ -93,8 +93,8 @@ class LoadDistribution:
     def face_load_factor(self) -> FloatArray:
         """K_Hbeta of the mesh (P,): largest over mean load per unit of face width (ISO 6336-1, clause 7).
 
-        On helical gears single positions exceed 1 even if aligned, because at some places along the face
-        more pairs touch than at others; `mean_face_load_factor` has the cycle's.
+        On helical gears single positions exceed 1 even if aligned, because the number of touching pairs
+        varies along the face; `mean_face_load_factor` is that of the cycle.
         """
         return _largest_over_mean(self.face_load)
 
@@ -121,14 +121,14 @@ class LoadDistribution:
         return content(self).to_xarray()
 
     def to_netcdf(self, path: Path) -> None:
-        """Write a netCDF-4 file, whole or not at all."""
+        """Write a netCDF-4 file atomically."""
         from fe_contact.analysis.flanks.flank_file import content  # noqa: PLC0415
 
         content(self).write(Path(path))
 
     @classmethod
     def from_netcdf(cls, path: Path) -> LoadDistribution:
-        """Read back what `to_netcdf` wrote, every bit as it was.
+        """Read a file of `to_netcdf`; equal to the last bit.
 
         Raises
         ------

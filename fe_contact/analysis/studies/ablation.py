@@ -95,7 +95,7 @@ class Ablation(model_studies.Ablation[Figures, EffectAblation]):
     misalignment: float = field(metadata=in_unit("m"))
 
     def measured(self, entry: EffectAblation) -> Influence:
-        """Return what leaving an effect out changes at the nominal load, as the two tables have it."""
+        """Return the change by neglecting an effect at the nominal load, from the two tables."""
         whole = entry.with_effect
         changes = (entry.mean_change, entry.peak_to_peak_change, whole.mean, whole.peak_to_peak)
         return Influence(
@@ -119,8 +119,8 @@ def ablate(
     axes : TableAxes
         The tables are at the nominal center distance.
     options : AnalysisOptions
-        All tables are made on the level of mesh that the accuracy asks for, with a minimal receipt;
-        assumptions that do not hold are reported.
+        All tables have the mesh level that the accuracy requires and a minimal receipt; violated assumptions
+        are reported.
     run : Run
         With a cache the gears are condensed once for each body and model.
     only : sequence of str, optional
@@ -129,7 +129,7 @@ def ablate(
     Returns
     -------
     Ablation
-        Of every effect that the scene holds and that can be toggled.
+        Of every effect of the scene that can be toggled.
 
     Raises
     ------

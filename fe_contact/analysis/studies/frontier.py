@@ -46,9 +46,9 @@ class Frontier(model_studies.Frontier[FidelityResult]):
     solves : int
         Positions x loads x alignments of every table.
     full_contact : MeasuredFullContact, optional
-        Full finite-element contact of the same case, if it was requested and could be run.
+        Full finite-element contact of the same case, if it was requested and is possible.
     known_full_contact : tuple of FullContactLevel
-        What full finite-element contact is known to cost on this very pair; empty on any other.
+        Known cost of full finite-element contact for this pair; empty for any other.
     """
 
     solves: int
@@ -78,7 +78,7 @@ def frontier(
 ) -> Frontier:
     """Run every fidelity of the accuracy study that is valid for a case, and compare each to the finest.
 
-    Nothing is taken from the cache, so that times are those of a first run; compiled loops are warm.
+    The cache is not used, so times are those of a first run; compiled loops are warm.
 
     Parameters
     ----------

@@ -60,10 +60,10 @@ def study_sensitivity(
     axes : TableAxes
         One load, and the deviations; zero is added to both.
     options : AnalysisOptions
-        An automatic model is three-dimensional at every point, so that the curves compare; the effects decide
-        about everything but corner contact.
+        An automatic model is three-dimensional at every point, so the curves are comparable; `effects` apply
+        to all effects but corner contact.
     run : Run
-        Progress begins anew for each of the four tables. With a cache the gears are condensed once.
+        Progress starts again for each of the four tables. With a cache the gears are condensed once.
 
     Returns
     -------
