@@ -3,7 +3,8 @@
 python scripts/readability.py [BEFORE]        BEFORE: a folder with an earlier docs/ and README.md
 
 Flesch (1948): 206.835 - 1.015 words per sentence - 84.6 syllables per word; 60 is plain English, 30 hard.
-Only running text counts: no code, tables, headings, pictures. Syllables are groups of vowels, less a final e.
+Only running text counts: no code, tables, definitions, headings, pictures. Syllables are groups of vowels,
+less a final e.
 """
 
 from __future__ import annotations
@@ -16,7 +17,15 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "lab" / "readability.md"
 FOLDERS = ("tutorials", "how-to", "effects", "theory", "decisions", "lab")
-_NOT_TEXT = (r"```.*?```", r"<!--.*?-->", r"^\|.*$", r"^ {4}.*$", r"^#.*$", r"!\[[^]]*\]\([^)]*\)")
+_NOT_TEXT = (
+    r"```.*?```",
+    r"<!--.*?-->",
+    r"^\|.*$",
+    r"^`.*\n: .*(?:\n  .*)*",
+    r"^ {4}.*$",
+    r"^#.*$",
+    r"!\[[^]]*\]\([^)]*\)",
+)
 
 
 @dataclass(frozen=True)
@@ -94,8 +103,9 @@ def main(before: Path | None) -> None:
     PAGE.write_text(f"# Readability\n\n{HEAD}\n\n{table(after, old)}\n", encoding="utf-8")
 
 
-HEAD = """Flesch reading ease of the running text: 60 is plain English, 30 is hard. Code, tables and
-headings do not count. `python scripts/readability.py BEFORE` renews this page; *before* is version 0.2.0."""
+HEAD = """Flesch reading ease of the running text: 60 is plain English, 30 is hard. Code, tables, definitions
+of fields and headings do not count. `python scripts/readability.py BEFORE` renews this page; *before* is
+version 0.2.0."""
 
 if __name__ == "__main__":
     main(Path(sys.argv[1]) if len(sys.argv) > 1 else None)
