@@ -51,7 +51,7 @@ class Axial(RotorEffect):
                     for i, gear in enumerate(gears)
                     if gear.shaft == rotor.shaft.name and gear.base_helix_angle != 0.0
                 )
-                bound = f'on a shaft that something holds along its axis: nothing holds "{rotor.shaft.name}"'
+                bound = f'on a shaft with axial support, which "{rotor.shaft.name}" lacks'
                 switch = f'set the effect "{self.name}" to "off".'
                 advice = f"Give one of its bearings axial stiffness, or {switch}"
                 raise InputError(f"gears[{index}]", gear.name, bound, advice)

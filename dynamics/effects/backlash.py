@@ -38,15 +38,15 @@ class Backlash(MeshEffect):
         harmonic.
         """
         if mesh.mesh.coast is None:
-            return Verdict(False, False, "no coast flank given: flanks that part find nothing behind", 0.0)
+            return Verdict(False, False, "no coast flank given: lift-off has no limit", 0.0)
         backlash, least = mesh.mesh.coast.backlash, float(np.min(mesh.train.mean_force[mesh.index]))
         if least <= 0.0:
             return Verdict(True, True, f"the load reverses: the mean force falls to {least:.4g} N", backlash)
         swing = _force_swing(mesh)
-        text = f"the mean force stays above {least:.4g} N, resonance swings it by up to "
+        text = f"the mean force stays above {least:.4g} N, resonance changes it by up to "
         if swing >= least:
-            return Verdict(True, True, f"{text}{swing:.4g} N: flanks can part", backlash)
-        return Verdict(False, True, f"{text}{swing:.4g} N only: flanks stay together", 0.0)
+            return Verdict(True, True, f"{text}{swing:.4g} N: flanks can lift off", backlash)
+        return Verdict(False, True, f"{text}{swing:.4g} N only: flanks stay in contact", 0.0)
 
     def extend(self, flanks: Flanks, meshes: Sequence[GearMesh], on: Sequence[int]) -> Flanks:
         """Return `flanks` with the coast flanks of the meshes `on`, damped as their driving flanks."""

@@ -25,6 +25,6 @@ class BearingClearance(RotorEffect):
         missed = nonlinear_influences(mechanism.scene, mechanism.bearing_load)
         own = [influence for shaft, influence in missed if shaft == rotor.rotor.shaft.name]
         if not own:
-            return Verdict(False, False, "no bearing with clearance or a law that is not linear", 0.0)
-        reason = "bearings with clearance or laws that are not linear; off: their tangents at the load"
+            return Verdict(False, False, "no bearing with clearance or a nonlinear law", 0.0)
+        reason = "bearings with clearance or nonlinear laws; off: their tangents at the load"
         return Verdict(True, True, reason, max(own))

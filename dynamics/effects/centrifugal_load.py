@@ -35,13 +35,13 @@ class CentrifugalLoad(RotorEffect):
         if own.radial_stiffness == 0.0:
             return Verdict(False, False, "no bearing with radial stiffness: held rigidly", 0.0)
         if mechanism.freely_turned[own.carrier]:
-            reason = "left out: torques alone turn the carrier's frame, whose speed is then unknown"
+            reason = "neglected: torques alone turn the carrier's frame, so its speed is unknown"
             return Verdict(False, False, reason, 0.0)
         x, y = _arm(mechanism, rotor.index, own.carrier)
         radius = math.hypot(x, y)
         force = own.inertia.mass * radius * float(mechanism.largest_speed[own.carrier]) ** 2
         along = [abs(x * mesh.direction[0] + y * mesh.direction[1]) / radius for mesh in rotor.meshes]
-        reason = f"up to {force:.3g} N away from the carrier's axis, meshes push by {rotor.pushed:.3g} N"
+        reason = f"up to {force:.3g} N away from the carrier's axis; mesh forces are {rotor.pushed:.3g} N"
         influence = force / own.radial_stiffness * max(along, default=0.0)
         return Verdict(force > SHARE * rotor.pushed, True, reason, influence)
 

@@ -16,7 +16,7 @@ class DynamicCenterDistance(MeshEffect):
 
     name = "dynamic_center_distance"
     adds = (CENTER_DISTANCE_CHANGE,)
-    cost = "a table look-up over one more axis, twice the numbers"
+    cost = "a table look-up over one more axis, with twice the values"
 
     def called_for(self, mesh: LoadedMesh) -> Verdict:
         """Call for it where the table has the axis and a shaft can move along the line of centers."""
@@ -26,7 +26,7 @@ class DynamicCenterDistance(MeshEffect):
             return Verdict(False, False, reason, 0.0)
         if not mesh.moves(CENTER_DISTANCE):
             return Verdict(False, False, "no shaft can move along the line of centers", 0.0)
-        reason = "shafts move along the line of centers, and the table knows"
+        reason = "shafts move along the line of centers, and the table has this axis"
         return Verdict(True, True, reason, mesh.change_along(CENTER_DISTANCE))
 
     def contribute(self, terms: FlankTerms, flank: FlankInSpace) -> FlankTerms:

@@ -16,7 +16,7 @@ class DynamicMisalignment(MeshEffect):
 
     name = "dynamic_misalignment"
     adds = (additions.MISALIGNMENT,)
-    cost = "a table look-up over one more axis, twice the numbers"
+    cost = "a table look-up over one more axis, with twice the values"
 
     def called_for(self, mesh: LoadedMesh) -> Verdict:
         """Call for it where the table has the axis and a shaft can tilt in the plane of action."""
@@ -26,7 +26,7 @@ class DynamicMisalignment(MeshEffect):
             return Verdict(False, False, reason, 0.0)
         if not mesh.moves(MISALIGNMENT):
             return Verdict(False, False, "no shaft can tilt in the plane of action", 0.0)
-        reason = "shafts tilt in the plane of action, and the table knows"
+        reason = "shafts tilt in the plane of action, and the table has this axis"
         return Verdict(True, True, reason, mesh.change_along(MISALIGNMENT))
 
     def contribute(self, terms: FlankTerms, flank: FlankInSpace) -> FlankTerms:

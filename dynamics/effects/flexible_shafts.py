@@ -96,7 +96,7 @@ def _influence(
     tilted = tilted if tilted > ROUNDING * away else 0.0
     reason = (
         f"the nominal force bends and twists the shaft by {1e6 * away:.3g} um along the line of "
-        f"action, {100.0 * share:.3g} % of what the mesh yields, and misaligns the gear by "
+        f"action, {100.0 * share:.3g} % of the mesh deflection, and misaligns the gear by "
         f"{1e6 * tilted:.3g} um over the face"
     )
     return Bending(share > SHARE, True, reason, away, elastic)

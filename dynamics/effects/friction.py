@@ -20,7 +20,7 @@ class Friction(MeshEffect):
     """Two more local coordinates of a flank; their rates are its sliding."""
 
     name = "friction"
-    cost = "two more rows per flank and eight numbers more per look-up"
+    cost = "two more rows per flank and eight more values per look-up"
 
     def called_for(self, mesh: LoadedMesh) -> Verdict:
         """Call for it where a coefficient is given; the influence is that of the largest friction torque."""
@@ -29,7 +29,7 @@ class Friction(MeshEffect):
             return Verdict(False, False, "no coefficient of friction given", 0.0)
         arm = getattr(mesh.mesh.table, "sliding_lever", None)
         if arm is None:
-            return Verdict(False, False, "the table does not say where along the path the load slides", 0.0)
+            return Verdict(False, False, "the table has no sliding data", 0.0)
         radius = mesh.train.mechanism.scene.gear(mesh.mesh.driven).base_radius
         share = coefficient * float(np.max(np.asarray(arm))) / radius
         reason = f"a coefficient of {coefficient:g} is given"

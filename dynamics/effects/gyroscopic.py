@@ -39,13 +39,13 @@ class Gyroscopic(RotorEffect):
         """
         own, mechanism = rotor.rotor, rotor.mechanism
         if own.tilt_stiffness == 0.0 and own.frame is None:
-            return Verdict(False, False, "the bushings do not hold tilt: held rigidly", 0.0)
+            return Verdict(False, False, "no bushing with tilt stiffness: held rigidly", 0.0)
         free = bool(mechanism.freely_turned[rotor.index if own.frame is None else own.frame])
         if own.frame is not None and free:
-            reason = "left out: torques alone turn the carrier's frame, whose speed is then unknown"
+            reason = "neglected: torques alone turn the carrier's frame, so its speed is unknown"
             return Verdict(False, False, reason, 0.0)
         if free:
-            return Verdict(True, True, "torques alone turn the shaft: its speed is not known before", 0.0)
+            return Verdict(True, True, "torques alone turn the shaft: its speed is not known in advance", 0.0)
         share = max(_tilt_share(rotor), _frame_share(rotor))
         held = rotor.pushed / own.radial_stiffness if own.radial_stiffness > 0.0 else 0.0
         reason = f"rotation shifts natural frequencies by up to {engineering(share, 2)} of them"

@@ -50,7 +50,7 @@ class LedgerEntry:
         if self.on == self.called_for:
             return self.verdict.reason
         reason = self.verdict.reason
-        return f"requested; else: {reason}" if self.on else f"switched off, though: {reason}"
+        return f"requested; else: {reason}" if self.on else f"off by request, although: {reason}"
 
     @property
     def called_for(self) -> bool:
@@ -77,7 +77,7 @@ class LedgerEntry:
         """The price of a choice against the scene, in words; empty where there is none."""
         if self.on == self.called_for:
             return ""
-        return self.cost if self.on else f"{1e6 * self.influence:.3g} um of static displacement left out"
+        return self.cost if self.on else f"{1e6 * self.influence:.3g} um of static displacement neglected"
 
     def to_json(self) -> Json:
         """Return plain JSON; the influence has the key ``worth``."""

@@ -20,7 +20,7 @@ class MovingApplicationPoint(MeshEffect):
 
     name = "moving_application_point"
     adds = (LOAD_CENTROID,)
-    cost = "one more row per flank and four numbers more per look-up"
+    cost = "one more row per flank and four more values per look-up"
 
     def called_for(self, mesh: LoadedMesh) -> Verdict:
         """Call for it where the load's centroid leaves mid-face and a shaft can tilt.
@@ -29,7 +29,7 @@ class MovingApplicationPoint(MeshEffect):
         """
         centroid = getattr(mesh.mesh.table, "face_centroid", None)
         if centroid is None:
-            return Verdict(False, False, "the table does not say where along the face the load acts", 0.0)
+            return Verdict(False, False, "the table has no load centroid", 0.0)
         if not mesh.moves(MISALIGNMENT):
             return Verdict(False, False, "no shaft can tilt in the plane of action", 0.0)
         lever = float(np.max(np.abs(np.asarray(centroid)[..., mesh.level])))

@@ -22,7 +22,7 @@ class Tilt(RotorEffect):
         """
         own = rotor.rotor
         if own.tilt_stiffness == 0.0:
-            return Verdict(False, False, "the bushings do not hold tilt: held rigidly", 0.0)
+            return Verdict(False, False, "no bushing with tilt stiffness: held rigidly", 0.0)
         arms = [(mesh.lever - own.elastic_lever, mesh.axial * mesh.radius) for mesh in rotor.meshes]
         influence = sum(
             mesh.force * (along**2 + across**2)

@@ -21,16 +21,15 @@ LEAST_PRESS = 1e-6  # m; sets the typical load of a bearing that nothing loads
 
 @dataclass(frozen=True)
 class RollingContact:
-    """The radial force of a rolling bearing, beside what its bushing or planet bearing does linearly.
+    """The radial force of a rolling bearing, in addition to the linear one of its bushing or planet bearing.
 
-    The shaft moves across the axis by u, r = `abs(u)`; a planet against its pin. Beyond the clearance it is
-    pushed back along u by ``stiffness (r - clearance)^exponent``, alike in all directions, and not at all
-    within it.
+    The shaft moves across the axis by u, r = `abs(u)`; a planet relative to its pin. Beyond the clearance the
+    restoring force along u is ``stiffness (r - clearance)^exponent``, in all directions; within it, zero.
 
     Attributes
     ----------
     bushing : str
-        The bushing or planet bearing in whose place it acts; one rolling contact each.
+        The bushing or planet bearing at which it acts; one rolling contact each.
     stiffness : float
         Of the whole bearing, N/m^exponent.
     exponent : float
@@ -38,9 +37,9 @@ class RollingContact:
     clearance : float
         m, >= 0: radial, from the middle to contact; half the play between the extremes.
     damping : float or None
-        N s/m along u in full contact; fades to zero at lift-off, and force and damping together never pull.
-        None: ``2 damping_ratio sqrt(k mass)`` with k the tangent stiffness at the typical load and the mass
-        of the shaft and its gears divided by the number of its bushings.
+        N s/m along u in full contact; fades to zero at lift-off, and the total force is never tensile. None:
+        ``2 damping_ratio sqrt(k mass)`` with k the tangent stiffness at the typical load and the mass of the
+        shaft and its gears divided by the number of its bushings.
     damping_ratio : float
         Used where the damping is None.
     """
@@ -55,7 +54,7 @@ class RollingContact:
     def __post_init__(self) -> None:
         positive("stiffness", self.stiffness)
         within("exponent", self.exponent, 1.0, 3.0, "10/9 for rollers, 3/2 for balls.")
-        suggestion = "Interference presses from all sides: give its tangent as the bushing's stiffness."
+        suggestion = "For interference give the tangent stiffness as that of the bushing."
         not_negative("clearance", self.clearance, suggestion)
         not_negative("damping_ratio", self.damping_ratio)
         if self.damping is not None:
@@ -71,7 +70,7 @@ class RollingContact:
         return self.exponent * force / press
 
     def typical_load(self, load: float) -> float:
-        """Return `load` (N), or what presses the contact by a micrometer where that is more."""
+        """Return `load` (N), or the force at one micrometer of compression if that is larger."""
         return float(max(load, self.stiffness * LEAST_PRESS**self.exponent))
 
 

@@ -53,7 +53,7 @@ class SpringCurve:
             raise InputError("force", len(self.force), f"as many values as displacements ({size})")
         for index, value in enumerate(self.force):
             finite(f"force[{index}]", value)
-        increasing("force", self.force, "A bearing that pushes less the further it is pushed holds nothing.")
+        increasing("force", self.force, "A bearing whose force falls with displacement is unstable.")
 
     @property
     def slope(self) -> float:

@@ -55,10 +55,10 @@ class NeglectedChecks:
             "of the computed mean, peak-to-peak or bearing force"
         )
         if self._parted:
-            reason = "flanks parted: the linear theory by which it was neglected does not hold"
+            reason = "flanks lifted off: the linear theory that neglected it is invalid"
         return {
             "effect": name,
-            "assumption": "too small to be seen",
+            "assumption": "neglected effects are negligible",
             "part": ANY_PART,
             "holds": not self._parted and change <= (self._decided.scene.tolerance or 0.0),
             "change": change,

@@ -115,7 +115,7 @@ class StateSpool:
         """
         size = 8 * self._record * samples
         if os.fstat(self._file.fileno()).st_size < size:
-            raise ResultError(f"{self._file.name}: shorter than its checkpoint says. Start the run anew.")
+            raise ResultError(f"{self._file.name}: shorter than its checkpoint says. Start a new run.")
         self._file.truncate(size)
 
     def checkpoint(self) -> tuple[Arrays, Arrays] | None:

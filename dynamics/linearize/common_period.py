@@ -60,7 +60,7 @@ def common_period(system: System) -> CommonPeriod:
     """
     scene = system.scene
     if scene.free_rotations:
-        suggestion = "Impose the rotation of one shaft; a drive with a stiffness leaves it its vibration."
+        suggestion = "Impose the rotation of one shaft; a drive with a stiffness still lets it vibrate."
         raise InputError(
             "free_rotations", len(scene.free_rotations), "none: a drive sets the period", suggestion
         )

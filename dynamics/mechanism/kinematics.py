@@ -110,8 +110,8 @@ def _add_mesh(scene: Scene, speeds: TrainSpeeds, index: int) -> None:
         shaft = scene.shafts[a if carrier is not None else b].name
         suggestion = (
             "Describe both shafts in the frame of the same carrier, or neither. Where shaft "
-            f"{shaft} carries gears inside and outside of a planetary set, part it in two and join them by a "
-            "coupling with its stiffness matrix."
+            f"{shaft} carries gears inside and outside of a planetary set, split it in two and join them by "
+            "a coupling with its stiffness matrix."
         )
         raise InputError(field, mesh.driven, "on a shaft in the same frame as the driver's", suggestion)
     ratio = Fraction(driver.teeth, driven.teeth) * (1 if driver.internal or driven.internal else -1)

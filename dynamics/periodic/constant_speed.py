@@ -26,7 +26,7 @@ def at_constant_speed(system: System, period: CommonPeriod, speed: float, time: 
     extreme = system.scene.drives[period.law].speed.extreme
     if not np.isfinite(speed) or speed * extreme <= 0.0:
         bound = (above if extreme > 0.0 else below)(0.0, note=", the sense in which the scene turns")
-        raise InputError("speed", speed, bound, "Turn the scene's drive round for the other flanks.")
+        raise InputError("speed", speed, bound, "Reverse the scene's drive for the other flanks.")
     laws = _constant(speed * period.proportion)
     none = np.zeros(period.proportion.size)
     torque = np.array([float(load.torque(time)) for load in system.scene.loads])

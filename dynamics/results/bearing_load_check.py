@@ -54,7 +54,7 @@ class BearingLoadChecks:
         share = float(self._unloaded[row] / max(self._samples, 1))
         reason = "the bearing stayed loaded"
         if share > 0.0:
-            advice = "switch the effect on" if self._has_law[row] else "give the bearing its clearance"
+            advice = "enable the effect" if self._has_law[row] else "give the bearing its clearance"
             reason = f"the load reversed in {100.0 * share:.3g} % of the run: {advice}"
         return {
             "effect": self._effect,

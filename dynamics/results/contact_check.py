@@ -70,7 +70,7 @@ def _reason(gap: float, known: bool, room: float) -> str:
     if gap == 0.0:
         return "the driving flanks stayed in contact"
     if known and gap <= room:
-        return "the flanks parted by less than the backlash: the coast flank was not reached"
+        return "the flanks lifted off by less than the backlash: the coast flank was not reached"
     if known:
-        return "the flanks parted by more than the backlash: switch the effect on"
-    return "the flanks parted: right only if the backlash is wider than that; give the mesh its coast flank"
+        return "the flanks lifted off by more than the backlash: enable the effect"
+    return "the flanks lifted off: valid only if the backlash is larger; give the mesh its coast flank"

@@ -20,7 +20,7 @@ def energy_check(audit: EnergyAudit) -> Json:
     if missing:
         reason = f"{reason}: shorten the fixed step, or lower the tolerance of the step control"
     if lost:
-        reason = f"{reason}; a loss fell by {audit.fallen:.3g} J, so it drove"
+        reason = f"{reason}; a loss fell by {audit.fallen:.3g} J, so it supplied energy"
     return {
         "effect": "",
         "assumption": "work is balanced and losses only grow",

@@ -67,7 +67,7 @@ def checked_ledger(system: System, largest: FloatArray) -> Json:
     """
     checks = force_checks(system.scene, largest)
     if wrong := ending(checks, system.scene.on_violation):
-        raise SolveError(f"assumptions of the study that do not hold: {wrong}")
+        raise SolveError(f"violated assumptions of the study: {wrong}")
     return {**system.ledger.to_json(), "checks": checks}
 
 
@@ -80,8 +80,8 @@ def _entry(scene: Scene, index: int, largest: float, share: Json) -> Json:
         radius = _table_driver_radius(scene, index)
         reason = (
             f"forces up to {largest:.4g} N, {times:.3g} times the table's highest load of {highest:.4g} N; "
-            f"above it the table goes on straight, up to {STRAIGHT_ON:g} times. Compute it with torques up "
-            f"to {_rounded_up(largest * radius):g} N m, it ends at {highest * radius:.4g} N m"
+            f"above it the table is extrapolated linearly, up to {STRAIGHT_ON:g} times. Compute it with "
+            f"torques up to {_rounded_up(largest * radius):g} N m, it ends at {highest * radius:.4g} N m"
         )
     return {
         "effect": "",

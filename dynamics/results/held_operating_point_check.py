@@ -71,7 +71,7 @@ class HeldOperatingPointChecks:
         )
         return {
             "effect": system.ledger.effect_adding(FIELDS[watched.axis]),
-            "assumption": f"{quantity} stays where the table is read",
+            "assumption": f"{quantity} stays at the operating point",
             "part": mesh.name,
             "holds": abs(change) <= (system.scene.tolerance or USUAL_TOLERANCE),
             "farthest": farthest,

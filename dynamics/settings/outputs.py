@@ -11,12 +11,16 @@ _RATE = Declared(
     Kind.FREQUENCY,
     "Hz",
     up_to(1e7),
-    "Rate of the uniform output grid; left out: what the mesh orders and the highest mode that the meshes "
-    "excite need",
+    "Rate of the uniform output grid; left out: as the mesh orders and the highest mode excited by the "
+    "meshes need",
     20000.0,
 )
 _FORCES = Declared(
-    Kind.SWITCH, "", None, "Store the force of every bearing, and its moment where a bearing holds tilt", True
+    Kind.SWITCH,
+    "",
+    None,
+    "Store the force of every bearing, and its moment if the bearing has tilt stiffness",
+    True,
 )
 _DISPLACEMENTS = Declared(Kind.SWITCH, "", None, "Store displacement and velocity of every freedom", False)
 _ACCELERATIONS = Declared(
@@ -38,7 +42,7 @@ _ORDERS = Declared(
     Kind.COUNT,
     "",
     integers(1, 1000),
-    "Multiples of the mesh frequency that the output holds at the highest speed of the run",
+    "Multiples of the mesh frequency that the output contains at the highest speed of the run",
     10,
 )
 _FILTER = Declared(
@@ -55,8 +59,8 @@ _FILTER = Declared(
 class Outputs:
     """The outputs that a run stores.
 
-    With `energy_audit` it integrates the powers and closes the balance at the end: a third to three quarters
-    more time, more with more levels in the tables.
+    With `energy_audit` the run integrates the powers and balances them at the end, which takes a third to
+    three quarters more time, more with more levels in the tables.
     """
 
     sample_rate: float | None = declared(None, _RATE)

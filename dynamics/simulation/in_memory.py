@@ -42,13 +42,13 @@ from dynamics.types import Json, RunStatus
 def simulate(scene: Scene, progress: Progress | None = None, cancel: Cancel | None = None) -> RunResult:
     """Run `scene` from static equilibrium at t = 0 over its duration.
 
-    Everything is held in memory: for runs that do not fit there, see `simulate_to_file`.
+    All series are kept in memory; for longer runs use `simulate_to_file`.
 
     Parameters
     ----------
     scene : Scene
     progress : callable, optional
-        Called with the fraction done (0..1) and what is being done; what it raises ends the run.
+        Called with the fraction done (0..1) and the stage; an exception in it ends the run.
     cancel : callable, optional
         Polled for whether to stop; e.g. ``threading.Event().is_set``.
 
@@ -62,14 +62,14 @@ def simulate(scene: Scene, progress: Progress | None = None, cancel: Cancel | No
     InputError
         If the scene's parts do not fit each other.
     SolveError
-        If there is no equilibrium to start from, the run stopped early or was cancelled, or something that
-        it took for granted is wrong and the scene's ``on_violation`` is "fail", or "repeat" and no effect
-        mends it; ``partial`` is the result up to there.
+        If there is no equilibrium to start from, the run stopped early or was cancelled, or it violates an
+        assumption and the scene's ``on_violation`` is "fail", or "repeat" and no effect corrects it;
+        ``partial`` is the result up to then.
 
     Warns
     -----
     PlausibilityWarning
-        Once for each thing about the scene that is far from practice; all are in `RunResult.warnings`.
+        Once for each implausible value of the scene; all are in `RunResult.warnings`.
     """
     warn_of(scene_findings(scene))
     return run_scene(scene, progress, cancel)
@@ -92,7 +92,7 @@ def _needed(scene: Scene, result: RunResult) -> dict[str, str]:
     needed = needed_effects(result.effect_ledger) if scene.on_violation == "repeat" else {}
     wrong = "" if needed else ending(result.effect_ledger["checks"], scene.on_violation)
     if wrong:
-        raise SolveError(f"assumptions of the run that do not hold: {wrong}", result)
+        raise SolveError(f"violated assumptions of the run: {wrong}", result)
     return needed
 
 

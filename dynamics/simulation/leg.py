@@ -67,7 +67,7 @@ class Leg:
     def _resume(self, path: Path, arrays: dict[str, Any], facts: dict[str, Any]) -> None:
         """Resume from the checkpoint."""
         if str(facts.get("mark")) != self._mark:
-            raise ResultError(f"{path}: of another scene or version. Start the run anew.")
+            raise ResultError(f"{path}: of another scene or version. Start a new run.")
         restore(self.march.state, arrays, path)
         self.spool.resume(int(facts["samples"]))
         self._seconds, self.since = float(facts["seconds"]), float(facts["since"])

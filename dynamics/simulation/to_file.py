@@ -63,12 +63,12 @@ def simulate_to_file(
     cancel: Cancel | None = None,
     checkpoint_every: float = CHECKPOINT_EVERY,
 ) -> RunStatus:
-    """Run `scene` as `simulate` does, with memory that does not grow with its duration.
+    """Run `scene` as `simulate` does, with memory independent of its duration.
 
-    While it runs, its states and checkpoints are in the folder `interrupted_run(path)`. At the end, or when
-    cancelled, everything computed is written to `path`, bit by bit what `simulate` gives. A cancelled run
-    keeps the folder, and so does one whose process was killed: started again with `resume`, it goes on from
-    its last checkpoint and ends bit by bit as if it had never stopped (its times in the receipt apart).
+    During the run, states and checkpoints are in the folder `interrupted_run(path)`. At the end, or when
+    cancelled, the result is written to `path`, bit by bit that of `simulate`. A cancelled or killed run keeps
+    the folder: started again with `resume`, it continues from its last checkpoint, and the result is
+    identical to the last bit (except for times in the receipt).
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def simulate_to_file(
     path : str or Path
         netCDF file, see `RunResult.from_netcdf`.
     resume : bool
-        Go on from the checkpoint if there is one. Else whatever there is of another run is removed.
+        Continue from the checkpoint if there is one. Otherwise the remains of another run are removed.
     progress, cancel : callable, optional
         As in `simulate`.
     checkpoint_every : float
@@ -92,8 +92,8 @@ def simulate_to_file(
     InputError
         If the scene's parts do not fit each other, or another process runs to the same file.
     SolveError
-        If there is no equilibrium to start from, or something that the run took for granted is wrong and the
-        scene's ``on_violation`` is "fail", or "repeat" and no effect mends it; the file is then complete.
+        If there is no equilibrium to start from, or the run violates an assumption and the scene's
+        ``on_violation`` is "fail", or "repeat" and no effect corrects it; the file is then complete.
     ResultError
         If the checkpoint is damaged, or that of another scene.
     """
@@ -125,7 +125,7 @@ def _needed(scene: Scene, path: Path, run: MadeRun) -> dict[str, str]:
     wrong = "" if needed else ending(run.ledger["checks"], scene.on_violation)
     if wrong:
         _remove(interrupted_run(path))
-        raise SolveError(f"assumptions of the run that do not hold: {wrong}. It is in {path}")
+        raise SolveError(f"violated assumptions of the run: {wrong}. It is in {path}")
     return needed
 
 
@@ -179,7 +179,7 @@ def _read_earlier(folder: Path) -> EarlierRun:
     except FileNotFoundError:
         return FIRST
     except (OSError, ValueError, KeyError, AttributeError) as error:
-        raise ResultError(f"{folder / REPEATED}: not readable: {error}. Start the run anew.") from error
+        raise ResultError(f"{folder / REPEATED}: not readable: {error}. Start a new run.") from error
 
 
 def _difference(system: System, leg: Leg, check: Leg, end: Ending) -> Json:

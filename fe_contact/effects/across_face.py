@@ -15,5 +15,5 @@ def across_face(scene: ContactScene) -> list[str]:
         reasons.append(f"helix angle {np.degrees(pair.pinion.helix_angle):.4g} deg")
     reasons += [reason for effect in scene.registry if (reason := effect.across_face(scene))]
     if pair.pinion.face_width != pair.wheel.face_width or pair.axial_offset != 0.0:
-        reasons.append("faces that do not cover each other")
+        reasons.append("unequal or offset faces")
     return reasons

@@ -20,7 +20,7 @@ class BoreSeatElasticity(Effect):
     adds: ClassVar[tuple[str, ...]] = ("compliance",)
     cost: ClassVar[str] = "none beside the three-dimensional model it calls for"
     sources: ClassVar[tuple[str, ...]] = ("docs/effects/bore_seat.md",)
-    valid_for: ClassVar[str] = "external gears; a seat that pulls as well as it pushes"
+    valid_for: ClassVar[str] = "external gears; a seat that carries tension and compression"
     of_bodies: ClassVar[bool] = True
 
     def called_for(self, scene: ContactScene) -> Verdict:
@@ -28,7 +28,7 @@ class BoreSeatElasticity(Effect):
         gears = {"pinion": scene.pair.pinion, "wheel": scene.pair.wheel}
         seated = [name for name, gear in gears.items() if gear.seat != CLAMPED]
         if not seated:
-            return Verdict(False, "both bores are fixed all over", neutral=True)
+            return Verdict(False, "both bores are fixed over their whole surface", neutral=True)
         return Verdict(True, f"{' and '.join(seated)} on a seat of the bore")
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:

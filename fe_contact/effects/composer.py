@@ -23,7 +23,7 @@ class LedgerEntry:
     on : bool
         Whether it was simulated.
     choice : str
-        "on", "off" or "auto", as asked.
+        "on", "off" or "auto", as requested.
     verdict : Verdict
         What the scene calls for; its reason stands even when the caller decided otherwise.
     cost : str
@@ -47,8 +47,8 @@ class LedgerEntry:
         if self.choice == "auto":
             return called
         if self.on == self.verdict.on:
-            return f"as asked; {called}"
-        return f"as asked, though {called}"
+            return f"as requested; {called}"
+        return f"as requested, although {called}"
 
     def to_json(self) -> Json:
         """Return plain JSON."""

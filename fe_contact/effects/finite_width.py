@@ -27,9 +27,11 @@ class FiniteWidth(Effect):
         """On where the plane can stand in for three dimensions."""
         reasons = across_face(scene)
         if reasons:
-            return Verdict(False, "three dimensions hold it: " + "; ".join(reasons), neutral=True)
+            return Verdict(
+                False, "the three-dimensional model contains it: " + "; ".join(reasons), neutral=True
+            )
         modules = scene.pair.face_width / scene.pair.pinion.normal_module
-        return Verdict(True, f"face of {modules:.3g} modules with free ends, evenly loaded")
+        return Verdict(True, f"face of {modules:.3g} modules with free ends, uniformly loaded")
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Ask for the correction."""

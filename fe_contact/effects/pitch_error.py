@@ -46,14 +46,14 @@ class PitchError(Effect):
     adds: ClassVar[tuple[str, ...]] = ("gap", "period")
     cost: ClassVar[str] = "a contact sweep for every base pitch of the period; no finite-element work"
     sources: ClassVar[tuple[str, ...]] = ("docs/effects/pitch_error.md", "ISO 1328-1")
-    valid_for: ClassVar[str] = "flanks that are out of place as a whole"
+    valid_for: ClassVar[str] = "flanks displaced as a whole"
 
     def called_for(self, scene: ContactScene) -> Verdict:
         """On where a tooth of either gear is out of its place."""
         gears = (("pinion", scene.pair.pinion), ("wheel", scene.pair.wheel))
         erring = [(name, gear.pitch_deviation) for name, gear in gears if not gear.pitch_deviation.neutral]
         if not erring:
-            return Verdict(False, "all teeth are in their places", neutral=True)
+            return Verdict(False, "no tooth has a pitch deviation", neutral=True)
         figures = ", ".join(
             f"{name} f_p {1e6 * error.single:.3g} um, F_p {1e6 * error.total:.3g} um"
             for name, error in erring

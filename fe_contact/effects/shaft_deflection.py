@@ -28,9 +28,9 @@ class ShaftDeflection(Effect):
         """On where either gear has a shaft."""
         carried = [name for name, shaft in zip(("pinion", "wheel"), scene.pair.shafts, strict=True) if shaft]
         if not carried:
-            return Verdict(False, "the gears sit on rigid shafts", neutral=True)
+            return Verdict(False, "the gears are on rigid shafts", neutral=True)
         skew = f"{1e6 * _skew(scene):.3g} um of misalignment at the largest load"
-        return Verdict(True, f"{' and '.join(carried)} on a shaft that bends: {skew}")
+        return Verdict(True, f"{' and '.join(carried)} on a flexible shaft: {skew}")
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Add the compliance of both seats."""

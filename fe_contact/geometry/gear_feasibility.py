@@ -50,7 +50,7 @@ def _refuse_rim(gear: Toothing, blank: GearBlank) -> None:
         bound = below(widest, "m", note=f", which leaves a rim of {THINNEST_RIM:g} normal modules")
         raise InfeasibleGeometry("rim", field, hub, bound, "Leave the blank out for a solid gear.")
     if not blank.rim_thickness < deepest:
-        bound = below(deepest, "m", note=", what lies between root circle and hub (or bore)")
+        bound = below(deepest, "m", note=", the depth between root circle and hub (or bore)")
         advice = "Lower the rim thickness or the hub diameter; leave the blank out for a solid gear."
         raise InfeasibleGeometry("rim", "blank.rim_thickness", blank.rim_thickness, bound, advice)
     if blank.rim_thickness < least * (1.0 - LIMIT_SLACK):

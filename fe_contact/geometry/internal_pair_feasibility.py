@@ -104,7 +104,7 @@ def _refuse_tip_interference(pair: ParallelAxes) -> None:
     depth = tip_interference(pair)
     if depth > FILLET_SLACK * pair.pinion.normal_module:
         overlap = Quantity(depth, "m", digits=3)
-        bound = Text.of("larger: the tips overlap by ", overlap, " as they pass each other")
+        bound = Text.of("larger: the tips overlap by ", overlap, " in passing")
         difference = pair.wheel.teeth - pair.pinion.teeth
         advice = f"{_SHORTER}, or raise the difference of the tooth numbers, {difference}."
         value = 2.0 * pair.wheel.tip_radius
@@ -127,7 +127,5 @@ def refuse_trimming_interference(clearance: float) -> None:
     if clearance < 0.0:
         overlap = Quantity(-clearance, "m", digits=3)
         bound = Text.of("false: the tips are in the way by ", overlap, " on the pinion's base circle")
-        advice = (
-            f"Put the pinion in along the axis. {_SHORTER}, or raise the difference of the tooth numbers."
-        )
+        advice = f"Mount the pinion along the axis. {_SHORTER}, or raise the difference of the tooth numbers."
         raise InfeasibleGeometry("trimming interference", "radial_assembly", True, bound, advice)

@@ -75,9 +75,7 @@ def _ask(request: str, seconds: float, command: Sequence[str]) -> dict[str, Any]
 def _refuse_no_memory(complaint: str) -> None:
     """Raise what a child's complaint says, if that is a lack of memory."""
     if any(sign in complaint for sign in _NO_MEMORY):
-        raise MeshError(
-            "gmsh worker: ran out of memory. Ask for a coarser level, or let a process have more."
-        )
+        raise MeshError("gmsh worker: ran out of memory. Select a coarser level, or raise the memory limit.")
 
 
 def _cause(returncode: int) -> str:

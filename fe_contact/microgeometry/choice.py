@@ -71,9 +71,7 @@ def posed(study: DesignStudy, request: OptimizationRequest, memory: Path | None)
         problem = replace(problem, memory=DesignMemory.of(memory, request, study.evaluator))
     assessed = problem.assess(problem.place(request.own))
     if not np.isfinite(assessed.objective) or assessed.objective <= 0.0:
-        raise SolveError(
-            "the contact of the design to begin with cannot be solved at every position and load"
-        )
+        raise SolveError("the contact of the start design cannot be solved at every position and load")
     return replace(problem, scale=assessed.objective)
 
 

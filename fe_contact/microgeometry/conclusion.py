@@ -53,9 +53,7 @@ def _why_not(choice: Choice, request: OptimizationRequest, error: float) -> str:
         return f"the start lies beyond the bounds of {', '.join(request.outside)}; "
     spread = max(run.spread for run in choice.runs)
     if choice.run.converged and spread <= error:
-        return (
-            f"what is varied makes no difference: all designs lie within {engineering(1e6 * spread, 2)} um; "
-        )
+        return f"the variables have no influence: all designs lie within {engineering(1e6 * spread, 2)} um; "
     return ""
 
 
@@ -74,7 +72,7 @@ def not_tried(choice: Choice, request: OptimizationRequest, study: DesignStudy) 
         f"neglected effects: {', '.join(off)}" if off else "",
         f"other searches than {starts} of {request.search.method.to_json()['method'].replace('_', ' ')}; "
         "ripple has many local minima",
-        "other center distances, and torques but those that count",
+        "other center distances, and torques without weight",
     ]
     return tuple(filter(None, untried))
 

@@ -28,10 +28,11 @@ class AnalysisOptions:
     Attributes
     ----------
     tolerance : AllowedError, optional
-        Of mean and peak-to-peak STE. A table is refined by its measured errors until it keeps them, in at
-        most four passes: `receipt["passes"]`, and `receipt["tolerance"]` says whether it is met, or why not.
+        Of mean and peak-to-peak STE. A table is refined by its measured errors until it meets the tolerance,
+        in at most four passes: `receipt["passes"]`; `receipt["tolerance"]` says whether it is met, or why
+        not.
     time_budget : float, optional
-        CPU seconds that the run may take. Beside a tolerance refinement ends where it would go beyond them.
+        CPU seconds that the run may take. With a tolerance, refinement ends before it would exceed them.
     level : str, optional
         "draft", "standard" or "fine".
     model : str
@@ -41,18 +42,18 @@ class AnalysisOptions:
         Of a table: equally spaced positions in a base pitch; default: nodes placed so that interpolation
         keeps 0.2 % of peak-to-peak.
     effects : mapping
-        Effect name to "on", "off" or "auto"; what is not named is "auto".
+        Effect name to "on", "off" or "auto"; effects that are not named are "auto".
     receipt : str
-        Of a table: "full" measures its errors by source; "minimal" solves nothing for them: they are then
-        NaN, not estimated, and the receipt says so.
+        Of a table: "full" measures its errors by source; "minimal" does not estimate them: they are NaN, and
+        the receipt says so.
     on_violation : str
-        What to do where an assumption turns out wrong on the solution (`receipt["assumptions"]`): "repeat"
-        switches the automatic effect on that is needed and solves again, "fail" raises, "report" says so.
+        What to do if the solution violates an assumption (`receipt["assumptions"]`): "repeat" enables the
+        automatic effect that is needed and solves again, "fail" raises, "report" reports it.
 
     Raises
     ------
     InputError
-        A value that cannot be used, by field name, or a level beside a tolerance or a time budget.
+        A value that cannot be used, by field name, or a level together with a tolerance or a time budget.
     """
 
     tolerance: AllowedError | None = None
@@ -68,7 +69,7 @@ class AnalysisOptions:
         wishes = [name for name in ("tolerance", "time_budget") if getattr(self, name) is not None]
         if wishes and self.level is not None:
             bound = f"left out when {wishes[0]} is given"
-            raise InputError("level", self.level, bound, "A level is a mesh, whatever it costs.")
+            raise InputError("level", self.level, bound, "A level is a mesh, regardless of cost.")
         if self.time_budget is not None:
             positive("time_budget", self.time_budget, "Seconds.")
         for name, choices in CHOICES.items():
@@ -80,7 +81,7 @@ class AnalysisOptions:
 
     @property
     def allowed(self) -> AllowedError:
-        """Error that counts as small: the tolerance, without one a part of each quantity."""
+        """Error that counts as small: the tolerance, or a part of each quantity without one."""
         return self.tolerance or RELATIVE
 
     @property

@@ -92,7 +92,7 @@ def refuse_long_cycle(cost: CycleCost) -> None:
     advice = (
         f"The table would have {cost.rows} rows, about "
         f"{engineering(cost.cpu_seconds, 2)} CPU s and {engineering(gigabytes, 2)} GB. "
-        "Ask for fewer pitches (the teeth of one gear, say), fewer positions or alignments, or give one gear "
-        "only its deviations."
+        "Request fewer pitches (for example the teeth of one gear), positions or alignments, or give the "
+        "deviations of one gear only."
     )
     raise InputError("pitches", cost.pitches, at_most(longest, note=note), advice)

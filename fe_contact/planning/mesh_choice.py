@@ -98,7 +98,7 @@ def mesh_for_time(
         if predicted <= budget:
             return MeshChoice(option, True, f"predicted {engineering(predicted, 2)} CPU s")
     least = min(options, key=_effort)
-    reason = f"even the quickest mesh is predicted to take {engineering(seconds(least), 2)} CPU s"
+    reason = f"even the fastest mesh is predicted to take {engineering(seconds(least), 2)} CPU s"
     return MeshChoice(least, False, reason)
 
 

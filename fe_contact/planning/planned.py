@@ -70,7 +70,7 @@ def chosen_mesh(
         return predict_run(pair, plan, model, alignments, cache).cpu_seconds
 
     if options.level is not None:
-        return MeshChoice(option(options.level), True, "as asked")
+        return MeshChoice(option(options.level), True, "as requested")
     if options.tolerance is None and options.time_budget is None:
         return MeshChoice(option("standard"), True, "nothing asked")
     meshes = [option(level) for level in LEVELS]

@@ -73,12 +73,12 @@ def _gear(name: str, gear: Toothing) -> Iterator[Finding]:
     """Check face, bore and deviations of one gear."""
     yield from _material(name, gear.material)
     module = gear.normal_module
-    ratio = f"{gear.face_width / module:.3g} modules are no common face width"
+    ratio = f"{gear.face_width / module:.3g} modules of face width are unusual"
     yield from assessed("face_width", f"{name}.face_width", gear.face_width, "m", scale=module, reason=ratio)
     bore = getattr(gear, "bore_diameter", None)
     if bore is not None:
         root = 2.0 * gear.root_radius
-        reason = f"{engineering(bore / root, 2)} of the root diameter is no common bore"
+        reason = f"{engineering(bore / root, 2)} of the root diameter is an unusual bore"
         for finding in assessed("bore", f"{name}.bore_diameter", bore, "m", scale=root, reason=reason):
             yield replace(finding, high=root)
     shape = gear.modification
@@ -103,7 +103,7 @@ def _amount(field: str, amount: float, module: float) -> Iterator[Finding]:
     low, high = CHECKS["relief_amount"].low or 0.0, CHECKS["relief_over_module"].high or math.inf
     findings = [*assessed("relief_amount", field, amount, "m", reason="smaller than can be made or measured")]
     if not field.endswith("thickness_allowance"):
-        reason = f"{engineering(abs(amount) / module, 2)} modules are no modification"
+        reason = f"{engineering(abs(amount) / module, 2)} modules of modification are implausible"
         findings += assessed("relief_over_module", field, amount, "m", scale=module, reason=reason)
     for finding in findings:
         yield replace(finding, low=low, high=high * module)
@@ -124,9 +124,7 @@ def _shafts(pair: ParallelAxes) -> Iterator[Finding]:
 
 def _shaft(name: str, shaft: Shaft) -> Iterator[Finding]:
     """Check one shaft between its bearings."""
-    reason = (
-        f"{engineering(shaft.length / shaft.diameter, 2)} diameters between the bearings are no common shaft"
-    )
+    reason = f"{engineering(shaft.length / shaft.diameter, 2)} diameters between the bearings are unusual"
     yield from assessed(
         "shaft_slenderness", f"{name}.length", shaft.length, "m", scale=shaft.diameter, reason=reason
     )
@@ -144,7 +142,7 @@ def _deviations(pair: ParallelAxes, skew: FloatArray, change: FloatArray) -> Ite
         value = float(values[index]) if values.size else 0.0
         if not value:
             continue
-        reason = "smaller than anybody aligns or measures"
+        reason = "smaller than can be aligned or measured"
         name = f"{field}[{index}]"
         usual = 0.002 * pair.face_width if check == "misalignment" else pair.pinion.normal_module
         for finding in assessed(check, name, value, "m", reason=reason):
@@ -171,11 +169,11 @@ def _loads(pair: ParallelAxes, load: FloatArray, loads_as: str) -> Iterator[Find
     field = f"{loads_as}[{load.size - 1}]"
     low, high = _RATED * lightest * value / intensity, 0.5 * heaviest * value / intensity
     for check, amount, reason in (
-        ("light_load", intensity, f"the largest load of the table is next to nothing, {words}"),
+        ("light_load", intensity, f"the largest load of the table is negligible, {words}"),
         ("line_load", intensity, f"no gear carries {words}"),
         ("hertz_pressure", pressure, f"a nominal contact pressure of {pressure / 1e9:.3g} GPa"),
         ("root_stress", stress, f"a nominal root stress of {stress / 1e9:.3g} GPa"),
-        ("transmission_error", deflection, f"teeth that yield by {engineering(deflection, 2)} modules"),
+        ("transmission_error", deflection, f"tooth deflections of {engineering(deflection, 2)} modules"),
     ):
         for finding in assessed(check, "", amount, CHECKS[check].unit, reason=reason):
             yield replace(finding, field=field, value=value, unit=unit, low=low, high=high)

@@ -41,7 +41,7 @@ def _transmission_error(values: FloatArray, module: float) -> Iterator[Finding]:
     """Check the largest mean over the positions."""
     solved = np.where(np.isfinite(values), values, 0.0)
     largest = float(np.max(np.mean(solved, axis=0), initial=0.0))
-    reason = f"teeth that yield by {engineering(largest / module, 2)} modules are beyond linear elasticity"
+    reason = f"tooth deflections of {engineering(largest / module, 2)} modules are beyond linear elasticity"
     yield from assessed("transmission_error", "transmission_error", largest, "m", scale=module, reason=reason)
 
 

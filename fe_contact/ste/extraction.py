@@ -121,7 +121,8 @@ def _require_increasing(database: SteFields, force: FloatArray, deflection: Floa
         f"the transmission error falls with load at {falling} of {gaps.size} steps, worst from "
         f"{lower} to {force[k]:g} N at position {database.position[i]:.6g}, misalignment "
         f"{database.misalignment[m]:g} m, center-distance change {database.center_distance_change[c]:g} m: "
-        f"{gaps[i, m, c, k]:.3g} m. monotone_repaired() mends it by isotonic regression and says by how much."
+        f"{gaps[i, m, c, k]:.3g} m. "
+        "monotone_repaired() repairs it by isotonic regression and reports the change."
     )
 
 

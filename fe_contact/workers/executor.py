@@ -75,5 +75,5 @@ class ByExecutor:
 
 def _lost(done: int, of: int) -> WorkersLost:
     """Say what is known of a pool that broke."""
-    reason = "A process of the pool ended in mid-run; it may have run out of memory"
+    reason = "A process of the pool ended during the run; it may have run out of memory"
     return WorkersLost(f"{reason}: {done} of {of} tasks were done.")

@@ -113,14 +113,14 @@ def _cost(receipt: dict[str, Any]) -> str:
         text += f"\n{line}"
     outgrown = receipt.get("patch_outgrown_points", 0)
     if outgrown:
-        text += f"\ncontact outgrew its load patch at {outgrown} points: the load is far beyond the usual"
+        text += f"\ncontact outgrew its load patch at {outgrown} points: the load is far above usual loads"
     missing = receipt.get("not_estimated", [])
     if missing:
         text += f"\nerrors NOT estimated: {', '.join(missing).replace('_', ' ')}"
     left_out = receipt["error_by_source"]["plane_for_finite_width_relative"]
     if left_out:
         text += (
-            "\nthe plane leaves out a finite width: "
+            "\nfinite width neglected by the plane model: "
             f"{engineering(100 * left_out, 2)} % of the mean, in the errors"
         )
     return text

@@ -45,7 +45,7 @@ class BoundedHttp(AutoHTTPProtocol):  # type: ignore[misc, valid-type]  # one of
         if len(self.connections) > MOST_CONNECTIONS and self._idle:
             self._close_longest_idle()
         elif len(self.connections) > MOST_BUSY_CONNECTIONS:
-            self._refuse(TooManyRequests("All connections are busy. Ask again soon."))
+            self._refuse(TooManyRequests("All connections are busy. Try again soon."))
             return
         self._idle[self] = None
         self._await_head()
@@ -88,7 +88,7 @@ class BoundedHttp(AutoHTTPProtocol):  # type: ignore[misc, valid-type]  # one of
     def _await_head(self) -> None:
         """Begin to count and to wait."""
         self._head = 0
-        late = TooSlow(f"The head of the request did not come within {HEAD_WITHIN_S:g} s.")
+        late = TooSlow(f"The head of the request did not arrive within {HEAD_WITHIN_S:g} s.")
         self._timer = self.loop.call_later(HEAD_WITHIN_S, self._refuse, late)
 
     def _head_is_there(self) -> None:

@@ -24,7 +24,7 @@ def run_add(name: str, path: Path | None, *, as_json: bool, **limits: int | None
         print_json({"name": name, "key": secret, "file": str(file.path)})
         return
     sys.stdout.write(f"{secret}\n")
-    sys.stderr.write(f"Key {name!r} is in {file.path}. It is shown this once: only its hash is kept.\n")
+    sys.stderr.write(f"Key {name!r} is in {file.path}. It is shown only once: only its hash is stored.\n")
 
 
 def run_list(path: Path | None, *, as_json: bool) -> None:

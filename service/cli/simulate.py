@@ -27,7 +27,7 @@ def run_simulate(file: InputFile, output: Path, service: str | None, *, resume: 
     scene, folder = scene_of(file)
     check_netcdf_output(output)
     if resume and not interrupted_run(output).is_dir():
-        advice = "There is none there. Leave --resume out to start a run."
+        advice = "There is none. Omit --resume to start a run."
         raise BadInput.of("--resume", str(output), "the file of a run that was interrupted", advice)
     with progress_bar() as report:
         _run(scene_with_tables(scene, folder, service, report), output, report, resume=resume)
@@ -44,7 +44,7 @@ def _run(scene: Scene, output: Path, report: Report, *, resume: bool) -> None:
     with until_interrupted() as cancel:
         status = simulate_to_file(scene, output, resume=resume, progress=staged(report), cancel=cancel)
     if status is RunStatus.CANCELLED:
-        kept = f"What was computed is in {output}; --resume goes on from there."
+        kept = f"What was computed is in {output}; --resume continues it."
         raise KeyboardInterrupt(f"interrupted. {kept}")
     if not status.usable:
         ended = status.name.lower().replace("_", " ")

@@ -34,7 +34,7 @@ def run_verify(*, as_json: bool, **options: object) -> None:
     else:
         _list(("damaged, set aside", audit.damaged), ("missing", audit.missing), ("unknown", audit.unknown))
         bad, aside = len(audit.damaged) + len(audit.missing), len(audit.unknown)
-        typer.echo(f"{audit.sound} files sound, {bad} damaged or missing")
+        typer.echo(f"{audit.sound} files intact, {bad} damaged or missing")
         if aside or audit.quarantined:
             typer.echo(f"{aside} not in the index (kept), {audit.quarantined} in quarantine")
     if audit.damaged or audit.missing:
@@ -75,7 +75,7 @@ def run_reindex(*, as_json: bool, quarantined: bool, **options: object) -> None:
         print_json(asdict(index))
     else:
         _list(("damaged", index.damaged), ("of a result that has a file", index.doubled))
-        _list(("file gone, struck from the index", index.struck))
+        _list(("file missing, removed from the index", index.struck))
         typer.echo(f"{index.entered} results entered, {index.known} known, {len(index.damaged)} damaged")
     if index.damaged:
         raise typer.Exit(EXIT_FAILED)

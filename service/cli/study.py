@@ -76,7 +76,7 @@ def run_study(study: Study, options: Json) -> None:
     warn(study.run.warnings(result) or ())
     _tell(study, subjects[0][0], result, targets, options)
     if interrupted:
-        raise KeyboardInterrupt("interrupted. What is above is the best of what was computed so far.")
+        raise KeyboardInterrupt("interrupted. The result above is the best so far.")
     if failure := study.run.failure(result):
         raise JobFailed(failure)
 

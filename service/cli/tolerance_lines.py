@@ -39,7 +39,7 @@ def tolerance_lines(receipt: Json) -> Iterator[str]:
         low, high = (f"{value / unit:.6g}" for value in beyond["between"])
         yield (
             f"between the {name} {low} and {high} {symbol} "
-            f"interpolation takes {engineering(beyond['used'], 2)} of it: "
+            f"interpolation uses {engineering(beyond['used'], 2)} of it: "
             "add a value there"
         )
 

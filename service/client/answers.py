@@ -33,7 +33,7 @@ def stranger(response: httpx2.Response) -> Unreachable:
     status, url = response.status_code, response.request.url
     to = f" and sends to {response.headers['location']}" if response.has_redirect_location else ""
     return Unreachable(
-        f"{url} answered with status {status}{to}, not as this service does. Check the address."
+        f"{url} answered with status {status}{to}, which is not an answer of this service. Check the address."
     )
 
 

@@ -170,7 +170,7 @@ class JobClient:
             known = self._cache.recall(service, process, inputs)
             if known is None:
                 raise
-            text = f"No service answers at {service}: the {known.kind} it gave before comes from the cache."
+            text = f"No service answers at {service}: the {known.kind} is from the cache."
             warnings.warn(text, OfflineWarning, stacklevel=3)
             return known
         self._cache.remember(service, process, inputs, result)
@@ -214,7 +214,7 @@ class JobClient:
                 raise NotFound(f"Result {key!r} is no {kinds[0]}, but of the kind {kind}.")
             coded = base64.b64encode(bytes.fromhex(digest)).decode()
             if headers.get("content-digest") != f"sha-256=:{coded}:":
-                raise DamagedFile(f"The file of {kind} {key} was damaged on its way. Fetch it again.")
+                raise DamagedFile(f"The file of {kind} {key} was damaged in transfer. Fetch it again.")
             return self._cache.keep(kind, key, file, digest, suffix), kind
 
     def _note_other_version(self, error: BadInput) -> None:
@@ -225,6 +225,6 @@ class JobClient:
             return
         if theirs != solver_version():
             error.add_note(
-                f"The service is version {theirs}, this client {solver_version()}: one may not know what "
-                "the other does. Install the version of the service."
+                f"The service is version {theirs}, this client {solver_version()}: they "
+                "may differ. Install the version of the service."
             )

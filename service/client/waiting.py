@@ -60,7 +60,7 @@ def ended(job: str, look: Callable[[], JobState], pace: Pace) -> JobState:
     try:
         return _ended(job, look, pace)
     except KeyboardInterrupt as stop:
-        stop.add_note(f"Job {job} goes on at the service. Asking for the same again joins it.")
+        stop.add_note(f"Job {job} continues at the service. Repeat the request to join it.")
         raise
 
 
@@ -78,7 +78,7 @@ def _ended(job: str, look: Callable[[], JobState], pace: Pace) -> JobState:
                 raise
         left = pace.timeout - (time.monotonic() - begin)
         if left <= 0.0:
-            text = f"Job {job} did not end within {pace.timeout:g} s. It goes on; look again later."
+            text = f"Job {job} did not end within {pace.timeout:g} s. It continues; check again later."
             raise StillRunning(text)
         time.sleep(min(pause, left))
         pause = pace.longer(pause)

@@ -13,11 +13,11 @@ def ledger_lines(ledger: Iterable[Mapping[str, Any]]) -> Iterator[str]:
     """Yield the decision about every effect, its influence at the nominal load, and its price."""
     shown, trifles = by_size(ledger)
     if where := influence_place(ledger):
-        yield f"influence of effects: what leaving one out changes, estimated {where}"
+        yield f"influence of effects: estimated change without each, {where}"
     for entry in shown:
         state = "on " if entry["on"] else "off"
         yield f"effect {entry['name']}: {state} ({entry['choice']}); {entry['reason']}"
-        if entry["decision"].startswith(("left off", "on after")):
+        if entry["decision"].startswith(("neglected", "on after")):
             yield f"       {entry['decision']}"
         if entry["on"] or entry["called_for"]:
             yield f"       without it {influence_words(entry)}; cost {cost_words(entry)}"
@@ -40,7 +40,7 @@ def assumption_lines(receipt: Mapping[str, Any]) -> Iterator[str]:
             yield f"repeated with {name}: {reason} ({engineering(run['cpu_seconds'], 2)} CPU s)"
     for check in receipt.get("assumptions", ()):
         if check["holds"] is False:
-            yield f"DOES NOT HOLD: {check['assumption']}; {check['reason']}"
+            yield f"VIOLATED: {check['assumption']}; {check['reason']}"
 
 
 def run_lines(attributes: Mapping[str, Any]) -> Iterator[str]:
@@ -57,4 +57,4 @@ def run_lines(attributes: Mapping[str, Any]) -> Iterator[str]:
     for check in attributes.get("effect_ledger", {}).get("checks", ()):
         if check["holds"] is False:
             part = check["part"] or check["effect"]
-            yield f"DOES NOT HOLD: {check['assumption']} ({part}); {check['reason']}"
+            yield f"VIOLATED: {check['assumption']} ({part}); {check['reason']}"

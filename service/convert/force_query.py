@@ -79,5 +79,5 @@ def force_answer(law: CompiledForce, points: FloatArray) -> ForceAnswer:
     """
     forces = law.force_at(points)
     if not (np.isfinite(forces.force).all() and np.isfinite(forces.stiffness).all()):
-        raise JobFailed("The table gives no number at some of these points. Compute it again.")
+        raise JobFailed("The table has no value at some of these points. Compute it again.")
     return ForceAnswer(forces.force, forces.stiffness / N_PER_UM, forces.validity)

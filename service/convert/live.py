@@ -40,7 +40,7 @@ def condensed_of(file: Path, cache: Path, *, compute: bool = False) -> tuple[Cas
         The compliance is not in the cache, and is not to be computed.
     """
     if not file.exists():
-        raise NotFound("The database was removed from the store while it was asked. Submit its case again.")
+        raise NotFound("The database was removed from the store during the request. Submit its case again.")
     database = SteDatabase.from_netcdf(file)
     # strict models take JSON's lists for tuples only from text
     case = Case.model_validate_json(json.dumps(database.metadata.case))

@@ -28,7 +28,7 @@ def sampling_table(run: RunResult) -> Table:
 def _filter(sampling: dict[str, Any]) -> list[tuple[str, str]]:
     """Say how the filter works."""
     if not sampling["stop_band"]:
-        return [("anti-alias filter", "none: points of the motion")]
+        return [("anti-alias filter", "none: unfiltered samples")]
     stop = (
         f"{number(float(sampling['stop_band']), 3)} dB from {number(float(sampling['stop_frequency']), 6)} Hz"
     )

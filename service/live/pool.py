@@ -90,10 +90,10 @@ class LivePool:
         with self._changed:
             older = self._waiting.pop(name, None)
             if older is None and len(self._waiting) >= self._limits.waiting:
-                text = f"{self._limits.waiting} live questions wait already. Ask again soon."
+                text = f"{self._limits.waiting} live requests wait already. Try again soon."
                 raise QueueFull.after(1, text)
             if older is not None:
-                _refuse(older, Superseded("A later question of the same caller took its place."))
+                _refuse(older, Superseded("A later request of the same caller replaced it."))
             self._waiting[name] = question
             if self._thread is None:
                 self._stopping = False
@@ -148,8 +148,8 @@ class LivePool:
             return "The service stops."
         if gone.late:
             late = f"It took longer than {self._limits.answer_s:g} s and was ended. Submit a job instead"
-            return f"{late}; a compliance that was being computed goes on when asked again."
-        return "The live worker ended. Ask again."
+            return f"{late}; repeat the request to continue the computation of a compliance."
+        return "The live worker ended. Repeat the request."
 
     def _answer(self, order: LiveOrder) -> bytes:
         """Ask the worker, starting it if there is none."""

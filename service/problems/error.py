@@ -78,7 +78,7 @@ class Unexpected(ServiceError):
 
     def __init__(self, reference: str) -> None:
         self.reference = reference
-        super().__init__(f"Something failed that should not. The log has the details under {reference}.")
+        super().__init__(f"An unexpected failure occurred. The log has the details under {reference}.")
 
     def as_json(self) -> dict[str, Any]:
         """Return the problem with its reference number."""

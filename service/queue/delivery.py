@@ -59,7 +59,7 @@ def delivery(response: Response, transmission: Transmission | None, field: str) 
         if transmission == "value":
             bound = f"reference in a document: JSON does not hold {NETCDF}"
             raise BadInput.of(
-                field, transmission, bound, 'Ask for the response "raw" to get the file itself.'
+                field, transmission, bound, 'Request the response "raw" to get the file itself.'
             )
         return Delivery(response, "reference")
     return Delivery(response, transmission or "value")

@@ -249,6 +249,6 @@ class Scheduler:
 def _too_late(deadline_s: float) -> str:
     """Return the message of a job that took too long."""
     return (
-        f"The deadline of {deadline_s:g} s (LOA_DEADLINE_S) passed. Ask for a coarser level or fewer "
+        f"The deadline of {deadline_s:g} s (LOA_DEADLINE_S) passed. Select a coarser level or fewer "
         "positions, of a run for a shorter one, or start the service with a later deadline."
     )

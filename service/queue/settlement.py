@@ -62,7 +62,7 @@ class Settlement:
         elif outcome.unexpected:
             reference = uuid.uuid4().hex[:12]
             logger.error("worker failed", computation=claim.id, reference=reference, log=str(ended.log))
-            text = f"Something failed that should not. The log has the details under {reference}."
+            text = f"An unexpected failure occurred. The log has the details under {reference}."
             self.claims.fail(claim, text, reference=reference)
         elif outcome.failure:
             self.claims.fail(claim, outcome.failure, outcome.faults)

@@ -95,7 +95,7 @@ class Submissions:
         """Raise if the queue is at its limit."""
         count = select(func.count()).select_from(computations).where(computations.c.state == "accepted")
         if connection.execute(count).scalar_one() >= self._queue_limit:
-            raise QueueFull(f"{self._queue_limit} computations wait already. Try again in a while.")
+            raise QueueFull(f"{self._queue_limit} computations wait already. Try again later.")
 
     @retried
     def find(self, identifier: str) -> Job:
@@ -190,7 +190,7 @@ def _refuse_if_busy(connection: Connection, caller: Caller) -> None:
     count = select(func.count()).select_from(jobs.join(computations)).where(*mine, live)
     if connection.execute(count).scalar_one() >= caller.unfinished_jobs:
         raise QueueFull(
-            f"Key {caller.name!r} has {caller.unfinished_jobs} unfinished jobs, as many as it may. "
+            f"Key {caller.name!r} has {caller.unfinished_jobs} unfinished jobs, its limit. "
             "Wait for one of them or dismiss it."
         )
 

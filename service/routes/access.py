@@ -60,7 +60,7 @@ class Access:
             raise Unauthorised("This service asks for an access key, sent as: Authorization: Bearer KEY")
         key = self._keyring.holder(presented)
         if key is None:
-            raise Unauthorised("This key is not known here. Ask whoever runs the service for one.")
+            raise Unauthorised("This key is unknown. Ask the operator of the service for one.")
         return key
 
 

@@ -63,7 +63,7 @@ class ExampleBody(BaseModel):
     case: dict[str, Any]
 
 
-@router.get("/examples", summary="Cases to begin with")
+@router.get("/examples", summary="Example cases")
 def example_cases() -> list[ExampleBody]:
     """List the pairs that the page offers."""
     return [_example(example) for example in examples()]

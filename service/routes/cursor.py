@@ -19,10 +19,10 @@ _MARK = re.compile(r"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{6}Z) ([0-9a-f-]{36}|[0-
 
 Cursor = Annotated[
     str | None,
-    Query(max_length=200, description="From the link `next` of the page before"),
+    Query(max_length=200, description="Cursor from the link `next` of the previous page"),
 ]
 
-Limit = Annotated[int, Query(ge=1, le=1000, description="Most entries on the page")]
+Limit = Annotated[int, Query(ge=1, le=1000, description="Largest number of entries on the page")]
 
 
 def page_links(request: Request, path: str, last: Mark | None) -> list[Link]:

@@ -29,13 +29,13 @@ class NotReady(ServiceError):
     retry_after_s = 5
 
 
-@router.get("/health", summary="Alive?")
+@router.get("/health", summary="Liveness")
 async def health() -> dict[str, Any]:
     """Answer that the process serves requests, however many of them wait for the database in threads."""
     return {"status": "ok"}
 
 
-@router.get("/ready", summary="Ready for jobs?", responses=documented(503))
+@router.get("/ready", summary="Readiness for jobs", responses=documented(503))
 def ready(context: Ctx) -> dict[str, Any]:
     """Answer that database and place of results take what is written, and that the scheduler runs."""
     outcome = context.writes.outcome()
@@ -47,7 +47,7 @@ def ready(context: Ctx) -> dict[str, Any]:
     return {"status": "ready", "computations": counts}
 
 
-@router.get("/metrics", summary="Figures for Prometheus", response_class=Response)
+@router.get("/metrics", summary="Metrics for Prometheus", response_class=Response)
 def metrics(request: Request) -> Response:
     """Return the figures in the text exposition format."""
     return Response(request.app.state.metrics.text(), media_type="text/plain; version=0.0.4; charset=utf-8")

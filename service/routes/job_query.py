@@ -22,22 +22,24 @@ def job_filter(
     ] = [],  # noqa: B006 (the framework copies it)
     status: Annotated[list[JobStatus], Query(max_length=16, description="Jobs in these states")] = [],  # noqa: B006
     kind: Annotated[
-        list[Literal["process"]], Query(alias="type", max_length=4, description="All jobs are of processes")
+        list[Literal["process"]],
+        Query(alias="type", max_length=4, description="Type of jobs; all jobs are of type process"),
     ] = [],  # noqa: B006
     instant: Annotated[
         str,
         Query(
             alias="datetime",
             max_length=100,
-            description="Jobs created then: an instant, or an interval start/end with .. for an open end",
+            description="Jobs created at this instant, or in an interval start/end with .. for an open end",
         ),
     ] = "../..",
     shortest: Annotated[
-        int, Query(alias="minDuration", description="Jobs that ran at least so many seconds", **_DURATION)
+        int,
+        Query(alias="minDuration", description="Jobs that ran for at least this many seconds", **_DURATION),
     ] = 0,
     longest: Annotated[
         int | None,
-        Query(alias="maxDuration", description="Jobs that ran at most so many seconds", **_DURATION),
+        Query(alias="maxDuration", description="Jobs that ran for at most this many seconds", **_DURATION),
     ] = None,
 ) -> JobFilter:
     """Return what the parameters ask for."""

@@ -21,10 +21,10 @@ from service.schemas.result_kinds import RESULTS
 
 router = APIRouter(prefix="/jobs", tags=["jobs"])
 
-AskedForm = Annotated[Form | None, Query(description="Form, instead of that of the execution")]
+AskedForm = Annotated[Form | None, Query(description="Form of the result; overrides that of the execution")]
 AskedMode = Annotated[
     Transmission | None,
-    Query(alias="transmissionMode", description="Transmission, instead of that of the execution"),
+    Query(alias="transmissionMode", description="Transmission mode; overrides that of the execution"),
 ]
 _ANSWERS: dict[int | str, dict[str, Any]] = {
     200: {

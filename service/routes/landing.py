@@ -23,7 +23,7 @@ def landing() -> Landing:
     )
     return Landing(
         title="lineofaction",
-        description="STE databases of gear pairs by contact analysis, and the dynamics they excite.",
+        description="STE databases of gear pairs by contact analysis, and dynamics excited by them.",
         version=solver_version(),
         links=[Link(href=href, rel=rel, title=title) for href, rel, title in relations],
     )

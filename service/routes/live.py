@@ -42,7 +42,7 @@ async def live_ste(key: Key, body: LiveInput, context: Ctx) -> Response:
 
 @router.post(
     "/plans",
-    summary="What a run will be and cost",
+    summary="Plan and cost of a run",
     response_class=Response,
     responses={200: {"description": "The plan", "content": {"application/json": {}}}, **_REFUSED},
 )

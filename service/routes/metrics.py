@@ -29,7 +29,7 @@ class Metrics:
             "loa_problems", "Requests answered with a problem", ["problem"], registry=self._registry
         )
         self._dropped = Counter(
-            "loa_dropped_connections", "Idle connections closed to make room", registry=self._registry
+            "loa_dropped_connections", "Idle connections closed to admit others", registry=self._registry
         )
         self._registry.register(_FromDatabase(workload))
         self._registry.register(_Writable(writes))
@@ -95,7 +95,7 @@ def _queue(load: Workload) -> Iterable[Metric]:
     states = GaugeMetricFamily("loa_computations", "Computations by state", labels=["state"])
     for state in _STATES:
         states.add_metric([state], load.states.get(state, 0))
-    oldest = GaugeMetricFamily("loa_oldest_waiting_seconds", "Age of the oldest computation that waits")
+    oldest = GaugeMetricFamily("loa_oldest_waiting_seconds", "Age of the oldest waiting computation")
     oldest.add_metric([], load.oldest_waiting_s)
     return states, oldest
 

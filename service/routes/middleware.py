@@ -69,7 +69,7 @@ class Guard:
     def _refuse_beyond(self, path: str) -> None:
         """Refuse what is too much at once."""
         if self._open > MOST_REQUESTS and path not in _VITAL:
-            raise TooManyRequests(f"{MOST_REQUESTS} requests are being answered. Ask again soon.")
+            raise TooManyRequests(f"{MOST_REQUESTS} requests are being answered. Try again soon.")
 
     @staticmethod
     async def _answer(error: ServiceError, exchange: _Exchange, scope: Scope) -> None:
@@ -118,7 +118,7 @@ class _Exchange:
         if announced.isdigit() and int(announced) > self._body_limit:
             raise self._too_large()
         if self._headers.get(b"content-encoding", b"identity").strip().lower() not in (b"identity", b""):
-            raise UnsupportedMediaType("The body is packed (Content-Encoding). Send it as it is.")
+            raise UnsupportedMediaType("The body is compressed (Content-Encoding). Send it uncompressed.")
 
     def _too_large(self) -> TooLarge:
         """Return the error of a body beyond the limit."""
@@ -132,7 +132,9 @@ class _Exchange:
             async with asyncio.timeout_at(self._due()):
                 message = await self._receive()
         except TimeoutError:
-            self._refuse(TooSlow(f"The body did not come within {time.perf_counter() - self._begin:.0f} s."))
+            self._refuse(
+                TooSlow(f"The body did not arrive within {time.perf_counter() - self._begin:.0f} s.")
+            )
         piece = message.get("body", b"")
         self._received += len(piece)
         self._whole = not message.get("more_body", False)

@@ -33,7 +33,7 @@ from service.worker.process import Process, Registry
 
 logger = structlog.get_logger(__name__)
 
-After = Annotated[str, Query(max_length=64, description="Last process of the page before")]
+After = Annotated[str, Query(max_length=64, description="Last process of the previous page")]
 _SUBJECTS = ("case", "scene")
 Prefer = Annotated[str, Header(description="Jobs are always asynchronous (RFC 7240)", max_length=1000)]
 

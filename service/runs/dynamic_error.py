@@ -20,7 +20,7 @@ def dynamic_error(run: RunSeries) -> Figure:
         key="dynamic_error",
         title="Dynamic and static transmission error",
         caption="The static curve is the table at the nominal force and the same position; the dynamic one "
-        "answers its steps as an oscillating system does.",
+        "responds to its steps as an oscillating system.",
         alternative=_words(run, speeds, windows),
         content=tuple(_panel(run, s, w) for s, w in zip(speeds, windows, strict=True)),
         table=_table(run, speeds, windows),

@@ -28,8 +28,8 @@ def dynamic_factor_figure(run: RunResult) -> Figure:
         key="dynamic_factor",
         title=f"Dynamic factor of {run.mesh[0]}",
         caption=f"Force of the driving flank over the nominal one, in blocks of {PITCHES} pitches. "
-        "The largest is the dynamic factor K_v; where the least is 0 the flanks part. The mean differs "
-        "from 1 by what accelerates the train.",
+        "The largest is the dynamic factor K_v; where the least is 0 the flanks lift off. The mean "
+        "differs from 1 by the torque that accelerates the train.",
         alternative=f"Largest {number(float(factor.largest[worst]), 4)} at "
         f"{number(float(abscissa[worst]), 3)} {unit}, least {number(float(factor.least.min()), 3)}.",
         content=(Panel(axis, Axis("mesh force over nominal, 1"), lines),),

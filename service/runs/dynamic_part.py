@@ -87,7 +87,7 @@ def dynamic_making(run: RunResult) -> tuple[Section, ...]:
         folded=(_energy(run),),
         part=Part.ACCURACY,
     )
-    text = "As it was resolved, in SI."
+    text = "The scene with all defaults, in SI."
     scene = Section("Scene", text, folded=(facts("Scene", run.case),), part=Part.INPUT)
     steps = facts("Step statistics", run.statistics.to_json())
     receipt = Section("Receipt of the run", tables=(_seconds(run),), folded=(steps,), part=Part.RECEIPT)
@@ -159,7 +159,7 @@ def _accuracy(run: RunResult) -> Table:
         rows += _errors(title, unit, run.receipt.get("error", {}).get(name, {}))
     if run.energy is not None:
         rows.append(
-            ("energy unaccounted for, % of what vibration turns over", number(100 * run.energy.relative, 2))
+            ("energy unaccounted for, % of the turnover of vibration", number(100 * run.energy.relative, 2))
         )
         through = run.energy.relative_to_throughput
         rows.append(("energy unaccounted for, % of the drive's work", number(100 * through, 2)))

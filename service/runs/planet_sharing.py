@@ -32,7 +32,7 @@ def planet_sharing(run: RunResult) -> Figure | None:
         key="planet_sharing",
         title="Load sharing of the planets",
         caption="Force of each planet's mesh times the number of planets over the sum of their forces: 1 "
-        "where all carry the same.",
+        "for equal loads.",
         alternative=f"Largest share in the mean (K_gamma): {factors}.",
         content=tuple(_panel(run, sharing) for sharing in sharings),
         table=Table("Load sharing", ("gear", "mesh", "of means", "least", "largest"), rows),

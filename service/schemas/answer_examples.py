@@ -60,7 +60,7 @@ _ASSUMED = {
     "effect": "coast_flank",
     "assumption": "coast flanks stay apart",
     "holds": True,
-    "reason": "the least room is 12 um",
+    "reason": "the least clearance is 12 um",
 }
 _LIVE: Json = {
     "curves": [
@@ -183,7 +183,7 @@ def problem_example(status: int, phrase: str) -> Json:
         },
         429: {
             "type": "urn:lineofaction:problem:queue-full",
-            "detail": "100 computations wait already. Try again in a while.",
+            "detail": "100 computations wait already. Try again later.",
         },
     }
     plain = {"type": "about:blank", "title": phrase, "status": status, "detail": phrase, "errors": []}

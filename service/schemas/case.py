@@ -104,20 +104,25 @@ class AccuracyInput(BoundaryModel):
     """The request to the planner: an accuracy, a time or a level; by default tolerance 0.01."""
 
     tolerance: float | None = Field(
-        default=None, ge=1e-4, le=0.5, description="Relative, on mean and peak-to-peak STE", examples=[0.01]
+        default=None,
+        ge=1e-4,
+        le=0.5,
+        description="Allowed relative error of mean and peak-to-peak STE",
+        examples=[0.01],
     )
     tolerance_floor_nm: float = Field(
         default=20.0,
         ge=0.0,
         le=1e6,
-        description="Error in nm that a tolerance allows in any case; per cent of a small ripple may be less",
+        description="Error in nm that a tolerance always allows, even if it is more than the relative error "
+        "of a small ripple",
         examples=[20.0],
     )
     time_budget_s: float | None = Field(
         default=None,
         gt=0.0,
         le=1e6,
-        description="CPU seconds that may be spent; beside a tolerance refinement ends there",
+        description="Budget in CPU seconds; with a tolerance, refinement ends there",
         examples=[10.0],
     )
     level: Literal["draft", "standard", "fine"] | None = Field(
@@ -128,28 +133,27 @@ class AccuracyInput(BoundaryModel):
     )
     receipt: Literal["full", "minimal"] = Field(
         default="full",
-        description="full: errors by source; minimal: nothing is solved to estimate errors",
+        description="full: errors by source; minimal: no error estimates",
         examples=["full"],
     )
     on_violation: Literal["repeat", "fail", "report"] = Field(
         default="repeat",
-        description="Where an assumption turns out wrong on the solution: repeat with the effect it needs, "
-        "fail, or report",
+        description="If an assumption is violated: repeat with the effect it needs, fail, or report",
         examples=["repeat"],
     )
     positions: int | None = Field(
         default=None,
         ge=8,
         le=4096,
-        description="Positions in one base pitch; left out: the planner's",
+        description="Positions in one base pitch; left out: chosen by the planner",
         examples=[64],
     )
     pitches: int | None = Field(
         default=None,
         ge=1,
         le=1_000_000,
-        description="Base pitches that the table covers where gears have pitch deviations; left out: until "
-        "all repeats, the teeth of one gear or the hunting cycle of both",
+        description="Base pitches that the table covers if gears have pitch deviations; left out: the full "
+        "period, one revolution of one gear or the hunting cycle of both",
         examples=[20],
     )
 
@@ -166,7 +170,7 @@ class AccuracyInput(BoundaryModel):
         """Refuse a tolerance or a time budget beside a level, which is a mesh."""
         wishes = [name for name in ("tolerance", "time_budget_s") if getattr(self, name) is not None]
         if wishes and self.level is not None:
-            advice = "A level is a mesh, whatever it costs."
+            advice = "A level is a mesh, regardless of cost."
             refuse("level", self.level, f"left out when {wishes[0]} is given", advice)
         return self
 
@@ -181,7 +185,7 @@ class Case(BoundaryModel):
         examples=[{"youngs_modulus_gpa": 210.0}],
     )
     load: LoadInput = Field(description="The loads", examples=[{"torque_n_m": [10, 100, 400]}])
-    errors: ErrorsInput = Field(default=ErrorsInput(), description="Errors of assembly", examples=[{}])
+    errors: ErrorsInput = Field(default=ErrorsInput(), description="Assembly errors", examples=[{}])
     accuracy: AccuracyInput = Field(
         default=AccuracyInput(), description="The accuracy requested", examples=[{}]
     )

@@ -16,9 +16,10 @@ Name = Annotated[str, Field(min_length=1, max_length=64)]
 class CaseOrScene(BoundaryModel):
     """A case or a scene, one of both."""
 
-    case: Case | None = Field(default=None, description="The case, as in a case file; or else a scene")
+    case: Case | None = Field(default=None, description="The case, as in a case file; alternative to a scene")
     scene: SceneInput | None = Field(
-        default=None, description="The scene, with cases written out or databases by hash; or else a case"
+        default=None,
+        description="The scene, with cases written out or databases by hash; alternative to a case",
     )
 
     @model_validator(mode="after")

@@ -12,10 +12,10 @@ from service.schemas.ogc import Link
 class DatabaseEntry(BaseModel):
     """One database."""
 
-    hash: str = Field(description="Content hash of the input: the resource's name")
+    hash: str = Field(description="Content hash of the input, the name of the resource")
     href: str = Field(description="Its path on the service")
-    created: str = Field(description="When it was stored, RFC 3339, UTC")
-    size: int = Field(ge=0, description="Bytes of the file")
+    created: str = Field(description="Time of storage, RFC 3339, UTC")
+    size: int = Field(ge=0, description="Size of the file in bytes")
     case: dict[str, Any] | None = Field(description="The case with all defaults; null if the file is damaged")
 
 

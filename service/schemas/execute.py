@@ -38,7 +38,7 @@ def _value(name: str, value: Any) -> Any:
         return value
     if "href" in value and set(value) <= _LINK:
         bound = "written out: the service reads no addresses that its callers name"
-        refuse(f"inputs.{name}.href", value["href"], bound, "Put what is there in its place.")
+        refuse(f"inputs.{name}.href", value["href"], bound, "Send its content instead.")
     if "value" not in value or not set(value) <= _FORMAT | {"value"}:
         return value
     for field in sorted(_FORMAT & set(value)):
@@ -50,11 +50,11 @@ def _value(name: str, value: Any) -> Any:
 @lru_cache(maxsize=1)
 def _wanted_output() -> type[BoundaryModel]:
     """Return the model of a request for an output."""
-    type_field: Any = (Literal[NETCDF], Field(NETCDF, description="The one type of the output"))
+    type_field: Any = (Literal[NETCDF], Field(NETCDF, description="Media type of the output"))
     form = create_model("NcFormat", __base__=BoundaryModel, mediaType=type_field)
     text = "Default: value; in a document: reference"
     fields: dict[str, Any] = {
-        "format": (form | None, Field(None, description="There is one format")),
+        "format": (form | None, Field(None, description="Format of the output")),
         "transmissionMode": (Literal["value", "reference"] | None, Field(None, description=text)),
     }
     return create_model("WantedNcOutput", __base__=BoundaryModel, **fields)
@@ -73,12 +73,12 @@ def execute_model(process: str, inputs: type[BoundaryModel], output: str) -> typ
         Name of its one output.
     """
     title = process.title().replace("-", "")
-    wanted: Any = (_wanted_output() | None, Field(None, description="The one output"))
+    wanted: Any = (_wanted_output() | None, Field(None, description="The output of the process"))
     outputs = create_model(f"{title}Outputs", __base__=BoundaryModel, **{output: wanted})
-    form = Field("raw", description="Results as they are, or as a JSON object by name")
+    form = Field("raw", description="Form of the result: raw, or a JSON object of outputs by name")
     fields: dict[str, Any] = {
         "inputs": (inputs, Field(description="Inputs of the process")),
-        "outputs": (outputs, Field(default_factory=outputs, description="Outputs wanted; default: all")),
+        "outputs": (outputs, Field(default_factory=outputs, description="Requested outputs; default: all")),
         "response": (Literal["raw", "document"], form),
     }
     return create_model(f"Execute{title}", __base__=ExecuteBody, **fields)

@@ -18,11 +18,11 @@ class FlankPoint(BoundaryModel):
         title="Torque on the pinion, N m",
         gt=0.0,
         le=1e9,
-        description="Torque on the driving gear in N m; no load given: the case's highest",
+        description="Torque on the driving gear in N m; left out, with no force: the highest of the case",
         examples=[100.0],
     )
     normal_force_n: Annotated[float | None, Spelling("--force")] = Field(
-        default=None, gt=0.0, le=1e9, description="Normal tooth force in N, instead"
+        default=None, gt=0.0, le=1e9, description="Normal tooth force in N, instead of a torque"
     )
     misalignment_um: float | None = Field(
         default=None,

@@ -68,7 +68,7 @@ class ToothingInput(_ToothingFigures):
 
     flank_grid: FlankGridInput | None = Field(
         default=None,
-        description="Free-form flank, removed besides the amounts above",
+        description="Free-form flank: material removed in addition to the amounts above",
         examples=[
             {
                 "roll_length_mm": [4.0, 20.0],

@@ -55,33 +55,36 @@ class LiveInput(BoundaryModel):
         examples=[0.0],
     )
     pinion: FlankChange = Field(  # type: ignore[valid-type]
-        default=FlankChange(), description="Flanks of the driving gear", examples=[{"tip_relief_um": 10.0}]
+        default=FlankChange(),
+        description="Modifications of the driving gear",
+        examples=[{"tip_relief_um": 10.0}],
     )
     wheel: FlankChange = Field(  # type: ignore[valid-type]
-        default=FlankChange(), description="Flanks of the driven gear", examples=[{"tip_relief_um": 10.0}]
+        default=FlankChange(),
+        description="Modifications of the driven gear",
+        examples=[{"tip_relief_um": 10.0}],
     )
     derivatives: bool = Field(
         default=False,
-        description="Also return the derivatives of every curve by its flanks, misalignment and torque, and "
-        "where on the flanks a micrometer matters",
+        description="Also return the derivatives of every curve by modifications, misalignment and torque, "
+        "and by the flanks point by point",
         examples=[True],
     )
     flanks: bool = Field(
         default=False,
-        description="Also return what happens on the flanks: pressure over the driving gear's flank, load "
-        "over the face, K_Hbeta",
+        description="Also return pressure over the driving gear's flank, load over the face and K_Hbeta",
         examples=[True],
     )
     condense: bool = Field(
         default=False,
-        description="Compute the compliance first if this service has none in its cache, as of gears that "
-        "were analyzed elsewhere (else refused, not-analysed); what a minute is too short for goes on when "
-        "asked again",
+        description="Compute the compliance first if it is not in the cache of this service, as for gears "
+        "analyzed on another machine (otherwise refused, not-analysed). After a minute, repeat "
+        "the request to continue",
         examples=[False],
     )
     caller: Caller | None = Field(
         default=None,
-        description="A name for whoever asks: a later question under it takes the place of one that waits",
+        description="Name of the caller; a later request of the same caller replaces its waiting one",
         examples=["slider-1"],
     )
 
@@ -94,7 +97,7 @@ class PlanInputs(BoundaryModel):
         default=None,
         gt=0.0,
         le=1e6,
-        description="CPU seconds that may be spent, beside a tolerance or a level of the case",
+        description="Budget in CPU seconds, in addition to a tolerance or a level of the case",
         examples=[30.0],
     )
 
@@ -105,6 +108,6 @@ class PlanRequest(BoundaryModel):
     inputs: PlanInputs = Field(description="Inputs of the plan")
     caller: Caller | None = Field(
         default=None,
-        description="A name for whoever asks: a later question under it takes the place of one that waits",
+        description="Name of the caller; a later request of the same caller replaces its waiting one",
         examples=["form-1"],
     )

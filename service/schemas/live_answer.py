@@ -12,21 +12,24 @@ from service.schemas.model import BoundaryModel
 class SourceError(BoundaryModel):
     """Error of one source; null where it is not known."""
 
-    mean: float | None = Field(description="Of the mean in um", examples=[0.01])
-    peak_to_peak: float | None = Field(description="Of peak-to-peak in um", examples=[0.02])
-    first_harmonic: float | None = Field(description="Of the first mesh harmonic in um", examples=[0.01])
+    mean: float | None = Field(description="Error of the mean in um", examples=[0.01])
+    peak_to_peak: float | None = Field(description="Error of peak-to-peak in um", examples=[0.02])
+    first_harmonic: float | None = Field(
+        description="Error of the first mesh harmonic in um", examples=[0.01]
+    )
 
 
 class CurveDerivative(BoundaryModel):
     """Derivatives of a curve by one figure, per unit of the figure."""
 
     ste_um: list[float] = Field(
-        description="Of the transmission error at each position", examples=[[0.1, 0.2]]
+        description="Derivative of the transmission error at each position", examples=[[0.1, 0.2]]
     )
-    mean_um: float = Field(description="Of the mean", examples=[0.15])
-    peak_to_peak_um: float = Field(description="Of peak-to-peak", examples=[0.02])
+    mean_um: float = Field(description="Derivative of the mean", examples=[0.15])
+    peak_to_peak_um: float = Field(description="Derivative of peak-to-peak", examples=[0.02])
     harmonics_um: list[float | None] = Field(
-        description="Of the amplitudes of the mesh harmonics; null where the positions do not resolve one",
+        description="Derivatives of the amplitudes of the mesh harmonics; null if the positions do not "
+        "resolve one",
         examples=[[0.01, -0.02]],
     )
 
@@ -38,9 +41,11 @@ class FlankDerivative(BoundaryModel):
     face_position_mm: list[float] = Field(
         description="Columns: distance from the gear's mid-face", examples=[[-5.0, 5.0]]
     )
-    mean_um: list[list[float]] = Field(description="Of the mean", examples=[[[0.2, 0.3], [0.3, 0.2]]])
+    mean_um: list[list[float]] = Field(
+        description="Derivative of the mean", examples=[[[0.2, 0.3], [0.3, 0.2]]]
+    )
     peak_to_peak_um: list[list[float]] = Field(
-        description="Of peak-to-peak", examples=[[[0.1, 0.0], [-0.1, 0.0]]]
+        description="Derivative of peak-to-peak", examples=[[[0.1, 0.0], [-0.1, 0.0]]]
     )
 
 
@@ -48,7 +53,7 @@ class CurveDerivatives(BoundaryModel):
     """The derivatives of a curve, to first order; see docs/theory/contact.md."""
 
     by: dict[str, CurveDerivative] = Field(
-        description="By every figure that acts: per um, per mm of a length, per N m",
+        description="Derivatives by every active quantity: per um, per mm of a length, per N m",
         examples=[
             {
                 "pinion.tip_relief_um": {
@@ -60,8 +65,8 @@ class CurveDerivatives(BoundaryModel):
             }
         ],
     )
-    pinion: FlankDerivative = Field(description="By the flank of the driving gear")
-    wheel: FlankDerivative = Field(description="By the flank of the driven gear")
+    pinion: FlankDerivative = Field(description="Derivatives by the flank of the driving gear")
+    wheel: FlankDerivative = Field(description="Derivatives by the flank of the driven gear")
 
 
 class LiveFlanks(BoundaryModel):
@@ -73,7 +78,7 @@ class LiveFlanks(BoundaryModel):
     )
     k_h_beta: float | None = Field(
         description="Face load factor: largest over mean load per face width, averaged over the positions; "
-        "null in the plane, where the load is even over the face by assumption",
+        "null in the plane model, which assumes a uniform load",
         examples=[1.2],
     )
     roll_length_mm: list[float] = Field(
@@ -84,7 +89,7 @@ class LiveFlanks(BoundaryModel):
         examples=[[-5.0, 5.0]],
     )
     pressure_mpa: list[list[float]] = Field(
-        description="Pressure in MPa that passes over each point of the driving gear's flank",
+        description="Largest pressure in MPa at each point of the driving gear's flank over the positions",
         examples=[[[900.0, 1093.0], [850.0, 1010.0]]],
     )
     mean_load_n_per_mm: list[float] = Field(
@@ -109,8 +114,10 @@ class LiveCurve(BoundaryModel):
     center_distance_change_mm: float = Field(
         description="Change of the center distance in mm", examples=[0.0]
     )
-    period: int = Field(description="Base pitches after which all repeats", examples=[1])
-    position: list[float] = Field(description="Base pitches; 0 = pitch point", examples=[[0.0, 0.5]])
+    period: int = Field(description="Base pitches after which the curve repeats", examples=[1])
+    position: list[float] = Field(
+        description="Positions in base pitches; 0 = pitch point", examples=[[0.0, 0.5]]
+    )
     ste_um: list[float] = Field(description="Static transmission error in um", examples=[[9.7, 12.1]])
     pair: list[int] = Field(description="Tooth pair of each column of load_share", examples=[[-1, 0]])
     load_share: list[list[float]] = Field(
@@ -127,28 +134,30 @@ class LiveCurve(BoundaryModel):
         default=None, description="Their errors in um", examples=[[0.02, 0.01]]
     )
     error_by_source_um: dict[str, SourceError] = Field(
-        description="What the errors are made of: root of the sum of squares",
+        description="Errors by source; the total is the root of the sum of squares",
         examples=[{"discretisation": {"mean": 0.01, "peak_to_peak": 0.02, "first_harmonic": 0.01}}],
     )
-    order: list[float] | None = Field(default=None, description="Orders of a period of several base pitches")
+    order: list[float] | None = Field(
+        default=None, description="Orders, if the period has several base pitches"
+    )
     amplitude_um: list[float] | None = Field(default=None, description="Their amplitudes in um")
     derivatives: CurveDerivatives | None = Field(
-        default=None, description="What changes the curve, if that was asked"
+        default=None, description="Derivatives of the curve, if requested"
     )
     flanks: LiveFlanks | None = Field(
-        default=None, description="What happens on the flanks, if that was asked"
+        default=None, description="Load and pressure on the flanks, if requested"
     )
 
 
 class LiveAssumption(BoundaryModel):
     """One thing that the answer took for granted."""
 
-    effect: str = Field(description="The effect that would not need it; empty if there is none")
-    assumption: str = Field(description="What", examples=["coast flanks stay apart"])
-    holds: bool | None = Field(description="Null: not checked, or it could not be assessed", examples=[True])
-    reason: str = Field(description="What was found", examples=["the least room is 12 um"])
+    effect: str = Field(description="Effect that removes the assumption; empty if there is none")
+    assumption: str = Field(description="The assumption", examples=["coast flanks stay apart"])
+    holds: bool | None = Field(description="Null: not checked, or not assessable", examples=[True])
+    reason: str = Field(description="Finding of the check", examples=["the least clearance is 12 um"])
     change: float | None = Field(
-        default=None, description="Largest relative change of mean or peak-to-peak that it can make"
+        default=None, description="Upper bound of its relative change of mean or peak-to-peak"
     )
 
 
@@ -156,37 +165,36 @@ class LiveCost(BoundaryModel):
     """CPU seconds of the parts of an answer."""
 
     compliance_cpu_seconds: float = Field(
-        description="Reading and assembling it: next to nothing if it was in memory", examples=[0.001]
+        description="Reading and assembling the compliance; negligible if it is in memory", examples=[0.001]
     )
-    contact_cpu_seconds: float = Field(description="The curves", examples=[0.02])
-    error_estimate_cpu_seconds: float = Field(description="Their errors", examples=[0.02])
+    contact_cpu_seconds: float = Field(description="Computing the curves", examples=[0.02])
+    error_estimate_cpu_seconds: float = Field(description="Estimating their errors", examples=[0.02])
     flanks_cpu_seconds: float = Field(
-        default=0.0, description="What happens on the flanks, if that was asked", examples=[0.01]
+        default=0.0, description="Load and pressure on the flanks, if requested", examples=[0.01]
     )
     derivatives_cpu_seconds: float = Field(
-        default=0.0, description="Their derivatives, if those were asked", examples=[0.03]
+        default=0.0, description="Computing their derivatives, if requested", examples=[0.03]
     )
 
 
 class LiveOutput(BoundaryModel):
     """Curves of other flanks."""
 
-    curves: list[LiveCurve] = Field(description="One for each torque")
-    effects: dict[str, bool] = Field(
-        description="Which optional physics was on", examples=[{"corner_contact": True}]
-    )
+    curves: list[LiveCurve] = Field(description="One curve for each torque")
+    effects: dict[str, bool] = Field(description="Effects that are on", examples=[{"corner_contact": True}])
     beyond_load_patches: int = Field(
-        description="Points at which a contact strip outgrew its load patch: 0.5 % of the mean there",
+        description="Points at which a contact strip is wider than its load patch: 0.5 % of the mean there",
         examples=[0],
     )
     discretisation_error: Literal["measured", "expected"] = Field(
-        description="How the error of the meshes is known: measured on coarse ones with these flanks, or, "
-        "where those are not in the cache (the table has a minimal receipt), as usual of the level",
+        description="Origin of the discretization error: measured on coarse meshes with these flanks, or "
+        "expected, the usual error of the level, if those meshes are not in the cache (tables "
+        "with a minimal receipt)",
         examples=["measured"],
     )
-    not_estimated: list[str] = Field(description="Sources of errors that are not known", examples=[[]])
+    not_estimated: list[str] = Field(description="Sources of error without an estimate", examples=[[]])
     residuals_max: float = Field(description="Largest relative residual of the contact", examples=[1e-12])
-    assumptions: list[LiveAssumption] = Field(description="What was taken for granted, and checked")
-    not_checked: list[LiveAssumption] = Field(description="What was taken for granted, and was not")
-    cost: LiveCost = Field(description="Of that work its parts")
-    cpu_seconds: float = Field(description="Work of the answer", examples=[0.03])
+    assumptions: list[LiveAssumption] = Field(description="Assumptions that were checked")
+    not_checked: list[LiveAssumption] = Field(description="Assumptions that were not checked")
+    cost: LiveCost = Field(description="CPU time by part")
+    cpu_seconds: float = Field(description="CPU time of the answer", examples=[0.03])

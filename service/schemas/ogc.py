@@ -95,7 +95,7 @@ class StatusInfo(BaseModel):
     type: Literal["process"] = "process"
     jobID: str  # noqa: N815
     status: JobStatus
-    message: str = Field(description="What happens or happened, in words")
+    message: str = Field(description="State of the job in words")
     created: str = Field(description="RFC 3339, UTC")
     started: str | None = None
     finished: str | None = None
@@ -103,10 +103,10 @@ class StatusInfo(BaseModel):
     progress: int = Field(ge=0, le=100, description="Per cent of the whole job")
     stage: str = Field(description="The stage the job is in")
     stage_progress: int = Field(ge=0, le=100, description="Per cent of the stage")
-    attempts: int = Field(ge=0, description="How often the work was started")
+    attempts: int = Field(ge=0, description="Number of starts of the computation")
     warnings: list[dict[str, Any]] | None = Field(
         default=None,
-        description="What is implausible about the inputs: check, field, value, unit, message; null in lists",
+        description="Implausible inputs: check, field, value, unit, message; null in lists",
     )
     links: list[Link]
 
@@ -123,4 +123,4 @@ class ResultReference(BaseModel):
 
     href: str
     type: str
-    hash: str = Field(description="Content hash of the input: the resource's name")
+    hash: str = Field(description="Content hash of the input, the name of the resource")

@@ -69,10 +69,10 @@ class MeshInput(BoundaryModel):
         examples=["ste.nc"],
     )
     database_hash: Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")] | None = Field(
-        default=None, description="Content hash of a database the service holds", examples=["0" * 64]
+        default=None, description="Content hash of a database of the service", examples=["0" * 64]
     )
     technique: Literal["constant_torque", "variable_torque"] = Field(
-        default="variable_torque", description="How the mesh force is found", examples=["variable_torque"]
+        default="variable_torque", description="Technique of the mesh force", examples=["variable_torque"]
     )
     damping_n_s_per_m: float | None = Field(
         default=None,
@@ -81,12 +81,14 @@ class MeshInput(BoundaryModel):
         description="Mesh damping in N s/m; left out: from damping_ratio",
         examples=[1e3],
     )
-    damping_ratio: float = Field(default=0.05, ge=0.0, le=10.0, description="Damping ratio", examples=[0.05])
+    damping_ratio: float = Field(
+        default=0.05, ge=0.0, le=10.0, description="Damping ratio of the mesh", examples=[0.05]
+    )
     nominal_force_n: float | None = Field(
         default=None,
         gt=0.0,
         le=1e9,
-        description="Transverse mesh force in N; left out: the load's",
+        description="Nominal transverse mesh force in N; left out: from the loads",
         examples=[2660.0],
     )
     position_offset: float = Field(
@@ -107,7 +109,7 @@ class MeshInput(BoundaryModel):
     )
     coast_flank: CoastFlankInput | None = Field(
         default=None,
-        description="The backs of the teeth; left out: only the driving flank carries force",
+        description="The coast flank; left out: only the driving flank carries force",
         examples=[{"backlash_um": 80.0}],
     )
 
@@ -126,8 +128,8 @@ class RunInput(BoundaryModel):
     duration_s: float = Field(ge=0.0, le=1e6, description="Duration in s", examples=[5.0])
     on_violation: Literal["repeat", "fail", "report"] = Field(
         default="repeat",
-        description="Where an assumption of a run or study turns out wrong: repeat with the effect it needs "
-        "and fail where none mends a wrong result, fail at any, or report",
+        description="If a run or study violates an assumption: repeat with the effect it needs (fail if the "
+        "result is invalid and no effect corrects it), fail at any, or report",
         examples=["repeat"],
     )
 
@@ -139,8 +141,9 @@ class SceneAccuracyInput(BoundaryModel):
         default=None,
         ge=1e-6,
         le=0.5,
-        description="Relative, on mean and peak-to-peak transmission error and on bearing forces: effects "
-        "of less influence are neglected, those of more are on; left out: as the scene calls for them",
+        description="Relative tolerance of mean and peak-to-peak transmission error and of bearing forces: "
+        "effects of less influence are neglected, others are on; left out: as the scene calls for "
+        "them",
         examples=[0.01],
     )
 
@@ -182,11 +185,11 @@ class SceneInput(BoundaryModel):
     planets: Annotated[tuple[PlanetsInput, ...], Strict(False)] = Field(default=(), max_length=100)
     loads: Annotated[tuple[LoadTorqueInput, ...], Strict(False)] = Field(default=(), max_length=1000)
     accuracy: SceneAccuracyInput = Field(
-        default=SceneAccuracyInput(), description="What automatic effects are decided by", examples=[{}]
+        default=SceneAccuracyInput(), description="Tolerance that decides on automatic effects", examples=[{}]
     )
-    outputs: OutputsInput = Field(default=OutputsInput(), description="What to store", examples=[{}])
+    outputs: OutputsInput = Field(default=OutputsInput(), description="Output of the run", examples=[{}])
     integration: IntegrationInput = Field(
-        default=IntegrationInput(), description="How to integrate", examples=[{}]
+        default=IntegrationInput(), description="Time integration", examples=[{}]
     )
     effects: dict[EffectName, Switch] = Field(
         default={}, description="Switches of optional physics; left out = auto"

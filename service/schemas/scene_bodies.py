@@ -32,7 +32,7 @@ class GearBodyInput(BoundaryModel):
         default=0.0,
         ge=0.0,
         le=1e5,
-        description="Bore in mm of the steel cylinder that stands for its inertia",
+        description="Bore in mm of the steel cylinder from which the inertia follows",
         examples=[40.0],
     )
     inertia: InertiaInput | None = Field(
@@ -48,27 +48,33 @@ class RollingContactInput(BoundaryModel):
     stiffness_n_per_m_n: float = Field(
         gt=0.0,
         le=1e20,
-        description="k of the force k (r - clearance)^exponent of the whole bearing, N and m",
+        description="Factor k of the force k (r - clearance)^exponent of the whole bearing, N and m",
         examples=[5e8],
     )
     exponent: float = Field(
         default=10.0 / 9.0,
         ge=1.0,
         le=3.0,
-        description="10/9 for rollers, 1.5 for balls",
+        description="Exponent of that force: 10/9 for rollers, 1.5 for balls",
         examples=[1.5],
     )
     radial_clearance_um: float = Field(
-        default=0.0, ge=0.0, le=1e4, description="From the middle to contact in um", examples=[20.0]
+        default=0.0,
+        ge=0.0,
+        le=1e4,
+        description="Radial displacement from the middle to contact in um",
+        examples=[20.0],
     )
     damping_n_s_per_m: float | None = Field(
         default=None,
         ge=0.0,
         le=1e12,
-        description="In full contact in N s/m; left out: from damping_ratio",
+        description="Damping in full contact in N s/m; left out: from damping_ratio",
         examples=[500.0],
     )
-    damping_ratio: float = Field(default=0.05, ge=0.0, le=10.0, description="Damping ratio", examples=[0.05])
+    damping_ratio: float = Field(
+        default=0.05, ge=0.0, le=10.0, description="Damping ratio in full contact", examples=[0.05]
+    )
 
 
 class SpringCurveInput(BoundaryModel):
@@ -134,13 +140,15 @@ class BearingInput(BoundaryModel):
         default=None,
         min_length=5,
         max_length=6,
-        description="Added: 5 by 5 in x, y, z, tilt_x, tilt_y, or 6 by 6 with 0 for the rotation; N, m, rad",
+        description="Added stiffness: 5 by 5 in x, y, z, tilt_x, tilt_y, or 6 by 6 with 0 for the rotation; "
+        "N, m, rad",
     )
     damping_matrix: MatrixRows | None = Field(
         default=None,
         min_length=5,
         max_length=6,
-        description="Added: the same for rates; N, m, rad, s; left out: in proportion, from damping_ratio",
+        description="Added damping, likewise; N, m, rad, s; left out: proportional to the stiffness, from "
+        "damping_ratio",
     )
     rolling_contact: RollingContactInput | None = Field(
         default=None,
@@ -175,14 +183,14 @@ class BushingInput(BearingInput):
         default=None,
         min_length=3,
         max_length=3,
-        description="Force x, y, z on the shaft in N where it is not displaced",
+        description="Force x, y, z in N on the shaft at zero displacement",
         examples=[[0.0, 0.0, 500.0]],
     )
     preload_moment_n_m: Annotated[tuple[Number, ...], Strict(False)] | None = Field(
         default=None,
         min_length=2,
         max_length=2,
-        description="Moment about x, y on the shaft in N m where it is not displaced",
+        description="Moment about x, y in N m on the shaft at zero displacement",
         examples=[[0.0, 0.0]],
     )
 
@@ -200,11 +208,15 @@ class HousingInput(BoundaryModel):
     stiffness_matrix: MatrixRows = Field(
         min_length=3,
         max_length=6000,
-        description="Over all seats: per bushing 3 rows x, y, z, or 5 with tilt_x, tilt_y, or 6 with the "
-        "rotation; N, m, rad. In a file on disk stiffness_file may name a CSV or NPZ file instead",
+        description="Stiffness over all seats: per bushing 3 rows x, y, z, or 5 with tilt_x, tilt_y, or 6 "
+        "with the rotation; N, m, rad. A scene file may name a CSV or NPZ file by stiffness_file "
+        "instead",
     )
     damping_matrix: MatrixRows | None = Field(
-        default=None, min_length=3, max_length=6000, description="The same for rates; left out: none"
+        default=None,
+        min_length=3,
+        max_length=6000,
+        description="Damping over all seats, likewise; left out: none",
     )
 
 
@@ -227,10 +239,10 @@ class CouplingInput(BoundaryModel):
         default=None,
         min_length=6,
         max_length=6,
-        description="Added: 6 by 6 in x, y, z, tilt_x, tilt_y, rotation; N, m, rad",
+        description="Added stiffness: 6 by 6 in x, y, z, tilt_x, tilt_y, rotation; N, m, rad",
     )
     damping_matrix: Rows | None = Field(
-        default=None, min_length=6, max_length=6, description="Added: the same for rates; N, m, rad, s"
+        default=None, min_length=6, max_length=6, description="Added damping, likewise; N, m, rad, s"
     )
 
 
@@ -249,10 +261,10 @@ class PlanetsInput(BoundaryModel):
         examples=[[0.0, 120.0, 240.0]],
     )
     radial_errors_um: PinErrors | None = Field(
-        default=None, description="Of all pins, outwards, in um", examples=[[0.0, 0.0, 0.0]]
+        default=None, description="Position errors of all pins outwards in um", examples=[[0.0, 0.0, 0.0]]
     )
     tangential_errors_um: PinErrors | None = Field(
-        default=None, description="Of all pins, about +z, in um", examples=[[20.0, 0.0, 0.0]]
+        default=None, description="Position errors of all pins about +z in um", examples=[[20.0, 0.0, 0.0]]
     )
 
     @model_validator(mode="after")

@@ -95,13 +95,14 @@ class SpeedTorqueInput(BoundaryModel):
     shaft: Name = Field(description="The shaft it acts on", examples=["output"])
     position_mm: Coordinate = place_of("it acts")
     kind: Literal["table", "quadratic", "constant"] = Field(
-        description="Through a table; as the square of the speed; constant against either sense of rotation",
+        description="Law: a table, the square of the speed, or a constant against either sense of rotation",
         examples=["table"],
     )
     speed_rpm: Numbers = Field(
         min_length=1,
         max_length=100_000,
-        description="Speeds of a table; the speed of the torque of a square; where a constant has set in",
+        description="Speeds in rpm: of the table, of the torque of a square, or at which a constant is "
+        "reached",
         examples=[[0.0, 1500.0]],
     )
     torque_n_m: Numbers = Field(

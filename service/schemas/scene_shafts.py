@@ -47,7 +47,7 @@ class ShaftInput(BoundaryModel):
         default=None,
         min_length=1,
         max_length=200,
-        description="Pieces of a stepped shaft from its left end, instead of a diameter",
+        description="Sections of a stepped shaft from its left end, instead of a diameter",
         examples=[[{"length_mm": 200.0, "outer_diameter_mm": 40.0}]],
     )
     inertia: InertiaInput | None = Field(

@@ -224,7 +224,7 @@ class _Comparison:
         if self.known or (self.named == 0 and self.file is None):
             return
         if self.file is None:
-            tip = "Is its volume mounted? If the results are lost, run loa store reindex: it strikes them."
+            tip = "Is its volume mounted? If they are lost, loa store reindex removes them from the index."
             raise refusal(f", whose index names {self.named} files: none of them is there", tip)
         index = "names other files" if self.named else "is empty"
         bound = f": there are files (such as {self.file}) and the index {index}"

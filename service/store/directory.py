@@ -37,7 +37,7 @@ class DirectoryLock:
         except OSError as error:
             suggestion = f"{error.strerror}. Choose another with --data-directory."
             raise BadInput.of(
-                "data_directory", str(self._directory), "a directory we may write to", suggestion
+                "data_directory", str(self._directory), "a writable directory", suggestion
             ) from None
         try:
             lock(descriptor)

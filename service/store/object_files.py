@@ -155,7 +155,7 @@ def _answering() -> Iterator[None]:
     try:
         yield
     except (BaseError, PermissionError) as error:
-        raise StoreUnavailable("The store of results cannot be reached. Try again in a while.") from error
+        raise StoreUnavailable("The store of results cannot be reached. Try again later.") from error
 
 
 def object_files(url: str, cache: Path, cache_bytes: int) -> ObjectFiles:

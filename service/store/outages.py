@@ -72,7 +72,7 @@ def retried(step: Callable[Concatenate[S, P], R]) -> Callable[Concatenate[S, P],
 def outage_of(error: SQLAlchemyError, engine: Engine) -> DatabaseUnavailable | None:
     """Return the message about an error of the database itself; None: it is the statement's."""
     if is_lost(error, engine):
-        return DatabaseUnavailable("The database cannot be reached. Try again in a while.")
+        return DatabaseUnavailable("The database cannot be reached. Try again later.")
     remedy = remedy_of(error, engine)
     return None if remedy is None else damaged(engine, str(getattr(error, "orig", error)), remedy)
 

@@ -91,12 +91,15 @@ class WriteCheck:
             step()
         except BadInput as error:
             logger.warning("cannot be written", part=part, error=str(error))
-            return "The place of results is not ours, or refuses what is written. The log says more.", False
+            return (
+                "The place of results belongs to another deployment or refuses writing. The log says more.",
+                False,
+            )
         except ServiceError as error:
             return str(error), type(error) is DatabaseUnavailable
         except OSError as error:
             return f"The place of results cannot be written: {error.strerror}.", False
         except Exception:
             logger.exception("write check failed", part=part)
-            return f"Something failed that should not while the {part} was written. The log says more.", False
+            return f"An unexpected failure occurred while the {part} was written. The log says more.", False
         return "", False

@@ -27,8 +27,8 @@ def contact_lines(flanks: LoadDistribution) -> Figure:
         key="contact_lines",
         title="Contact lines in the plane of action",
         caption="Where the tooth pairs touch: face across, path of contact upwards from the pinion's root "
-        "(A) to its tip (E). Color and thickness: what the line carries there; thin gray: the flanks could "
-        "touch but carry nothing. "
+        "(A) to its tip (E). Color and thickness: line load; thin gray: flanks that could touch "
+        "but carry no load. "
         f"{_strip(flanks)}",
         alternative=f"At most {number(float(1e-3 * flanks.line_load.max()), 4)} N/mm; at position {at}, the "
         f"one of the largest pressure, {_carrying(flanks, worst)} tooth pairs carry load.",

@@ -29,7 +29,7 @@ def budget_figure(database: SteDatabase, load: int) -> Figure | None:
     table_mean = _UM * load_curve(database, load).mean.value
     return Figure(
         key="deflection_budget",
-        title=f"What the mean transmission error is made of at {load_labels(database)[load]}",
+        title=f"Parts of the mean transmission error at {load_labels(database)[load]}",
         caption="Each part is its displacement along the line of action, weighted by the forces on the "
         "flanks. Teeth, bodies and contact are springs in closed form here: their mean is "
         f"{number(mean, 4)} µm, that of the table {number(table_mean, 4)} µm.",

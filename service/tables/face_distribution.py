@@ -66,11 +66,11 @@ def _line_load_caption(flanks: LoadDistribution, *, with_gap: bool) -> str:
     caption = "Force of all pairs per unit of face width."
     if with_gap:
         caption = (
-            f"Above: {caption[0].lower()}{caption[1:]} Below: what is left between the loaded flanks of the "
-            "pair that carries most; 0 in contact."
+            f"Above: {caption[0].lower()}{caption[1:]} Below: remaining gap between the loaded flanks of the "
+            "pair with the largest load; 0 in contact."
         )
     else:
-        caption += " The flanks of the pair that carries most touch wherever they can meet: there is no gap."
+        caption += " The flanks of the pair with the largest load touch wherever they can: no gap."
     if flanks.base_helix_angle == 0.0:
         return caption
     return f"{caption} A single position is uneven: the number of pairs that touch changes along the face."

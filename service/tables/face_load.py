@@ -46,7 +46,7 @@ def face_load(database: SteDatabase) -> Figure:
 def _waves(database: SteDatabase) -> str:
     """Say what of the pressure is the model's."""
     return (
-        ", which wavers as the contact lines pass from slice to slice of the model"
+        ", which fluctuates as the contact lines pass from slice to slice of the model"
         if database.facts.base_helix_angle
         else ""
     )

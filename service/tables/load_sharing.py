@@ -129,7 +129,7 @@ def _alone(database: SteDatabase, loads: list[int]) -> str:
         alone = np.nanmax(database.load_share[rows, load, m, d, :], axis=-1) > 1 - _CARRIES
         part = 100.0 * mean_over(position, alone.astype(float))
         parts.append(f"{number(part, 2)} % of the mesh cycle at {load_labels(database)[load]}")
-    return f"One pair carries the whole load in {', '.join(parts)}; elsewhere two or more pairs share it."
+    return f"One pair carries the whole load in {', '.join(parts)}; otherwise two or more pairs share it."
 
 
 def _table(database: SteDatabase) -> Table:

@@ -82,7 +82,7 @@ def _stiffness(database: SteDatabase, force: float | None) -> tuple[Section, ...
     text, figures = "", [mesh_stiffness(database)]
     budget = budget_figure(database, headline_load(database, force))
     if budget is None:
-        text = "The table does not hold its pair, so its deflection is not split into parts."
+        text = "The table does not contain its pair, so its deflection is not split into parts."
     else:
         figures.append(budget)
     return (Section("Mesh stiffness and deflection", text, figures=tuple(figures)),)
@@ -100,7 +100,7 @@ def static_making(database: SteDatabase) -> tuple[Section, ...]:
     metadata = database.metadata
     text = "Errors are half-widths of the band around each number."
     accuracy = Section("Accuracy of the table", text, tables=(_accuracy(database),), part=Part.ACCURACY)
-    text = "With every default that was taken. Numbers without a unit are in SI."
+    text = "With all defaults filled in. Numbers without a unit are in SI."
     case = Section("Case", text, folded=case_tables(metadata.case), part=Part.INPUT)
     receipt = Section(
         "Receipt of the table",
@@ -116,7 +116,7 @@ def contact_effects(ledger: Any) -> Section:
     entries = [{"name": k, **v} for k, v in ledger.items()] if isinstance(ledger, dict) else ledger
     shown, trifles = by_size(entries)
     where = influence_place(entries)
-    text = f"Of effects in the contact: the change by leaving one out, estimated {where}." if where else ""
+    text = f"Effects in the contact: estimated change without each, {where}." if where else ""
     folded: tuple[Table, ...] = (
         (effect_table(trifles_title(trifles), map(_effect_row, trifles)),) if trifles else ()
     )

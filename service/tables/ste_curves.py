@@ -133,7 +133,7 @@ def _period(database: SteDatabase) -> str:
     """Say after how many pitches a table with pitch errors repeats."""
     if database.period == 1:
         return ""
-    return f" The teeth have pitch errors: everything repeats after {database.period} base pitches."
+    return f" The teeth have pitch errors: the curve repeats after {database.period} base pitches."
 
 
 def _words(database: SteDatabase, curves: list[Curve]) -> str:

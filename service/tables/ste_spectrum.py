@@ -24,8 +24,8 @@ def ste_spectrum(database: SteDatabase) -> Figure:
     return Figure(
         key="ste_spectrum",
         title=f"Spectrum of the transmission error at {label}",
-        caption="Order 1 is the mesh frequency. What lies in the gray is below its stated error and shows "
-        "nothing."
+        caption="Order 1 is the mesh frequency. Amplitudes in the gray are below their stated "
+        "error."
         + (" Orders between the whole ones come from the pitch errors." if database.period > 1 else ""),
         alternative=_words(label, order, amplitude, error),
         content=(_panel(order, amplitude, error),),

@@ -12,7 +12,7 @@ from service.worker.process import Process, Registry, on_demand
 ANALYZE = Process(
     id="analyze",
     title="STE database of a gear pair",
-    description="Contact analysis of a gear pair over positions and loads; makes an STE database.",
+    description="Contact analysis of a gear pair over positions and loads; writes an STE database.",
     version="2",
     inputs=AnalyzeInputs,
     output="database",
@@ -25,7 +25,7 @@ ANALYZE = Process(
 SIMULATE = Process(
     id="simulate",
     title="Dynamics of a geared system",
-    description="Time integration of shafts, gears and bearings excited by STE databases; makes a run.",
+    description="Time integration of shafts, gears and bearings excited by STE databases; writes a run.",
     version="2",
     inputs=SimulateInputs,
     output="run",

@@ -34,6 +34,6 @@ def hold_to(limit_mb: int) -> None:
 def out_of_memory(limit_mb: int) -> str:
     """Return the message of a job that needed more."""
     return (
-        f"The computation ran out of memory: it may have {limit_mb} MB (LOA_MEMORY_LIMIT_MB). Ask for a "
+        f"The computation ran out of memory: it may have {limit_mb} MB (LOA_MEMORY_LIMIT_MB). Select a "
         "coarser level or fewer positions, or start the service with a higher limit."
     )

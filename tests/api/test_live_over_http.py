@@ -100,8 +100,8 @@ def test_an_answer_knows_how_wrong_it_is_and_what_it_cost(client: TestClient, ke
     assert again["discretisation_error"] == "expected"  # the table has a minimal receipt
     assert again["not_estimated"] == [] and 0.0 < again["residuals_max"] < 1e-6
     assert {one["assumption"]: one["holds"] for one in again["assumptions"]} == {
-        "load even over the face": True,
-        "plane strain stands for the whole face": False,  # as requested by name
+        "uniform load over the face": True,
+        "plane strain over the whole face": False,  # as requested by name
         "contact strips within the load patches": True,
     }
     assert [one["assumption"] for one in again["not_checked"]] == ["coast flanks stay apart"]

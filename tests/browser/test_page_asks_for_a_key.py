@@ -35,7 +35,7 @@ def test_it_asks_until_the_key_is_right_and_keeps_it_for_the_tab(
     assert Axe().run(page, options={"rules": {"region": {"enabled": False}}}).violations_count == 0
     page.keyboard.type("loa_wrong")
     page.keyboard.press("Enter")
-    expect(dialog).to_contain_text("not known here")
+    expect(dialog).to_contain_text("unknown")
     page.keyboard.type(secret)
     page.keyboard.press("Enter")
     page.wait_for_selector("html[data-ready=yes]")

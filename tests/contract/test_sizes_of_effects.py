@@ -101,7 +101,9 @@ def invoked(*words: object) -> str:
 def told_lines(text: str) -> dict[str, str]:
     """Words of every effect that has a line of its own on the command line."""
     return dict(
-        re.findall(r"^effect (\w+): .*\n(?: +(?:left off|on after).*\n)? +without it (.*?); cost", text, re.M)
+        re.findall(
+            r"^effect (\w+): .*\n(?: +(?:neglected|on after).*\n)? +without it (.*?); cost", text, re.M
+        )
     )
 
 

@@ -94,7 +94,7 @@ def test_ctrl_c_and_resume_give_the_file_of_a_run_that_never_stopped(tmp_path: P
     whole, parts = tmp_path / "whole.nc", tmp_path / "parts.nc"
     stopped = interrupted_in_the_middle(tmp_path, parts)
     assert (stopped.returncode, stopped.stdout) == (130, "")
-    assert "interrupted" in stopped.stderr and "--resume goes on" in stopped.stderr
+    assert "interrupted" in stopped.stderr and "--resume continues" in stopped.stderr
     first, attributes = content(parts)
     assert attributes["status"] == "CANCELLED"
     assert 0.2 * DURATION <= first["time"][-1] < DURATION

@@ -65,15 +65,17 @@ def _inputs(element: MeshElement) -> list[Variable]:
         _input("displacement_rate", "m/s", "Rate of displacement"),
         _input("coast_displacement", "m", "The same approach along the coast flank's line of action"),
         _input("coast_displacement_rate", "m/s", "Rate of coast_displacement"),
-        _input("misalignment", "m", "Place on the table's axis", _nearest_zero(element.table.misalignment)),
+        _input(
+            "misalignment", "m", "Position on the table's axis", _nearest_zero(element.table.misalignment)
+        ),
         _input(
             "center_distance_change",
             "m",
-            "Place on the table's axis",
+            "Position on the table's axis",
             _nearest_zero(element.table.center_distance_change),
         ),
-        _turns("driver_turns", "Whole turns on top of driver_angle: exact however many"),
-        _turns("driven_turns", "Whole turns on top of driven_angle"),
+        _turns("driver_turns", "Whole revolutions in addition to driver_angle, exact for any number"),
+        _turns("driven_turns", "Whole revolutions in addition to driven_angle"),
     ]
 
 
@@ -111,7 +113,7 @@ def _parameters(element: MeshElement) -> list[Variable]:
             REAL,
             "parameter",
             "tunable",
-            "Along the transverse line of action, at zero displacements",
+            "Backlash along the transverse line of action at zero displacements",
             "m",
             float(backlash),
         ),
@@ -120,7 +122,7 @@ def _parameters(element: MeshElement) -> list[Variable]:
             REAL,
             "parameter",
             "tunable",
-            "Of the driver over the pitch, both on the operating pitch circle",
+            "Tooth thickness of the driver over the pitch, on the operating pitch circle",
             "",
             float(thickness),
         ),
@@ -129,7 +131,7 @@ def _parameters(element: MeshElement) -> list[Variable]:
             BOOLEAN,
             "parameter",
             "fixed",
-            "True: the backs of the teeth touch where the backlash is used up",
+            "True: the coast flanks touch where the backlash is used up",
             "",
             coast is not None,
         ),
@@ -147,10 +149,10 @@ def _parameters(element: MeshElement) -> list[Variable]:
 
 _REAL_OUTPUTS = (
     _output("mesh_force", "N", "Transverse force of the flanks along the line of action, damping included"),
-    _output("elastic_force", "N", "The part of it that the table gives"),
-    _output("driver_torque", "N.m", "On the driver in its own sense: against its motion"),
-    _output("driven_torque", "N.m", "On the driven gear in its own sense: along its motion"),
-    _output("driver_axial_force", "N", "On the driver along the axis about which it turns positively"),
+    _output("elastic_force", "N", "Part of mesh_force from the table, without damping"),
+    _output("driver_torque", "N.m", "Torque on the driver in its own sense: against its motion"),
+    _output("driven_torque", "N.m", "Torque on the driven gear in its own sense: along its motion"),
+    _output("driver_axial_force", "N", "Force on the driver along the axis about which it turns positively"),
     _output("dte", "m", "Dynamic transmission error; positive: the driven gear lags"),
     _output("dte_rate", "m/s", "Its rate"),
     _output("position", "", "Base pitches by the driver's angle, from 0 to the period of the table"),

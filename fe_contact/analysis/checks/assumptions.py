@@ -141,7 +141,7 @@ def _neglected(run: SolvedTable) -> Iterator[Assumption]:
             change = _relative(influence, run)
             reason = f"estimated at {engineering(100 * change, 2)} % of the computed mean or peak-to-peak"
             holds = change <= allowed(run).relative
-            yield Assumption(name, "too small to be seen", holds, change, reason)
+            yield Assumption(name, "neglected effects are negligible", holds, change, reason)
 
 
 def _relative(influence: EstimatedInfluence, run: SolvedTable) -> float:
@@ -159,12 +159,12 @@ def _plane(run: SolvedRun) -> Iterator[Assumption]:
     reasons = across_face(request.scene)
     reason = "; ".join(reasons) if reasons else "nothing in the scene acts across it"
     face, width = request.model_effects
-    yield Assumption(face, "load even over the face", not reasons, float("nan"), reason)
+    yield Assumption(face, "uniform load over the face", not reasons, float("nan"), reason)
     missing = left_out(run.places.places[0].contact.pair, run.plan.discretization)
     if missing:
         reason = f"the finite width changes about {engineering(100 * missing, 2)} % of the mean"
         holds = missing <= allowed(run).relative
-        yield Assumption(width, "plane strain stands for the whole face", holds, missing, reason)
+        yield Assumption(width, "plane strain over the whole face", holds, missing, reason)
 
 
 def _coast_flanks(run: SolvedRun) -> Iterator[Assumption]:
@@ -173,12 +173,12 @@ def _coast_flanks(run: SolvedRun) -> Iterator[Assumption]:
     for point, (_, solution) in zip(run.places.places, run.solved, strict=True):
         pair = point.contact.pair
         if pair.transverse_base_backlash <= LEAST_BACKLASH:
-            reason = "the teeth as given have no backlash: coast flanks were not assessed"
+            reason = "the teeth have no stated backlash: coast flanks were not assessed"
             yield Assumption("", "coast flanks stay apart", None, float("nan"), reason)
             return
         room.append(pair.transverse_base_backlash + float(np.min(solution.no_load)) - _closing(point))
     least = 1e6 * min(room)
-    reason = f"the least room is {least:.3g} um" if least > 0 else f"the teeth jam by {-least:.3g} um"
+    reason = f"the least clearance is {least:.3g} um" if least > 0 else f"the teeth jam by {-least:.3g} um"
     yield Assumption("", "coast flanks stay apart", least > 0, float("nan"), reason)
 
 
@@ -206,14 +206,16 @@ def _closing(point: OperatingPoint) -> float:
 def _load_patches(run: SolvedRun) -> Assumption:
     """Contact strips stay within the load patches of the finite elements."""
     grown = sum(int(solution.beyond.sum()) for _, solution in run.solved)
-    reason = f"strips outgrew them at {grown} points" if grown else "all strips are narrower"
+    reason = f"strips are wider at {grown} points" if grown else "all strips are narrower"
     return Assumption("", "contact strips within the load patches", grown == 0, float("nan"), reason)
 
 
 def _support_loads(run: SolvedTable) -> Assumption:
     """From lift-off to twice the largest load the forces for dynamics are solved."""
     failed = sum(int(np.count_nonzero(solution.status)) for _, solution in run.support)
-    reason = f"{failed} points have no solution" if failed else "all points beyond the asked loads are solved"
+    reason = (
+        f"{failed} points have no solution" if failed else "all points beyond the requested loads are solved"
+    )
     return Assumption("", "forces solved from lift-off to overload", failed == 0, float("nan"), reason)
 
 

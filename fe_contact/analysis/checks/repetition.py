@@ -49,7 +49,7 @@ def settled(
         request = run.checked.request
         if wrong and request.options.on_violation == "fail":
             reasons = "; ".join(f"{flaw.what}: {flaw.reason}" for flaw in wrong)
-            raise SolveError(f"assumptions that do not hold: {reasons}")
+            raise SolveError(f"violated assumptions: {reasons}")
         automatic = {entry.name for entry in run.checked.ledger if entry.choice == "auto" and not entry.on}
         needed = {flaw.effect: f"{flaw.what}: {flaw.reason}" for flaw in wrong if flaw.effect in automatic}
         if not needed or request.options.on_violation != "repeat":

@@ -122,7 +122,7 @@ def _following(table: SteDatabase, last: Pass) -> Refinement | str:
 def _ended(made: Refinement, passes: Sequence[Pass], cache: Path | None) -> str:
     """Say why a refinement does not begin, of passes or of time; empty if it may."""
     if len(passes) == MOST_PASSES:
-        return f"{MOST_PASSES} passes are the most"
+        return f"the limit is {MOST_PASSES} passes"
     budget = made.decided.checked.request.options.time_budget
     if budget is None:
         return ""

@@ -230,14 +230,14 @@ def _of_model(model: Decided, begun: _Resolution) -> Refinement:
 def _no_way(finest: _Resolution, source: int) -> str:
     """Say what stands in the way."""
     plan = finest.decided.plan
-    fixed = f"{plan.positions} positions were requested; leave positions out or ask for more"
+    fixed = f"{plan.positions} positions were requested; leave positions out or request more"
     why = {
         _MESH: f"mesh {finest.level} is the finest",
-        _SLICES: f"{finest.slices} slices are the most",
-        _SOLVER: "residuals of the contact are mended by no refinement",
-        _WIDTH: "no other model is open to this request that is expected to err less",
-        _METHOD: "what the method leaves out of full contact is mended by no refinement",
-        _POSITION: fixed if plan.positions else "positions are as close as the search places them",
+        _SLICES: f"{finest.slices} slices are the limit",
+        _SOLVER: "no refinement reduces the residuals of the contact",
+        _WIDTH: "no other model for this request has a smaller expected error",
+        _METHOD: "no refinement reduces the difference of the method from full contact",
+        _POSITION: fixed if plan.positions else "positions have the closest spacing of the search",
     }[source]
     share = finest.sources[source]
     return f"{AT_NODES[source]} would still take {engineering(share, 2)} of the tolerance: {why}"

@@ -51,4 +51,4 @@ def _neglected(neglected: Mapping[str, str]) -> Iterator[Assumption]:
     """Effects of the bodies that were neglected for a tolerance, assessed by the flanks of the case."""
     for name, why in neglected.items():
         reason = f"not checked on these flanks: {why}"
-        yield Assumption(name, "too small to be seen", None, float("nan"), reason)
+        yield Assumption(name, "neglected effects are negligible", None, float("nan"), reason)

@@ -167,7 +167,7 @@ class CondensedPair:
         """Refuse gears or a center distance that this compliance is not of."""
         known = self.checked.request.pair
         if _plain(pair) != _plain(known):
-            bound = "of the gears and the center distance of the table, but for flank modifications"
+            bound = "with the gears and the center distance of the table; only flank modifications may differ"
             raise InputError("pair", "another", bound, "Analyze the other pair first.")
 
     def _refuse_beyond_patches(self, pair: ParallelAxes, torques: FloatArray, load: FloatArray) -> None:
@@ -238,7 +238,7 @@ def _refuse_more_teeth(contact: PairContact, change: float) -> None:
     teeth, needed = int(contact.plane[0].teeth.size), condensed_teeth(contact.pair)
     if needed > teeth:
         bound = f"a change at which at most {teeth} teeth can touch: so many are condensed, {needed} can"
-        advice = "Put it on the axis of the case and analyze that."
+        advice = "Add it to the axis of the case and analyze the case."
         raise InputError("center_distance_changes[0]", change, bound, advice)
 
 

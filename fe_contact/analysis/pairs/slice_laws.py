@@ -35,5 +35,5 @@ def parabolic_stiffness(pair: ParallelAxes, candidates: Candidates) -> FloatArra
 def _external(pair: ParallelAxes) -> GearPair:
     """Return the pair as an external one; callers have refused any other."""
     if not isinstance(pair, GearPair):
-        raise TypeError("the stiffness of ISO 6336-1 is for external pairs")
+        raise TypeError("the stiffness of ISO 6336-1 applies to external pairs only")
     return pair

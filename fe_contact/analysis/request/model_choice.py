@@ -202,7 +202,7 @@ def _said(choice: tuple[Checked, MeshChoice]) -> tuple[Checked, MeshChoice]:
 def _reason(tells: bool, text: str, parts: str) -> str:
     """Say why an effect that tells the models apart was turned here; reasons of others stay."""
     mine = tells and text in ("taken", "left out")
-    return f"{text} for the asked accuracy: expected error {parts}" if mine else text
+    return f"{text} for the requested accuracy: expected error {parts}" if mine else text
 
 
 def _planned(checked: Checked, mesh: MeshChoice) -> Decided:

@@ -52,4 +52,4 @@ def neglected_effects(
 def _reason(influence: EstimatedInfluence, tolerance: AllowedError) -> str:
     """Say why an effect is neglected."""
     change = f"at most {engineering(100 * influence.largest, 2)} % of mean or peak-to-peak at any load"
-    return f"left off: {change}, and {tolerance.words} are requested"
+    return f"neglected: {change}; the tolerance is {tolerance.words}"

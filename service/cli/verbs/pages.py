@@ -59,7 +59,9 @@ def report(
     *,
     files: Annotated[
         list[Path],
-        typer.Argument(help="STE database, flank results, studies, run, netCDF or JSON; one of each kind."),
+        typer.Argument(
+            help="Result files, netCDF or JSON: STE database, flank results, studies, run; one of each kind."
+        ),
     ],
     output: Annotated[Path, typer.Option("-o", "--output", help="Page to write.")] = Path("report.html"),
     images: Annotated[Path | None, typer.Option(help="Folder to write the plots to as PNG.")] = None,
@@ -83,7 +85,7 @@ def compare(
     *,
     files: Annotated[
         list[Path],
-        typer.Argument(help="Two STE databases or two runs, or one and a CSV file of a measurement."),
+        typer.Argument(help="Two STE databases, two runs, or one of them and a CSV file of a measurement."),
     ],
     output: Annotated[Path, typer.Option("-o", "--output", help="Page to write.")] = Path("comparison.html"),
     torque: Annotated[

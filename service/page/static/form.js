@@ -32,7 +32,7 @@ export class CaseForm {
     byId("fields").replaceChildren(
       this.pair(part("pair"), root),
       this.plain("Loads", "load", part("load"), root),
-      this.plain("Errors of assembly", "errors", part("errors"), root),
+      this.plain("Assembly errors", "errors", part("errors"), root),
       this.plain("Accuracy", "accuracy", part("accuracy"), root, ["tolerance", "level", "model"]),
       folded("Material of both gears", this.plain("Material", "material", part("material"), root)),
       folded("Effects", this.effects(effects)),

@@ -176,7 +176,7 @@ export class Live {
       said.push(`At ${found.beyond_load_patches} points the contact is wider than the mesh allows for.`);
     }
     const broken = (found.assumptions ?? []).filter(({ holds }) => holds === false);
-    said.push(...broken.map(({ assumption, reason }) => `Does not hold: ${assumption} (${reason}).`));
+    said.push(...broken.map(({ assumption, reason }) => `Violated: ${assumption} (${reason}).`));
     byId("live-time").textContent = said.join(" ");
     const body = byId("live-body").dataset;
     Object.assign(body, { answered: round.toFixed(1), milliseconds: all.toFixed(1), cpu: found.cpu_seconds });

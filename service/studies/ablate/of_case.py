@@ -27,7 +27,7 @@ def _table(ablation: Ablation) -> Table:
         names = ", ".join(entry.name for entry in ordered if entry not in shown)
         folded = f"{len(ordered) - len(shown)} below {100 * TRIFLE:g} %: {names}"
         rows.append((folded, *[""] * (len(_HEAD) - 1)))
-    caption = f"What leaving an effect out changes, computed and estimated, {_where(ablation)}"
+    caption = f"Change without each effect, computed and estimated, {_where(ablation)}"
     return Table(caption, _HEAD, tuple(rows))
 
 

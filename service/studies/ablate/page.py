@@ -41,12 +41,12 @@ def ablation_page(ablation: Ablation | SceneAblation) -> Page:
     if ablation.effects:
         entry = look.ordered(ablation)[0]
         name, change = entry.name.replace("_", " "), look.words(ablation, entry)
-        heads.append(Headline(f"without {name}", change, "of peak to peak, most of all"))
+        heads.append(Headline(f"without {name}", change, "of peak to peak, the largest influence"))
     left = Table("Effects that were not toggled", ("effect", "because"), tuple(ablation.left_out.items()))
     tables = (look.table(ablation), *([left] if ablation.left_out else []))
     figures = (replace(ablation_figure(ablation), table=None),) if ablation.effects else ()
     lead = f"{len(ablation.effects)} effects of the {look.what}, each toggled by itself"
-    return Page("What every effect changes", lead, tuple(heads), (Section("Effects", "", figures, tables),))
+    return Page("Influence of every effect", lead, tuple(heads), (Section("Effects", "", figures, tables),))
 
 
 def _look(ablation: Ablation | SceneAblation) -> Look:

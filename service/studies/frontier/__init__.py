@@ -25,7 +25,7 @@ class Inputs(BoundaryModel):
     up_to: Literal["corrected_fine", "3d_draft", "3d_standard", "3d_fine"] = Field(
         default="3d_fine",
         title="Up to",
-        description="The dearest fidelity of a case that is run: the finest in two dimensions, or in three "
+        description="The most expensive fidelity of a case: the finest in two dimensions, or one in three "
         "(minutes)",
         examples=["3d_draft"],
     )
@@ -33,7 +33,7 @@ class Inputs(BoundaryModel):
         default=None,
         ge=1,
         le=MOST_FULL_CONTACT,
-        description="Positions of a case at which full finite-element contact is run beside the study, "
-        "about 3 CPU s each in plane strain, 70 or more over the face",
+        description="Positions of a case at which full finite-element contact is computed as well: about 3 "
+        "CPU s each in plane strain, 70 or more over the face",
         examples=[4],
     )

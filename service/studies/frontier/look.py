@@ -61,7 +61,7 @@ def _scene_caption(study: SceneFrontier) -> str:
 
 _CASE = Look(
     key="frontier",
-    title="What accuracy costs in time on this case",
+    title="Error of each fidelity over its CPU time, this case",
     time="CPU time of the table, s",
     panels=(
         ("mean_error", "Mean", "error of the mean, %", "mean error, %"),
@@ -80,13 +80,13 @@ _CASE = Look(
     further=(("memory, MiB", lambda result: number(result.peak_memory_bytes / 2**20, 3)),),
     table="Accuracy study",
     chosen="chosen for the requested accuracy",
-    lead=lambda study: f"{len(study.results)} ways to the same table of {study.solves} positions x loads",
+    lead=lambda study: f"{len(study.results)} fidelities, tables of {study.solves} positions x loads",
     caption=_case_caption,
     peers=full_contact.peers,
 )
 _SCENE = Look(
     key="run_frontier",
-    title="What accuracy costs in time on this scene",
+    title="Error of each fidelity over its CPU time, this scene",
     time="CPU time of the run, s",
     panels=(
         ("rms_error", "Transmission error, rms", "error of the rms, %", "DTE rms error, %"),
@@ -113,7 +113,7 @@ _SCENE = Look(
     table="Accuracy study of the scene",
     chosen="the scene's own setting",
     lead=lambda study: (
-        f"{len(study.results)} ways to the same vibration: {study.blocks} blocks, {study.orders} orders"
+        f"{len(study.results)} fidelities of the vibration: {study.blocks} blocks, {study.orders} orders"
     ),
     caption=_scene_caption,
 )

@@ -75,7 +75,7 @@ def frontier_page(study: Study) -> Page:
     left = Table("Fidelities that were not run", ("fidelity", "because"), tuple(study.left_out.items()))
     tables = (table, *([left] if study.left_out else []))
     section = Section(table.caption, "", (replace(figure, table=None),), tables)
-    return Page("What accuracy costs in time", look.lead(study), tuple(heads), (section,))
+    return Page("Error over CPU time", look.lead(study), tuple(heads), (section,))
 
 
 def _panel(
@@ -129,9 +129,7 @@ def _quickest(study: Study) -> str:
         if good:
             best = min(good, key=lambda result: result.cpu_seconds)
             parts.append(f"within {text}: {best.title}, {number(best.cpu_seconds, 2)} CPU s")
-    return (
-        f"Quickest fidelity {'; '.join(parts)}." if parts else "No fidelity comes within 1 % of the finest."
-    )
+    return f"Fastest fidelity {'; '.join(parts)}." if parts else "No fidelity comes within 1 % of the finest."
 
 
 def _text(study: Study) -> Iterator[Table | str]:

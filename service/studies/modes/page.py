@@ -125,7 +125,7 @@ def _energies(modes: ModalAnalysis) -> Figure:
     )
     return Figure(
         key="modal_energy",
-        title="What holds the natural modes at rest",
+        title="Strain energy of the natural modes at rest",
         caption="Share of each mesh, bearing, coupling and drive in the strain energy of each mode. Modes of "
         "one frequency are any combination of each other.",
         alternative="Shares of the strain energy by mode; the table has the largest.",

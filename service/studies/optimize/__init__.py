@@ -54,15 +54,20 @@ class GearVariablesInput(BoundaryModel):
 class VariablesInput(BoundaryModel):
     """Design variables of both gears."""
 
-    pinion: GearVariablesInput = Field(default=GearVariablesInput(), description="Of the driving gear")
-    wheel: GearVariablesInput = Field(default=GearVariablesInput(), description="Of the driven gear")
+    pinion: GearVariablesInput = Field(
+        default=GearVariablesInput(), description="Modifications of the driving gear"
+    )
+    wheel: GearVariablesInput = Field(
+        default=GearVariablesInput(), description="Modifications of the driven gear"
+    )
     most_tip_relief_um: float = Field(
         default=40.0,
         title="Most tip relief, µm",
         gt=0.0,
         le=1000.0,
-        description="Where neither gear names a figure: tip relief of both up to this, 0.15 to 0.8 modules "
-        "long, and unless the model is of the plane up to 30 um of crowning of the driving gear",
+        description="If no modification is named: tip relief of both gears up to this amount, 0.15 to 0.8 "
+        "modules long, and lead crowning of the driving gear up to 30 um unless the model is "
+        "plane",
         examples=[40.0],
     )
 
@@ -83,18 +88,22 @@ class ScatterInput(BoundaryModel):
         description="Standard deviation of the misalignment in um",
         examples=[8.0],
     )
-    pinion: GearScatterInput = Field(default=GearScatterInput(), description="Of the driving gear")
-    wheel: GearScatterInput = Field(default=GearScatterInput(), description="Of the driven gear")
+    pinion: GearScatterInput = Field(
+        default=GearScatterInput(), description="Modifications of the driving gear"
+    )
+    wheel: GearScatterInput = Field(
+        default=GearScatterInput(), description="Modifications of the driven gear"
+    )
     rule: Literal["gauss_hermite", "sobol_sample"] = Field(
         default="gauss_hermite",
-        description="Gauss-Hermite points in each deviation, or one fixed sample",
+        description="Method of averaging: Gauss-Hermite points in each deviation, or one fixed Sobol sample",
         examples=["gauss_hermite"],
     )
     points: int = Field(
-        default=5, ge=1, le=33, description="Points of gauss_hermite in each deviation", examples=[5]
+        default=5, ge=1, le=33, description="Number of Gauss-Hermite points in each deviation", examples=[5]
     )
     log2_size: int = Field(
-        default=4, ge=0, le=10, description="Logarithm to base 2 of the size of sobol_sample", examples=[4]
+        default=4, ge=0, le=10, description="Binary logarithm of the size of the Sobol sample", examples=[4]
     )
 
 
@@ -102,10 +111,13 @@ class ObjectiveInput(BoundaryModel):
     """What is made of the expected peak-to-peak at the torques."""
 
     kind: Literal["weighted_mean", "worst"] = Field(
-        default="weighted_mean", description="Mean over the torques, or the worst", examples=["worst"]
+        default="weighted_mean", description="Mean over the torques, or the largest", examples=["worst"]
     )
     weights: Annotated[tuple[Annotated[float, Field(ge=0.0, le=1e6)], ...], Strict(False)] = Field(
-        default=(), max_length=64, description="Of weighted_mean, one for each torque", examples=[[1.0, 2.0]]
+        default=(),
+        max_length=64,
+        description="Weights of weighted_mean, one for each torque",
+        examples=[[1.0, 2.0]],
     )
 
 
@@ -116,7 +128,7 @@ class LimitsInput(BoundaryModel):
         default=None, gt=0.0, le=1e5, description="Largest Hertzian pressure in MPa", examples=[1500.0]
     )
     face_load_factor: float | None = Field(
-        default=None, gt=1.0, le=100.0, description="K_Hbeta of the mesh cycle", examples=[1.5]
+        default=None, gt=1.0, le=100.0, description="Largest K_Hbeta of the mesh cycle", examples=[1.5]
     )
     edge_load_share: float | None = Field(
         default=None,
@@ -132,18 +144,23 @@ class SearchInput(BoundaryModel):
 
     method: Literal["sequential_linear_programming", "differential_evolution", "nelder_mead"] = Field(
         default="sequential_linear_programming",
-        description="With derivatives from the best of a sample, or without them: global or local",
+        description="Search with derivatives from the best start designs, or without derivatives, global or "
+        "local",
         examples=["differential_evolution"],
     )
     sample: int = Field(
         default=64,
         ge=0,
         le=4096,
-        description="Start designs that sequential_linear_programming ranks first",
+        description="Number of start designs that sequential_linear_programming ranks",
         examples=[64],
     )
     trials: int = Field(
-        default=3, ge=0, le=64, description="Number of the best start designs that are followed", examples=[3]
+        default=3,
+        ge=0,
+        le=64,
+        description="Number of best start designs from which a search begins",
+        examples=[3],
     )
     population: int = Field(
         default=5, ge=3, le=50, description="Population of differential_evolution per variable", examples=[5]
@@ -154,7 +171,7 @@ class SearchInput(BoundaryModel):
     starts: int = Field(default=1, ge=1, le=256, description="Independent searches", examples=[1])
     evaluations: int = Field(
         default=1000,
-        title="Designs tried, at most",
+        title="Largest number of designs",
         ge=1,
         le=1_000_000,
         description="Largest number of designs per search",
@@ -192,9 +209,7 @@ class Inputs(BoundaryModel):
         description="Modifications to vary, with bounds; default: those of most_tip_relief_um",
         examples=[{"pinion": {"tip_relief_um": [0.0, 60.0], "tip_relief_length_mm": [0.5, 3.0]}}],
     )
-    scatter: ScatterInput = Field(
-        default=ScatterInput(), description="Deviations of assembly and manufacture"
-    )
+    scatter: ScatterInput = Field(default=ScatterInput(), description="Assembly and manufacturing deviations")
     objective: ObjectiveInput = Field(default=ObjectiveInput(), description="Objective to minimize")
     limits: LimitsInput = Field(default=LimitsInput(), description="Limits to meet")
     search: SearchInput = Field(default=SearchInput(), description="Search method and its settings")

@@ -41,7 +41,7 @@ def harris_figure(result: Optimization) -> Figure:
         key="harris_map",
         title="Transmission error before and after optimization",
         caption="Harris maps without scatter, a curve for each torque, less its mean; and peak-to-peak over "
-        f"torque. {_scattered(result)} Dotted upright lines: torques that count.",
+        f"torque. {_scattered(result)} Dotted vertical lines: design torques.",
         alternative=f"{result.reason}.",
         content=(*maps, _ripple(result)),
         table=ripple_table(result),
@@ -201,7 +201,7 @@ def optimization_page(result: Optimization) -> Page:
     tried = f"Not tried: {'; '.join(result.not_tried)}."
     search = Section("Search", tried, tables=(run_table(result), cost_table(result)))
     robust = Section("Scatter", "", tables=(node_table(result),))
-    return Page("Micro-geometry of least transmission error", lead, heads, (figure, design, robust, search))
+    return Page("Microgeometry of least transmission error", lead, heads, (figure, design, robust, search))
 
 
 def _text(result: Optimization) -> Iterator[Table | str]:

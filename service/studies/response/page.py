@@ -38,7 +38,7 @@ def response_figure(response: ForcedResponse, mesh: int = 0) -> Figure:
         key="response",
         title="Forced response to the transmission error",
         caption="Peak amplitudes of the mesh orders about the static equilibrium, linear: mean mesh "
-        "stiffness, no loss of contact. Below: the least mesh force; negative means that flanks part.",
+        "stiffness, no loss of contact. Below: the least mesh force; negative means that flanks lift off.",
         alternative=_words(response),
         content=tuple(panels),
         table=peak_table(response),
@@ -111,7 +111,7 @@ def _words(response: ForcedResponse) -> str:
     parting = response.speed[~response.in_contact] / RPM
     if parting.size:
         first = number(float(parting[0]), 4)
-        text += f" Flanks part at {parting.size} of {response.speed.size} speeds, from {first} rpm on."
+        text += f" Flanks lift off at {parting.size} of {response.speed.size} speeds, from {first} rpm on."
     return text
 
 
@@ -121,7 +121,7 @@ def _text(response: ForcedResponse) -> Iterator[Table | str]:
     parting = response.speed[~response.in_contact] / RPM
     if parting.size:
         where = f"{parting[0]:.5g} to {parting[-1]:.5g} rpm"
-        yield f"flanks part at {parting.size} of {response.speed.size} speeds, {where}: see loa steady"
+        yield f"flanks lift off at {parting.size} of {response.speed.size} speeds, {where}: see loa steady"
     worst = 100.0 * float(response.excitation_difference.max(initial=0.0))
     yield (
         "first-order theory: the other excitation changes "

@@ -18,18 +18,34 @@ class Inputs(BoundaryModel):
         title="Class",
         ge=1,
         le=11,
-        description="Class of ISO 1328-1:2013, both gears",
+        description="Tolerance class of ISO 1328-1:2013 of both gears",
         examples=[6],
     )
     misalignment_um: float = Field(
-        default=0.0, ge=0.0, le=1000.0, description="Tolerance of the misalignment, +- um", examples=[20.0]
+        default=0.0,
+        ge=0.0,
+        le=1000.0,
+        description="Tolerance of the misalignment in um, to either side",
+        examples=[20.0],
     )
     distribution: Annotated[Literal["normal", "uniform"], Spelling("--uniform", "uniform")] = Field(
         default="normal",
-        description="Within the tolerances: normal, three standard deviations wide and cut there, or uniform",
+        description="Distribution within the tolerances: normal with three standard deviations at the limit, "
+        "truncated there, or uniform",
         examples=["normal"],
     )
     samples: int = Field(
-        default=1000, title="Pairs", ge=2, le=1_000_000, description="Pairs to draw", examples=[1000]
+        default=1000,
+        title="Pairs",
+        ge=2,
+        le=1_000_000,
+        description="Number of pairs to sample",
+        examples=[1000],
     )
-    seed: int = Field(default=0, ge=0, le=2**63 - 1, description="Equal seeds, equal results", examples=[0])
+    seed: int = Field(
+        default=0,
+        ge=0,
+        le=2**63 - 1,
+        description="Seed of the sample; equal seeds give equal results",
+        examples=[0],
+    )

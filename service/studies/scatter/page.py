@@ -23,7 +23,7 @@ def scatter_figure(study: ToleranceStudy) -> Figure:
     return Figure(
         key="scatter",
         title="Peak-to-peak transmission error within tolerances",
-        caption=f"{count} pairs drawn within their tolerances. Above: part of all up to a ripple. "
+        caption=f"{count} pairs sampled within their tolerances. Above: part of all up to a ripple. "
         f"Lower: quantiles with bounds of {100 * study.confidence:g} % confidence (dotted), and the "
         "pair as designed (dashed).",
         alternative=_words(study),
@@ -41,7 +41,7 @@ def _distribution(study: ToleranceStudy) -> Panel:
         kept = np.unique(np.linspace(0, ordered.size - 1, min(_STEPS, ordered.size)).astype(int))
         color = palette.ordered(k, study.torque.size)
         lines.append(Line(f"{name} N m", ordered[kept], part[kept], color))
-    return Panel(Axis("peak to peak, µm"), Axis("part of all pairs"), tuple(lines), title="Distribution")
+    return Panel(Axis("peak to peak, µm"), Axis("share of all pairs"), tuple(lines), title="Distribution")
 
 
 def _over_torque(study: ToleranceStudy) -> Panel:
@@ -101,7 +101,7 @@ def page(study: ToleranceStudy) -> Page:
     )
     tables = (quantile_table(study), influence_table(study))
     section = Section("Distribution", "", (replace(scatter_figure(study), table=None),), tables)
-    lead = f"{study.peak_to_peak.shape[0]} pairs drawn within their tolerances"
+    lead = f"{study.peak_to_peak.shape[0]} pairs sampled within their tolerances"
     return Page("Transmission error within tolerances", lead, heads, (section,))
 
 

@@ -48,7 +48,7 @@ def check(case: Case, inputs: Inputs) -> None:
 def normalized(_case: Case, inputs: Inputs) -> Json:
     """Return all inputs; refuse a sample too large for a job."""
     if inputs.samples > MOST_SAMPLES:
-        raise BadInput.of("samples", inputs.samples, f"at most {MOST_SAMPLES}", "Run more by loa scatter.")
+        raise BadInput.of("samples", inputs.samples, f"at most {MOST_SAMPLES}", "For more use loa scatter.")
     return with_defaults(inputs)
 
 

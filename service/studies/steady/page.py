@@ -33,7 +33,9 @@ def steady_figure(states: SteadyStates, mesh: int = 0) -> Figure:
         (f"largest mesh force{name}, N", states.largest_force[:, mesh]),
     ]
     if np.nanmax(states.parted[:, mesh], initial=0.0) > 0.0:
-        quantities.append((f"driving flank parted{name}, % of the period", 100.0 * states.parted[:, mesh]))
+        quantities.append(
+            (f"driving flank lifted off{name}, % of the period", 100.0 * states.parted[:, mesh])
+        )
     if np.nanmax(states.coasting[:, mesh], initial=0.0) > 0.0:
         quantities.append((f"coast flank touching{name}, % of the period", 100.0 * states.coasting[:, mesh]))
     marks = tuple(Reference(f"fold {number(speed, 5)}", speed) for speed in _folds(states, ends))
@@ -42,7 +44,7 @@ def steady_figure(states: SteadyStates, mesh: int = 0) -> Figure:
         key="steady",
         title="Periodic steady states over speed",
         caption="Motions at constant speed by shooting. Line: the branch, solid where stable, dashed where "
-        "not. Points: what slow rising and falling speeds settle on. Error: alternating part.",
+        "not. Points: steady states at slowly rising and falling speeds. Error: alternating part.",
         alternative=_words(states),
         content=panels,
         table=steady_table(states),
@@ -136,7 +138,7 @@ def contact_name(parted: float, coasting: float) -> str:
     """Say which flanks touch over a period."""
     if coasting > 0.0:
         return f"both flanks, apart from the driving one {100.0 * parted:.0f} %"
-    return f"parts, {100.0 * parted:.0f} %" if parted > 0.0 else "driving flank"
+    return f"lift-off, {100.0 * parted:.0f} %" if parted > 0.0 else "driving flank"
 
 
 def _words(states: SteadyStates) -> str:

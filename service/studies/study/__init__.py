@@ -31,12 +31,18 @@ MOST_POINTS = 100_000
 
 
 class NormalInput(BoundaryModel):
-    """A normal distribution, cut off at its ends."""
+    """A truncated normal distribution."""
 
-    mean: Value = Field(description="Mean", examples=[1e8])
-    standard_deviation: float = Field(gt=0.0, le=1e20, description="Before it is cut off", examples=[5e6])
-    low: Value | None = Field(default=None, description="What lies below is rejected", examples=[8e7])
-    high: Value | None = Field(default=None, description="What lies above is rejected", examples=[1.2e8])
+    mean: Value = Field(description="Mean before truncation", examples=[1e8])
+    standard_deviation: float = Field(
+        gt=0.0, le=1e20, description="Standard deviation before truncation", examples=[5e6]
+    )
+    low: Value | None = Field(
+        default=None, description="Lower limit; values below are rejected", examples=[8e7]
+    )
+    high: Value | None = Field(
+        default=None, description="Upper limit; values above are rejected", examples=[1.2e8]
+    )
 
 
 class UniformInput(BoundaryModel):
@@ -50,21 +56,21 @@ class FactorInput(BoundaryModel):
     """Something that the scene file declares, and the values it takes; in the unit of its name."""
 
     path: Path = Field(
-        description="The field as a path of names: KIND.NAME.FIELD; * is every part, [0] an entry of a list",
+        description="Field of the scene as a path KIND.NAME.FIELD; * is every part, [0] an entry of a list",
         examples=["loads.brake.torque_n_m"],
     )
     levels: Values | None = Field(
         default=None,
         min_length=1,
         max_length=10_000,
-        description="Levels of a grid: each meets every level of the other factors",
+        description="Levels of a grid, combined with every level of the other factors",
         examples=[[50.0, 100.0, 150.0]],
     )
     values: Values | None = Field(
         default=None,
         min_length=1,
         max_length=MOST_POINTS,
-        description="Values of a list: they change together with those of other lists",
+        description="Values of a list, which change together with those of other lists",
         examples=[[50.0, 100.0]],
     )
     normal: NormalInput | None = Field(default=None, description="Normal distribution")
@@ -73,8 +79,8 @@ class FactorInput(BoundaryModel):
         default=None,
         ge=1,
         le=11,
-        description="Tolerance class of ISO 1328-1:2013 of a profile or helix slope: normal about the "
-        "designed value, three standard deviations are the tolerance, what lies beyond is rejected",
+        description="Tolerance class of ISO 1328-1:2013 of a profile or helix slope: normal about the design "
+        "value with three standard deviations at the tolerance, truncated there",
         examples=[6],
     )
 
@@ -96,20 +102,22 @@ class FactorInput(BoundaryModel):
 class ResponseInput(BoundaryModel):
     """A figure that is taken from every run."""
 
-    quantity: QuantityName = Field(description="Name", examples=["bearing_force"])
+    quantity: QuantityName = Field(description="Name of the response", examples=["bearing_force"])
     part: Name | None = Field(
-        default=None, description="Its mesh or bearing; left out: the largest of all", examples=["input left"]
+        default=None,
+        description="Its mesh or bearing; left out: the largest over all",
+        examples=["input left"],
     )
     order: int | None = Field(
         default=None,
         ge=1,
         le=1000,
-        description="Multiple of the mesh frequency, of bearing_force and dte_order",
+        description="Mesh order, for bearing_force and dte_order",
         examples=[1],
     )
     mesh: Name | None = Field(
         default=None,
-        description="Whose frequency the orders of a bearing are of; left out: the first mesh",
+        description="Mesh whose orders a bearing force has; left out: the first mesh",
         examples=["mesh"],
     )
 
@@ -120,39 +128,49 @@ class Inputs(BoundaryModel):
     factors: Annotated[tuple[FactorInput, ...], Strict(False)] = Field(
         min_length=1,
         max_length=100,
-        description="What is varied: a table [[factors]] for each",
+        description="Factors to vary: a table [[factors]] for each",
         examples=[[{"path": "loads.brake.torque_n_m", "levels": [50.0, 100.0]}]],
     )
     responses: Annotated[tuple[ResponseInput, ...], Strict(False)] = Field(
         min_length=1,
         max_length=100,
-        description="What is taken from every run: a table [[responses]] for each",
+        description="Responses of every run: a table [[responses]] for each",
         examples=[[{"quantity": "dte_rms"}]],
     )
     samples: int = Field(
         default=1,
         ge=1,
         le=MOST_POINTS,
-        description="Samples of the distributions, the same for every combination of levels",
+        description="Number of samples of the distributions, the same for every combination of levels",
         examples=[1],
     )
-    seed: int = Field(default=0, ge=0, le=2**32 - 1, description="Equal seeds, equal samples", examples=[0])
+    seed: int = Field(
+        default=0,
+        ge=0,
+        le=2**32 - 1,
+        description="Seed of the samples; equal seeds give equal samples",
+        examples=[0],
+    )
     start_s: float = Field(
-        default=0.0, ge=0.0, le=1e6, description="Time from which on responses are taken, s", examples=[0.5]
+        default=0.0, ge=0.0, le=1e6, description="Start time of the responses in s", examples=[0.5]
     )
     receipt: Literal["minimal", "full"] = Field(
         default="minimal",
-        description="State the tolerance of the steps, or measure the errors of every run",
+        description="minimal: state the tolerance of the steps; full: measure the errors of every run",
         examples=["minimal"],
     )
     confidence: float = Field(
-        default=0.95, ge=0.5, le=0.9999, description="Of the bounds of quantiles", examples=[0.95]
+        default=0.95,
+        ge=0.5,
+        le=0.9999,
+        description="Confidence level of the bounds of quantiles",
+        examples=[0.95],
     )
     keep_worst: int = Field(
         default=0,
         ge=0,
         le=100,
-        description="Runs of the largest first response that are kept in full",
+        description="Number of runs with the largest first response to store in full",
         examples=[3],
     )
 

@@ -100,18 +100,18 @@ def page(study: Study) -> Page:
     )
     tables = (extreme_table(study), *((failed_table(study),) if failed else ()))
     sections = (
-        Section("What the runs say", "", tuple(replace(f, table=None) for f in study_figures(study))),
+        Section("Responses", "", tuple(replace(f, table=None) for f in study_figures(study))),
         Section("Figures", "", (), (summary_table(study), *tables)),
     )
     return Page("Many scenes", _lead(study), heads, sections)
 
 
 def _lead(study: Study) -> str:
-    """Say what was run, and what each run does without."""
+    """Say what was run, and what each run neglects."""
     without = ", ".join(study.facts["neglected"])
     each = f" {study.samples} samples of each combination." if study.samples > 1 else ""
     over = ", ".join(study.factor[k] for k in varied(study))
-    return f"{len(study.reason)} runs over {over}.{each} Runs do without: {without}."
+    return f"{len(study.reason)} runs over {over}.{each} Neglected in the runs: {without}."
 
 
 def _largest(study: Study) -> str:
@@ -127,7 +127,7 @@ def _text(study: Study) -> Iterator[Table | str]:
     yield extreme_table(study)
     if study.usable < len(study.reason):
         yield failed_table(study)
-    yield f"runs do without: {', '.join(study.facts['neglected'])}"
+    yield f"neglected in the runs: {', '.join(study.facts['neglected'])}"
     yield f"cost {engineering(1e3 * float(study.seconds[:, 0].mean()), 3)} ms CPU a run"
 
 

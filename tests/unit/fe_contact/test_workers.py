@@ -129,7 +129,7 @@ def test_what_tasks_share_is_packed_once_and_passed_by_a_file(monkeypatch: pytes
 
 def test_a_pool_that_loses_a_process_says_so(pool: ByExecutor) -> None:
     """Nothing can be given to it any more: the last test of the pool."""
-    with pytest.raises(WorkersLost, match=r"ended in mid-run.*: 0 of 2 tasks were done"):
+    with pytest.raises(WorkersLost, match=r"ended during the run.*: 0 of 2 tasks were done"):
         list(pool.run(end, os.getpid(), [0, 0]))
     with pytest.raises(WorkersLost, match="0 of 1 tasks were done"):
         list(pool.run(divided, 1.0, [2.0]))

@@ -139,7 +139,7 @@ def test_a_dismissed_job_raises(client: LineOfActionClient) -> None:
 
 def test_waiting_ends_after_the_time_given_and_the_job_goes_on(client: LineOfActionClient) -> None:
     job = client.submit("fake", wish(mode="hang"))
-    with pytest.raises(StillRunning, match="It goes on"):
+    with pytest.raises(StillRunning, match="It continues"):
         client.wait(job.id, timeout=0.1, interval=0.02)
     assert not client.status(job.id).ended
     client.dismiss(job.id)

@@ -107,10 +107,13 @@ def test_the_service_says_when_in_seconds_or_as_a_date(tmp_path: Path, slept: li
             httpx2.Response(301, headers={"Location": "https://gears.example/"}),
             r"sends to https://gears\.example/",
         ),
-        (httpx2.Response(200, text="<html>log in</html>"), "status 200, not as this service does"),
-        (httpx2.Response(200, json=["a", "list"]), "status 200, not as this service does"),
-        (httpx2.Response(200, json={"status": "ok"}), "status 200, not as this service does"),
-        (httpx2.Response(500, json={"detail": None}), "status 500, not as this service does"),
+        (
+            httpx2.Response(200, text="<html>log in</html>"),
+            "status 200, which is not an answer of this service",
+        ),
+        (httpx2.Response(200, json=["a", "list"]), "status 200, which is not an answer of this service"),
+        (httpx2.Response(200, json={"status": "ok"}), "status 200, which is not an answer of this service"),
+        (httpx2.Response(500, json={"detail": None}), "status 500, which is not an answer of this service"),
     ],
 )
 def test_what_is_not_this_service_is_told_as_such(
@@ -125,7 +128,7 @@ def test_what_is_not_this_service_is_told_as_such(
 
 def test_forces_that_are_no_columns_are_not_taken_for_some(tmp_path: Path) -> None:
     client = against(lambda _request: httpx2.Response(200, text="x" * 24), tmp_path)
-    with pytest.raises(Unreachable, match="not as this service does"):
+    with pytest.raises(Unreachable, match="which is not an answer of this service"):
         client.query(KEY, 0.0, 1.0)
 
 
@@ -249,7 +252,7 @@ def test_a_service_that_never_answered_is_told_at_once(tmp_path: Path, slept: li
 
 
 def test_the_time_to_wait_is_kept_and_is_a_timeout(tmp_path: Path, slept: list[float]) -> None:
-    with pytest.raises(StillRunning, match=r"Job j did not end within 5 s\. It goes on") as caught:
+    with pytest.raises(StillRunning, match=r"Job j did not end within 5 s\. It continues") as caught:
         against(lambda _request: state("running"), tmp_path).wait("j", timeout=5.0)
     assert isinstance(caught.value, TimeoutError)
     assert sum(slept) == pytest.approx(5.0)
@@ -267,7 +270,7 @@ def test_ctrl_c_leaves_the_job_and_says_so(tmp_path: Path) -> None:
 
     with pytest.raises(KeyboardInterrupt) as caught:
         against(answer, tmp_path).wait("j", interrupted)
-    assert caught.value.__notes__ == ["Job j goes on at the service. Asking for the same again joins it."]
+    assert caught.value.__notes__ == ["Job j continues at the service. Repeat the request to join it."]
     assert methods == ["GET"]
 
 

@@ -322,7 +322,7 @@ def test_the_verbs_refuse_and_rebuild(tmp_path: Path, monkeypatch: pytest.Monkey
         assert refused.exit_code == 2 and "loa store reindex" in refused.stderr, refused.output
     told = run.invoke(app, ["store", "reindex"])
     assert (told.exit_code, told.stdout) == (0, "3 results entered, 0 known, 0 damaged\n")
-    assert "3 files sound, 0 damaged or missing" in run.invoke(app, ["store", "verify"]).stdout
+    assert "3 files intact, 0 damaged or missing" in run.invoke(app, ["store", "verify"]).stdout
     with writing(engine := open_database(tmp_path / "service.sqlite3")) as connection:
         connection.execute(update(results).values(used=LONG_AGO))
     assert json.loads(run.invoke(app, ["store", "gc", "--json"]).stdout)["quarantine_days"] == 7.0

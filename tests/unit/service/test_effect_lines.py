@@ -19,14 +19,14 @@ def test_decisions_influence_price_and_what_does_not_hold_are_told() -> None:
     )  # fmt: skip
     lines = "\n".join(ledger_lines(table.metadata.effect_ledger))
     assert "effect tooth_coupling: on  (auto); contact ratio 1.557" in lines
-    assert "left off: at most" in lines
+    assert "neglected: at most" in lines
     assert "without it mean +0.13 um (+2.1 %), peak-to-peak +0.051 um (+1.8 %)" in lines
     told = list(assumption_lines(table.metadata.receipt))
-    assert told == [line for line in told if line.startswith("DOES NOT HOLD: tip edges stay clear")]
+    assert told == [line for line in told if line.startswith("VIOLATED: tip edges stay clear")]
     assert len(told) == 1
-    again = {"turned_on": {"misalignment": "too small to be seen: 3 %"}, "cpu_seconds": 0.5}
+    again = {"turned_on": {"misalignment": "neglected effects are negligible: 3 %"}, "cpu_seconds": 0.5}
     (line,) = assumption_lines({"repeated": [again], "assumptions": []})
-    assert line == "repeated with misalignment: too small to be seen: 3 % (0.5 CPU s)"
+    assert line == "repeated with misalignment: neglected effects are negligible: 3 % (0.5 CPU s)"
 
 
 def test_a_run_says_what_it_was_repeated_for_and_what_does_not_hold() -> None:
@@ -41,6 +41,6 @@ def test_a_run_says_what_it_was_repeated_for_and_what_does_not_hold() -> None:
     )
     assert told == [
         "repeated with backlash: mesh: parted (first run 2 s)",
-        "DOES NOT HOLD: force inside the table (mesh); forces up to 12 N of 10 N",
+        "VIOLATED: force inside the table (mesh); forces up to 12 N of 10 N",
     ]
     assert list(run_lines({})) == []

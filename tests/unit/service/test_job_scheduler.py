@@ -167,7 +167,7 @@ def test_the_deadline_ends_the_work(tmp_path: Path) -> None:
     ended = machine.ended(job)
     machine.scheduler.stop()
     assert ended.status == "failed"
-    assert ended.message.startswith("The deadline of 2 s (LOA_DEADLINE_S) passed. Ask for a coarser level")
+    assert ended.message.startswith("The deadline of 2 s (LOA_DEADLINE_S) passed. Select a coarser level")
     for file in tmp_path.glob("grandchild_*"):  # on a busy machine the worker may not have come that far
         assert not lives(int(file.read_text()))
 
@@ -180,7 +180,7 @@ def test_work_beyond_its_memory_fails_with_the_limit_and_what_to_try(tmp_path: P
         job = machine.ended(machine.submit(mode="hog"))
         machine.scheduler.stop()
         assert (job.status, job.attempts) == (status, 1)
-        assert ("256 MB (LOA_MEMORY_LIMIT_MB). Ask for a coarser level" in job.message) == (limit == 256)
+        assert ("256 MB (LOA_MEMORY_LIMIT_MB). Select a coarser level" in job.message) == (limit == 256)
 
 
 def test_a_library_that_gives_up_is_told_with_its_signal(machine: Bench) -> None:

@@ -84,7 +84,7 @@ def test_the_queue_is_bounded_and_says_when_to_ask_again(pool: LivePool, tmp_pat
     assert [answer(future)["asked"][-1] for future in waiting[1:]] == ["1", "2"]
 
 
-@pytest.mark.parametrize(("name", "text"), [("die", "ended. Ask again"), ("hog", "512 MB")])
+@pytest.mark.parametrize(("name", "text"), [("die", "ended. Repeat the request"), ("hog", "512 MB")])
 def test_a_worker_that_died_is_replaced(pool: LivePool, name: str, text: str) -> None:
     first = answer(pool.ask(order("echo", word="a")))["pid"]
     with pytest.raises(LiveUnavailable, match=text) as caught:

@@ -119,4 +119,4 @@ def test_a_load_far_beyond_the_table_ends_the_study_or_is_told(scene: Path) -> N
     scene.write_text(heavy.replace("[run]", '[run]\non_violation = "report"'), encoding="utf-8")
     result = loa(scene)
     assert result.exit_code == 0, result.stderr
-    assert "DOES NOT HOLD: force inside the table" in result.stdout
+    assert "VIOLATED: force inside the table" in result.stdout

@@ -77,7 +77,7 @@ def test_speeds_at_which_flanks_part_are_said(scene: Path) -> None:
     parting = json.loads(result.stdout)["parting_rpm"]
     assert parting and min(parting) > 13500
     shown = loa(scene, "--speed-rpm", "13500:14500:50")
-    assert f"flanks part at {len(parting)} of 21 speeds" in shown.stdout
+    assert f"flanks lift off at {len(parting)} of 21 speeds" in shown.stdout
 
 
 @pytest.mark.parametrize(

@@ -223,7 +223,7 @@ def test_a_data_directory_serves_one_service_at_a_time(tmp_path: Path) -> None:
 
 def test_a_file_where_the_directory_should_be_is_refused(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    with pytest.raises(BadInput, match="a directory we may write to"):
+    with pytest.raises(BadInput, match="a writable directory"):
         DirectoryLock(tmp_path / "file").acquire()
 
 

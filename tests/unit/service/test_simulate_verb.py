@@ -28,7 +28,7 @@ def test_ctrl_c_keeps_what_was_computed_and_resume_goes_on(tmp_path):
         if 0.3 < fraction < 0.33:
             signal.raise_signal(signal.SIGINT)
 
-    with pytest.raises(KeyboardInterrupt, match="--resume goes on"):
+    with pytest.raises(KeyboardInterrupt, match="--resume continues"):
         _run(SCENE, path, stop, resume=False)
     part = RunResult.from_netcdf(path)
     assert part.status is RunStatus.CANCELLED

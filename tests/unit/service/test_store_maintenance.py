@@ -212,7 +212,7 @@ def test_the_verbs_tell_and_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     machine = bench(tmp_path, REGISTRY)
     names = [put(machine, key, b"table") for key in KEYS[:2]]
     run = CliRunner()
-    assert "2 files sound, 0 damaged or missing" in run.invoke(app, ["store", "verify"]).stdout
+    assert "2 files intact, 0 damaged or missing" in run.invoke(app, ["store", "verify"]).stdout
     (tmp_path / "results" / names[0]).write_bytes(b"tabla")
     bad = run.invoke(app, ["store", "verify", "--json"])
     assert (bad.exit_code, json.loads(bad.stdout)["damaged"]) == (1, [names[0]])

@@ -37,7 +37,7 @@ tolerance_floor_nm = 0
 model = "plane_strain"
 positions = 32
 """
-KEPT = {"relative": 0.01, "floor_m": 2e-8, "used": 1.5, "met": False, "reason": "4 passes are the most"}
+KEPT = {"relative": 0.01, "floor_m": 2e-8, "used": 1.5, "met": False, "reason": "the limit is 4 passes"}
 RAN = {"model": "plane strain", "level": "draft", "slices": 1}
 PASS = RAN | {"cpu_seconds": 0.5, "used": 3.0, "refined": []}
 
@@ -115,7 +115,7 @@ def test_passes_are_listed_where_there_are_several() -> None:
 def test_what_is_missed_between_loads_says_where_a_value_is_wanted() -> None:
     beyond = {"axis": "misalignment", "used": 2.0, "between": [0.0, 3e-5]}
     (_, line) = tolerance_lines({"tolerance": KEPT | {"between_nodes": [beyond]}})
-    assert line == "between the misalignments 0 and 30 um interpolation takes 2 of it: add a value there"
+    assert line == "between the misalignments 0 and 30 um interpolation uses 2 of it: add a value there"
 
 
 def test_errors_that_were_not_estimated_are_no_warning() -> None:

@@ -64,9 +64,9 @@ class ClosedFormFidelity:
         """Say why it is not valid: the series is for external pairs, and shafts couple the slices."""
         pair = checked.request.pair
         if pair.internal:
-            return "the stiffness of ISO 6336-1 is for external pairs"
+            return "the stiffness of ISO 6336-1 applies to external pairs only"
         if checked.model.compliances:
-            return "shafts that bend couple the slices"
+            return "flexible shafts couple the slices"
         return None
 
     def as_computed(self, checked: Checked) -> Checked:

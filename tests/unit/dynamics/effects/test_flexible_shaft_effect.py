@@ -40,7 +40,7 @@ def test_it_is_called_for_by_what_the_shaft_yields_at_the_mesh():
     off = entry(rigid.scene)
     assert not off.on
     assert off.influence == found.influence
-    assert "switched off" in off.reason
+    assert "off by request" in off.reason
     # the difference of both equilibria at the driver's mesh point, but for the mesh and the other shaft
     line, point = system.lines[0], 0.1
     before = static_equilibrium(rigid).displacement

@@ -136,6 +136,6 @@ def test_every_entry_of_the_ledger_is_complete() -> None:
     lateral = next(one for one in entries if one["effect"] == "lateral")
     assert not lateral["on"]
     assert lateral["called_for"]
-    assert lateral["price"] == f"{1e6 * lateral['worth']:.3g} um of static displacement left out"
+    assert lateral["price"] == f"{1e6 * lateral['worth']:.3g} um of static displacement neglected"
     # 2660 N on two bearings a shaft, over the 5 to 8 um by which the mesh yields
     assert lateral["worth_relative"] == pytest.approx(lateral["worth"] / 6.4e-6, rel=0.3)

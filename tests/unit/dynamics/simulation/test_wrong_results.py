@@ -59,7 +59,7 @@ def test_friction_that_drives_is_found():
     assert abs(audit.friction) < 0.2 * audit.fallen
     found = energy_check(audit)
     assert found["valid"] is False
-    assert "it drove" in found["reason"]
+    assert "it supplied energy" in found["reason"]
     assert EnergyAudit.from_json(audit.to_json()) == audit
 
 

@@ -94,7 +94,7 @@ def test_clockwise_triangles_are_turned() -> None:
         ("print('[1]')", "unusable answer"),
         ("""print('{"regions": [{"points": [[0, 0]], "triangles": []}]}')""", "unusable answer"),
         ("""print('{"error": "boundary crosses itself"}')""", "boundary crosses itself"),
-        ("""print('{"error": "MemoryError"}')""", "ran out of memory. Ask for a coarser level"),
+        ("""print('{"error": "MemoryError"}')""", "ran out of memory. Select a coarser level"),
         ("import sys; sys.exit('std::bad_alloc')", "ran out of memory"),
     ],
 )

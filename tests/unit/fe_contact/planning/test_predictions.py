@@ -207,7 +207,7 @@ def test_tolerance_and_time_that_cannot_both_be_had_are_said():
     assert plan_run(pair(), *table_request(**wish), time_budget=1e4).conflict == ""
     tight = plan_run(pair(), *table_request(**wish), time_budget=1e-3)
     assert "cannot be had" in tight.conflict
-    assert "even the quickest mesh" in tight.conflict
+    assert "even the fastest mesh" in tight.conflict
     needed = [entry.cost.cpu_seconds for entry in tight.levels]
     between = plan_run(pair(), *table_request(**wish), time_budget=0.5 * (needed[0] + needed[1]))
     assert (between.choice.level, between.choice.met) == ("draft", False)

@@ -116,7 +116,7 @@ def test_an_effect_below_the_tolerance_is_neglected_and_its_model_with_it(cache:
     entry = next(one for one in neglected.metadata.effect_ledger if one["name"] == "misalignment")
     assert not entry["on"]
     assert entry["called_for"]
-    assert entry["decision"].startswith("left off")
+    assert entry["decision"].startswith("neglected: ")
     assert 0.0 < abs(entry["influence"]["relative_mean"]) < 0.1 * 0.02
     assert assumption(neglected, "misalignment")["holds"] is True
 

@@ -60,7 +60,7 @@ def test_every_effect_has_every_field(pair: GearPair, asked: Json) -> None:
 def test_a_choice_against_the_scene_is_obeyed_and_has_a_price() -> None:
     off = ledger(PLAIN, effects={"tooth_coupling": "off"})["tooth_coupling"]
     assert not off["on"]
-    assert off["decision"] == "as asked, though the scene calls for it"
+    assert off["decision"] == "as requested, although the scene calls for it"
     assert off["price"] == off["influence"]["words"]
     assert -0.06 < off["influence"]["relative_mean"] < -0.05  # docs/effects/tooth_coupling.md
     on = ledger(PLAIN, effects={"face_load_distribution": "on"})["face_load_distribution"]

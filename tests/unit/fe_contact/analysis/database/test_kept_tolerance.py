@@ -276,5 +276,5 @@ def test_what_the_method_leaves_out_ends_a_run_with_the_reason(monkeypatch):
     table = analyze(SPUR, tolerance=AllowedError(0.0005, 0.0), torques=[5.0], level=None)
     kept = receipt(table)["tolerance"]
     assert kept["met"] is False
-    assert "mended by no refinement" in kept["reason"]
+    assert "no refinement reduces" in kept["reason"]
     assert len(receipt(table)["passes"]) == 1

@@ -126,10 +126,10 @@ def test_more_slices_than_the_layers_resolve_take_the_mesh_with_more_layers():
     ("by_source", "said"),
     [
         ({"discretisation": 50.0}, "mesh fine is the finest"),
-        ({"slices": 50.0}, "27 slices are the most"),
-        ({"position": 100.0}, "as close as the search places them"),
-        ({"contact_solver": 1.2}, "mended by no refinement"),
-        ({"contact_solver": 1.2, "discretisation": 3.0}, "mended by no refinement"),
+        ({"slices": 50.0}, "27 slices are the limit"),
+        ({"position": 100.0}, "closest spacing of the search"),
+        ({"contact_solver": 1.2}, "no refinement reduces"),
+        ({"contact_solver": 1.2, "discretisation": 3.0}, "no refinement reduces"),
     ],
 )
 def test_what_no_refinement_brings_ends_with_its_reason(helical, by_source, said):
@@ -147,7 +147,7 @@ def test_the_finest_is_tried_where_it_may_be_enough_and_not_twice(helical):
 
 def test_what_stays_leaves_room_for_the_rest_or_ends_it(helical):
     """0.97 measured and 0.6 left of the mesh, at best 0.3, are too much; 0.9 and 0.3 may do."""
-    assert "mended by no refinement" in next_pass(helical, shares(contact_solver=0.97, discretisation=1.34))
+    assert "no refinement reduces" in next_pass(helical, shares(contact_solver=0.97, discretisation=1.34))
     assert refined(helical, contact_solver=0.9, discretisation=1.34).steps == ("mesh standard -> fine",)
 
 
@@ -175,7 +175,7 @@ def test_three_dimensions_replace_a_correction_only_where_they_are_expected_to_e
         ran(steel, "standard", **tight),
         ran(narrow, "standard", **tight, effects={"finite_width": "on"}),
     ):
-        assert "no other model is open" in next_pass(plain, shares(finite_width=1.2))
+        assert "no other model for this request" in next_pass(plain, shares(finite_width=1.2))
 
 
 def test_a_width_that_was_left_out_is_corrected_for():

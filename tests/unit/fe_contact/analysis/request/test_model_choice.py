@@ -70,14 +70,14 @@ def test_three_dimensions_are_taken_where_the_correction_is_not_enough():
     entry = next(e for e in found.checked.ledger if e.name == "face_load_distribution")
     assert entry.on
     assert entry.choice == "auto"
-    assert "taken for the asked accuracy: expected error" in entry.override
+    assert "taken for the requested accuracy: expected error" in entry.override
 
 
 def test_the_ledger_says_why_the_finite_width_is_left_out():
     found = decided(pair(), tolerance=0.05)
     entry = next(e for e in found.checked.ledger if e.name == "finite_width")
     assert (entry.on, entry.choice, entry.verdict.on) == (False, "auto", True)
-    assert "left out for the asked accuracy: expected error" in entry.override
+    assert "left out for the requested accuracy: expected error" in entry.override
 
 
 @pytest.mark.parametrize(
