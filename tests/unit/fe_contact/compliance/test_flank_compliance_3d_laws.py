@@ -100,7 +100,7 @@ def global_compliance(gear: Toothing, recipe: SectorRecipe) -> np.ndarray:
 
 @pytest.mark.parametrize(
     "gear",
-    [SPUR, HELICAL, WEBBED, RING, HELICAL_RING],
+    [SPUR, HELICAL, WEBBED, pytest.param(RING, marks=pytest.mark.nightly), HELICAL_RING],
     ids=["spur", "helical", "helical with a web", "ring", "helical ring"],
 )
 def test_equals_the_solution_of_the_whole_gear(gear: Toothing) -> None:
@@ -113,7 +113,7 @@ def test_equals_the_solution_of_the_whole_gear(gear: Toothing) -> None:
 
 @BOTH_KINDS
 def test_checks_hold_to_rounding(gear: Toothing) -> None:
-    found = flank_compliance_3d(gear, SectorRecipe.draft(gear))
+    found = flank_compliance_3d(gear, coarse(gear))
     assert found.checks.residual < 1e-11
     assert found.checks.reciprocity < 1e-13
     assert found.checks.bore_moment < 1e-11
@@ -363,8 +363,8 @@ def test_pressure_is_shared_consistently() -> None:
 
 @pytest.mark.parametrize(
     "gear",
-    [replace(SPUR, teeth=20, bore_diameter=40e-3), HELICAL, WEBBED],
-    ids=["spur", "helical", "helical with a web"],
+    [replace(SPUR, teeth=20, bore_diameter=40e-3), WEBBED],
+    ids=["spur", "helical with a web"],
 )
 def test_cost_is_known_before_the_run(gear: Gear) -> None:
     recipe = SectorRecipe.draft(gear)
