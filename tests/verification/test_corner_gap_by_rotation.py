@@ -207,7 +207,10 @@ def relieved(pair: ParallelAxes) -> ParallelAxes:
     return replace(pair, wheel=replace(pair.wheel, modification=relief))
 
 
-@pytest.mark.parametrize("name", ["20/20", "36/96 internal", "24/70 internal helical"])
+@pytest.mark.parametrize(
+    "name",
+    ["20/20", pytest.param("36/96 internal", marks=pytest.mark.nightly), "24/70 internal helical"],
+)
 def test_gap_of_a_relieved_wheel_is_the_lag_that_makes_its_flank_touch(name: str, record_figure: Any) -> None:
     """The wheel's flank, moved along its normals by the relief, against the plain pinion.
 

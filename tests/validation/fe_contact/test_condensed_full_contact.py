@@ -55,8 +55,8 @@ def test_all_loads_come_from_one_compliance() -> None:
 
 
 def test_meshes_twice_as_fine_change_little(record_figure) -> None:
-    position = [0.0, 0.2, 0.5]
-    coarse, fine = (solve_full_contact(PAIR, [400.0], position, Resolution(n)) for n in (3.0, 6.0))
+    """At a tip edge, which decides."""
+    coarse, fine = (solve_full_contact(PAIR, [400.0], [0.2], Resolution(n)) for n in (3.0, 6.0))
     change = 100.0 * np.abs(coarse.transmission_error / fine.transmission_error - 1.0).max()
     name = "condensed full contact, a_H/3 to a_H/6, 400 N m"
     record_figure(name, float(change), "at most 0.05 %", "%", "its own meshes")

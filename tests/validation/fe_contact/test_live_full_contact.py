@@ -32,11 +32,9 @@ MESH = Resolution(3.0)
 SOURCE = "CalculiX, surface-to-surface penalty contact, the same mesh"
 
 
+@pytest.mark.nightly  # tests/unit/fe_contact/full_contact/test_full_contact.py holds one pair against it
 @pytest.mark.skipif(CALCULIX is None, reason="CalculiX (ccx) is not installed")
-@pytest.mark.parametrize(
-    "name",
-    [name if name == "relieved" else pytest.param(name, marks=pytest.mark.nightly) for name in CASES],
-)
+@pytest.mark.parametrize("name", CASES)
 def test_two_contact_solvers_agree_on_one_mesh(name: str, record_figure) -> None:
     assert CALCULIX is not None
     pair, torque, position = CASES[name]

@@ -9,7 +9,7 @@ from __future__ import annotations
 import pytest
 from rotating_trains import accelerating, imposed, phase_error
 
-STEPS = 200_000
+STEPS = 100_000
 
 
 @pytest.mark.parametrize("method", ["implicit", "explicit"])

@@ -19,7 +19,7 @@ GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 PAIR = GearPair(GEAR, GEAR, center_distance=80e-3)
 WHEEL = Gear(teeth=31, normal_module=4e-3, face_width=25e-3, bore_diameter=60e-3)
 TORQUES = (10.0, 100.0, 400.0)
-COARSE = Resolution(2.0)
+COARSE = Resolution(4.0)
 
 
 @cache

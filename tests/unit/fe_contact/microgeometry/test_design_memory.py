@@ -28,7 +28,7 @@ FREE = (
     DesignVariable("pinion.profile_crowning", 0.0, 2e-5),
     DesignVariable("wheel.profile_slope", -1e-5, 1e-5),
 )
-SEARCH = Search(DifferentialEvolution(), evaluations=60, positions=12, exploration=8)
+SEARCH = Search(DifferentialEvolution(), evaluations=60, positions=24, exploration=8)
 
 
 @pytest.fixture
@@ -92,7 +92,7 @@ def test_what_is_assessed_otherwise_is_not_taken(
     run(pair, compliances, tmp_path, search=few)
     for further in (
         {"torques": [201.0]}, {"limits": Limits(max_pressure=1e9)}, {"objective": WeightedMean((2.0,))},
-        {"objective": Worst()}, {"search": replace(few, positions=13, exploration=9)},
+        {"objective": Worst()}, {"search": replace(few, positions=25, exploration=9)},
     ):  # fmt: skip
         solved[0] = 0
         run(pair, compliances, tmp_path, **{"search": few, **further})

@@ -94,7 +94,7 @@ def table_nodes(allowed: AllowedError):
     return decide(check_request(SPUR, *table_request(tolerance=allowed, **PLANE))).plan.nodes
 
 
-@pytest.mark.parametrize("tolerance", [0.002, 0.001, 0.0005, 0.0001])
+@pytest.mark.parametrize("tolerance", [0.002, 0.001, pytest.param(0.0005, marks=pytest.mark.nightly), 0.0001])
 def test_what_is_used_falls_from_pass_to_pass_and_met_is_what_the_table_states(
     from_draft, tolerance, tmp_path
 ):
@@ -114,6 +114,7 @@ def test_what_is_used_falls_from_pass_to_pass_and_met_is_what_the_table_states(
     assert (receipt(table)["tolerance"]["reason"] == "met") is (worst <= 1.0)
 
 
+@pytest.mark.nightly  # how mesh and slices are refined together: test_refinement.py
 def test_a_small_helical_draft_is_refined(from_draft):
     gear = Gear(18, 2e-3, 12e-3, 20e-3, helix_angle=0.3)
     pair = GearPair(gear, dataclasses.replace(gear, helix_angle=-0.3), 36e-3 / math.cos(0.3))

@@ -20,6 +20,8 @@ from fe_contact.geometry import FlankModification, Shaft
 from fe_contact.options import Run
 from fe_contact.workers import InProcess, RunCost
 
+pytestmark = pytest.mark.usefixtures("coarse_sectors")
+
 SKEWED = {"misalignments": [-10e-6, 25e-6], "center_distance_changes": [0.0, 80e-6]}
 OF_TIME = ("stages", "cpu_seconds", "wall_seconds", "peak_memory_bytes", "prediction", "elsewhere")
 
