@@ -10,6 +10,7 @@ from typing import Any
 from fastapi import FastAPI
 
 from service.access import open_keyring
+from service.live.kept_answers import KeptAnswers
 from service.live.pool import live_pool, reading_pool
 from service.queue.machinery import job_machinery
 from service.queue.workload import WorkloadReader
@@ -41,6 +42,7 @@ from service.routes.warm_up import warm_up
 from service.settings import Settings
 from service.store import DirectoryLock
 from service.store.deployment import Deployment
+from service.store.places import CACHE_DIRECTORY
 from service.store.write_check import WriteCheck
 from service.version import solver_version
 from service.worker.catalogue import default_registry
@@ -129,7 +131,8 @@ def _context(settings: Settings, registry: Registry, works: bool) -> Context:
     """Open the store and put the parts together."""
     parts = job_machinery(settings, registry, works=works)
     pools, engine = (live_pool(settings), reading_pool(settings)), parts.engine
+    kept = KeptAnswers(settings.data_directory / CACHE_DIRECTORY / "figures")
     writes = WriteCheck(Deployment(engine, parts.store))
     return Context(
-        settings, registry, parts.submissions, parts.scheduler, parts.store, *pools, engine, writes
+        settings, registry, parts.submissions, parts.scheduler, parts.store, *pools, kept, engine, writes
     )

@@ -9,6 +9,7 @@ from fastapi import Depends, Request
 from sqlalchemy import Engine
 
 from service.access import AccessKey
+from service.live.kept_answers import KeptAnswers
 from service.live.pool import LivePool
 from service.queue.caller import ANYBODY, Caller
 from service.queue.scheduler import Scheduler
@@ -33,6 +34,7 @@ class Context:
     store: ResultStore
     live: LivePool
     reader: LivePool
+    kept: KeptAnswers
     engine: Engine
     writes: WriteCheck
     databases: OpenDatabases = field(default_factory=OpenDatabases)

@@ -14,7 +14,7 @@ from service.live.order import LiveOrder
 from service.routes.context import Ctx
 from service.routes.errors import documented
 from service.routes.results import HASH, Key, known_result
-from service.version import solver_version
+from service.version import program_tag
 
 FIGURES = "service.report.as_json:stored_figures"
 COMPARISON = "service.comparison.as_json:stored_comparison"
@@ -62,9 +62,12 @@ async def figures(
     if against is not None:
         other = await run_in_threadpool(known_result, context, against)
         tag, order = tag + other.sha256, LiveOrder(COMPARISON, {"files": [str(stored.path), str(other.path)]})
-    tag = f'"{tag}-figures-{solver_version()}"'
+    tag = f'"{tag}-figures-{program_tag()}"'
     headers = {"ETag": tag, "Cache-Control": "no-cache"}
     if tag in request.headers.get("if-none-match", ""):
         return Response(status_code=304, headers=headers)
-    body = await asyncio.wrap_future(context.live.ask(order))
+    body = await run_in_threadpool(context.kept.find, tag)
+    if body is None:
+        body = await asyncio.wrap_future(context.live.ask(order))
+        await run_in_threadpool(context.kept.keep, tag, body)
     return Response(body, media_type="application/json", headers=headers)

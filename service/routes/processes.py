@@ -8,7 +8,7 @@ from typing import Annotated, Any, cast
 
 import structlog
 from fastapi import APIRouter, Header, Query, Response
-from pydantic import BaseModel
+from pydantic import BaseModel, create_model
 
 from service.queue.caller import Caller
 from service.queue.delivery import Delivery, delivery
@@ -170,8 +170,10 @@ def _card(action: str, inputs: type[BoundaryModel]) -> AdditionalParameters:
 
 def _titled(inputs: type[BaseModel], within: str = "") -> Iterator[tuple[str, Any]]:
     """Yield names and schemas of the fields that have a title, those of tables by their path."""
-    schemas = inputs.model_json_schema()["properties"]
-    for name, field in inputs.model_fields.items():
+    fields = inputs.model_fields.items()
+    titled: Any = {name: (field.annotation, field) for name, field in fields if field.title}
+    schemas = create_model("Titled", **titled).model_json_schema().get("properties", {})
+    for name, field in fields:
         kind = field.annotation
         if field.title:
             yield f"{within}{name}", schemas[name]

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from importlib import import_module
 
 from service.loading import LOADING
+from service.page.files import PLOTLY, page_file
 
 HEAVY = (
     "service.worker.preparations",
@@ -20,7 +21,7 @@ HEAVY = (
 
 
 def warm_up(modules: Sequence[str] = HEAVY) -> threading.Thread:
-    """Import modules in a thread; a request that needs one of them waits for all."""
+    """Import modules in a thread, then pack plotly.js; a request that needs a module waits for all."""
     thread = threading.Thread(target=_load, args=(modules,), name="warm-up", daemon=True)
     thread.start()
     return thread
@@ -31,3 +32,5 @@ def _load(modules: Sequence[str]) -> None:
     with LOADING:
         for module in modules:
             import_module(module)
+    if (plotly := page_file(PLOTLY)) is not None:
+        _ = plotly.packed

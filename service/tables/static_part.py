@@ -15,7 +15,7 @@ from service.drawing.effects_section import EffectRow, effect_table, effects_sec
 from service.drawing.facts import facts, records, side_by_side
 from service.drawing.figure import Figure, Table, number
 from service.drawing.page import Headline, Part, Section
-from service.tables.aligned import headline_load, load_curve, load_labels, shown_loads
+from service.tables.aligned import aligned_index, headline_load, load_curve, load_labels, shown_loads
 from service.tables.data_sheet import data_sheet_section
 from service.tables.deflection_budget import budget_figure
 from service.tables.deviation_curves import deviation_curves, has_deviations
@@ -39,14 +39,16 @@ _DECISIONS = {
 
 
 def static_headlines(database: SteDatabase, force: float | None = None) -> tuple[Headline, ...]:
-    """Mean and peak-to-peak STE at the stored load nearest to `force` (N), or the middle one."""
+    """Mean and peak-to-peak STE and the largest pressure at the stored load nearest to `force` (N)."""
     load = headline_load(database, force)
+    pressure = float(np.nanmax(database.max_pressure[(slice(None), load, *aligned_index(database))]))
     curve, label = load_curve(database, load), load_labels(database)[load]
     return (
         Headline(f"mean STE at {label}", f"{_um(curve.mean.value)} µm", _band(curve.mean)),
         Headline(
             f"peak-to-peak STE at {label}", f"{_um(curve.peak_to_peak.value)} µm", _band(curve.peak_to_peak)
         ),
+        Headline(f"largest pressure at {label}", f"{number(1e-6 * pressure, 4)} MPa", "no error stated"),
     )
 
 

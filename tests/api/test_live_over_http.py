@@ -72,6 +72,19 @@ def test_a_live_curve_is_that_of_an_analysis_of_its_own(client: TestClient, key:
     assert live["effects"]["profile_modification"] and live["beyond_load_patches"] == 0
 
 
+def test_figures_that_were_drawn_once_need_no_live_worker(
+    client: TestClient, key: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    where = f"/v1/results/{key}/figures"
+    drawn = client.get(where)
+    assert [section["title"] for section in drawn.json()["sections"]]
+    monkeypatch.setattr(type(client.app.state.context.live), "ask", None)  # type: ignore[attr-defined]
+    again = client.get(where)
+    assert again.content == drawn.content
+    assert again.headers["ETag"] == drawn.headers["ETag"]
+    assert client.get(where, headers={"If-None-Match": drawn.headers["ETag"]}).status_code == 304
+
+
 def test_two_results_are_compared_as_figures(client: TestClient, key: str) -> None:
     """With itself, nothing differs; with the relieved pair, the relief is named."""
     where = f"/v1/results/{key}/figures"

@@ -14,11 +14,11 @@ from service.client import LineOfActionClient
 def test_the_first_example_is_computed_when_the_page_opens(browser: Browser, address: str) -> None:
     visit = opened(browser, f"{address}/#")
     page = visit.page
-    expect(page.locator("#glance-words")).to_contain_text(re.compile("is computed now|Result for"))
+    expect(page.locator("#glance-words")).to_contain_text(re.compile("is computed now|Result, as analyzed"))
     expect(page.locator("#glance-plot")).to_have_attribute("data-drawn", "yes")
-    expect(page.locator("#glance-words")).to_contain_text("Result for 23/67, module 1.8 mm")
-    expect(page.locator("#glance-figures")).to_contain_text("peak to peak")
-    expect(page.locator("#glance-figures")).to_contain_text("K_Hbeta")
+    expect(page.locator("#glance-words")).to_contain_text("Result, as analyzed: Gear pair 23/67")
+    expect(page.locator("#glance-figures")).to_contain_text("peak-to-peak")
+    expect(page.locator("#glance-figures")).to_contain_text("largest pressure")
     box = page.locator("#glance-plot").bounding_box()
     assert box is not None and box["y"] + box["height"] < 900.0, "on the first screen"
     expect(page).to_have_url(re.compile("#database=[0-9a-f]{64}$"))

@@ -60,7 +60,7 @@ class Page {
     const dynamics = new Dynamics({ slot, show });
     const scenes = new SceneEditor({ slot, show });
     const live = new Live(this, { take, inThreeDimensions: () => this.inThreeDimensions() });
-    this.glance = new Glance(this.caller);
+    this.glance = new Glance();
     this.results = new Results(this, this.glance, live, [dynamics, scenes]);
     const button = byId("analyze");
     this.analysis = slot("analyze", { progress: byId("analyze-job"), result: byId("analyze-result"), button },
@@ -107,7 +107,7 @@ class Page {
 
   notFirst(problem) {
     if (!(problem instanceof Problem)) throw problem;
-    this.glance.show(null);
+    this.glance.leave();
     this.analysis.refused(problem);
     return {};
   }

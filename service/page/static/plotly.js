@@ -3,6 +3,8 @@
 
 import { Problem } from "./api.js";
 
+const SCRIPT = "/page/plotly.min.js";
+
 /** @type {Promise<any> | null} */
 let loading = null;
 
@@ -17,11 +19,19 @@ export function plotly() {
 
 const AWAY = { title: "No answer", detail: "The service does not send what plots are drawn with.", status: 0 };
 
+/** Fetch the library beside what it will show; it is not run before a plot is drawn. */
+export function fetchPlotly() {
+  if (loading) return;
+  const link = document.createElement("link");
+  Object.assign(link, { rel: "preload", as: "script", href: SCRIPT });
+  document.head.append(link);
+}
+
 /** @returns {Promise<any>} */
 function fetched() {
   return new Promise((done, failed) => {
     const script = document.createElement("script");
-    script.src = "/page/plotly.min.js";
+    script.src = SCRIPT;
     script.addEventListener("load", () => done(/** @type {any} */ (window).Plotly));
     script.addEventListener("error", () => failed(new Problem(AWAY)));
     document.head.append(script);

@@ -87,6 +87,12 @@ async function swept() {
   }
 }
 
+/** Until the browser has drawn what the page holds now; in a tab that nobody sees nothing is drawn. */
+export const painted = () => new Promise((done) => {
+  if (document.hidden) setTimeout(done);
+  else requestAnimationFrame(() => setTimeout(done));
+});
+
 /** Draw or redraw a figure {data, layout} in a node. */
 export async function plot(node, figure) {
   await swept();

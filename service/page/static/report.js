@@ -2,18 +2,20 @@
 
 import { Problem, file, get, patiently } from "./api.js";
 import { dataTable, figures, folded, make, save } from "./elements.js";
-import { figureBlock, plot } from "./plots.js";
+import { figureBlock, painted, plot } from "./plots.js";
 
 /**
  * Show the report of a result.
  * @param {HTMLElement} target
  * @param {{href: string, type: string, hash: string, against?: string}} result reference to it, and the hash of another one to compare it with
- * @param {{making?: boolean, signal: AbortSignal}} options with the tables that say how it was made; given up when it is left
+ * @param {{making?: boolean, signal: AbortSignal, first?: (report: any) => Promise<void>}} options with the tables that say how it was made; given up when it is left; what shows the report before its plots are drawn
  */
-export async function showReport(target, result, { making = false, signal }) {
+export async function showReport(target, result, { making = false, signal, first }) {
   target.setAttribute("aria-busy", "true");
   const figuresAt = `${result.href}/figures${result.against ? `?against=${result.against}` : ""}`;
   const report = await patiently(() => get(figuresAt));
+  if (signal.aborted) return null;
+  await first?.(report);
   if (signal.aborted) return null;
   const head = make("dl", { class: "headline" });
   figures(head, report.headlines.map(({ name, value, remark }) => [name, value, remark]));
@@ -25,6 +27,7 @@ export async function showReport(target, result, { making = false, signal }) {
     make("p", { class: "lead" }, lead), ...alarms, head, files(result, figuresAt), ...sections,
   );
   for (const [node, figure] of drawn) {
+    await painted(); // between two plots the page answers
     if (signal.aborted) return null;
     await plot(node, figure);
   }

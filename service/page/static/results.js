@@ -6,6 +6,7 @@ import { retype, typedIn } from "./controls.js";
 import { DesignNote } from "./design_note.js";
 import { byId } from "./elements.js";
 import { sayUnknown } from "./notice.js";
+import { fetchPlotly } from "./plotly.js";
 import { showReport } from "./report.js";
 
 const PLANE = /plane/;
@@ -66,18 +67,26 @@ export class Results {
   /** @param {string} key @param {AbortSignal} signal */
   async read(key, signal) {
     const href = `/v1/results/${key}`;
+    fetchPlotly();
+    const reported = this.report(href, key, signal);
+    reported.catch(() => {}); // said where it is awaited
     const facts = await patiently(() => get(href));
     if (signal.aborted) return;
     if (!this.design.stands) this.design.show(facts.case);
     const plane = PLANE.test(facts.receipt?.plan?.model ?? "");
     const torques = facts.torque_n_m;
     const known = { key, case: facts.case, torques, torque: torques[Math.floor(torques.length / 2)], plane };
-    this.glance.show(known); // asked first: the report takes longer
     byId("results-none").hidden = true;
-    await showReport(byId("results-body"), { href, type: "application/x-netcdf", hash: key }, { making: true, signal });
+    await reported;
     if (signal.aborted) return;
     this.offer(known);
     this.shown = key;
+  }
+
+  /** The report, its main figures first at the top of the page. */
+  report(href, hash, signal) {
+    const first = (report) => this.glance.show(report);
+    return showReport(byId("results-body"), { href, type: "application/x-netcdf", hash }, { making: true, signal, first });
   }
 
   /** @param {any} known */
@@ -90,7 +99,7 @@ export class Results {
   clear() {
     byId("results-none").hidden = false;
     byId("results-body").replaceChildren();
-    this.glance.show(null);
+    this.glance.leave();
     this.offer(null);
   }
 
