@@ -17,12 +17,16 @@ TORQUE = 100.0  # N m on the driving gear
 WINDOW = (4.5, 4.75)  # s
 
 
-def summary(table: Path, run: Path, seconds: Mapping[str, float]) -> str:
-    """Return the main numbers of an STE database and of a run made with it, and the wall times."""
+def summary(table: Path, run: Path, helical: Path, seconds: Mapping[str, float]) -> str:
+    """Return the main numbers of an STE database, of a run made with it, of a second pair, and wall times."""
     database, result = SteDatabase.from_netcdf(table), RunResult.from_netcdf(run)
     lines = [
+        "spur 20/20 (ISMA 2010)",
         *static_lines(database),
         *dynamic_lines(result),
+        "",
+        "helical 23/67, EV reducer",
+        *static_lines(SteDatabase.from_netcdf(helical)),
         "",
         *(f"{name + ', wall time':<34}{value:9.2f} s" for name, value in seconds.items()),
         f"{'STE database, CPU time':<34}{database.metadata.receipt['cpu_seconds']:9.2f} s",

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import signal
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
 from running_service import PATIENCE_S, until
 
+from service.page.examples import examples
+
 ROOT = Path(__file__).parents[2]
 JOB = ROOT / "examples" / "main_job.py"
+HELICAL = ROOT / "examples" / "helical_ev_23_67.toml"
 
 
 def environment(folder: Path) -> dict[str, str]:
@@ -62,6 +67,9 @@ def test_the_summary_holds_the_known_figures(job: tuple[Path, str]) -> None:
     assert number(text, "peak-to-peak STE at 100 N m") == pytest.approx(2.799, rel=0.01)
     assert number(text, "mean contact force") == pytest.approx(2660.4, rel=0.002)
     assert 286.5 <= number(text, "spectrum: fundamental") <= 302.5
+    _, helical = text.split("helical 23/67")
+    assert number(helical, "mean STE at 100 N m") == pytest.approx(14.41, rel=0.003)
+    assert number(helical, "peak-to-peak STE at 100 N m") == pytest.approx(0.408, rel=0.02)
 
 
 def test_the_report_and_its_images_are_written(job: tuple[Path, str]) -> None:
@@ -78,11 +86,22 @@ def test_the_report_and_its_images_are_written(job: tuple[Path, str]) -> None:
         "levels",
         "order_map",
         "campbell",
+        "mode_shares",
         "octave_bands",
         "dynamic_factor",
     ]
     assert keys == static + dynamic
     assert sorted(path.stem for path in (folder / "images").iterdir()) == sorted(keys)
+    helical = (folder / "helical.html").read_text(encoding="utf-8")
+    assert "Gear pair 23/67" in helical and '<figure id="face_load">' in helical
+
+
+def test_the_page_will_open_on_figures_that_are_drawn(job: tuple[Path, str]) -> None:
+    folder, _ = job
+    first = tomllib.loads(HELICAL.read_text(encoding="utf-8"))
+    assert first == examples()[0].content
+    (kept,) = (folder / "service" / "cache" / "figures").iterdir()
+    assert json.loads(kept.read_text(encoding="utf-8"))["title"] == "Gear pair 23/67"
 
 
 def test_nothing_is_left_running(job: tuple[Path, str]) -> None:
