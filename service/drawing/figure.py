@@ -63,15 +63,15 @@ class Line:
 
 @dataclass(frozen=True)
 class Bars:
-    """Upright bars about `x` (n,), each `width` wide, from `base` up to `top` (n,); NaN leaves one out.
+    """Upright bars about `x` (n,), each `width` wide, from `base` (one number or (n,)) up to `top` (n,).
 
-    What is `veiled` covers what lies below it and lets it be seen.
+    NaN leaves one out. What is `veiled` covers what lies below it and lets it be seen.
     """
 
     name: str
     x: FloatArray
     top: FloatArray
-    base: float
+    base: float | FloatArray
     width: float
     color: str
     veiled: bool = False

@@ -111,7 +111,7 @@ def _bars(bars: Bars, suffix: str) -> Json:
         "x": numbers(bars.x),
         "y": numbers(bars.top - bars.base),
         "customdata": numbers(bars.top),
-        "base": bars.base,
+        "base": numbers(np.broadcast_to(bars.base, bars.top.shape)),
         "width": bars.width,
         "xaxis": "x" + suffix,
         "yaxis": "y" + suffix,

@@ -27,12 +27,16 @@ _COLOURS = {
 
 @dataclass(frozen=True)
 class ModeLine:
-    """A mode over the blocks of a diagram: its name in the legend, color, frequency (B,), Hz, what moves."""
+    """A mode over the blocks of a diagram: its name in the legend, color, frequency (B,), Hz, what moves.
+
+    `shares` are those of the parts in its kinetic energy; empty for runs that do not hold them.
+    """
 
     name: str
     color: str
     frequency: FloatArray
     moves: str
+    shares: dict[str, float]
 
 
 def whirling(run: RunResult) -> bool:
@@ -50,7 +54,8 @@ def mode_lines(run: RunResult, mesh_frequency: FloatArray, top: float) -> list[M
         apart = all(np.max(np.abs(line.frequency - values)) > LEAST_DISTANCE * top for line in kept)
         if 0.0 < values[0] < top and apart:
             name = _name(whirls[index]) if whirling(run) else "natural modes"
-            kept.append(ModeLine(name, _COLOURS[name], values, _most(modes, int(index))))
+            shares = dict(modes["moves"][index]) if "moves" in modes else {}
+            kept.append(ModeLine(name, _COLOURS[name], values, _most(modes, int(index)), shares))
     return kept[:SHOWN_MODES]
 
 

@@ -39,8 +39,7 @@ def campbell(run: RunResult, signal: Signal, made: Waterfall) -> Figure:
     amplitude = signal.amplitude(made.amplitude)
     axis, along = run_axis(run, made.time, signal.mesh)
     valid = highest_valid_order(run, signal.mesh)
-    last = max(min(ORDERS, valid), 1)
-    top = min((last + 0.5) * float(made.mesh_frequency.max()), float(made.line[-1]))
+    top = top_frequency(run, signal, made)
     modes = mode_lines(run, made.mesh_frequency, top)
     return Figure(
         key="campbell",
@@ -52,6 +51,12 @@ def campbell(run: RunResult, signal: Signal, made: Waterfall) -> Figure:
         content=(_panel(made, amplitude, axis, along, top, modes),),
         table=mode_table(run, top, ORDERS),
     )
+
+
+def top_frequency(run: RunResult, signal: Signal, made: Waterfall) -> float:
+    """Return the upper end of the diagram, Hz: above the highest order that the run resolves."""
+    last = max(min(ORDERS, highest_valid_order(run, signal.mesh)), 1)
+    return min((last + 0.5) * float(made.mesh_frequency.max()), float(made.line[-1]))
 
 
 def _panel(

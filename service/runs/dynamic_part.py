@@ -17,6 +17,7 @@ from service.runs.campbell import campbell, frequency_blocks
 from service.runs.dynamic_error import dynamic_error
 from service.runs.dynamic_factor import dynamic_factor_figure
 from service.runs.levels_over_speed import levels_over_speed, order_blocks
+from service.runs.mode_shares import mode_shares
 from service.runs.octave_bands import octave_bands
 from service.runs.order_map import order_map
 from service.runs.planet_sharing import planet_sharing
@@ -103,6 +104,7 @@ def _orders(run: RunResult, signal: Signal) -> tuple[Section, ...]:
         levels_over_speed(run, signal, orders),
         order_map(run, signal, orders),
         campbell(run, signal, frequencies),
+        mode_shares(run, signal, frequencies),
         octave_bands(run, signal, frequencies),
     )
     shown = tuple(figure for figure in figures if figure is not None)

@@ -33,7 +33,9 @@ STUDIES = {
     "scatter": (
         "Tolerances", "Draw pairs within tolerances", {"Class": "8", "Pairs": "50"}, ["scatter"],
     ),
-    "modes": ("Modes", "Find the modes", {"Top speed": "2000"}, ["modal_campbell", "modal_energy"]),
+    "modes": (
+        "Modes", "Find the modes", {"Top speed": "2000"}, ["modal_campbell", "modal_energy", "modal_motion"],
+    ),
     "simulate": (
         "Run-up", "Simulate the run-up", {"Duration": "0.05"},
         ["dynamic_error", "signal", "spectrum"],

@@ -11,12 +11,14 @@ from dynamics.linearize import ModalAnalysis
 from service.convert.effect_lines import run_lines
 from service.drawing import palette
 from service.drawing.figure import Axis, Dash, Figure, FloatArray, Line, Note, Panel, Table, number
+from service.drawing.mode_bars import mode_bars
 from service.studies.presentation import Presentation, dynamics_page
 
 RPM = np.pi / 30.0
 CIRCULAR = 0.1  # from this whirl on a mode counts as forward or backward
 ALIKE = 1e-3  # of a frequency or a speed: nearer ones share a line of the tables
 SHOWN_PARTS = 2
+SHOWN_MODES = 10
 HEADROOM = 1.15  # of the highest mode or order: modes that no order reaches are only in the table
 LEAST_TOP = 1.0  # Hz
 ROOM = 0.03  # of the width, for the name of an order; orders that leave closer stay without
@@ -29,7 +31,7 @@ WHIRLS: dict[str, tuple[str, Dash]] = {
 
 def modal_figures(modes: ModalAnalysis) -> tuple[Figure, ...]:
     """Draw the Campbell diagram, if there are speeds, and the energies."""
-    return (_campbell(modes), _energies(modes)) if modes.speed.size > 1 else (_energies(modes),)
+    return (_campbell(modes), *_energies(modes)) if modes.speed.size > 1 else _energies(modes)
 
 
 def whirl_name(whirl: float) -> str:
@@ -105,33 +107,40 @@ def _modes(modes: ModalAnalysis, speed: FloatArray) -> Iterator[Line]:
             yield Line(name, speed, np.where(shown, modes.frequency[:, mode], np.nan), color, dash, 1.6)
 
 
-def _energies(modes: ModalAnalysis) -> Figure:
-    """Show which mesh, bearing, coupling and drive holds each natural mode."""
-    parts = list(dict.fromkeys(modes.spring_part))
-    strain = np.array(
-        [[modes.held_by(row).get(part, 0.0) for part in parts] for row in modes.natural_strain_energy]
-    ).reshape(-1, len(parts))
-    moving = modes.natural_frequency > 0.0
-    lines = tuple(
-        Line(
-            part,
-            modes.natural_frequency[moving],
-            100.0 * strain[moving, k],
-            palette.category(k),
-            width=0.0,
-            markers=True,
-        )
-        for k, part in enumerate(parts)
+def _energies(modes: ModalAnalysis) -> tuple[Figure, Figure]:
+    """Show what holds each natural mode (meshes, bearings, drives), and what moves in it (shafts)."""
+    shown = np.flatnonzero(modes.natural_frequency > 0.0)[:SHOWN_MODES]
+    names = [f"{number(float(modes.natural_frequency[mode]), 4)} Hz" for mode in shown]
+    held = [modes.held_by(modes.natural_strain_energy[mode]) for mode in shown]
+    moved = [modes.moved(modes.natural_kinetic_energy[mode]) for mode in shown]
+    alike = (
+        f"At most the {SHOWN_MODES} lowest modes; those of one frequency are any combination of each other."
     )
-    return Figure(
-        key="modal_energy",
-        title="Strain energy of the natural modes at rest",
-        caption="Share of each mesh, bearing, coupling and drive in the strain energy of each mode. Modes of "
-        "one frequency are any combination of each other.",
-        alternative="Shares of the strain energy by mode; the table has the largest.",
-        content=(Panel(Axis("natural frequency, Hz"), Axis("strain energy, %"), lines),),
-        table=modes_table(modes),
+    return (
+        Figure(
+            key="modal_energy",
+            title="Strain energy of the natural modes at rest",
+            caption=f"Strain energy by mesh, bearing, coupling and drive. {alike}",
+            alternative=_energy_words(names, held, "strain"),
+            content=(mode_bars(names, held, "strain energy"),),
+            table=modes_table(modes),
+        ),
+        Figure(
+            key="modal_motion",
+            title="Kinetic energy of the natural modes at rest",
+            caption=f"Kinetic energy by shaft and kind of motion. {alike}",
+            alternative=_energy_words(names, moved, "kinetic"),
+            content=(mode_bars(names, moved, "kinetic energy"),),
+        ),
     )
+
+
+def _energy_words(names: list[str], shares: list[dict[str, float]], energy: str) -> str:
+    """Say which part has most of an energy of the lowest mode."""
+    if not names:
+        return "Nothing vibrates."
+    part, share = next(iter(shares[0].items()))
+    return f"The lowest mode, {names[0]}, has {number(100.0 * share, 2)} % of its {energy} energy in {part}."
 
 
 def modes_table(modes: ModalAnalysis) -> Table:
