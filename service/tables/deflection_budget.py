@@ -15,6 +15,7 @@ from service.tables.pair import pair_of
 
 _UM = 1e6
 _ROOM = 1.2  # of the largest part: for the numbers
+_NOTE = 0.4  # of the distance of bars: for the number of the last one on a narrow screen
 _LEAST = 0.0005
 """Part of the mean below which there is no bar."""
 
@@ -90,7 +91,7 @@ def _panel(parts: dict[str, tuple[float, ...]], mean: float) -> Panel:
         for x, size in zip(place, sizes, strict=True)
     )
     names = tuple(zip(map(float, place), parts, strict=True))
-    x = Axis("", limits=(-0.6, len(parts) - 0.4), names=names)
+    x = Axis("", limits=(-0.6, len(parts) + _NOTE), names=names)
     y = Axis(
         "part of the mean STE, µm", limits=(min(0.0, _ROOM * float(sizes.min())), _ROOM * float(sizes.max()))
     )

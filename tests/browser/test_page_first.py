@@ -34,6 +34,21 @@ def test_the_first_example_is_computed_when_the_page_opens(browser: Browser, add
     again.close()
 
 
+OUTSIDE = """() => [...document.querySelectorAll("#results-body .plot")].flatMap((plot) => {
+  const { right } = plot.getBoundingClientRect();
+  const beyond = (label) => label.getBoundingClientRect().right > right + 1;
+  return [...plot.querySelectorAll(".annotation-text")].filter(beyond).map((label) => label.textContent);
+})"""
+
+
+def test_labels_at_lines_stay_within_plots_on_a_narrow_screen(browser: Browser, address: str) -> None:
+    page = opened(browser, f"{address}/#", width=400).page
+    expect(page.locator("#results-body[aria-busy=false]")).to_have_count(1)
+    assert page.locator("#results-body .annotation-text").count() > 20
+    assert page.evaluate(OUTSIDE) == []
+    page.close()
+
+
 def test_a_section_of_the_page_computes_nothing(browser: Browser, address: str) -> None:
     page = opened(browser, f"{address}/#terms").page
     page.wait_for_selector("#plan dl")

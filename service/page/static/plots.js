@@ -7,6 +7,7 @@ import { plotly } from "./plotly.js";
 const DARK = window.matchMedia("(prefers-color-scheme: dark)");
 const NARROW = window.matchMedia("(max-width: 40rem)"); // also a wide screen that is zoomed
 const NARROW_LINE = 36; // characters
+const NARROW_LABEL = 72; // pixels beside a plot
 // without the bar of buttons: a plot is an image to a screen reader, and an image holds no controls
 const CONFIG = { responsive: true, displaylogo: false, displayModeBar: false };
 const shown = new Map();
@@ -65,17 +66,18 @@ function wrapped(text) {
   return at < 0 ? text : `${text.slice(0, at)}<br>${wrapped(text.slice(at + 1))}`;
 }
 
-/** Let the legend, the titles and the labels fit a narrow screen. */
+/** Let the legend, the titles and the labels fit a narrow screen: a label at a line keeps its name alone. */
 function fitted({ data, layout }, width) {
   if (width > 560) return { data, layout };
-  const narrow = { ...layout, font: { ...layout.font, size: 11 }, margin: { ...layout.margin, l: 52, r: layout.margin.r > 40 ? 0.85 * layout.margin.r : 8 } };
+  const r = layout.annotations?.some((one) => one.showarrow) ? Math.min(layout.margin.r, NARROW_LABEL) : 8;
+  const narrow = { ...layout, font: { ...layout.font, size: 11 }, margin: { ...layout.margin, l: 52, r } };
   for (const [name, axis] of Object.entries(narrow)) {
     if (/^[xy]axis/.test(name) && axis.title) {
       const text = name.startsWith("x") ? axis.title.text.replace(/ \(.*/, "") : axis.title.text;
       narrow[name] = { ...axis, title: { ...axis.title, text, font: { size: 11 } } };
     }
   }
-  narrow.annotations = layout.annotations?.map((one) => ({ ...one, text: wrapped(one.text) }));
+  narrow.annotations = layout.annotations?.map((one) => ({ ...one, text: one.showarrow ? one.text.split(":")[0] : wrapped(one.text) }));
   return { data, layout: narrow };
 }
 
