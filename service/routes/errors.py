@@ -18,9 +18,10 @@ from service.problems import BadInput, Fault, ServiceError, UnsupportedMediaType
 from service.routes.caching import NO_STORE
 from service.routes.media_types import JSON, media_type
 from service.schemas.faults import fault_of, innermost
-from service.schemas.problem import ProblemBody
 
 MEDIA_TYPE = "application/problem+json"
+PROBLEM_SCHEMA = "#/components/schemas/ProblemBody"
+"""Where the description of the API has the one shape (`install_description`)."""
 
 
 def problem_response(facts: Mapping[str, Any], headers: Mapping[str, str] | None = None) -> Response:
@@ -42,9 +43,7 @@ def problem_of(error: ServiceError) -> Response:
 
 def documented(*statuses: int) -> dict[int | str, dict[str, Any]]:
     """Return the OpenAPI entries of the problems a route can answer with."""
-    content = {
-        MEDIA_TYPE: {"schema": ProblemBody.model_json_schema(ref_template="#/components/schemas/{model}")}
-    }
+    content = {MEDIA_TYPE: {"schema": {"$ref": PROBLEM_SCHEMA}}}
     return {status: {"description": HTTPStatus(status).phrase, "content": content} for status in statuses}
 
 

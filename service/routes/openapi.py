@@ -8,6 +8,7 @@ from typing import Any
 from fastapi import FastAPI
 
 from service.routes.errors import MEDIA_TYPE as PROBLEM
+from service.routes.errors import PROBLEM_SCHEMA
 from service.routes.events import EVENT_STREAM
 from service.routes.media_types import CBOR, JSON
 from service.schemas.answer_examples import answer_example, problem_example
@@ -48,7 +49,7 @@ def _add_examples(document: dict[str, Any]) -> None:
                 elif PROBLEM in content:
                     shown = problem_example(int(status), HTTPStatus(int(status)).phrase)
                     content[PROBLEM] = {
-                        "schema": {"$ref": _REF.format(model="ProblemBody")},
+                        "schema": {"$ref": PROBLEM_SCHEMA},
                         "example": shown,
                     }
 
