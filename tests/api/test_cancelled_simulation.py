@@ -24,6 +24,11 @@ DURATION, RATE = 900.0, 20e3
 SAMPLE_BYTES = 8 * 2 * 5  # displacements and rates of five freedoms
 
 
+@pytest.fixture(scope="module", autouse=True)
+def warm_once() -> None:
+    """Start the worker anew: it is found by its parent and its command."""
+
+
 @pytest.fixture
 def data(tmp_path: Path) -> Path:
     return tmp_path / "data"

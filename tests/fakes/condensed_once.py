@@ -21,6 +21,9 @@ from fe_contact.compliance.cache import read_compliance, write_compliance
 from fe_contact.compliance.flank import FlankCompliance
 from fe_contact.compliance.flank_3d import FlankCompliance3D
 
+FOLDER = "LOA_TEST_CONDENSED_BODIES"
+"""Names the folder to a warm process."""
+
 
 @pytest.fixture(scope="session")
 def condensed_bodies(tmp_path_factory: pytest.TempPathFactory) -> Path:
@@ -32,14 +35,24 @@ def condensed_bodies(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module", autouse=True)
 def condensed_once(condensed_bodies: Path) -> Iterator[None]:
     """Condense what no other test has condensed."""
-    plane, face = flank_compliance_2d, cyclic_compliance
     with pytest.MonkeyPatch.context() as patch:
-        for module, name, key, kind in (
-            (plane, "compute_flank_compliance", plane.compliance_key, FlankCompliance),
-            (face, "compute_flank_compliance_3d", face.compliance_key_3d, FlankCompliance3D),
-        ):
-            patch.setattr(module, name, _kept(getattr(module, name), key, kind, condensed_bodies))
+        condense_once(condensed_bodies, patch)
         yield
+
+
+def warm_up() -> None:
+    """Let the workers that a warm process forks condense once too."""
+    condense_once(Path(os.environ[FOLDER]), pytest.MonkeyPatch())
+
+
+def condense_once(folder: Path, patch: pytest.MonkeyPatch) -> None:
+    """Let this process condense what is not in a folder yet."""
+    plane, face = flank_compliance_2d, cyclic_compliance
+    for module, name, key, kind in (
+        (plane, "compute_flank_compliance", plane.compliance_key, FlankCompliance),
+        (face, "compute_flank_compliance_3d", face.compliance_key_3d, FlankCompliance3D),
+    ):
+        patch.setattr(module, name, _kept(getattr(module, name), key, kind, folder))
 
 
 def _kept(

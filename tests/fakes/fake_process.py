@@ -1,7 +1,8 @@
 """The service with fake work as processes of their own: all in one, serving only, or working only.
 
 Started as ``python fake_process.py ROLE [DESCRIPTOR]``: DESCRIPTOR is the socket to listen on, which its
-parent keeps, so that the address outlives the process. Settings come from the environment.
+parent keeps, so that the address outlives the process. Settings come from the environment. None of them loads
+the libraries that compute.
 """
 
 from __future__ import annotations
@@ -14,8 +15,6 @@ import threading
 import structlog
 from service_fakes import REGISTRY
 
-from service.app import create_app
-from service.cli.serve import http_server
 from service.problems import DatabaseUnavailable
 from service.queue.machinery import job_machinery
 from service.settings import load_settings
@@ -24,7 +23,11 @@ from service.store import DirectoryLock
 
 def serve(works: bool, descriptor: int) -> None:
     """Answer on the socket until stopped."""
-    app = create_app(load_settings(), REGISTRY, works=works)
+    from service import app as application  # noqa: PLC0415 (start-up time: working needs no web framework)
+    from service.cli.serve import http_server  # noqa: PLC0415
+
+    application.warm_up = lambda: None
+    app = application.create_app(load_settings(), REGISTRY, works=works)
     signal.signal(signal.SIGTERM, lambda _number, _frame: sys.exit(0))  # raised again when all is shut down
     with socket.socket(fileno=descriptor) as listener:
         http_server(app).run(sockets=[listener])

@@ -17,17 +17,20 @@ from service.directories import cache_home, data_home
 from service.settings import LEAST_MEMORY_MB, Settings
 from service.store import ResultStore
 from service.store.results import StoredResult
+from service.worker.child_process import start_child
+from service.worker.forks import Forks
 from service.worker.memory import machine_memory_mb
 
 
 @pytest.fixture(params=["started anew", "forked"])
-def machine(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Bench]:
+def machine(
+    tmp_path: Path, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[Bench]:
     """A started scheduler with two workers, started anew or forked from a warm process."""
+    if request.param == "started anew":
+        monkeypatch.setattr(Forks, "launch", lambda _, ends: start_child(ends))
     made = bench(tmp_path, REGISTRY, workers=2)
     made.scheduler.start()
-    if request.param == "forked":
-        made.scheduler._forks.warm_up()
-        until(lambda: made.scheduler._forks.warm)
     yield made
     made.close()
 

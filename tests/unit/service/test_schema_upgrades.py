@@ -48,6 +48,11 @@ TIME = "2026-11-01T00:00:00.000000Z"
 IDENTIFIERS = [f"00000000-0000-4000-8000-00000000000{n}" for n in range(4)]
 
 
+@pytest.fixture(scope="module", autouse=True)
+def migrated_once() -> None:
+    """Let migrations make all tables: they are what is tested here."""
+
+
 def fill(file: Path, results: Path) -> None:
     """Make a data directory of the old schema: work that waits, runs and is done, and two results."""
     states = ["accepted", "running", "successful"]

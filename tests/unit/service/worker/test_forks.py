@@ -14,6 +14,11 @@ from service_fakes import REGISTRY
 from service.worker.forks import Forks
 
 
+@pytest.fixture(scope="module", autouse=True)
+def warm_once() -> None:
+    """Share no warm process: what becomes of one is what is tested here."""
+
+
 @pytest.fixture
 def machine(tmp_path: Path) -> Iterator[Bench]:
     made = bench(tmp_path, REGISTRY)

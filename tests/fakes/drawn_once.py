@@ -1,0 +1,46 @@
+"""Figures of reports are drawn once in a run of the tests: images are most of what a page costs.
+
+All tests of all workers share the images by what is drawn. The laws of drawing call `service.drawing.image`
+itself.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import pickle
+from collections.abc import Callable, Iterator
+from functools import wraps
+from pathlib import Path
+
+import pytest
+
+from service.cli import study
+from service.drawing.figure import Figure
+from service.report import write
+
+
+@pytest.fixture(scope="module", autouse=True)
+def drawn_once(condensed_bodies: Path) -> Iterator[None]:
+    """Draw what no report has drawn, and keep it beside the bodies."""
+    folder = condensed_bodies.with_name("drawn_figures")
+    folder.mkdir(parents=True, exist_ok=True)
+    with pytest.MonkeyPatch.context() as patch:
+        for module in (write, study):
+            patch.setattr(module, "png", _kept(module.png, folder))
+        yield
+
+
+def _kept(draw: Callable[[Figure], bytes], folder: Path) -> Callable[[Figure], bytes]:
+    """Return the drawing that looks first."""
+
+    @wraps(draw)
+    def found(figure: Figure) -> bytes:
+        file = folder / hashlib.sha256(pickle.dumps(figure)).hexdigest()
+        if not file.exists():
+            draft = file.with_suffix(f".{os.getpid()}")
+            draft.write_bytes(draw(figure))
+            draft.replace(file)
+        return file.read_bytes()
+
+    return found

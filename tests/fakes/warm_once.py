@@ -1,0 +1,83 @@
+"""One warm process forks the workers of all services in a test process, from their first job on.
+
+A service starts its first workers anew and a warm process beside the second; each imports and compiles all
+that solves, which is most of what a small job costs. Bodies are condensed once in workers too. What a service
+does by itself is in tests/unit/service/worker/test_forks.py and where services have processes of their own.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from condensed_once import FOLDER
+from running_service import until
+from service_surroundings import FAKES
+
+from service.worker.child_process import ChildProcess, Ends
+from service.worker.forks import Forks, _Server
+
+_ANALYSIS = "service.worker.analysis_work"
+
+
+class _Shared(_Server):
+    """A warm process that several schedulers ask, each from a thread of its own."""
+
+    def __init__(self, modules: list[str], log: Path) -> None:
+        self._asked = threading.Lock()
+        first = ["condensed_once"] if _ANALYSIS in modules else []
+        super().__init__([*first, *modules], log)
+
+    def ask(self, request: dict[str, Any], descriptors: Iterable[int] = ()) -> Any:
+        with self._asked:
+            return super().ask(request, descriptors)
+
+
+class _WarmProcesses:
+    """The warm processes by what they have imported."""
+
+    def __init__(self, log: Path) -> None:
+        self._log = log
+        self._found: dict[tuple[str, ...], _Shared] = {}
+        self._starts = threading.Lock()
+
+    def launch(self, forks: Forks, ends: Ends) -> ChildProcess:
+        """Fork a child in place of `Forks.launch`."""
+        key = tuple(forks._modules)
+        with self._starts:
+            server = self._found.get(key)
+            if server is None or not server.usable:
+                server = self._found[key] = _Shared(forks._modules, self._log / f"warm{len(self._found)}.log")
+        until(lambda: server.ready)
+        return server.fork(ends)
+
+    def close(self) -> None:
+        """End them."""
+        for server in self._found.values():
+            server.close()
+
+
+@pytest.fixture(scope="session")
+def warm_processes(tmp_path_factory: pytest.TempPathFactory) -> Iterator[_WarmProcesses]:
+    """The warm processes of a test process."""
+    made = _WarmProcesses(tmp_path_factory.mktemp("warm"))
+    yield made
+    made.close()
+
+
+@pytest.fixture(scope="module", autouse=True)
+def warm_once(warm_processes: _WarmProcesses, condensed_bodies: Path) -> Iterator[None]:
+    """Let the services of a file have their workers forked."""
+
+    def launch(forks: Forks, ends: Ends) -> ChildProcess:
+        return warm_processes.launch(forks, ends)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Forks, "launch", launch)
+        patch.setenv("PYTHONPATH", os.pathsep.join([FAKES, os.environ.get("PYTHONPATH", "")]))
+        patch.setenv(FOLDER, str(condensed_bodies))
+        yield
