@@ -31,7 +31,7 @@ GEAR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0, "thickness
 CASE: dict[str, Any] = {
     "pair": {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": GEAR, "wheel": GEAR},
     "load": {"torque_n_m": [40.0, 80.0]},
-    "accuracy": {"level": "draft", "model": "plane_strain"},
+    "accuracy": {"level": "draft", "model": "plane_strain", "positions": 16},
 }
 STUDY = {
     "variables": {"pinion": {"profile_crowning_um": [0.0, 20.0]}},
@@ -151,7 +151,8 @@ class Dying(Recording):
 def test_a_second_attempt_takes_up_the_table_of_the_first(
     tmp_path: Path, data: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    inputs = {"case": {**CASE, "errors": {"center_distance_change_mm": [0.0, 0.08]}}}
+    many = CASE["accuracy"] | {"positions": 64}
+    inputs = {"case": {**CASE, "accuracy": many, "errors": {"center_distance_change_mm": [0.0, 0.08]}}}
     first, second, alone = Dying(6), Dying(1000), Dying(1000)
     monkeypatch.setattr(cluster, "InProcess", lambda: first)
     with pytest.raises(RuntimeError, match="killed"):

@@ -21,6 +21,7 @@ from service.schemas import Case, read_model, validated
 from service.schemas.scene import SceneInput
 
 COARSE = ("--set", "accuracy.receipt=minimal", "--set", "accuracy.positions=8", "--level", "draft")
+NARROW = ("--width", 8)  # few layers over the face
 CASES = ("spur", "helical", "internal")
 
 
@@ -41,7 +42,7 @@ def case(kind: str, **wanted: float) -> Case:
 
 @pytest.mark.parametrize("kind", CASES)
 def test_a_case_is_analyzed_as_it_is_written(kind: str, tmp_path: Path) -> None:
-    file = written(kind, tmp_path)
+    file = written(kind, tmp_path, *NARROW)
     done = loa("analyze", file, "-o", tmp_path / "ste.nc", "--torque", 20, *COARSE)
     assert done.exit_code == 0, done.output
     assert "warning" not in done.stdout
@@ -51,7 +52,7 @@ def test_a_case_is_analyzed_as_it_is_written(kind: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("kind", "meshes"), [("scene", 1), ("planetary", 2)])
 def test_a_scene_runs_as_it_is_written(kind: str, meshes: int, tmp_path: Path) -> None:
-    file = written(kind, tmp_path)
+    file = written(kind, tmp_path, *NARROW)
     scene = read_model(SceneInput, file)
     assert len(scene.meshes) == meshes
     coarse = ("receipt=minimal", "positions=8", "level=draft")

@@ -35,7 +35,7 @@ tip_relief_length_mm = [0.5, 3.0]
 points = 2
 wheel = { profile_slope_um = 2.0 }
 [search]
-evaluations = 60
+evaluations = 24
 positions = 16
 """
 
@@ -95,19 +95,19 @@ def test_an_interrupted_search_writes_its_best_and_says_so(
     asked = [0]
 
     @contextmanager
-    def interrupted_after_thirty() -> Iterator[Callable[[], bool]]:
+    def interrupted_after_twelve() -> Iterator[Callable[[], bool]]:
         def cancel() -> bool:
             asked[0] += 1
-            return asked[0] > 31  # once before the start
+            return asked[0] > 13  # once before the start
 
         yield cancel
 
-    monkeypatch.setattr("service.cli.study.until_interrupted", interrupted_after_thirty)
+    monkeypatch.setattr("service.cli.study.until_interrupted", interrupted_after_twelve)
     ran = CliRunner().invoke(app, ["optimize", *map(str, files), "-o", str(tmp_path / "best.json")])
     assert ran.exit_code == 130, ran.output
     told = json.loads((tmp_path / "best.json").read_text(encoding="utf-8"))
-    assert told["evaluations"] == 30 and told["runs"][0]["ended"] == "interrupted"
-    assert "interrupted after 30 of at most 60 designs" in " ".join(ran.output.split())
+    assert told["evaluations"] == 12 and told["runs"][0]["ended"] == "interrupted"
+    assert "interrupted after 12 of at most 24 designs" in " ".join(ran.output.split())
     assert "not tried: " in ran.output
 
 

@@ -12,6 +12,7 @@ import sys
 import time
 import urllib.request
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -30,7 +31,7 @@ def loa(*arguments: object) -> Result:
 
 def started(*arguments: str, **options: object) -> subprocess.Popen[str]:
     """Run the command line in a process of its own."""
-    path = os.pathsep.join([str(ROOT), os.environ["PYTHONPATH"]])
+    path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
     return subprocess.Popen(
         [sys.executable, "-m", "service.cli", *arguments],
         env={**os.environ, "PYTHONPATH": path},
@@ -41,10 +42,10 @@ def started(*arguments: str, **options: object) -> subprocess.Popen[str]:
     )
 
 
-@pytest.fixture
-def server(tmp_path: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
-    """A server process on a free port and its address."""
-    process = started("serve", "--port", "0", "--data-directory", str(tmp_path / "served"))
+@contextmanager
+def serving(folder: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    """Serve on a free port; gives the process and its address."""
+    process = started("serve", "--port", "0", "--data-directory", str(folder))
     assert process.stdout is not None
     line = process.stdout.readline()
     assert line, process.communicate()
@@ -54,14 +55,26 @@ def server(tmp_path: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
     process.communicate()
 
 
-def test_who_reads_the_address_may_connect(server: tuple[subprocess.Popen[str], str]) -> None:
-    _, address = server
-    host, _, port = address.removeprefix("http://").rpartition(":")
-    socket.create_connection((host, int(port)), timeout=PATIENCE_S).close()
+@pytest.fixture
+def server(tmp_path: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    """A server process that a test may end."""
+    with serving(tmp_path / "served") as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def lasting(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, str]]:
+    """The data directory and the address of a server that all tests of the file may ask."""
+    folder = tmp_path_factory.mktemp("service") / "served"
+    with serving(folder) as (_, address):
+        until(lambda: _healthy(address))
+        yield folder, address
 
 
 def test_a_server_starts_serves_and_stops_clean(server: tuple[subprocess.Popen[str], str]) -> None:
     process, address = server
+    host, _, port = address.removeprefix("http://").rpartition(":")
+    socket.create_connection((host, int(port)), timeout=PATIENCE_S).close()  # it listens before it says so
     until(lambda: _healthy(address))
     until(lambda: _is_idle(process.pid))  # its libraries are loaded
     before = _cpu_s(process.pid)
@@ -135,18 +148,14 @@ def _children(pid: int) -> list[int]:
     return [int(child) for task in tasks for child in (task / "children").read_text().split()]
 
 
-def test_a_second_server_in_the_same_directory_is_refused(
-    server: tuple[subprocess.Popen[str], str], tmp_path: Path
-) -> None:
-    until(lambda: _healthy(server[1]))
-    result = loa("serve", "--port", "0", "--data-directory", tmp_path / "served")
+def test_a_second_server_in_the_same_directory_is_refused(lasting: tuple[Path, str]) -> None:
+    result = loa("serve", "--port", "0", "--data-directory", lasting[0])
     assert result.exit_code == 2
     assert "another service works in it" in result.stderr
 
 
-def test_a_port_in_use_is_said(server: tuple[subprocess.Popen[str], str], tmp_path: Path) -> None:
-    until(lambda: _healthy(server[1]))
-    port = server[1].rpartition(":")[2]
+def test_a_port_in_use_is_said(lasting: tuple[Path, str], tmp_path: Path) -> None:
+    port = lasting[1].rpartition(":")[2]
     result = loa("serve", "--port", port, "--data-directory", tmp_path / "other")
     assert result.exit_code == 2
     assert f"port = {port}: must be a free port" in result.stderr

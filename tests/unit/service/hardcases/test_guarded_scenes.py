@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import multiprocessing
 
 import pytest
 import scenes_that_break as fake
@@ -12,6 +13,14 @@ import service.cli.hardcases as verb
 from service.cli.commands import app as loa
 from service.hardcases import HARD_SCENES, Measured, run_scenes
 from service.problems import EXIT_BAD_INPUT, EXIT_FAILED
+
+
+@pytest.fixture(autouse=True)
+def _imported_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Fork the processes of the scenes from one that has imported them."""
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["service.hardcases.guarded", "scenes_that_break"])
+    monkeypatch.setattr("service.hardcases.guarded.multiprocessing.get_context", lambda _: context)
 
 
 def test_crash_hang_and_exception_each_end_one_scene_only() -> None:

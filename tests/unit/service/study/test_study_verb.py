@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 import tomllib
+from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
 from typing import Any, get_args
@@ -64,30 +65,47 @@ def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return scene_file(tmp_path)
 
 
-def test_figures_are_those_of_loa_simulate(scene: Path, tmp_path: Path) -> None:
-    result = loa("study", scene, study_file(tmp_path), "-o", tmp_path / "out", "--json")
+@dataclass(frozen=True)
+class Studied:
+    """The study of `STUDY` in this process: its scene, the folder of its results, what it printed."""
+
+    scene: Path
+    out: Path
+    printed: str
+
+
+@pytest.fixture(scope="module")
+def studied(tmp_path_factory: pytest.TempPathFactory) -> Studied:
+    folder = tmp_path_factory.mktemp("studied")
+    scene, out = scene_file(folder), folder / "out"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(folder / "cache"))
+        result = loa("study", scene, study_file(folder), "-o", out, "--json")
     assert result.exit_code == 0, result.output
-    answer = json.loads(result.stdout)
-    made = Study.from_netcdf(tmp_path / "out" / "study.nc")
+    return Studied(scene, out, result.stdout)
+
+
+def test_figures_are_those_of_loa_simulate(studied: Studied, tmp_path: Path) -> None:
+    answer = json.loads(studied.printed)
+    made = Study.from_netcdf(studied.out / "study.nc")
     figures = facts(made)
     assert figures == {name: answer[name] for name in figures}
     point = int(made.worst[0])
     torque, stiffness = made.value[point].tolist()
-    text = (
-        scene.read_text(encoding="utf-8").replace("[100.0]", f"[{torque!r}]").replace("2e8", repr(stiffness))
-    )
-    (tmp_path / "alone.toml").write_text(text, encoding="utf-8")
-    assert loa("simulate", tmp_path / "alone.toml", "-o", tmp_path / "alone.nc").exit_code == 0
+    text = studied.scene.read_text(encoding="utf-8")
+    text = text.replace("[100.0]", f"[{torque!r}]").replace("2e8", repr(stiffness))
+    alone_file = studied.scene.with_name("alone.toml")
+    alone_file.write_text(text, encoding="utf-8")
+    assert loa("simulate", alone_file, "-o", tmp_path / "alone.nc").exit_code == 0
     alone = RunResult.from_netcdf(tmp_path / "alone.nc")
     assert made.figure[point, 1] == np.ptp(alone.dynamic_transmission_error[0])
-    kept = RunResult.from_netcdf(tmp_path / "out" / "study_runs" / f"point_{point}.nc")
+    kept = RunResult.from_netcdf(studied.out / "study_runs" / f"point_{point}.nc")
     np.testing.assert_array_equal(kept.bearing_force, alone.bearing_force)
 
 
-def test_two_processes_give_the_same_bits(scene: Path, tmp_path: Path) -> None:
-    for folder, further in (("one", ()), ("two", ("--workers", 2))):
-        assert loa("study", scene, study_file(tmp_path), "-o", tmp_path / folder, *further).exit_code == 0
-    one, two = (Study.from_netcdf(tmp_path / folder / "study.nc") for folder in ("one", "two"))
+def test_two_processes_give_the_same_bits(studied: Studied, scene: Path, tmp_path: Path) -> None:
+    assert loa("study", scene, study_file(tmp_path), "-o", tmp_path / "two", "--workers", 2).exit_code == 0
+    one, two = (Study.from_netcdf(folder / "study.nc") for folder in (studied.out, tmp_path / "two"))
     np.testing.assert_array_equal(one.figure, two.figure)
 
 
@@ -95,13 +113,17 @@ def test_a_killed_study_goes_on_where_it_was(scene: Path, tmp_path: Path) -> Non
     many = STUDY.replace("samples = 3", "samples = 40").replace("keep_worst = 1", "")
     arguments = ["study", str(scene), str(study_file(tmp_path, many)), "-o", str(tmp_path / "killed")]
     kept = tmp_path / "cache" / "lineofaction" / "studies"
+
+    def finished() -> list[Path]:
+        return [file for file in kept.glob("*/*") if file.suffix != ".partial"]
+
     with subprocess.Popen([sys.executable, "-m", "service.cli", *arguments], env=os.environ) as running:
         deadline = time.monotonic() + 120.0
-        while len(list(kept.glob("*/*"))) < 3 and time.monotonic() < deadline:
+        while len(finished()) < 3 and time.monotonic() < deadline:
             assert running.poll() is None
             time.sleep(0.002)
         running.send_signal(signal.SIGKILL)
-    before = [file for file in kept.glob("*/*") if file.suffix != ".partial"]
+    before = finished()
     assert 3 <= len(before) < 10 and not (tmp_path / "killed" / "study.nc").exists()
     done = []
 
@@ -189,10 +211,9 @@ def test_a_value_that_the_scene_refuses_is_a_failed_point(scene: Path, tmp_path:
     assert np.isnan(made.figure[3:]).all() and np.isfinite(made.figure[:3]).all()
 
 
-def test_the_report_has_the_runs_and_their_plots(scene: Path, tmp_path: Path) -> None:
-    assert loa("study", scene, study_file(tmp_path), "-o", tmp_path / "out").exit_code == 0
-    write_report(tmp_path / "out" / "study.nc", tmp_path / "again.html")
-    for page in (tmp_path / "out" / "study.html", tmp_path / "again.html"):
+def test_the_report_has_the_runs_and_their_plots(studied: Studied, tmp_path: Path) -> None:
+    write_report(studied.out / "study.nc", tmp_path / "again.html")
+    for page in (studied.out / "study.html", tmp_path / "again.html"):
         text = page.read_text(encoding="utf-8")
         for word in ("study_curves", "study_distribution", "study_tornado", "torque_n_m", "energy audit"):
             assert word in text
