@@ -61,8 +61,10 @@ def served(home: Path, **further: str) -> Iterator[str]:
         subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=log, text=True) as service,
     ):
         assert service.stdout is not None
-        yield service.stdout.readline().split()[-1]
-        service.terminate()
+        try:
+            yield service.stdout.readline().split()[-1]
+        finally:
+            service.terminate()
 
 
 def opened(browser: Browser, address: str, scheme: str = "light", width: int = 1400) -> Visit:
