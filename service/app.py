@@ -17,12 +17,12 @@ from service.queue.workload import WorkloadReader
 from service.routes import (
     cases,
     databases,
+    description,
     effects,
     events,
     figures,
     former_results,
     health,
-    job_results,
     jobs,
     landing,
     live,
@@ -33,10 +33,11 @@ from service.routes import (
 )
 from service.routes.access import Access
 from service.routes.context import Context
-from service.routes.errors import documented, install_error_handlers
+from service.routes.errors import install_error_handlers
+from service.routes.job_results import job_results_router
 from service.routes.metrics import Metrics
 from service.routes.middleware import API_PREFIX, Guard
-from service.routes.openapi import install_description
+from service.routes.openapi import ABOUT, install_description
 from service.routes.processes import processes_router
 from service.routes.warm_up import warm_up
 from service.settings import Settings
@@ -47,11 +48,6 @@ from service.store.write_check import WriteCheck
 from service.version import solver_version
 from service.worker.catalogue import default_registry
 from service.worker.process import Registry
-
-_DESCRIPTION = (
-    "Contact analysis of gear pairs and the dynamics it excites. Jobs follow OGC API - Processes 1.0; "
-    "errors are problem details (RFC 9457). Units are in the names of the fields."
-)
 
 
 def create_app(settings: Settings, registry: Registry | None = None, *, works: bool = True) -> FastAPI:
@@ -84,12 +80,13 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
         raise
 
     app = FastAPI(
-        title="lineofaction",
         version=solver_version(),
-        description=_DESCRIPTION,
         lifespan=_lifespan(context, lock),
+        generate_unique_id_function=lambda route: route.name,
+        openapi_url=None,
         docs_url=None,
         redoc_url=None,
+        **ABOUT,
     )
     app.state.context = context
     app.state.metrics = Metrics(WorkloadReader(context.engine), context.writes)
@@ -97,12 +94,13 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
     install_description(app)
     app.add_middleware(Access, keyring=keyring, always=not settings.loopback or bool(keyring))
     app.add_middleware(Guard, body_limit=settings.body_limit, metrics=app.state.metrics)
-    jobs_shown = (landing.router, processes_router(offered), jobs.router, job_results.router, events.router)
+    jobs_shown = (landing.router, processes_router(offered), jobs.router, job_results_router(offered))
     stored = (databases.router, results.router, figures.router, queries.router, live.router)
-    for router in (*jobs_shown, *stored, cases.router, scenes.router, effects.router, former_results.router):
-        app.include_router(router, prefix=API_PREFIX, responses=documented(503))
-    app.include_router(page.router)
-    app.include_router(health.router)
+    others = (events.router, cases.router, scenes.router, effects.router, former_results.router)
+    for router in (*jobs_shown, *stored, *others):
+        app.include_router(router, prefix=API_PREFIX)
+    for router in (page.router, description.router, health.router):
+        app.include_router(router)
     return app
 
 

@@ -1,4 +1,4 @@
-"""The files that the page is made of: its own, and plotly.js from the plotly package."""
+"""The files that the pages are made of: their own, and plotly.js and Swagger UI from Python packages."""
 
 from __future__ import annotations
 
@@ -17,6 +17,12 @@ _TYPES = {
     ".svg": "image/svg+xml",
 }
 PLOTLY = "plotly.min.js"
+_FROM_PACKAGES = {
+    PLOTLY: ("plotly", "package_data"),
+    "swagger-ui-bundle.js": ("fastapi_swagger", "resources"),
+    "swagger-ui.css": ("fastapi_swagger", "resources"),
+}
+"""Package and folder in it."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +52,7 @@ class PageFile:
 @lru_cache(maxsize=64)
 def page_file(name: str) -> PageFile | None:
     """Return the file of this name, None if the page has none."""
-    path = _plotly() if name == PLOTLY else _own().get(name)
+    path = _of_package(name) if name in _FROM_PACKAGES else _own().get(name)
     return None if path is None else PageFile(path.read_bytes(), _TYPES[path.suffix])
 
 
@@ -56,8 +62,9 @@ def _own() -> dict[str, Path]:
     return {path.name: path for path in _DIRECTORY.iterdir() if path.suffix in _TYPES}
 
 
-def _plotly() -> Path:
-    """Return the script in the plotly package, which need not be imported for it."""
-    spec = importlib.util.find_spec("plotly")
+def _of_package(name: str) -> Path:
+    """Return a file of another package, which need not be imported for it."""
+    package, folder = _FROM_PACKAGES[name]
+    spec = importlib.util.find_spec(package)
     assert spec is not None and spec.origin is not None
-    return Path(spec.origin).parent / "package_data" / PLOTLY
+    return Path(spec.origin).parent / folder / name

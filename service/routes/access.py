@@ -10,7 +10,7 @@ from service.problems import NotForUs, RateExceeded, Unauthorised
 from service.routes.caching import for_one_caller
 from service.routes.host import meant_for_us
 
-OPEN_PATHS = ("/health", "/ready", "/")
+OPEN_PATHS = ("/health", "/ready", "/", "/docs")
 OPEN_FOLDER = "/page/"
 """Answered to everybody: they tell nothing about anybody's work. Supervisors and load balancers ask without a
 key; the page asks its reader for one."""

@@ -13,9 +13,10 @@ from starlette.responses import JSONResponse, Response
 from service.convert.toml import toml_text
 from service.live.order import LiveOrder
 from service.page.examples import Example, examples
+from service.problems import LiveUnavailable, QueueFull
 from service.routes.context import Context, Ctx
-from service.routes.errors import documented
 from service.routes.media_types import JSON
+from service.routes.refusals import documented
 from service.schemas import Case
 from service.schemas.model import BoundaryModel
 from service.schemas.reading import validated
@@ -69,8 +70,8 @@ def example_cases() -> list[ExampleBody]:
     return [_example(example) for example in examples()]
 
 
-@router.post("/cases/outline", summary="Drawing of the two gears", responses=documented(400, 413, 415, 422))
-def outline(body: CaseRequest) -> dict[str, Any]:
+@router.post("/cases/outline", summary="Drawing of the two gears")
+def case_outline(body: CaseRequest) -> dict[str, Any]:
     """Transverse outlines of both gears in mm, the path of contact, and the figures of the pair."""
     drawing: dict[str, Any] = outline_json(body.inputs.case)
     return drawing
@@ -80,9 +81,9 @@ def outline(body: CaseRequest) -> dict[str, Any]:
     "/cases/from-toml",
     summary="Read a case file",
     response_model=CaseBody,
-    responses=documented(400, 413, 415, 422, 429, 503),
+    responses=documented(QueueFull, LiveUnavailable),
 )
-async def from_toml(body: TomlBody, context: Ctx) -> Response:
+async def case_from_toml(body: TomlBody, context: Ctx) -> Response:
     """Read the case in a file's text, with all defaults; files that it names cannot be read here."""
     return await read_toml("service.convert.toml_file:case_of_toml", body, context)
 
@@ -96,8 +97,8 @@ async def read_toml(entry: str, body: TomlBody, context: Context) -> Response:
     return Response(answer, media_type=JSON)
 
 
-@router.post("/cases/to-toml", summary="Write a case file", responses=documented(400, 413, 415, 422))
-def to_toml(body: CaseRequest) -> TomlBody:
+@router.post("/cases/to-toml", summary="Write a case file")
+def case_to_toml(body: CaseRequest) -> TomlBody:
     """Write the case with all defaults as a file's text."""
     return TomlBody(toml=toml_text(case_json(body.inputs.case)))
 
@@ -113,6 +114,6 @@ def explained(handler: Any, model: type[BaseModel]) -> None:
     handler.body_model = model
 
 
-explained(outline, CaseRequest)
-explained(from_toml, TomlBody)
-explained(to_toml, CaseRequest)
+explained(case_outline, CaseRequest)
+explained(case_from_toml, TomlBody)
+explained(case_to_toml, CaseRequest)

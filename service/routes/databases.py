@@ -7,7 +7,6 @@ from fastapi import APIRouter, Request
 from service.loading import LOADING
 from service.routes.context import Ctx
 from service.routes.cursor import Cursor, Limit, mark_of, page_links
-from service.routes.errors import documented
 from service.schemas.database_list import DatabaseEntry, DatabaseList
 from service.schemas.result_kinds import RESULTS
 from service.store import IndexLine, Mark, ResultStore
@@ -17,8 +16,8 @@ router = APIRouter(tags=["results"])
 _PATH = "/v1/databases"
 
 
-@router.get("/databases", summary="STE databases", responses=documented(422))
-def databases(request: Request, context: Ctx, limit: Limit = 20, cursor: Cursor = None) -> DatabaseList:
+@router.get("/databases", summary="STE databases")
+def list_databases(request: Request, context: Ctx, limit: Limit = 20, cursor: Cursor = None) -> DatabaseList:
     """List stored databases with their cases, the newest first."""
     page = context.store.page("database", limit + 1, mark_of(cursor))
     shown = page[:limit]

@@ -22,7 +22,7 @@ class EffectBody(BaseModel):
 
 
 @router.get("/effects", summary="Optional physics")
-def effects() -> list[EffectBody]:
+def list_effects() -> list[EffectBody]:
     """All effects; a case switches them in its table [effects]."""
     with LOADING:
         from fe_contact.effects import EFFECTS  # noqa: PLC0415 (start-up time)

@@ -16,19 +16,15 @@ from starlette.routing import compile_path
 
 from service.problems import BadInput, Fault, ServiceError, UnsupportedMediaType
 from service.routes.caching import NO_STORE
-from service.routes.media_types import JSON, media_type
+from service.routes.media_types import JSON, PROBLEM, media_type
 from service.schemas.faults import fault_of, innermost
-
-MEDIA_TYPE = "application/problem+json"
-PROBLEM_SCHEMA = "#/components/schemas/ProblemBody"
-"""Where the description of the API has the one shape (`install_description`)."""
 
 
 def problem_response(facts: Mapping[str, Any], headers: Mapping[str, str] | None = None) -> Response:
     """Return a problem, which no cache keeps, in ASCII, so that nothing a caller sent can break it."""
     body = json.dumps(facts, allow_nan=False, ensure_ascii=True).encode()
     fields = {"Cache-Control": NO_STORE, **(headers or {})}
-    return Response(body, int(facts["status"]), fields, media_type=MEDIA_TYPE)
+    return Response(body, int(facts["status"]), fields, media_type=PROBLEM)
 
 
 def problem_of(error: ServiceError) -> Response:
@@ -39,12 +35,6 @@ def problem_of(error: ServiceError) -> Response:
     if error.accept_post is not None:
         headers["Accept-Post"] = error.accept_post
     return problem_response(error.as_json(), headers)
-
-
-def documented(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """Return the OpenAPI entries of the problems a route can answer with."""
-    content = {MEDIA_TYPE: {"schema": {"$ref": PROBLEM_SCHEMA}}}
-    return {status: {"description": HTTPStatus(status).phrase, "content": content} for status in statuses}
 
 
 def install_error_handlers(app: FastAPI) -> None:

@@ -11,11 +11,12 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response, StreamingResponse
 from starlette.types import Receive, Scope, Send
 
-from service.problems import QueueFull
+from service.problems import NoSuchJob, QueueFull
 from service.routes.caching import NO_STORE
 from service.routes.context import Context, Ctx
-from service.routes.errors import documented
 from service.routes.jobs import status_info
+from service.routes.refusals import documented
+from service.routes.response_headers import described_headers
 from service.routes.streams import Streams
 
 LOOK_S = 0.25
@@ -37,11 +38,15 @@ class TooManyStreams(QueueFull):
     summary="Changes of a job's status",
     response_class=Response,
     responses={
-        200: {"description": "Events `status`, each with the status document", "content": {EVENT_STREAM: {}}},
-        **documented(404, 429),
+        200: {
+            "description": "Events `status`, each with the status document",
+            "content": {EVENT_STREAM: {"schema": {"type": "string"}}},
+            "headers": described_headers("Cache-Control"),
+        },
+        **documented(NoSuchJob, TooManyStreams),
     },
 )
-async def events(job_id: str, context: Ctx) -> Response:
+async def job_events(job_id: str, context: Ctx) -> Response:
     """Send the status now and whenever it changes; the stream ends after the final one.
 
     Who reconnects gets the current status. Comments keep the connection open.

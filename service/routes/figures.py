@@ -11,13 +11,16 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
 from service.live.order import LiveOrder
+from service.problems import DamagedFile, LiveUnavailable, NotFound, QueueFull
 from service.routes.context import Ctx
-from service.routes.errors import documented
+from service.routes.refusals import documented
+from service.routes.response_headers import described_headers
 from service.routes.results import HASH, Key, known_result
 from service.version import program_tag
 
 FIGURES = "service.report.as_json:stored_figures"
 COMPARISON = "service.comparison.as_json:stored_comparison"
+_VERSION = ("ETag", "Cache-Control")
 
 router = APIRouter(tags=["results"])
 
@@ -39,12 +42,16 @@ class ReportBody(BaseModel):
     summary="Figures of a result",
     response_class=Response,
     responses={
-        200: {"model": ReportBody, "description": "The report"},
-        304: {"description": "Not modified"},
-        **documented(404, 422, 429, 500, 503),
+        200: {
+            "model": ReportBody,
+            "description": "The report",
+            "headers": described_headers(*_VERSION),
+        },
+        304: {"description": "Not modified", "headers": described_headers(*_VERSION)},
+        **documented(NotFound, QueueFull, LiveUnavailable, DamagedFile),
     },
 )
-async def figures(
+async def result_figures(
     key: Key,
     request: Request,
     context: Ctx,

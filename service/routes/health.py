@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from fastapi import APIRouter, Depends, Request, Response
+from starlette.responses import PlainTextResponse
 
 from service.problems import ServiceError
 from service.routes.caching import NO_STORE
 from service.routes.context import Ctx
-from service.routes.errors import documented
+from service.routes.refusals import documented
 
 
 async def _of_now(response: Response) -> None:
@@ -35,7 +36,7 @@ async def health() -> dict[str, Any]:
     return {"status": "ok"}
 
 
-@router.get("/ready", summary="Readiness for jobs", responses=documented(503))
+@router.get("/ready", summary="Readiness for jobs", responses=documented(NotReady))
 def ready(context: Ctx) -> dict[str, Any]:
     """Answer that database and place of results take what is written, and that the scheduler runs."""
     outcome = context.writes.outcome()
@@ -47,7 +48,7 @@ def ready(context: Ctx) -> dict[str, Any]:
     return {"status": "ready", "computations": counts}
 
 
-@router.get("/metrics", summary="Metrics for Prometheus", response_class=Response)
+@router.get("/metrics", summary="Metrics for Prometheus", response_class=PlainTextResponse)
 def metrics(request: Request) -> Response:
     """Return the figures in the text exposition format."""
     return Response(request.app.state.metrics.text(), media_type="text/plain; version=0.0.4; charset=utf-8")

@@ -2,76 +2,108 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Union
 
-from fastapi import APIRouter, Query, Request
+from fastapi import APIRouter, Header, Query, Request
 from starlette.responses import JSONResponse, Response
 
-from service.problems import Fault, JobDismissed, JobFailed, ResultNotReady
+from service.problems import DamagedFile, Fault, JobDismissed, JobFailed, NoSuchJob, NotFound, ResultNotReady
 from service.queue.delivery import Delivery, Transmission, delivery
 from service.queue.delivery import Response as Form
 from service.queue.job import Job
 from service.registry import NETCDF
 from service.routes.context import Ctx
-from service.routes.errors import documented
-from service.routes.media_types import JSON
-from service.routes.results import file_response, known_result
-from service.schemas.ogc import ResultReference
+from service.routes.media_types import JSON, negotiated
+from service.routes.refusals import documented
+from service.routes.response_headers import OF_VERSIONS, described_headers
+from service.routes.results import FILE, OF_RESULT, file_response, known_result
+from service.schemas.ogc import ResultReference, results_document
 from service.schemas.result_kinds import RESULTS
-
-router = APIRouter(prefix="/jobs", tags=["jobs"])
+from service.worker.process import Registry
 
 AskedForm = Annotated[Form | None, Query(description="Form of the result; overrides that of the execution")]
 AskedMode = Annotated[
     Transmission | None,
     Query(alias="transmissionMode", description="Transmission mode; overrides that of the execution"),
 ]
-_ANSWERS: dict[int | str, dict[str, Any]] = {
-    200: {
-        "description": "The result, or a document of where it is by the name of its output",
-        "content": {
-            JSON: {"schema": {"type": "object"}},
-            NETCDF: {"schema": {"type": "string", "format": "binary"}},
+AskedType = Annotated[
+    str,
+    Header(
+        alias="Accept",
+        description=f"{JSON} for the document, which generated clients prefer by default; {NETCDF} for the "
+        "file. A request without it, or that takes both, gets the form of the execution.",
+    ),
+]
+_REFUSED = documented(NoSuchJob, ResultNotReady, NotFound, JobDismissed, JobFailed, DamagedFile)
+
+
+def job_results_router(registry: Registry) -> APIRouter:
+    """Return the route, whose documents are typed by the processes that make them."""
+    router = APIRouter(prefix="/jobs", tags=["jobs"])
+    answers: dict[int | str, dict[str, Any]] = {
+        200: {
+            "model": Union[tuple(results_document(p.id, p.output) for p in registry.values())],  # noqa: UP007
+            "description": "A document of where the result is by the name of its output, or its file",
+            "content": {JSON: {}, NETCDF: {"schema": FILE}},
+            "headers": described_headers(*OF_RESULT, "Content-Digest", "Content-Location"),
         },
-    },
-    204: {"description": "The result is where the header Link says"},
-    304: {"description": "Not modified"},
-}
+        204: {
+            "description": "The result is where the header Link says",
+            "headers": described_headers("Link", "Vary"),
+        },
+        304: {
+            "description": "Not modified",
+            "headers": described_headers(*OF_VERSIONS, "Result-Kind", "Content-Location"),
+        },
+    }
+    router.add_api_route(
+        "/{job_id}/results",
+        job_results,
+        summary="Results of a job",
+        response_class=Response,
+        responses=answers | _REFUSED,
+    )
+    return router
 
 
-@router.get(
-    "/{job_id}/results",
-    summary="Results of a job",
-    response_class=Response,
-    responses=_ANSWERS | documented(404, 410, 422, 500),
-)
-def results(
-    job_id: str, request: Request, context: Ctx, response: AskedForm = None, mode: AskedMode = None
+def job_results(
+    job_id: str,
+    request: Request,
+    context: Ctx,
+    response: AskedForm = None,
+    mode: AskedMode = None,
+    _accept: AskedType = JSON,  # for the description: in a request without it, any type will do
 ) -> Response:
-    """Return the result as the execution requested it; say why there is none."""
+    """Return the result as the execution requested it, or as this request does; say why there is none."""
     job = context.submissions.find(job_id)
     _refuse_without_result(job)
     process = context.registry[job.process]
-    form = _form(job.delivery, response, mode)
+    if response is None and mode is None:
+        form = _accepted(job.delivery, request.headers.get("accept", "*/*"))
+    else:
+        form = delivery(response or job.delivery.response, mode, "transmissionMode")
     href = f"{RESULTS}/{job.key}"
     if form.transmission == "reference":
         return _referenced(form, process.output, href, job.key)
     return file_response(known_result(context, job.key, process.kind), request, {"Content-Location": href})
 
 
-def _form(ordered: Delivery, response: Form | None, mode: Transmission | None) -> Delivery:
-    """Return the form of the execution, or the one that this request asks for instead."""
-    if response is None and mode is None:
+def _accepted(ordered: Delivery, accept: str) -> Delivery:
+    """Return the form of the execution, or the other one if the caller prefers its type."""
+    offered = (JSON, NETCDF) if ordered.response == "document" else (NETCDF, JSON)
+    accepted = negotiated(accept, offered)
+    if accepted in (None, offered[0]):
         return ordered
-    return delivery(response or ordered.response, mode, "transmissionMode")
+    return delivery("document" if accepted == JSON else "raw", None, "transmissionMode")
 
 
 def _referenced(form: Delivery, output: str, href: str, key: str) -> Response:
     """Say where the result is."""
     if form.response == "raw":
         link = f'<{href}>; rel="item"; type="{NETCDF}"; title="{output}"'
-        return Response(status_code=204, headers={"Link": link})
-    return JSONResponse({output: ResultReference(href=href, type=NETCDF, hash=key).model_dump()})
+        return Response(status_code=204, headers={"Link": link, "Vary": "Accept"})
+    reference = ResultReference(href=href, type=NETCDF, hash=key)
+    return JSONResponse({output: reference.model_dump()}, headers={"Vary": "Accept"})
 
 
 def _refuse_without_result(job: Job) -> None:

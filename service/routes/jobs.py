@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Request
 
+from service.problems import NoSuchJob
 from service.queue.job import Job
 from service.routes.context import Ctx
 from service.routes.cursor import Cursor, Limit, mark_of, page_links
-from service.routes.errors import documented
 from service.routes.job_query import JobQuery
+from service.routes.refusals import documented
 from service.schemas.ogc import JobList, JobStatus, Link, StatusInfo
 from service.store import Mark
 from service.worker.process import Registry, on_demand
@@ -17,8 +18,8 @@ router = APIRouter(prefix="/jobs", tags=["jobs"])
 input_warnings = on_demand("service.worker.input_warnings:input_warnings")
 
 
-@router.get("", summary="Jobs", responses=documented(422))
-def jobs(
+@router.get("", summary="Jobs")
+def list_jobs(
     request: Request, context: Ctx, job_filter: JobQuery, limit: Limit = 100, cursor: Cursor = None
 ) -> JobList:
     """Jobs, the newest first; filters add up."""
@@ -28,14 +29,14 @@ def jobs(
     return JobList(jobs=shown, links=page_links(request, "/v1/jobs", last))
 
 
-@router.get("/{job_id}", summary="Status of a job", responses=documented(404))
-def job(job_id: str, context: Ctx) -> StatusInfo:
+@router.get("/{job_id}", summary="Status of a job", responses=documented(NoSuchJob))
+def job_status(job_id: str, context: Ctx) -> StatusInfo:
     """Status and progress of the job."""
     return status_info(context.submissions.find(job_id), context.registry)
 
 
-@router.delete("/{job_id}", summary="Dismiss a job", responses=documented(404))
-def dismiss(job_id: str, context: Ctx) -> StatusInfo:
+@router.delete("/{job_id}", summary="Dismiss a job", responses=documented(NoSuchJob))
+def dismiss_job(job_id: str, context: Ctx) -> StatusInfo:
     """Cancel: the work ends unless other jobs share it. A job that has ended stays as it is."""
     job = context.submissions.dismiss(job_id)
     context.scheduler.wake()

@@ -4,28 +4,33 @@ from __future__ import annotations
 
 from fastapi import APIRouter
 
+from service.routes.media_types import OPENAPI
 from service.schemas.ogc import CONFORMANCE, Conformance, Landing, Link
 from service.version import solver_version
 
 router = APIRouter(tags=["service"])
 
+_OGC = "http://www.opengis.net/def/rel/ogc/1.0/"
+_LINKS = (
+    Link(href="/v1/", rel="self", title="This page"),
+    Link(href="/openapi.json", rel="service-desc", type=OPENAPI, title="OpenAPI description"),
+    Link(href="/docs", rel="service-doc", type="text/html", title="The description, to read and to try"),
+    Link(href="/v1/conformance", rel=f"{_OGC}conformance", title="Conformance"),
+    Link(href="/v1/processes", rel=f"{_OGC}processes", title="Processes"),
+    Link(href="/v1/jobs", rel=f"{_OGC}job-list", title="Jobs"),
+    Link(href="/v1/databases", rel="data", title="STE databases"),
+)
 
-@router.get("/", summary="Landing page")
-def landing() -> Landing:
+
+@router.get("", summary="Landing page")
+@router.get("/", include_in_schema=False)
+def landing_page() -> Landing:
     """Return the links of the service."""
-    relations = (
-        ("/v1/", "self", "This page"),
-        ("/openapi.json", "service-desc", "OpenAPI description"),
-        ("/v1/conformance", "http://www.opengis.net/def/rel/ogc/1.0/conformance", "Conformance"),
-        ("/v1/processes", "http://www.opengis.net/def/rel/ogc/1.0/processes", "Processes"),
-        ("/v1/jobs", "http://www.opengis.net/def/rel/ogc/1.0/job-list", "Jobs"),
-        ("/v1/databases", "data", "STE databases"),
-    )
     return Landing(
         title="lineofaction",
         description="STE databases of gear pairs by contact analysis, and dynamics excited by them.",
         version=solver_version(),
-        links=[Link(href=href, rel=rel, title=title) for href, rel, title in relations],
+        links=list(_LINKS),
     )
 
 

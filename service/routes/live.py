@@ -10,8 +10,9 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
 from service.live.order import LiveOrder
+from service.problems import DamagedFile, LiveUnavailable, NotAnalyzed, NotFound, QueueFull, Superseded
 from service.routes.context import Context, Ctx
-from service.routes.errors import documented
+from service.routes.refusals import documented
 from service.routes.results import Key
 from service.schemas.live import LiveInput, PlanRequest
 from service.schemas.live_answer import LiveOutput
@@ -20,14 +21,15 @@ router = APIRouter(tags=["live"])
 
 STE, PLAN = "service.live.work:live_ste", "service.live.work:live_plan"
 
-_REFUSED = documented(400, 409, 413, 415, 422, 429, 500, 503)
-
 
 @router.post(
     "/databases/{key}/ste",
     summary="Transmission error with other flanks",
     response_class=Response,
-    responses={200: {"model": LiveOutput, "description": "The curves"}, **_REFUSED, **documented(404)},
+    responses={
+        200: {"model": LiveOutput, "description": "The curves"},
+        **documented(QueueFull, Superseded, NotAnalyzed, LiveUnavailable, NotFound, DamagedFile),
+    },
 )
 async def live_ste(key: Key, body: LiveInput, context: Ctx) -> Response:
     """Curves of the gears of a database with other flanks, torques, misalignment and center distance.
@@ -44,7 +46,10 @@ async def live_ste(key: Key, body: LiveInput, context: Ctx) -> Response:
     "/plans",
     summary="Plan and cost of a run",
     response_class=Response,
-    responses={200: {"description": "The plan", "content": {"application/json": {}}}, **_REFUSED},
+    responses={
+        200: {"description": "The plan", "content": {"application/json": {"schema": {"type": "object"}}}},
+        **documented(QueueFull, Superseded, LiveUnavailable),
+    },
 )
 async def plan(body: PlanRequest, context: Ctx) -> Response:
     """Predicted time by stage, memory and error of every mesh, and the effect ledger; nothing is computed."""

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 JSON, CBOR, RAW = "application/json", "application/cbor", "application/octet-stream"
+PROBLEM = "application/problem+json"
+OPENAPI = "application/vnd.oai.openapi+json;version=3.1"
 
 
 def media_type(header: str) -> str:

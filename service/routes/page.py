@@ -1,4 +1,4 @@
-"""The page at ``/``: plain files, nothing from elsewhere, and a policy by which browsers hold it to that."""
+"""The pages at ``/`` and ``/docs``: plain files, nothing from elsewhere, and a policy that says so."""
 
 from __future__ import annotations
 
@@ -34,16 +34,22 @@ _HEADERS = {
 @router.get("/")
 def page(request: Request) -> Response:
     """Return the page."""
-    return _served(page_file("index.html"), request)
+    return served(page_file("index.html"), request)
+
+
+@router.get("/docs")
+def docs(request: Request) -> Response:
+    """Return the page that shows the description of the API."""
+    return served(page_file("docs.html"), request)
 
 
 @router.get("/page/{name}")
 def part(name: str, request: Request) -> Response:
     """Return a style sheet, a module or plotly.js."""
-    return _served(page_file(name), request)
+    return served(page_file(name), request)
 
 
-def _served(file: PageFile | None, request: Request) -> Response:
+def served(file: PageFile | None, request: Request) -> Response:
     """Return a file, compressed if the caller takes that, or 304."""
     if file is None:
         raise NotFound("The page has no such file.")

@@ -10,13 +10,15 @@ import structlog
 from fastapi import APIRouter, Header, Query, Response
 from pydantic import BaseModel, create_model
 
+from service.problems import NoSuchProcess, QueueFull
 from service.queue.caller import Caller
 from service.queue.delivery import Delivery, delivery
 from service.registry import NETCDF
 from service.routes.context import Context, Ctx, From
 from service.routes.cursor import Limit
-from service.routes.errors import documented
 from service.routes.jobs import status_info
+from service.routes.refusals import documented
+from service.routes.response_headers import described_headers
 from service.schemas.execute import execute_model
 from service.schemas.model import BoundaryModel
 from service.schemas.ogc import (
@@ -42,8 +44,8 @@ def processes_router(registry: Registry) -> APIRouter:
     """Return the routes, one execution route per process, so that each body has its own schema."""
     router = APIRouter(prefix="/processes", tags=["processes"])
 
-    @router.get("", summary="Processes", responses=documented(404, 422))
-    def processes(limit: Limit = 100, after: After = "") -> ProcessList:
+    @router.get("", summary="Processes", responses=documented(NoSuchProcess))
+    def list_processes(limit: Limit = 100, after: After = "") -> ProcessList:
         """All that can be run."""
         behind = list(registry.values())[_place(registry, after) :]
         shown = behind[:limit]
@@ -53,8 +55,8 @@ def processes_router(registry: Registry) -> APIRouter:
             links.append(Link(href=following, rel="next", title="Next page"))
         return ProcessList(processes=[ProcessSummary(**_summary(p)) for p in shown], links=links)
 
-    @router.get("/{process_id}", summary="One process", responses=documented(404))
-    def process(process_id: str) -> ProcessDescription:
+    @router.get("/{process_id}", summary="One process", responses=documented(NoSuchProcess))
+    def describe_process(process_id: str) -> ProcessDescription:
         """Describe a process with the schemas of its inputs and outputs."""
         return _description(registry[process_id])
 
@@ -113,10 +115,11 @@ def _add_execution(router: APIRouter, process: Process) -> None:
         execute,
         methods=["POST"],
         status_code=201,
-        name=f"execute_{process.id}",
-        summary=f"Run {process.id}",
-        responses=documented(400, 413, 415, 422, 429)
-        | {201: {"headers": {"Location": {"description": "The job", "schema": {"type": "string"}}}}},
+        name=process.id.replace("-", "_"),
+        summary=process.title,
+        description=process.description,
+        responses=documented(QueueFull)
+        | {201: {"description": "The job", "headers": described_headers("Location", "Preference-Applied")}},
     )
 
 

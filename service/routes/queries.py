@@ -11,12 +11,12 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from service.convert.force_query import force_answer
-from service.problems import BadInput, NotAcceptable, UnsupportedMediaType
+from service.problems import BadInput, DamagedFile, NotAcceptable, NotFound, UnsupportedMediaType
 from service.routes.context import context_of
 from service.routes.direct import DirectRoute, answered_by
-from service.routes.errors import documented
 from service.routes.media_types import CBOR, JSON, RAW, media_type, negotiated
 from service.routes.query_encodings import READ, WRITE
+from service.routes.refusals import documented
 from service.schemas.query import LIMITS, QueryInput, QueryOutput
 
 KEY_PATTERN = "^[0-9a-f]{64}$"
@@ -31,7 +31,7 @@ router = APIRouter(tags=["results"], route_class=DirectRoute)
 
 
 _BINARY = {"type": "string", "format": "binary"}
-_QUERY, _ANSWER = QueryInput.model_json_schema(), QueryOutput.model_json_schema()
+_QUERY, _ANSWER = ({"$ref": f"#/components/schemas/{model.__name__}"} for model in (QueryInput, QueryOutput))
 _ANSWERS = {
     CBOR: {"schema": _ANSWER},
     RAW: {"schema": _BINARY | {"description": "Columns force_n, stiffness_n_per_um, validity: float64"}},
@@ -75,11 +75,11 @@ async def _answer(request: Request) -> Response:
     "/databases/{key}/query",
     summary="Mesh forces",
     response_model=QueryOutput,
-    responses=documented(404, 406, 413, 415, 422, 500) | {200: {"content": _ANSWERS}},
+    responses=documented(NotFound, NotAcceptable, DamagedFile) | {200: {"content": _ANSWERS}},
     openapi_extra={"requestBody": {"required": True, "content": _BODIES}},
 )
 @answered_by(_answer)
-def query(
+def query_forces(
     key: Annotated[str, Path(pattern=KEY_PATTERN, description="Content hash of the input")],
     columns: Annotated[
         str, Query(description=f"Columns of a raw body, of {', '.join(LIMITS)}", max_length=_LONGEST_COLUMNS)

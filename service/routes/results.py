@@ -11,11 +11,13 @@ from fastapi import APIRouter, Header, Path, Request
 from starlette.responses import FileResponse, JSONResponse, Response
 
 from service.loading import LOADING
-from service.problems import NotFound
+from service.problems import DamagedFile, NotFound
 from service.registry import NETCDF
 from service.routes.context import Context, Ctx
-from service.routes.errors import documented
 from service.routes.media_types import JSON, negotiated
+from service.routes.refusals import documented
+from service.routes.response_headers import OF_VERSIONS, described_headers
+from service.schemas.ogc import ResultFigures
 from service.schemas.result_kinds import RESULT_KINDS, SUFFIX
 from service.store import StoredResult
 
@@ -24,15 +26,16 @@ _IMMUTABLE = "public, max-age=31536000, immutable"
 HASH = "^[0-9a-f]{64}$"
 Key = Annotated[str, Path(pattern=HASH, description="Content hash of the input")]
 Accept = Annotated[str, Header(description=f"{NETCDF} for the file, application/json for its figures")]
+FILE = {"type": "string", "format": "binary"}
+OF_RESULT = (*OF_VERSIONS, "Result-Kind")
 _ANSWERS: dict[int | str, dict[str, Any]] = {
     200: {
+        "model": ResultFigures,
         "description": "The figures of the result, or its file",
-        "content": {
-            JSON: {"schema": {"type": "object"}},
-            NETCDF: {"schema": {"type": "string", "format": "binary"}},
-        },
+        "content": {JSON: {}, NETCDF: {"schema": FILE}},
+        "headers": described_headers(*OF_RESULT, "Content-Digest"),
     },
-    304: {"description": "Not modified"},
+    304: {"description": "Not modified", "headers": described_headers(*OF_RESULT)},
 }
 
 router = APIRouter(tags=["results"])
@@ -42,14 +45,33 @@ router = APIRouter(tags=["results"])
     "/results/{key}",
     summary="A result",
     response_class=Response,
-    responses=_ANSWERS | documented(404, 422, 500),
+    responses=_ANSWERS | documented(NotFound, DamagedFile),
 )
-def result(key: Key, request: Request, context: Ctx, accept: Accept = JSON) -> Response:
+def get_result(key: Key, request: Request, context: Ctx, accept: Accept = JSON) -> Response:
     """Figures or the file, by Accept; never changes. Its kind is in the header Result-Kind."""
     stored = known_result(context, key)
     if negotiated(accept, (JSON, NETCDF)) == NETCDF:
         return file_response(stored, request)
     return _metadata(stored, request, _figures(context, stored))
+
+
+@router.get(
+    "/results/{key}/file",
+    summary="The file of a result",
+    response_class=Response,
+    responses={
+        200: {
+            "description": "The netCDF file",
+            "content": {NETCDF: {"schema": FILE}},
+            "headers": described_headers(*OF_RESULT, "Content-Digest"),
+        },
+        304: _ANSWERS[304],
+        **documented(NotFound, DamagedFile),
+    },
+)
+def result_file(key: Key, request: Request, context: Ctx) -> Response:
+    """Return the file whatever the request accepts, for browsers and generated clients; never changes."""
+    return file_response(known_result(context, key), request)
 
 
 def known_result(context: Context, key: str, kind: str | None = None) -> StoredResult:

@@ -9,9 +9,10 @@ from pydantic import BaseModel, Field
 from starlette.responses import Response
 
 from service.convert.toml import toml_text
+from service.problems import LiveUnavailable, QueueFull
 from service.routes.cases import TomlBody, explained, read_toml
 from service.routes.context import Ctx
-from service.routes.errors import documented
+from service.routes.refusals import documented
 from service.schemas.model import BoundaryModel
 from service.schemas.scene import SceneInput
 
@@ -44,18 +45,18 @@ class SceneBody(BaseModel):
     "/scenes/from-toml",
     summary="Read a scene file",
     response_model=SceneBody,
-    responses=documented(400, 413, 415, 422, 429, 503),
+    responses=documented(QueueFull, LiveUnavailable),
 )
-async def from_toml(body: SceneToml, context: Ctx) -> Response:
+async def scene_from_toml(body: SceneToml, context: Ctx) -> Response:
     """Read the scene in a file's text; files that it names cannot be read here."""
     return await read_toml("service.convert.toml_file:scene_of_toml", body, context)
 
 
-@router.post("/scenes/to-toml", summary="Write a scene file", responses=documented(400, 413, 415, 422))
-def to_toml(body: SceneRequest) -> SceneToml:
+@router.post("/scenes/to-toml", summary="Write a scene file")
+def scene_to_toml(body: SceneRequest) -> SceneToml:
     """Write the scene as a file's text, without defaults."""
     return SceneToml(toml=toml_text(body.inputs.scene.model_dump(mode="json", exclude_unset=True)))
 
 
-explained(from_toml, SceneToml)
-explained(to_toml, SceneRequest)
+explained(scene_from_toml, SceneToml)
+explained(scene_to_toml, SceneRequest)

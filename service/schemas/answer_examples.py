@@ -95,7 +95,7 @@ _REPORT: Json = {
 }
 
 ANSWERS: dict[str, Any] = {
-    "/v1/": {
+    "/v1": {
         "title": "lineofaction",
         "description": "STE databases of gear pairs.",
         "version": "0.2.0",
@@ -162,29 +162,30 @@ def answer_example(path: str) -> Any:
     return STATUS if path.endswith("/execution") else ANSWERS.get(path)
 
 
-def problem_example(status: int, phrase: str) -> Json:
-    """Return a problem of a status."""
-    fault = {
-        "field": "pair.pinion.bore_diameter_mm",
-        "value": 95.0,
-        "bound": "below the root diameter 70 mm (bore)",
-        "suggestion": "Lower the bore or add teeth.",
-    }
-    known: dict[int, Json] = {
-        404: {
-            "type": "urn:lineofaction:problem:not-found",
-            "detail": f"There is no database {HASH!r}. Submit its case again to compute it.",
-        },
-        422: {
-            "type": "urn:lineofaction:problem:bad-input",
-            "detail": "pair.pinion.bore_diameter_mm = 95.0: must be below the root diameter 70 mm (bore). "
-            "Lower the bore or add teeth.",
-            "errors": [fault],
-        },
-        429: {
-            "type": "urn:lineofaction:problem:queue-full",
-            "detail": "100 computations wait already. Try again later.",
-        },
-    }
-    plain = {"type": "about:blank", "title": phrase, "status": status, "detail": phrase, "errors": []}
-    return plain | known.get(status, {})
+_DETAILS: dict[str, Json] = {
+    "urn:lineofaction:problem:not-found": {
+        "detail": f"There is no database {HASH!r}. Submit its case again to compute it.",
+    },
+    "urn:lineofaction:problem:bad-input": {
+        "detail": "pair.pinion.bore_diameter_mm = 95.0: must be below the root diameter 70 mm (bore). "
+        "Lower the bore or add teeth.",
+        "errors": [
+            {
+                "field": "pair.pinion.bore_diameter_mm",
+                "value": 95.0,
+                "bound": "below the root diameter 70 mm (bore)",
+                "suggestion": "Lower the bore or add teeth.",
+            }
+        ],
+    },
+    "urn:lineofaction:problem:queue-full": {
+        "detail": "100 computations wait already. Try again later.",
+    },
+}
+"""Further members of some problems, by type."""
+
+
+def problem_example(status: int, kind: str, title: str) -> Json:
+    """Return a problem of a type."""
+    plain = {"type": kind, "title": title, "status": status, "detail": f"{title}.", "errors": []}
+    return plain | _DETAILS.get(kind, {})

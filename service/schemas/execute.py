@@ -9,6 +9,7 @@ from pydantic import Field, create_model, model_validator
 
 from service.registry import JSON, NETCDF
 from service.schemas.model import BoundaryModel, refuse
+from service.schemas.ogc import class_name
 
 _FORMAT = {"mediaType", "encoding", "schema"}
 _LINK = {"href", "rel", "type", "hreflang", "title"}
@@ -72,7 +73,7 @@ def execute_model(process: str, inputs: type[BoundaryModel], output: str) -> typ
     output : str
         Name of its one output.
     """
-    title = process.title().replace("-", "")
+    title = class_name(process)
     wanted: Any = (_wanted_output() | None, Field(None, description="The output of the process"))
     outputs = create_model(f"{title}Outputs", __base__=BoundaryModel, **{output: wanted})
     form = Field("raw", description="Form of the result: raw, or a JSON object of outputs by name")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, create_model
 
 JobStatus = Literal["accepted", "running", "successful", "failed", "dismissed"]
 
@@ -124,3 +124,26 @@ class ResultReference(BaseModel):
     href: str
     type: str
     hash: str = Field(description="Content hash of the input, the name of the resource")
+
+
+class ResultFigures(BaseModel):
+    """What is known of the file of a result; the figures of its kind are further members."""
+
+    model_config = ConfigDict(extra="allow")
+
+    hash: str = Field(description="Content hash of the input, the name of the resource")
+    sha256: str = Field(description="Digest of the file")
+    size: int = Field(ge=0, description="Bytes of the file")
+
+
+def results_document(process: str, output: str) -> type[BaseModel]:
+    """Return the model of the results of a process as a document: its one output, by name."""
+    closed = ConfigDict(extra="forbid")
+    fields: dict[str, Any] = {output: (ResultReference, Field(description="The netCDF file"))}
+    doc = f"Where the result of the process {process} is."
+    return create_model(f"{class_name(process)}Results", __config__=closed, __doc__=doc, **fields)
+
+
+def class_name(process: str) -> str:
+    """Return the name of a process as those of its models begin."""
+    return process.title().replace("-", "")

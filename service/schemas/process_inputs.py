@@ -8,6 +8,7 @@ from service.registry import Study
 from service.schemas.case import Case
 from service.schemas.case_or_scene import CaseOrScene
 from service.schemas.model import BoundaryModel
+from service.schemas.ogc import class_name
 from service.schemas.scene import SceneInput
 
 
@@ -46,4 +47,4 @@ def study_inputs(study: Study) -> type[BoundaryModel]:
     """Return the model of the inputs of a study's process: what is studied, and what is varied."""
     bases = (study.inputs, _SUBJECTS[study.subject])
     text = f"Inputs of the process {study.name}."
-    return create_model(f"{study.name.title().replace('-', '')}Inputs", __base__=bases, __doc__=text)
+    return create_model(f"{class_name(study.name)}Inputs", __base__=bases, __doc__=text)

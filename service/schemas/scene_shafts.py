@@ -53,7 +53,7 @@ class ShaftInput(BoundaryModel):
     inertia: InertiaInput | None = Field(
         default=None,
         description="Inertia of the bare shaft, instead of a diameter: the shaft is rigid",
-        examples=[{"mass_kg": 2.0}],
+        examples=[{"mass_kg": 2.0, "polar_kg_m2": 4e-4, "transverse_kg_m2": 7e-3}],
     )
     frame: Name | None = Field(
         default=None,

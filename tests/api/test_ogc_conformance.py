@@ -76,11 +76,23 @@ def landing_page(client: TestClient) -> None:
         assert client.get(link(answer.json(), relation)).status_code == 200
 
 
+@requirement("/rec/core/api-definition-oas")
+def types_of_the_definition(client: TestClient) -> None:
+    """What the links say they lead to is answered to those who accept it."""
+    links = {entry["rel"]: entry for entry in client.get("/v1/").json()["links"]}
+    assert links["service-desc"]["type"] == "application/vnd.oai.openapi+json;version=3.1"
+    for relation in ("service-desc", "service-doc"):
+        answer = client.get(links[relation]["href"], headers={"Accept": links[relation]["type"]})
+        assert answer.status_code == 200
+        assert answer.headers["content-type"].startswith(links[relation]["type"])
+        assert "accept" in answer.headers["vary"].lower()
+
+
 @requirement("/req/core/api-definition-op", "/req/core/api-definition-success")
 def api_definition(client: TestClient) -> None:
     definition = client.get(link(client.get("/v1/").json(), "service-desc")).json()
     assert definition["openapi"].startswith("3.")
-    for path in ("/v1/", "/v1/conformance", "/v1/processes", "/v1/processes/{process_id}", EXECUTION):
+    for path in ("/v1", "/v1/conformance", "/v1/processes", "/v1/processes/{process_id}", EXECUTION):
         assert path in definition["paths"]
     for path in ("/v1/jobs", "/v1/jobs/{job_id}", "/v1/jobs/{job_id}/results"):
         assert path in definition["paths"]
@@ -332,7 +344,7 @@ def dismissal(client: TestClient) -> None:
 
 @requirement("/req/json/definition")
 def json_everywhere(client: TestClient) -> None:
-    for path in ("/v1/", "/v1/conformance", "/v1/processes", "/v1/processes/fake", "/v1/jobs"):
+    for path in ("/v1", "/v1/conformance", "/v1/processes", "/v1/processes/fake", "/v1/jobs"):
         assert client.get(path).headers["content-type"] == "application/json"
 
 
@@ -382,3 +394,18 @@ def test_a_request_for_results_may_ask_for_another_form(client: TestClient) -> N
     assert refused.status_code == 422
     assert refused.json()["errors"][0]["field"] == "transmissionMode"
     assert client.get(path).content == b"other form"
+
+
+@pytest.mark.parametrize("response", ["raw", "document"])
+def test_a_request_for_results_gets_the_type_that_it_prefers(client: TestClient, response: str) -> None:
+    text = f"accepted {response}"
+    status = ended(client, "fake", {"inputs": {"wish": {"text": text}}, "response": response})
+    path = link(status, f"{REL}results")
+    for accept, kind in (
+        ("application/json", "application/json"),
+        ("application/x-netcdf, application/json;q=0.5", "application/x-netcdf"),
+        ("text/html", {"raw": "application/x-netcdf", "document": "application/json"}[response]),
+    ):
+        answer = client.get(path, headers={"Accept": accept})
+        assert (answer.status_code, answer.headers["content-type"]) == (200, kind), accept
+        assert "Accept" in answer.headers["vary"]

@@ -37,10 +37,23 @@ SENT = [
 ANSWERED = [
     (method, path, status, kind, body)
     for method, path, operation in OPERATIONS
-    for status, response in operation["responses"].items()
+    for status, named in operation["responses"].items()
+    for response in [DOCUMENT["components"]["responses"].get(named.get("$ref", "").rpartition("/")[2], named)]
     for kind, body in response.get("content", {}).items()
     if kind not in BINARY
 ]
+
+
+def schemas(part: Any) -> Iterator[dict[str, Any]]:
+    """Yield every schema of the description that has a type or alternatives, nested ones too."""
+    if isinstance(part, dict):
+        if {"type", "anyOf", "oneOf", "$ref"} & part.keys():
+            yield part
+        for inner in part.values():
+            yield from schemas(inner)
+    elif isinstance(part, list):
+        for inner in part:
+            yield from schemas(inner)
 
 
 def conforms(example: Any, schema: dict[str, Any]) -> None:
@@ -49,10 +62,10 @@ def conforms(example: Any, schema: dict[str, Any]) -> None:
 
 
 def test_every_reference_leads_somewhere() -> None:
-    text = json.dumps(DOCUMENT)
-    named = set(re.findall(r'"\$ref": "#/components/schemas/(\w+)"', text))
-    assert named and named <= set(DOCUMENT["components"]["schemas"])
-    assert text.count('"$ref"') == len(re.findall(r'"\$ref": "#/components/schemas/\w+"', text))
+    named = re.findall(r'"\$ref": "#/components/(\w+)/([\w-]+)"', text := json.dumps(DOCUMENT))
+    assert len(named) == text.count('"$ref"') > 0
+    for part, name in named:
+        assert name in DOCUMENT["components"][part]
 
 
 @pytest.mark.parametrize(("path", "kind", "body"), SENT, ids=[f"{path} {kind}" for path, kind, _ in SENT])
@@ -62,10 +75,29 @@ def test_a_body_to_send_has_an_example_of_its_schema(path: str, kind: str, body:
 
 def test_every_answer_has_an_example_of_its_schema() -> None:
     for method, path, status, kind, body in ANSWERED:
-        assert "example" in body, f"{method} {path} {status} {kind}"
-        conforms(body["example"], body.get("schema", {}))
-        if kind == "application/problem+json":
-            assert body["example"]["status"] == int(status)
+        shown = (
+            [body["example"]]
+            if "example" in body
+            else [e["value"] for e in body.get("examples", {}).values()]
+        )
+        assert shown or kind == "text/plain", f"{method} {path} {status} {kind}"
+        for example in shown:
+            conforms(example, body["schema"])
+            if kind == "application/problem+json":
+                assert example["status"] == int(status)
+
+
+def test_every_field_has_examples_of_its_schema() -> None:
+    examples = [(field, example) for field in schemas(DOCUMENT) for example in field.get("examples", [])]
+    assert len(examples) > 400
+    for field, example in examples:
+        conforms(example, field)
+
+
+def test_every_array_says_what_its_items_are() -> None:
+    arrays = [schema for schema in schemas(DOCUMENT) if schema.get("type") == "array"]
+    assert len(arrays) > 100
+    assert [schema for schema in arrays if "items" not in schema] == []
 
 
 @pytest.fixture(scope="module")

@@ -18,6 +18,13 @@ _directory = tempfile.TemporaryDirectory(prefix="loa-problems-")
 _app = create_app(Settings(data_directory=Path(_directory.name), body_limit=2000), REGISTRY)
 DOCUMENT: dict[str, Any] = _app.openapi()
 ROUTES = [(method.upper(), path) for path, methods in DOCUMENT["paths"].items() for method in methods]
+REFUSED = {
+    int(status): DOCUMENT["components"]["responses"][response["$ref"].rpartition("/")[2]]
+    for methods in DOCUMENT["paths"].values()
+    for operation in methods.values()
+    for status, response in operation["responses"].items()
+    if "$ref" in response
+}
 NAMES = {"{key}": "0" * 64, "{job_id}": "nothing", "{process_id}": "nothing"}
 WRONG_BODIES: dict[str, tuple[bytes, dict[str, str]]] = {
     "no JSON": (b"{", {"Content-Type": "application/json"}),
@@ -50,6 +57,8 @@ def is_problem(answer: Any, *statuses: int) -> None:
     assert answer.headers["content-type"] == "application/problem+json"
     assert set(answer.json()) - {"reference"} == {"type", "title", "status", "detail", "errors"}
     assert answer.json()["status"] == answer.status_code
+    described = {name.lower() for name in REFUSED[answer.status_code]["headers"]}
+    assert described - {"retry-after"} <= set(answer.headers)
 
 
 @pytest.mark.parametrize("path", [p for method, p in ROUTES if method == "POST" and "process_id" not in p])

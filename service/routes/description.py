@@ -1,0 +1,25 @@
+"""The description of the API as a resource."""
+
+from __future__ import annotations
+
+import json
+
+from fastapi import APIRouter, Request
+from starlette.responses import Response
+
+from service.page.files import PageFile
+from service.routes.media_types import JSON, OPENAPI, media_type, negotiated
+from service.routes.page import served
+
+router = APIRouter(include_in_schema=False)
+_OFFERED = (JSON, media_type(OPENAPI))
+
+
+@router.get("/openapi.json")
+def description(request: Request) -> Response:
+    """Return the description, under the type of OpenAPI to those who prefer that."""
+    accepted = negotiated(request.headers.get("accept", "*/*"), _OFFERED)
+    content = json.dumps(request.app.openapi(), ensure_ascii=False, allow_nan=False).encode()
+    answer = served(PageFile(content, JSON if accepted == JSON else OPENAPI), request)
+    answer.headers.add_vary_header("Accept")
+    return answer

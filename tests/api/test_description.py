@@ -1,0 +1,115 @@
+"""The description of the API: what a generator, a linter and a reader expect of it."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import pytest
+from openapi_spec_validator import OpenAPIV31SpecValidator
+
+from service import problems
+from service.app import create_app
+from service.problems import ServiceError
+from service.registry import STUDIES
+from service.routes.response_headers import OF_STATUS
+from service.schemas.ogc import class_name
+from service.settings import Settings
+from service.worker.catalogue import default_registry
+
+_directory = tempfile.TemporaryDirectory(prefix="loa-description-")
+_app = create_app(Settings(data_directory=Path(_directory.name)))
+DOCUMENT: dict[str, Any] = _app.openapi()
+OPERATIONS = {
+    operation["operationId"]: operation
+    for methods in DOCUMENT["paths"].values()
+    for operation in methods.values()
+}
+LINTERS = Path(sys.prefix) / "linters" / "node_modules" / ".bin"
+RULES = {"extends": "spectral:oas", "rules": {"info-contact": "off"}}  # whoever runs the service is asked
+
+
+def test_it_is_openapi() -> None:
+    assert [error.message for error in OpenAPIV31SpecValidator(DOCUMENT).iter_errors()] == []
+
+
+def test_operations_are_named_by_words_and_processes_by_their_names() -> None:
+    assert len(OPERATIONS) == sum(len(methods) for methods in DOCUMENT["paths"].values())
+    assert all(name.isidentifier() and name.islower() and "v1" not in name for name in OPERATIONS)
+    assert {name.replace("-", "_") for name in default_registry()} <= set(OPERATIONS)
+
+
+def test_every_tag_is_explained() -> None:
+    used = {tag for operation in OPERATIONS.values() for tag in operation["tags"]}
+    explained = {tag["name"]: tag["description"] for tag in DOCUMENT["tags"]}
+    assert used == set(explained) and all(explained.values())
+
+
+def test_every_operation_says_its_refusals() -> None:
+    for name, operation in OPERATIONS.items():
+        closed = {"401", "429"} if operation.get("security") != [] else set()
+        body = {"413", "415", "422"} if "requestBody" in operation else set()
+        always = {"400", "405", "408", "421", "431", "500", "503"}
+        assert always | closed | body <= set(operation["responses"]), name
+
+
+def test_every_answer_says_its_headers() -> None:
+    components = DOCUMENT["components"]
+    for name, operation in OPERATIONS.items():
+        for status, response in operation["responses"].items():
+            entry = components["responses"].get(response.get("$ref", "").rpartition("/")[2], response)
+            expected = {"X-Request-ID", *OF_STATUS.get(int(status), ())}
+            assert expected <= set(entry["headers"]) <= set(components["headers"]), (name, status)
+
+
+def test_a_problem_that_says_when_to_try_again_has_a_status_that_does() -> None:
+    kinds = [kind for kind in vars(problems).values() if isinstance(kind, type)]
+    later = {
+        kind.status for kind in kinds if issubclass(kind, ServiceError) and kind.retry_after_s is not None
+    }
+    assert later and all("Retry-After" in OF_STATUS[status] for status in later)
+
+
+def test_a_job_leads_to_its_results() -> None:
+    executions = [OPERATIONS[name.replace("-", "_")] for name in default_registry()]
+    for operation in (*executions, OPERATIONS["job_status"], OPERATIONS["dismiss_job"]):
+        (answer,) = (entry for status, entry in operation["responses"].items() if status in ("200", "201"))
+        assert answer["links"]["results"]["operationId"] == "job_results"
+        for link in answer["links"].values():
+            (parameter,) = (p for p in OPERATIONS[link["operationId"]]["parameters"] if p["in"] == "path")
+            assert link["parameters"] == {parameter["name"]: "$response.body#/jobID"}
+
+
+def test_results_are_typed_by_process() -> None:
+    content = OPERATIONS["job_results"]["responses"]["200"]["content"]
+    assert list(content) == ["application/json", "application/x-netcdf"]
+    typed = {entry["$ref"].rpartition("/")[2] for entry in content["application/json"]["schema"]["anyOf"]}
+    assert typed == {f"{class_name(name)}Results" for name in default_registry()}
+    for study in STUDIES.values():
+        schema = DOCUMENT["components"]["schemas"][f"{class_name(study.name)}Results"]
+        assert (schema["required"], schema["additionalProperties"]) == ([study.kind], False)
+
+
+def linted(tmp_path: Path, linter: str, *options: str) -> str:
+    """Return what a linter of npm complains about."""
+    if not (LINTERS / linter).exists():
+        pytest.skip(f"no {linter} on this machine: scripts/test installs it where npm is")
+    (tmp_path / "openapi.json").write_text(json.dumps(DOCUMENT))
+    (tmp_path / "rules.json").write_text(json.dumps(RULES))
+    quiet = os.environ | {"REDOCLY_TELEMETRY": "off", "REDOCLY_SUPPRESS_UPDATE_NOTICE": "true"}
+    command = (LINTERS / linter, "lint", "openapi.json", *options)
+    ended = subprocess.run(command, check=False, cwd=tmp_path, env=quiet, capture_output=True, text=True)
+    return "" if ended.returncode == 0 else ended.stdout + ended.stderr
+
+
+def test_spectral_has_nothing_to_say(tmp_path: Path) -> None:
+    assert linted(tmp_path, "spectral", "--ruleset", "rules.json", "--fail-severity", "warn") == ""
+
+
+def test_redocly_finds_no_error(tmp_path: Path) -> None:
+    assert linted(tmp_path, "redocly") == ""

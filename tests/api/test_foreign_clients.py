@@ -1,0 +1,128 @@
+"""Clients of others run every process from submission to result, with an access key.
+
+They are generated from the description (openapi-python-client), or written for the standard (OWSLib). Nothing
+is computed, but inputs and their checks are those of the service.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from types import ModuleType
+from typing import Any
+
+import h5netcdf
+import pytest
+from owslib.ogcapi.processes import Processes
+from running_service import until
+from served_app import served
+from service_surroundings import FAKES
+
+from service.access import KeyFile
+from service.app import create_app
+from service.registry import NETCDF
+from service.schemas.ogc import class_name
+from service.schemas.request_examples import INPUTS
+from service.settings import Settings
+from service.worker.catalogue import default_registry
+from service.worker.process import Registry
+
+PACKAGE = "generated_client"
+CONFIG = {
+    "content_type_overrides": dict.fromkeys(("application/cbor", NETCDF), "application/octet-stream"),
+    "post_hooks": [],
+}
+
+
+@dataclass(frozen=True)
+class Service:
+    """A service with a key.
+
+    Attributes
+    ----------
+    url, key : str
+    description : dict
+        OpenAPI.
+    """
+
+    url: str
+    key: str
+    description: dict[str, Any]
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    """A running service whose work is written."""
+    directory = tmp_path_factory.mktemp("foreign")
+    key = KeyFile(directory / "keys.json").add("foreign")
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setenv("PYTHONPATH", FAKES)
+        offered = (replace(p, entry=f"written_work:{p.kind}") for p in default_registry().values())
+        app = create_app(Settings(data_directory=directory), Registry(*offered))
+        with served(app) as port:
+            yield Service(f"http://127.0.0.1:{port}", key, app.openapi())
+
+
+@pytest.fixture(scope="module")
+def generated(service: Service, tmp_path_factory: pytest.TempPathFactory) -> Iterator[ModuleType]:
+    """The client that is generated from the description; a warning of the generator is an error."""
+    folder = tmp_path_factory.mktemp("generated")
+    (folder / "openapi.json").write_text(json.dumps(service.description))
+    (folder / "config.json").write_text(json.dumps(CONFIG))
+    arguments = ("--path", "openapi.json", "--config", "config.json", "--output-path", PACKAGE)
+    command = (sys.executable, "-m", "openapi_python_client", "generate", *arguments, "--meta", "none")
+    ended = subprocess.run(
+        [*command, "--fail-on-warning"], cwd=folder, check=False, capture_output=True, text=True
+    )
+    assert ended.returncode == 0, ended.stdout + ended.stderr
+    with pytest.MonkeyPatch.context() as patched:
+        patched.syspath_prepend(folder)
+        yield importlib.import_module(PACKAGE)
+
+
+def part(name: str) -> ModuleType:
+    """Return a module of the generated client."""
+    return importlib.import_module(f"{PACKAGE}.{name}")
+
+
+def test_every_process_is_run() -> None:
+    assert set(INPUTS) == set(default_registry())
+
+
+@pytest.mark.parametrize("process", INPUTS)
+def test_a_generated_client_runs_a_process(service: Service, generated: ModuleType, process: str) -> None:
+    models, name = part("models"), class_name(process)
+    with generated.AuthenticatedClient(service.url, service.key, raise_on_unexpected_status=True) as client:
+        body = getattr(models, f"Execute{name}").from_dict({"inputs": INPUTS[process]})
+        job = part(f"api.processes.{process.replace('-', '_')}").sync(client=client, body=body)
+        assert isinstance(job, models.StatusInfo), job
+        state = part("api.jobs.job_status")
+        until(lambda: state.sync(job.job_id, client=client).finished is not None)
+        assert state.sync(job.job_id, client=client).status == "successful"
+        document = part("api.jobs.job_results").sync(job.job_id, client=client)
+        assert type(document) is getattr(models, f"{name}Results")
+        ((output, reference),) = document.to_dict().items()
+        file = part("api.results.result_file").sync(reference["hash"], client=client)
+        with h5netcdf.File(file.payload) as content:
+            assert content.attrs["kind"] == output
+
+
+def test_a_generated_client_reads_a_refusal(service: Service, generated: ModuleType) -> None:
+    with generated.AuthenticatedClient(service.url, "no key", raise_on_unexpected_status=True) as stranger:
+        problem = part("api.jobs.list_jobs").sync(client=stranger)
+    assert (type(problem), problem.status) == (part("models").ProblemBody, 401)
+
+
+@pytest.mark.parametrize("process", INPUTS)
+def test_owslib_runs_a_process(service: Service, process: str) -> None:
+    owslib = Processes(f"{service.url}/v1/", headers={"Authorization": f"Bearer {service.key}"})
+    assert process in [summary["id"] for summary in owslib.processes()]
+    assert owslib.process(process)["outputs"]
+    job = owslib.execute(process, INPUTS[process], async_=True)
+    until(lambda: owslib._request(path=f"jobs/{job['jobID']}")["finished"] is not None)
+    (reference,) = owslib._request(path=f"jobs/{job['jobID']}/results").values()
+    assert reference["type"] == NETCDF

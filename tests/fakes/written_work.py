@@ -1,0 +1,28 @@
+"""Work of processes that computes nothing: it writes a file with the kind that it is named for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import h5netcdf
+
+from service.schemas.result_kinds import RESULT_KINDS
+from service.worker.order import Product, Progress, WorkOrder
+
+Work = Callable[[WorkOrder, Progress], tuple[Product, ...]]
+
+
+def __getattr__(name: str) -> Work:
+    """Return the work that makes a kind of result."""
+    if name in RESULT_KINDS:
+        return partial(_write, name)
+    raise AttributeError(name)
+
+
+def _write(kind: str, order: WorkOrder, _progress: Progress) -> tuple[Product, ...]:
+    """Write a file of a kind."""
+    path = order.workspace / "result.nc"
+    with h5netcdf.File(path, "w") as file:
+        file.attrs["kind"] = kind
+    return (Product(order.key, kind, path),)
