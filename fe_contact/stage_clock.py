@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from fe_contact.types import Json
 from fe_contact.workers.run_cost import RunCost
 from host import children_cpu_seconds, children_peak_memory, peak_memory
+from model_studies.progress import Progress, silent
 
 
 @dataclass(frozen=True)
@@ -28,10 +29,13 @@ class StageClock:
     ----------
     remote : RunCost, optional
         What tasks cost that others do for this process: it counts beside its own time and its children's.
+    progress : callable
+        Called as progress(stage, fraction).
     """
 
-    def __init__(self, remote: RunCost | None = None) -> None:
+    def __init__(self, remote: RunCost | None = None, progress: Progress = silent) -> None:
         self.stages: list[Stage] = []
+        self.progress = progress
         self._remote = remote or RunCost()
         self._last = self._reading()
 

@@ -2,11 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 Progress = Callable[[str, float], None]
 """Called as progress(stage, fraction)."""
 
+Report = Callable[[float], None]
+"""Called with the fraction done of one piece of work, from 0 to 1."""
+
 
 def silent(_stage: str, _fraction: float) -> None:
     """Report no progress."""
+
+
+def unreported(_fraction: float) -> None:
+    """Report no fraction."""
+
+
+def by_cost(report: Report, costs: Mapping[str, float]) -> Progress:
+    """Return the progress of parts done one after the other that reports the fraction of all of them.
+
+    Parameters
+    ----------
+    report : callable
+        Called with the fraction of the sum of `costs`.
+    costs : mapping
+        Predicted cost of each part, in the order in which they are done, >= 0; in any unit. What is none of
+        them is not reported.
+    """
+    total = sum(costs.values())
+
+    def progress(part: str, fraction: float) -> None:
+        names = list(costs)
+        if part in costs and total > 0.0:
+            done = sum(costs[name] for name in names[: names.index(part)])
+            report(min((done + fraction * costs[part]) / total, 1.0))
+
+    return progress

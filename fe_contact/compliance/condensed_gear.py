@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -44,7 +45,7 @@ def condensed_gear(
     support : BoreSupport
         How the bore is held.
     clock : StageClock
-        Gets the stages ``assembly``, ``condensation``, ``ring``.
+        Gets the stages ``assembly``, ``condensation``, ``ring`` and their progress.
     probes : (nf, p) array, optional
         Loads on tooth 0 for which all cuts are wanted, N; default `probe_loads`.
 
@@ -56,7 +57,7 @@ def condensed_gear(
     tooth, loads = condensed_tooth(gear, section, recipe, support, clock)
     loads = loads if probes is None else probes
     free = free_turn(section, tooth.sector)
-    ring = close_ring(tooth.held, gear.teeth, reach, loads, free)
+    ring = close_ring(tooth.held, gear.teeth, reach, loads, free, partial(clock.progress, "ring"))
     clock.finish("ring")
     return CondensedGear(tooth.sector, tooth.stiffness, tooth.condensation, tooth.held, ring), loads
 
@@ -83,7 +84,8 @@ def condensed_tooth(
     sector = swept_sector(section.grid, gear.face_width, recipe, support, gear.web)
     stiffness = sector_stiffness(gear, section, sector, flank_frames(section, twist(gear)))
     clock.finish("assembly")
-    condensation = condense(sector_tree(sector), sector.element_freedoms, stiffness)
+    report = partial(clock.progress, "condensation")
+    condensation = condense(sector_tree(sector), sector.element_freedoms, stiffness, report)
     clock.finish("condensation")
     held = hold_sector(condensation.matrix, len(sector.loaded))
     s_form = tooth_profile(gear).s_form

@@ -7,15 +7,16 @@ algebra is measured on the spot, so that the prediction moves with the machine.
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import blas
 
-from fe_contact.compliance.cyclic_compliance import usual_reach
 from fe_contact.compliance.elimination_tree import EliminationTree
 from fe_contact.compliance.sector_tree import sector_tree
+from fe_contact.compliance.usual_reach import usual_reach
 from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.mesh.bore_support import bore_support
 from fe_contact.mesh.sector_outline import sector_outline
@@ -32,10 +33,15 @@ NUMBER = 8  # bytes
 
 
 class PredictedCost(NamedTuple):
-    """CPU seconds on one thread, and bytes of the largest working set."""
+    """CPU seconds on one thread by part, in the order of the work, and bytes of the largest working set."""
 
-    seconds: float
+    parts: Mapping[str, float]
     bytes: int
+
+    @property
+    def seconds(self) -> float:
+        """CPU seconds of all parts."""
+        return sum(self.parts.values())
 
 
 class SectorSizes(NamedTuple):
@@ -79,18 +85,17 @@ def predict_cost(
     tree = sector_tree(sector)
     distance = usual_reach(gear) if reach is None else reach
     sizes = sector_sizes(sector, gear.teeth, distance)
-    operations = (
-        tree.operations
-        + GATHERING * tree.front_entries
-        + ELEMENT * sizes.matrices
-        + RING_LOSS * ring_operations(sizes)
-        + tree.factor_entries * GATHERING / 10.0  # the checks pass twice over the factors
-    )
     key = len(sector.key_bore) + len(sector.key_cut)
     answers = float(gear.teeth * sizes.cut * key)  # of all cuts to forces on the bore
-    operations += sizes.harmonics * 4.0 * sizes.cut**2 * key + 2.0 * answers * sizes.flank
+    operations = {
+        "condensation": tree.operations + GATHERING * tree.front_entries + ELEMENT * sizes.matrices,
+        "ring": RING_LOSS * ring_operations(sizes) + sizes.harmonics * 4.0 * sizes.cut**2 * key,
+        "checks": tree.factor_entries * GATHERING / 10.0,  # they pass twice over the factors
+        "key": 2.0 * answers * sizes.flank,
+    }
     keyed = int(NUMBER * (5.0 * answers + gear.teeth * sizes.flank * key))
-    return PredictedCost(MESH_SECONDS + operations / dense_rate(), working_bytes(tree, sizes) + keyed)
+    seconds = {part: count / dense_rate() for part, count in operations.items()}
+    return PredictedCost({"mesh": MESH_SECONDS} | seconds, working_bytes(tree, sizes) + keyed)
 
 
 def sector_sizes(sector: SweptSector, teeth: int, reach: int) -> SectorSizes:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -13,18 +13,22 @@ from fe_contact.checks import integer
 from fe_contact.compliance.cache import (
     KEPT_KEYS,
     content_hash,
+    kept_size,
     mesher_version,
     read_compliance,
     write_compliance,
 )
+from fe_contact.compliance.cost_3d import predict_cost
 from fe_contact.compliance.flank import refuse_broken_laws
 from fe_contact.compliance.flank_3d import FlankCompliance3D
+from fe_contact.compliance.usual_reach import usual_reach
 from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.mesh.bore_support import BoreSupport, bore_support
 from fe_contact.mesh.quad_sector import quad_sector
 from fe_contact.mesh.sector_recipe import SectorRecipe
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import Json
+from model_studies.progress import Report, by_cost, unreported
 
 MODEL_VERSION = 3  # raise it whenever the same input gives another result: old cache files are then not found
 SOLVER = "dense substructures and cyclic harmonics (LAPACK)"
@@ -37,6 +41,7 @@ def flank_compliance_3d(
     reach: int | None = None,
     support: BoreSupport | None = None,
     cache: Path | None = None,
+    report: Report = unreported,
 ) -> FlankCompliance3D:
     """Return the compliance of the right flanks of a gear over its face width; all teeth are real.
 
@@ -54,6 +59,8 @@ def flank_compliance_3d(
         How the right-hand gear is held; default: clamped, or on the gear's seat.
     cache : Path, optional
         Directory of kept results (see `default_cache_directory`); None: neither read nor written.
+    report : callable
+        Called with the fraction done, by predicted cost.
 
     Raises
     ------
@@ -69,7 +76,7 @@ def flank_compliance_3d(
     key = compliance_key_3d(gear, recipe, reach, support)
     result = read_compliance(cache, key, FlankCompliance3D) if cache is not None else None
     if result is None:
-        result = compute_flank_compliance_3d(gear.right_handed(), recipe, reach, support)
+        result = compute_flank_compliance_3d(gear.right_handed(), recipe, reach, support, report=report)
         if cache is not None:
             write_compliance(cache, key, result)
     return result.mirrored() if gear.helix_angle < 0.0 else result
@@ -81,31 +88,37 @@ def flank_compliances_3d(
     *,
     support: BoreSupport | None = None,
     cache: Path | None = None,
+    report: Report = unreported,
 ) -> tuple[FlankCompliance3D, ...]:
     """Return the compliance of each gear; gears alike, or alike but for the hand, are computed once.
 
     Parameters are those of `flank_compliance_3d`, with one recipe per gear.
     """
     recipes = recipes or [SectorRecipe.standard(gear) for gear in gears]
+    keys = [
+        compliance_key_3d(gear, recipe, usual_reach(gear), support or bore_support(gear.right_handed()))
+        for gear, recipe in zip(gears, recipes, strict=True)
+    ]
+    progress = by_cost(report, _costs(keys, gears, recipes, cache))
     compliances: dict[str, FlankCompliance3D] = {}
     results = []
-    for gear, recipe in zip(gears, recipes, strict=True):
-        key = compliance_key_3d(gear, recipe, usual_reach(gear), support or bore_support(gear.right_handed()))
+    for key, gear, recipe in zip(keys, gears, recipes, strict=True):
         if key not in compliances:
-            compliances[key] = flank_compliance_3d(gear, recipe, support=support, cache=cache)
+            own = partial(progress, key)
+            compliances[key] = flank_compliance_3d(gear, recipe, support=support, cache=cache, report=own)
         alike = compliances[key].base_helix_angle * gear.helix_angle >= 0.0
         results.append(compliances[key] if alike else compliances[key].mirrored())
     return tuple(results)
 
 
-def usual_reach(gear: Toothing) -> int:
-    """Return the largest distance of two teeth that can carry load at once.
-
-    That is the length of the involute and the lead of the helix over the face, in base pitches.
-    """
-    across = abs(math.tan(gear.base_helix_angle)) * gear.face_width
-    length = abs(gear.tip_roll_length - gear.form_roll_length) + across
-    return min(max(1, math.ceil(length / gear.base_pitch)), gear.teeth // 2)
+def _costs(
+    keys: Sequence[str], gears: Sequence[Toothing], recipes: Sequence[SectorRecipe], cache: Path | None
+) -> dict[str, float]:
+    """Predict the CPU seconds of each key; what is kept costs nothing."""
+    return {
+        key: 0.0 if kept_size(cache, key) else predict_cost(gear.right_handed(), recipe).seconds
+        for key, gear, recipe in zip(keys, gears, recipes, strict=True)
+    }
 
 
 def compliance_key_3d(gear: Toothing, recipe: SectorRecipe, reach: int, support: BoreSupport) -> str:
@@ -130,17 +143,18 @@ def _key(gear: Toothing, recipe: SectorRecipe, reach: int, support: str, version
 
 
 def compute_flank_compliance_3d(
-    gear: Toothing, recipe: SectorRecipe, reach: int, support: BoreSupport
+    gear: Toothing, recipe: SectorRecipe, reach: int, support: BoreSupport, *, report: Report = unreported
 ) -> FlankCompliance3D:
-    """Mesh, condense, close the ring and check; no cache."""
+    """Mesh, condense, close the ring and check; no cache. `report` is called with the fraction done."""
     # A cached result needs neither skfem nor numba.
     from fe_contact.compliance.checks_3d import gear_checks  # noqa: PLC0415
     from fe_contact.compliance.condensed_gear import condensed_gear  # noqa: PLC0415
     from fe_contact.compliance.keyed_bore import key_update  # noqa: PLC0415
     from fe_contact.compliance.sector_stiffness import twist  # noqa: PLC0415
 
-    clock = StageClock()
+    clock = StageClock(progress=by_cost(report, predict_cost(gear, recipe).parts))
     section = quad_sector(gear, recipe)
+    clock.progress("mesh", 1.0)
     clock.finish("mesh")
     profile = tooth_profile(gear)
     solved, loads = condensed_gear(gear, section, recipe, reach, support, clock)

@@ -32,6 +32,7 @@ from scipy.linalg import blas, lapack
 
 from fe_contact.errors import SolveError
 from fe_contact.types import FloatArray, IntArray
+from model_studies.progress import Report, unreported
 
 ComplexArray = NDArray[np.complex128]
 Scalar = TypeVar("Scalar", np.float64, np.complex128)
@@ -147,7 +148,12 @@ def hold_sector(matrix: FloatArray, flank: int) -> HeldSector:
 
 
 def close_ring(
-    held: HeldSector, teeth: int, reach: int, probes: FloatArray, free: FreeTurn | None = None
+    held: HeldSector,
+    teeth: int,
+    reach: int,
+    probes: FloatArray,
+    free: FreeTurn | None = None,
+    report: Report = unreported,
 ) -> RingSolution:
     """Join `teeth` copies of a sector.
 
@@ -163,6 +169,8 @@ def close_ring(
         Flank loads on tooth 0 for which all cuts are wanted, N.
     free : FreeTurn, optional
         The ring may turn: its mean turn is restrained, and unit forces on the bore are answered too.
+    report : callable
+        Called after each harmonic with the fraction of them done.
 
     Raises
     ------
@@ -178,7 +186,7 @@ def close_ring(
         loads = np.concatenate([loads, held.transmitted[:, free.flank :], on_cut], axis=1)
         restraint = float(np.trace(held.cuts) / (free.turn @ free.turn))
     spring = None if free is None else np.sqrt(restraint) * free.turn
-    cuts = left_cuts(held, loads, teeth, reach, rank, spring)
+    cuts = left_cuts(held, loads, teeth, reach, rank, spring, report)
     blocks = np.empty((reach + 1, len(modes), len(modes)))
     moved = {
         m: held.transmitted[:size].T @ cuts.near[m] + held.transmitted[size:].T @ cuts.near[m - 1]
@@ -209,6 +217,7 @@ def left_cuts(
     reach: int,
     first: int,
     spring: FloatArray | None = None,
+    report: Report = unreported,
 ) -> LeftCuts:
     """Sum up the harmonics of the left cuts.
 
@@ -224,6 +233,8 @@ def left_cuts(
         Number of loads that only the sectors -reach - 1 .. reach are wanted for.
     spring : (nc,) array, optional
         q of the stiffness q q' that restrains what all cuts have in common.
+    report : callable
+        Called after each harmonic with the fraction of them done.
 
     Raises
     ------
@@ -245,6 +256,7 @@ def left_cuts(
         real, imaginary = x.real[:, :first], x.imag[:, :first]
         for j in near:
             near[j] += np.cos(angle * j) * real - np.sin(angle * j) * imaginary
+        report((n + 1) / len(angles))
     turns = np.exp(1j * np.outer(np.arange(teeth), angles))
     return LeftCuts(near, np.tensordot(turns, waves, axes=1).real)
 

@@ -36,6 +36,12 @@ class Front:
     inner: IntArray
     border: IntArray
 
+    @property
+    def operations(self) -> float:
+        """Multiplications with additions of its dense Cholesky factorization, triangular solve and update."""
+        i, b = float(len(self.inner)), float(len(self.border))
+        return i**3 / 6.0 + 0.5 * i * i * b + 0.5 * i * b * b
+
     def fronts(self) -> Iterator[Front]:
         """Yield all fronts, children before their parent."""
         for child in self.children:
@@ -60,9 +66,8 @@ class EliminationTree:
 
     @property
     def operations(self) -> float:
-        """Multiplications with additions of the dense factorisations: Cholesky, triangular solve, update."""
-        sizes = ((float(len(f.inner)), float(len(f.border))) for f in self.root.fronts())
-        return sum(i**3 / 6.0 + 0.5 * i * i * b + 0.5 * i * b * b for i, b in sizes)
+        """Multiplications with additions of all fronts."""
+        return sum(front.operations for front in self.root.fronts())
 
     @property
     def factor_entries(self) -> int:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 from fe_contact.compliance.cache import kept_size
-from fe_contact.compliance.cyclic_compliance import compliance_key_3d, usual_reach
+from fe_contact.compliance.cyclic_compliance import compliance_key_3d
 from fe_contact.compliance.flank_compliance_2d import compliance_key, condensed_teeth
 from fe_contact.compliance.plane import PlaneHypothesis
 from fe_contact.compliance.solvers import SuperLuMetis
+from fe_contact.compliance.usual_reach import usual_reach
 from fe_contact.geometry import Toothing
 from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.mesh.bore_support import PlaneStrain, bore_support

@@ -7,16 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fe_contact.compliance.cache import kept_size, write_compliance
-from fe_contact.compliance.cyclic_compliance import (
-    compliance_key_3d,
-    compute_flank_compliance_3d,
-    usual_reach,
-)
+from fe_contact.compliance.cyclic_compliance import compliance_key_3d, compute_flank_compliance_3d
 from fe_contact.compliance.flank_3d import FlankCompliance3D
+from fe_contact.compliance.usual_reach import usual_reach
 from fe_contact.geometry import Toothing
 from fe_contact.mesh import SectorRecipe
 from fe_contact.mesh.bore_support import BoreSupport, bore_support
-from fe_contact.workers import InProcess, Workers
+from fe_contact.workers import InProcess, Remembering, Workers
+from model_studies.progress import Report, unreported
 
 FEWEST = 2
 """Gears that pay to hand out: a single one is condensed here in the same time."""
@@ -43,18 +41,29 @@ class Solid:
         return compliance_key_3d(self.gear, self.recipe, self.reach, self.support)
 
 
+def condensing(workers: Workers) -> Workers:
+    """Return who condenses gears: their results are kept by the cache, nobody else need remember them."""
+    return workers.others if isinstance(workers, Remembering) else workers
+
+
 def condense_remotely(
-    gears: Sequence[Toothing], recipes: Sequence[SectorRecipe], cache: Path, workers: Workers
+    gears: Sequence[Toothing],
+    recipes: Sequence[SectorRecipe],
+    cache: Path,
+    workers: Workers,
+    report: Report = unreported,
 ) -> None:
     """Let workers condense the gears that are not in the cache, and keep them there.
 
-    Nothing is done where this process is the worker, or would wait for a single one.
+    Nothing is done where this process is the worker, or would wait for a single one. `report` is called with
+    the fraction done after each gear.
 
     Raises
     ------
     MeshError, SolveError
         As `flank_compliance_3d`.
     """
+    workers = condensing(workers)
     if isinstance(workers, InProcess):
         return
     solids = {solid.key: solid for solid in map(Solid.of, gears, recipes)}
@@ -62,8 +71,9 @@ def condense_remotely(
     if len(missing) < FEWEST:
         return
     compliances = workers.run(condense, None, list(missing.values()))
-    for key, compliance in zip(missing, compliances, strict=True):
+    for count, (key, compliance) in enumerate(zip(missing, compliances, strict=True), start=1):
         write_compliance(cache, key, compliance)
+        report(count / len(missing))
 
 
 def condense(_: None, solid: Solid) -> FlankCompliance3D:

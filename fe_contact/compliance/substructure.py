@@ -12,6 +12,7 @@ from fe_contact.compliance.elimination_tree import EliminationTree, Front
 from fe_contact.compliance.sector_stiffness import ElementStiffness
 from fe_contact.errors import SolveError
 from fe_contact.types import FloatArray, IntArray
+from model_studies.progress import Report, unreported
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,9 @@ class Condensation:
         return u
 
 
-def condense(tree: EliminationTree, freedoms: IntArray, stiffness: ElementStiffness) -> Condensation:
+def condense(
+    tree: EliminationTree, freedoms: IntArray, stiffness: ElementStiffness, report: Report = unreported
+) -> Condensation:
     """Eliminate all freedoms but those `tree` keeps.
 
     Parameters
@@ -65,6 +68,8 @@ def condense(tree: EliminationTree, freedoms: IntArray, stiffness: ElementStiffn
         Freedoms of the elements, -1 where held.
     stiffness : ElementStiffness
         Their matrices.
+    report : callable
+        Called after each front with the fraction of the operations done.
 
     Raises
     ------
@@ -72,14 +77,18 @@ def condense(tree: EliminationTree, freedoms: IntArray, stiffness: ElementStiffn
         The stiffness is not positive definite.
     """
     factors: list[FrontFactor] = []
+    done, whole = 0.0, tree.operations
 
     def run(front: Front) -> FloatArray:
+        nonlocal done
         parts = [run(child) for child in front.children]
         gathered = _gathered(front, parts, tree.order, freedoms, stiffness)
         if not len(front.inner):
             return gathered
         factor, coupling, rest = _eliminated(gathered, len(front.inner))
         factors.append(FrontFactor(front, factor, coupling))
+        done += front.operations
+        report(done / whole)
         return rest
 
     matrix = run(tree.root)

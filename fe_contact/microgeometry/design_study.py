@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -129,7 +130,8 @@ def design_study(
         decided = _on_one_mesh(space.check(everything), run.cache)
     run.progress("compliance", 0.0)
     with clock.stage("compliance"):
-        contact = pair_contact(space.pair, decided.plan, run.cache)
+        report = partial(run.progress, "compliance")
+        contact = pair_contact(space.pair, decided.plan, run.cache, report=report)
     run.progress("compliance", 1.0)
     index = np.searchsorted(everything, counted)
     load = decided.checked.request.load[index]

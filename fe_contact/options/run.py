@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from fe_contact.workers import InProcess, Workers
 from model_studies import Progress, silent
+
+OnPlan = Callable[[Mapping[str, float]], None]
+"""Called with the predicted CPU seconds of the stages of a table, in their order, before it is computed."""
+
+
+def unplanned(_stages: Mapping[str, float]) -> None:
+    """Take no note of a plan."""
 
 
 @dataclass(frozen=True)
@@ -22,13 +30,16 @@ class Run:
         Directory of flank compliances: with it a gear is condensed once.
     progress : callable
         Called as progress(stage, fraction); studies of several tables start again with each table.
+    on_plan : callable
+        Called with the predicted CPU seconds by stage of each table, and of each pass of one.
     """
 
     workers: Workers = InProcess()  # noqa: RUF009 (frozen)
     cache: Path | None = None
     progress: Progress = silent
+    on_plan: OnPlan = unplanned
 
     @property
     def silent(self) -> Run:
         """The same without reports of progress."""
-        return replace(self, progress=silent)
+        return replace(self, progress=silent, on_plan=unplanned)

@@ -60,19 +60,16 @@ def contact_seconds(
     alignments: tuple[int, int],
     *,
     with_errors: bool = True,
-) -> tuple[float, float]:
-    """CPU seconds of the contact, and of what is solved once more for the error estimate."""
+) -> tuple[float, float, float]:
+    """CPU seconds of the search of positions, of the table, and of the solutions that measure its errors."""
     kept, loads = expected_positions(plan), plan.load.size
     points, distances = alignments[0] * alignments[1], alignments[1]
     assessed, rows = min(points, _JUDGED), model.period * points
-    tried = 0
-    if plan.positions is None:
-        begun = plan.nodes.start
-        tried = _TRIED_PER_START * begun + _TRIED_PER_NODE * max(kept - begun, 0)
+    tried = expected_tries(plan)
     work = unit_work(pair, plan, plan.discretization.slices)
-    contact = work.of(tried * distances, tried * assessed * loads)
-    contact += work.of(kept * distances, kept * rows * (loads + plan.support.size))
-    return contact, _errors(pair, plan, model.period, alignments) if with_errors else 0.0
+    search = work.of(tried * distances, tried * assessed * loads)
+    table = work.of(kept * distances, kept * rows * (loads + plan.support.size))
+    return search, table, _errors(pair, plan, model.period, alignments) if with_errors else 0.0
 
 
 def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, int]) -> float:
@@ -120,6 +117,14 @@ def unit_work(pair: ParallelAxes, plan: Plan, slices: int) -> Work:
         return Work(_PLANE_POSITION, _PLANE_POINT + _PLANE_CANDIDATE * count)
     elements = max(pair.pinion.normal_module / recipe.flank_size for recipe in made.recipes)
     return Work(_FACE_POSITION * elements**2 * count, _FACE_CANDIDATE * count + _FACE_SQUARE * count**2)
+
+
+def expected_tries(plan: Plan) -> int:
+    """Return the positions at which the search usually solves; none if they are requested."""
+    if plan.positions is not None:
+        return 0
+    begun = plan.nodes.start
+    return _TRIED_PER_START * begun + _TRIED_PER_NODE * max(expected_positions(plan) - begun, 0)
 
 
 def expected_positions(plan: Plan) -> int:

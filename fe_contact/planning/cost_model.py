@@ -68,8 +68,8 @@ class Prediction:
 
     Attributes
     ----------
-    raw : dict
-        CPU seconds by stage on this host.
+    parts : dict
+        CPU seconds on this host by stage and part of it, in the order of the work.
     correction : dict
         Factor by stage from earlier runs, 1 without any.
     memory_bytes : int
@@ -80,11 +80,16 @@ class Prediction:
         "plane" or "face": what `run_log` keeps apart.
     """
 
-    raw: dict[str, float]
+    parts: dict[str, dict[str, float]]
     correction: dict[str, float]
     memory_bytes: int
     positions: int
     kind: str
+
+    @property
+    def raw(self) -> dict[str, float]:
+        """CPU seconds by stage on this host, uncorrected."""
+        return {stage: sum(parts.values()) for stage, parts in self.parts.items()}
 
     @property
     def stages(self) -> dict[str, float]:
@@ -104,7 +109,7 @@ class Prediction:
     def to_json(self) -> Json:
         """Return plain JSON."""
         return {"stages": self.stages, "cpu_seconds": self.cpu_seconds} | {
-            name: value for name, value in asdict(self).items() if name not in ("raw", "kind")
+            name: value for name, value in asdict(self).items() if name not in ("parts", "kind")
         }
 
 
@@ -141,20 +146,20 @@ def predict_run(
     kind = "face" if isinstance(made, FaceDiscretization) else "plane"
     fine = _compliance(pair, plan, cache, coarse=False)
     coarse = _compliance(pair, plan, cache, coarse=True) if with_errors else Cost(0.0, 0.0, 0.0)
-    solve, check = contact_seconds(pair, plan, model, alignments, with_errors=with_errors)
+    search, solve, check = contact_seconds(pair, plan, model, alignments, with_errors=with_errors)
     slowness = host_slowness(cache)
     # dense algebra has its own measurement of the host in it
     speed = slowness if kind == "plane" else 1.0
-    raw = {
-        "compliance": fine.seconds * speed,
-        "contact": solve * slowness,
-        "error estimate": coarse.seconds * speed + check * slowness,
+    parts = {
+        "compliance": {"bodies": fine.seconds * speed},
+        "contact": {"positions": search * slowness, "table": solve * slowness},
+        "error estimate": {"bodies": coarse.seconds * speed, "solutions": check * slowness},
     }
     known = corrections(cache)
     correction = {stage: known.get(log_name(kind, stage), 1.0) for stage in STAGES}
     memory = PROCESS_BYTES + contact_bytes(pair, plan) + fine.held + coarse.held
     memory += max(fine.working, coarse.working)
-    return Prediction(raw, correction, int(memory), expected_positions(plan), kind)
+    return Prediction(parts, correction, int(memory), expected_positions(plan), kind)
 
 
 def _compliance(pair: ParallelAxes, plan: Plan, cache: Path | None, *, coarse: bool) -> Cost:

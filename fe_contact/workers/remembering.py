@@ -33,14 +33,11 @@ class Remembering:
         Of this study alone, and of nobody else: its files are unpickled. It is the caller's to remove.
     version : str
         Of what computes: other versions' results are not taken.
-    passed_on : tuple of callable
-        Functions whose results are not kept here, because they are elsewhere.
     """
 
     others: Workers
     folder: Path
     version: str
-    passed_on: tuple[Callable[..., Any], ...] = ()
     _digests: dict[int, tuple[object, str]] = field(default_factory=dict, compare=False, repr=False)
 
     @property
@@ -69,8 +66,6 @@ class Remembering:
         self, function: Callable[..., Any], shared: object, items: Sequence[object]
     ) -> list[Path] | None:
         """Return where the results of tasks are kept; None if nobody knows what tells the tasks apart."""
-        if function in self.passed_on:
-            return None
         try:
             context = f"{self.version} {function.__module__}.{function.__qualname__} {self._digest(shared)}"
             names = [f"{context} {content_digest(item)}" for item in items]

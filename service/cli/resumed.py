@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from fe_contact.analysis.database.compute_database import SOLVER_VERSION
-from fe_contact.compliance.remote_condensation import condense
 from fe_contact.workers import Remembering, Workers
 from fe_contact.workers.content import content_digest
 from service.directories import cache_home
@@ -30,5 +29,5 @@ def resumed_workers(
     content = (study.name, inputs.model_dump_json(), *(subject.model_dump_json() for subject in subjects))
     folder = cache_home() / "studies" / content_digest(content)
     version = f"{solver_version()} {SOLVER_VERSION}"
-    yield Remembering(workers, folder, version, passed_on=(condense,))
+    yield Remembering(workers, folder, version)
     shutil.rmtree(folder, ignore_errors=True)

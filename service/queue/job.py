@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
+from datetime import datetime
 from typing import Any
 
 from sqlalchemy import select
@@ -13,6 +14,7 @@ from service.queue.tables import computations, jobs
 
 ENDED = ("successful", "failed", "dismissed")
 """States in which nothing more happens."""
+_PACE_KNOWN = 0.02
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,20 @@ class Job:
     def ended(self) -> bool:
         """Whether nothing more will happen to it."""
         return self.status in ENDED
+
+    def remaining_s(self, instant: datetime) -> float | None:
+        """Return the seconds that a running job still needs at an instant, at the pace of its last report.
+
+        None where the pace is not known: before `_PACE_KNOWN` of the work, and in a repeated attempt.
+        """
+        if self.status != "running" or self.started is None or self.attempts > 1:
+            return None
+        if not _PACE_KNOWN <= self.fraction < 1.0:
+            return None
+        updated = datetime.fromisoformat(self.updated)
+        spent = (updated - datetime.fromisoformat(self.started)).total_seconds()
+        left = spent * (1.0 - self.fraction) / self.fraction
+        return max(left - (instant - updated).total_seconds(), 0.0)
 
 
 def select_jobs() -> Any:

@@ -172,8 +172,9 @@ class Scheduler:
             self._end(running, self._forget(running, keep_lease=True).finish())
             running.note_end(self._unsettled[-1].outcome.name)
         elif steps:
-            stage, fraction = steps[-1]
-            self._claims.progress(running.claim, stage, fraction, process.overall(stage, fraction))
+            stage, fraction, whole = steps[-1]
+            known = process.overall(stage, fraction) if whole is None else whole
+            self._claims.progress(running.claim, stage, fraction, known)
 
     def _end(self, running: Attempt, outcome: Outcome) -> None:
         """Let an attempt be settled; its lease is held until then."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from datetime import UTC, datetime
+
 from fastapi import APIRouter, Request
 
 from service.problems import NoSuchJob
@@ -63,7 +65,8 @@ def status_info(job: Job, registry: Registry) -> StatusInfo:
         started=job.started,
         finished=job.finished,
         updated=job.updated,
-        progress=int(100 * job.fraction),
+        progress=min(int(100 * job.fraction), 100 if job.status == "successful" else 99),
+        remaining_s=job.remaining_s(datetime.now(UTC)),
         stage=job.stage,
         stage_progress=int(100 * job.stage_fraction),
         attempts=job.attempts,

@@ -24,6 +24,7 @@ STATUS: Json = {
     "finished": None,
     "updated": _INSTANT,
     "progress": 24,
+    "remaining_s": 19.0,
     "stage": "compliance",
     "stage_progress": 40,
     "attempts": 1,

@@ -101,6 +101,9 @@ class StatusInfo(BaseModel):
     finished: str | None = None
     updated: str
     progress: int = Field(ge=0, le=100, description="Per cent of the whole job")
+    remaining_s: float | None = Field(
+        default=None, description="Seconds that a running job still needs, by its pace; null: not known yet"
+    )
     stage: str = Field(description="The stage the job is in")
     stage_progress: int = Field(ge=0, le=100, description="Per cent of the stage")
     attempts: int = Field(ge=0, description="Number of starts of the computation")

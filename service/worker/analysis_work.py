@@ -25,7 +25,7 @@ def warm_up() -> None:
     case = {"pair": pair, "load": {"torque_n_m": [0.1]}, "accuracy": accuracy}
     with TemporaryDirectory() as name:
         inputs = {"case": validated(Case, case).model_dump(mode="json")}
-        analyze_case(WorkOrder("", inputs, "", Path(name), Path(name)), lambda stage, fraction: None)
+        analyze_case(WorkOrder("", inputs, "", Path(name), Path(name)), lambda *_: None)
 
 
 def analyze_case(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
@@ -38,13 +38,13 @@ def analyze_case(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
 
 def database_of(case: Case, order: WorkOrder, progress: Progress) -> SteDatabase:
     """Return the STE database of a case of an order; condensed gears are kept in the service's cache."""
-    drafted = DraftedProgress(progress)
+    drafted = DraftedProgress(progress, refines=case.accuracy.tolerance is not None)
     with boundary_errors(), table_workers(order) as workers:
         database = ste_database(
             gear_pair(case),
             table_axes(case),
             analysis_options(case),
-            Run(workers, order.data_directory / "compliance", drafted),
+            Run(workers, order.data_directory / "compliance", drafted, drafted.plan),
             case=case_json(case),
             on_draft=drafted.draft,
         )

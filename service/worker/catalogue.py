@@ -6,7 +6,7 @@ from functools import partial
 
 from service.registry import STUDIES, Study
 from service.schemas.process_inputs import AnalyzeInputs, SimulateInputs, study_inputs
-from service.stages import TABLE_STAGES, Stage
+from service.stages import Stage
 from service.worker.process import Process, Registry, on_demand
 
 ANALYZE = Process(
@@ -19,7 +19,7 @@ ANALYZE = Process(
     kind="database",
     prepare=on_demand("service.worker.preparations:prepare_analyze"),
     entry="service.worker.analysis_work:analyze_case",
-    stages=TABLE_STAGES,
+    stages=(),
     name_result=on_demand("service.worker.preparations:name_database"),
 )
 SIMULATE = Process(

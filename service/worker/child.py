@@ -98,14 +98,15 @@ class _Reporter:
     def __init__(self, channel: TextIO) -> None:
         self._channel, self._stage, self._sent = channel, "", 0.0
 
-    def __call__(self, stage: str, fraction: float) -> None:
-        """Report the fraction done of a stage."""
+    def __call__(self, stage: str, fraction: float, whole: float | None = None, /) -> None:
+        """Report the fraction done of a stage, and of the whole work if that is known."""
         instant = time.monotonic()
         recent = instant - self._sent < _SHORTEST_INTERVAL_S
         if stage == self._stage and recent and fraction < 1.0:
             return
         self._stage, self._sent = stage, instant
-        _send(self._channel, {"stage": stage, "fraction": min(max(float(fraction), 0.0), 1.0)})
+        fraction = min(max(float(fraction), 0.0), 1.0)
+        _send(self._channel, {"stage": stage, "fraction": fraction, "whole": whole})
 
 
 def _send(channel: TextIO, message: dict[str, Any]) -> None:

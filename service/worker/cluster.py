@@ -9,7 +9,6 @@ from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 from fe_contact.analysis.database.compute_database import SOLVER_VERSION
-from fe_contact.compliance.remote_condensation import condense
 from fe_contact.errors import InputError, WorkersLost
 from fe_contact.workers import ByDask, InProcess, OrHere, Remembering, RunCost, Workers, dask_workers
 from service.version import solver_version
@@ -30,7 +29,7 @@ def table_workers(order: WorkOrder) -> Iterator[Workers]:
     """
     with cluster_of(order) as workers:
         version = f"{solver_version()} {SOLVER_VERSION}"
-        yield Remembering(workers, order.workspace / "tasks", version, passed_on=(condense,))
+        yield Remembering(workers, order.workspace / "tasks", version)
 
 
 @contextmanager

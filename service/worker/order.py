@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
-Progress = Callable[[str, float], None]
+
+class Progress(Protocol):
+    """Reports the fraction done of a stage, and of the whole work where its cost was predicted."""
+
+    def __call__(self, stage: str, fraction: float, whole: float | None = None, /) -> None:
+        """Report both, from 0 to 1; without `whole` it follows from the shares that the process declares."""
+
 
 USABLE = 0.9
 """Part of a lease that its holder works under; the rest is for clocks and for ending the work."""

@@ -41,7 +41,7 @@ class Process:
     entry : str
         ``"module:function"`` of the work, called as ``function(order, progress)`` in a process of its own.
     stages : tuple[Stage, ...]
-        What the work reports, in order.
+        What the work reports, in order, where it does not predict the cost of its stages.
     action : str
         What a button for it says; empty: it is no study.
     name_result : callable, optional

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ from dynamics.errors import ResultError
 from dynamics.scene import Scene
 from dynamics.simulation import simulate_to_file
 from fe_contact.ste import SteDatabase
+from model_studies.progress import Report, by_cost
 from service.convert.case import case_json
 from service.convert.plausibility import scene_warnings
 from service.convert.runs import staged
@@ -45,12 +47,13 @@ def ordered_scene(order: WorkOrder, progress: Progress) -> OrderedScene:
     inputs = SceneInput.model_validate_json(json.dumps(order.inputs["scene"]))
     products: list[Product] = []
     databases: dict[str, SteDatabase] = {}
+    tables = by_cost(partial(progress, "analysis"), dict.fromkeys((mesh.name for mesh in inputs.meshes), 1.0))
     for index, mesh in enumerate(inputs.meshes):
-        databases[mesh.name] = _table(order, index, mesh, products, progress)
+        databases[mesh.name] = _table(order, index, mesh, products, partial(tables, mesh.name))
     scene = dynamic_scene(inputs, databases)
-    tables = {name: database.metadata.warnings for name, database in databases.items()}
+    warnings = {name: database.metadata.warnings for name, database in databases.items()}
     tabled = TabledScene(inputs, databases, scene)
-    return OrderedScene(tabled, tuple(products), scene_warnings(inputs, scene, tables))
+    return OrderedScene(tabled, tuple(products), scene_warnings(inputs, scene, warnings))
 
 
 def _run(scene: Scene, file: Path, progress: Progress) -> None:
@@ -64,7 +67,7 @@ def _run(scene: Scene, file: Path, progress: Progress) -> None:
 
 
 def _table(
-    order: WorkOrder, index: int, mesh: MeshInput, products: list[Product], progress: Progress
+    order: WorkOrder, index: int, mesh: MeshInput, products: list[Product], report: Report
 ) -> SteDatabase:
     """Return the database of a mesh, from the store or computed now; what is computed joins `products`."""
     store = stored_results(order.data_directory, order.database_url, order.results_url)
@@ -79,10 +82,8 @@ def _table(
         products.append(Product(key, "database", file))
         return SteDatabase.from_netcdf(file)
 
-    def part(stage: str, fraction: float) -> None:
-        overall = ANALYZE.overall(stage, fraction)
-        if overall is not None:  # a refined pass begins anew, the work does not
-            progress("analysis", overall)
+    def part(_stage: str, _fraction: float, whole: float | None = None, /) -> None:
+        report(whole or 0.0)
 
     try:
         database = database_of(mesh.case, order, part)

@@ -8,7 +8,7 @@ import os
 import threading
 import time
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import structlog
 
@@ -21,6 +21,14 @@ logger = structlog.get_logger(__name__)
 
 _LEAVING_S = 2.0
 _OF_LITTLE_MEMORY = ("SIGKILL", "SIGABRT")  # by the system, and by libraries that cannot go on
+
+
+class Step(NamedTuple):
+    """Progress of a worker: a stage, its fraction done, and that of the whole work if it is known."""
+
+    stage: str
+    fraction: float
+    whole: float | None
 
 
 class Worker:
@@ -71,7 +79,7 @@ class Worker:
             if self._orders >= 0:
                 os.write(self._orders, b"%r\n" % until)
 
-    def listen(self) -> tuple[list[tuple[str, float]], bool]:
+    def listen(self) -> tuple[list[Step], bool]:
         """Return the progress since the last call, and whether the child closed its channel."""
         piece = b""
         ended = False
@@ -86,10 +94,10 @@ class Worker:
         messages = [json.loads(line) for line in lines]
         return [step for message in messages if (step := self._taken(message)) is not None], ended
 
-    def _taken(self, message: dict[str, Any]) -> tuple[str, float] | None:
+    def _taken(self, message: dict[str, Any]) -> Step | None:
         """Return a message as progress, or keep it as the outcome."""
         if "stage" in message:
-            return message["stage"], message["fraction"]
+            return Step(message["stage"], message["fraction"], message["whole"])
         if "warning" in message:
             logger.warning("worker warns", pid=self.pid, reason=message["warning"])
             return None

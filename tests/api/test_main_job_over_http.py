@@ -71,6 +71,7 @@ def test_the_service_gives_what_python_gives(client: LineOfActionClient, case: d
     assert served.metadata.case == here.metadata.case
     progress = [state.progress for state in seen]
     assert progress == sorted(progress) and progress[-1] == 100
+    assert any(0 < state.progress < 100 for state in seen)
 
 
 def test_a_database_carries_the_hash_it_is_found_under(

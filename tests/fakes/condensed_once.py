@@ -61,11 +61,11 @@ def _kept(
     """Return the computation that looks first."""
 
     @wraps(compute)
-    def found(*asked: Any) -> Any:
+    def found(*asked: Any, **reports: Any) -> Any:
         key = key_of(*asked)
         result = read_compliance(folder, key, kind)
         if result is None:
-            result = compute(*asked)
+            result = compute(*asked, **reports)
             write_compliance(folder, key, result)
         return replace(result, from_cache=False)
 

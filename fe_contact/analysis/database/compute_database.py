@@ -5,7 +5,7 @@ from __future__ import annotations
 import platform
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from importlib.metadata import version
 
 from bounds import Finding
@@ -29,6 +29,7 @@ from fe_contact.ste.content_hash import content_hash
 from fe_contact.ste.facts import SCHEMA_VERSION
 from fe_contact.types import Json
 from fe_contact.workers import InProcess, RunCost
+from model_studies.progress import by_cost
 
 SOLVER_VERSION = "11"
 PACKAGES = ("lineofaction", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
@@ -129,12 +130,17 @@ def _assessed(made: SolvedTable, clock: StageClock, run: Run) -> tuple[AssessedT
         contact = contact_receipt(made.solved, made.support, condition=full, known=made.condition)
     if not full:
         return unassessed_table(made.table, made.places, made.plan), contact
-    bodies = condensed_bodies(made.checked, made.plan, clock, run, coarse=True)
-    with clock.stage("error estimate"):
+    stage = "error estimate"
+    progress = by_cost(partial(run.progress, stage), made.prediction.parts[stage])
+    report = partial(progress, "bodies")
+    bodies = condensed_bodies(made.checked, made.plan, clock, run, coarse=True, report=report)
+    with clock.stage(stage):
         coarse = made.places.on_bodies(bodies)
-        return assessed_table(
+        assessed = assessed_table(
             made.table, made.places, coarse, made.solved, made.nodes, made.checked, made.plan
-        ), contact
+        )
+    run.progress(stage, 1.0)
+    return assessed, contact
 
 
 def solved_findings(request: Request, table: SteDatabase) -> tuple[Finding, ...]:

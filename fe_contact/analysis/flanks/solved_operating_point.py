@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -114,7 +115,8 @@ def solve_operating_point(
     plan = planned(request.pair, request.load, request.options, checked.model, cache=run.cache)
     run.progress("compliance", 0.0)
     with clock.stage("compliance"):
-        nominal = pair_contact(request.pair, plan, run.cache, distance_changes=request.center_distance_change)
+        changes, report = request.center_distance_change, partial(run.progress, "compliance")
+        nominal = pair_contact(request.pair, plan, run.cache, distance_changes=changes, report=report)
     run.progress("compliance", 1.0)
     with clock.stage("contact"):
         points = operating_points(request.scene, request.choices, nominal)

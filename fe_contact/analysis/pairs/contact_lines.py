@@ -27,6 +27,7 @@ from fe_contact.contact import (
 from fe_contact.planning.contact_cost import unit_work
 from fe_contact.types import FloatArray, IntArray
 from fe_contact.workers import Workers
+from model_studies.progress import Report, unreported
 
 TASK_SECONDS = 0.1
 """CPU seconds that a block is predicted to take: five times what it costs Dask to hand it out."""
@@ -102,14 +103,17 @@ class SolvedLine:
     condition: FloatArray | None
 
 
-def solved_lines(lines: Sequence[Line], workers: Workers, *, conditioned: bool = False) -> list[SolvedLine]:
-    """Solve lines; their contacts keep what was assembled for them."""
-    solved = []
+def solved_lines(
+    lines: Sequence[Line], workers: Workers, *, conditioned: bool = False, report: Report = unreported
+) -> list[SolvedLine]:
+    """Solve lines; their contacts keep what was assembled for them. `report` is called after each line."""
+    solved: list[SolvedLine] = []
     for line, blocks in zip(lines, _by_line(lines, workers, solve_block, conditioned), strict=True):
         whole = _joined(line, blocks)
         plain = replace(whole.problems[0], candidates=line.candidates)
         line.contact.take(line.models[0], plain)
         solved.append(whole)
+        report(len(solved) / len(lines))
     return solved
 
 

@@ -37,6 +37,7 @@ from fe_contact.mesh import MeshRecipe
 from fe_contact.planning import FaceDiscretization, Plan, PlaneDiscretization
 from fe_contact.planning.cost_model import condensed_teeth
 from fe_contact.types import FloatArray, IntArray
+from model_studies.progress import Report, unreported
 
 KEPT_PROBLEMS = 2
 """Position sets whose compliance is kept: the table's, while another is tried."""
@@ -202,6 +203,7 @@ def pair_contact(
     cache: Path | None,
     coarse: bool = False,
     distance_changes: FloatArray | None = None,
+    report: Report = unreported,
 ) -> PairContact:
     """Compute or fetch the compliance of both gears; identical gears are computed once.
 
@@ -216,12 +218,14 @@ def pair_contact(
         finite width, which has an error of its own.
     distance_changes : ndarray, optional
         Changes of the center distance in m at which the same compliance will be used.
+    report : callable
+        Called with the fraction done over the face, by predicted cost; in the plane it is not called.
     """
     made = plan.discretization
     gears = plan.bodies(pair)
     if isinstance(made, FaceDiscretization):
         first, second = flank_compliances_3d(
-            gears, made.coarse_recipes if coarse else made.recipes, cache=cache
+            gears, made.coarse_recipes if coarse else made.recipes, cache=cache, report=report
         )
         # a ring's right flank is the loaded one as seen from the other side: its z runs against the pinion's
         return PairContact(pair, plan, face=(first, second.mirrored() if pair.internal else second))

@@ -12,13 +12,19 @@ from fe_contact.analysis.pairs.operating_points import OperatingPoint, Operating
 from fe_contact.contact import Candidates, ContactModel, ContactProblem, ContactSolution, Start
 from fe_contact.types import FloatArray, IntArray
 from fe_contact.workers import InProcess, Workers
+from model_studies.progress import Report, unreported
 
 Solved = list[tuple[ContactProblem, ContactSolution]]
 Lines = dict[tuple[object, ...], tuple[Line, list[int]]]
 
 
 def solve_operating_points(
-    points: OperatingPoints, position: FloatArray, loads: tuple[FloatArray, ...], *, conditioned: bool
+    points: OperatingPoints,
+    position: FloatArray,
+    loads: tuple[FloatArray, ...],
+    *,
+    conditioned: bool,
+    report: Report = unreported,
 ) -> tuple[list[Solved], FloatArray | None]:
     """Solve all places at the positions of all base pitches.
 
@@ -31,6 +37,8 @@ def solve_operating_points(
         Sets of normal forces in N.
     conditioned : bool
         Whether workers also find condition numbers.
+    report : callable
+        Called with the fraction of operating points and sets of loads, or of lines, that are solved.
 
     Returns
     -------
@@ -43,9 +51,15 @@ def solve_operating_points(
     everywhere = [position] * len(points.places)
     lines = _sent_lines(points.workers, points.places, everywhere, loads, pitches)
     if not lines:
-        here = [[point.solve_pitches(position, load, pitches) for point in points.places] for load in loads]
+        count, here = len(loads) * len(points.places), list[Solved]()
+        for load in loads:
+            here.append([])
+            for point in points.places:
+                here[-1].append(point.solve_pitches(position, load, pitches))
+                report(sum(map(len, here)) / count)
         return here, None
-    solved_each = solved_lines([line for line, _ in lines.values()], points.workers, conditioned=conditioned)
+    sent = [line for line, _ in lines.values()]
+    solved_each = solved_lines(sent, points.workers, conditioned=conditioned, report=report)
     each = _each_place(lines, solved_each)
     solved = [[(problem, solutions[k]) for problem, solutions in each] for k in range(len(loads))]
     known = [line.condition for line in solved_each if line.condition is not None]

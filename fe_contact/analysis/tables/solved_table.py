@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -17,7 +18,7 @@ from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request import Checked, Request
 from fe_contact.analysis.tables.position_nodes import PositionNodes
 from fe_contact.analysis.tables.table_nodes import table_nodes
-from fe_contact.compliance.remote_condensation import condense_remotely
+from fe_contact.compliance.remote_condensation import condense_remotely, condensing
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import Run
 from fe_contact.planning import FaceDiscretization, Plan, Prediction, predict_run
@@ -25,6 +26,7 @@ from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.types import FloatArray
 from fe_contact.workers import InProcess
+from model_studies.progress import Report, by_cost, unreported
 
 
 @dataclass(frozen=True)
@@ -93,13 +95,17 @@ def solve_table(
         arguments = request.pair, plan, checked.model, request.alignments
         prediction = predict_run(*arguments, run.cache, with_errors=full)
     known = before.places.nominal if before is not None and _same_bodies(before.plan, plan) else None
-    nominal = condensed_bodies(checked, plan, clock, run, known=known)
+    run.on_plan(prediction.stages)
+    report = partial(run.progress, "compliance")
+    nominal = condensed_bodies(checked, plan, clock, run, known=known, report=report)
     points = operating_points(request.scene, request.choices, nominal, run.workers)
     with clock.stage("contact"):
-        nodes = table_nodes(points, plan)
-        run.progress("contact", 0.3)
-        loads = plan.load, plan.support
-        (solved, support), condition = solve_operating_points(points, nodes.position, loads, conditioned=full)
+        progress = by_cost(partial(run.progress, "contact"), prediction.parts["contact"])
+        nodes = table_nodes(points, plan, partial(progress, "positions"))
+        loads, report = (plan.load, plan.support), partial(progress, "table")
+        (solved, support), condition = solve_operating_points(
+            points, nodes.position, loads, conditioned=full, report=report
+        )
         table = assembled_table(request, points, nodes, solved, support)
         run.progress("contact", 1.0)
     return SolvedTable(decided, prediction, points, nodes, solved, support, table, condition)
@@ -113,26 +119,29 @@ def condensed_bodies(
     *,
     coarse: bool = False,
     known: PairContact | None = None,
+    report: Report = unreported,
 ) -> PairContact:
     """Compute or fetch the compliances of both gears, fine or coarse, as a stage of the run."""
-    request, stage = checked.request, "error estimate" if coarse else "compliance"
-    run.progress(stage, 0.0)
-    with clock.stage(stage):
+    request = checked.request
+    report(0.0)
+    with clock.stage("error estimate" if coarse else "compliance"):
         changes = request.center_distance_change
-        nominal = known or _condensed(request.pair, plan, coarse, changes, run)
-    run.progress(stage, 1.0)
+        nominal = known or _condensed(request.pair, plan, coarse, changes, run, report)
+    report(1.0)
     return nominal
 
 
-def _condensed(pair: ParallelAxes, plan: Plan, coarse: bool, changes: FloatArray, run: Run) -> PairContact:
+def _condensed(
+    pair: ParallelAxes, plan: Plan, coarse: bool, changes: FloatArray, run: Run, report: Report
+) -> PairContact:
     """Condense the gears, those of three dimensions by the workers if there are any."""
     made = plan.discretization
-    if isinstance(run.workers, InProcess) or not isinstance(made, FaceDiscretization):
-        return pair_contact(pair, plan, run.cache, coarse, changes)
+    if isinstance(condensing(run.workers), InProcess) or not isinstance(made, FaceDiscretization):
+        return pair_contact(pair, plan, run.cache, coarse, changes, report)
     with TemporaryDirectory() as folder:
         kept = run.cache or Path(folder)
         recipes = made.coarse_recipes if coarse else made.recipes
-        condense_remotely(plan.bodies(pair), recipes, kept, run.workers)
+        condense_remotely(plan.bodies(pair), recipes, kept, run.workers, report)
         return pair_contact(pair, plan, kept, coarse, changes)
 
 

@@ -15,21 +15,28 @@ from fe_contact.analysis.tables.position_nodes import (
 )
 from fe_contact.contact import ContactModel
 from fe_contact.planning import MOST_ROWS, Plan
+from fe_contact.planning.contact_cost import expected_tries
 from fe_contact.types import FloatArray, IntArray
+from model_studies.progress import Report, unreported
 
 
-def table_nodes(points: OperatingPoints, plan: Plan) -> PositionNodes:
+def table_nodes(points: OperatingPoints, plan: Plan, report: Report = unreported) -> PositionNodes:
     """Place the positions: the number requested, or where the assessed curves bend.
 
-    What is missed between fixed ones is not measured here (`position_errors`).
+    What is missed between fixed ones is not measured here (`position_errors`). `report` is called with the
+    fraction of the positions that a search usually tries.
     """
     if plan.positions is not None:
         return unmeasured_nodes(plan.positions, len(points.assessed) * plan.load.size)
     windows = assessed_windows(points.places[0].model, plan.nodes.assessed_pitches)
+    tried, expected = 0, expected_tries(plan)
 
     def solve(position: FloatArray) -> FloatArray:
         """STE (W, P, windows x places x L) in m."""
+        nonlocal tried
         curves = [_curves(points, plan.load, position, window) for window in windows]
+        tried += position.size
+        report(min(tried / expected, 1.0))
         return np.concatenate(curves, axis=2)
 
     rows = points.period * len(points.places)

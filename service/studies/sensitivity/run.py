@@ -13,7 +13,7 @@ from fe_contact.options import Run, TableAxes
 from model_studies import Progress
 from service.convert.case import boundary_errors, gear_pair, study_options
 from service.schemas import Case
-from service.stages import TABLE_STAGES, overall
+from service.stages import TableFraction
 from service.studies.computation import Computation, Means
 from service.studies.result_file import ResultFile
 from service.studies.sensitivity import Inputs
@@ -37,7 +37,8 @@ def study_case(case: Case, inputs: Inputs, means: Means) -> Studies:
         No mesh, or points without a solution.
     """
     pair = gear_pair(case)
-    run = Run(means.workers, means.home / "compliance", _table_by_table(means.report))
+    tables = _TableByTable(means.report)
+    run = Run(means.workers, means.home / "compliance", tables.progress, tables.plan)
     with boundary_errors():
         axes = _axes(case, pair, inputs)
         curves = study_sensitivity(pair, axes, study_options(case), run)
@@ -45,17 +46,21 @@ def study_case(case: Case, inputs: Inputs, means: Means) -> Studies:
     return (PairStudy(name, float(axes.load(pair)[0]), pair.center_distance, curves),)
 
 
-def _table_by_table(report: Progress) -> Progress:
-    """Return what turns the progress of each table into that of the study."""
-    begun = -1
+class _TableByTable:
+    """Turns the progress of each table into that of the study."""
 
-    def part(stage: str, fraction: float) -> None:
-        nonlocal begun
-        begun += stage == TABLE_STAGES[0].name and fraction == 0.0
-        done = overall(TABLE_STAGES, stage, fraction) or 0.0
-        report("tables", (max(begun, 0) + done) / TABLES)
+    def __init__(self, report: Progress) -> None:
+        self._report, self._tables = report, list[TableFraction]()
 
-    return part
+    def plan(self, stages: Mapping[str, float]) -> None:
+        """Begin a table."""
+        self._tables.append(TableFraction())
+        self._tables[-1].plan(stages)
+
+    def progress(self, stage: str, fraction: float) -> None:
+        """Report the fraction done of the study."""
+        done = len(self._tables) - 1 + self._tables[-1].at(stage, fraction)
+        self._report("tables", min(done / TABLES, 1.0))
 
 
 def across_face(case: Case, _inputs: Inputs) -> Case:

@@ -99,9 +99,8 @@ def test_a_damaged_file_is_made_again(tmp_path: Path) -> None:
     assert len(workers.tasks) == 2
 
 
-def test_what_nobody_can_tell_apart_or_is_kept_elsewhere_is_passed_on(tmp_path: Path) -> None:
+def test_what_nobody_can_tell_apart_is_not_kept(tmp_path: Path) -> None:
     assert list(Remembering(Here(), tmp_path, "1").run(named, object(), [2.0])) == ["2.0"]
-    assert list(Remembering(Here(), tmp_path, "1", (divided,)).run(divided, 1.0, [2.0])) == [0.5]
     assert list(tmp_path.iterdir()) == []
 
 

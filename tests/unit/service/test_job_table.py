@@ -5,6 +5,8 @@ from __future__ import annotations
 import uuid
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import pytest
@@ -12,7 +14,7 @@ from running_service import Bench, bench
 from service_fakes import REGISTRY
 
 from service.problems import NoSuchJob, QueueFull
-from service.store import Mark, now
+from service.store import Mark, instant, now
 
 
 @pytest.fixture
@@ -111,6 +113,24 @@ def test_ended_jobs_stay_as_they_are(machine: Bench) -> None:
     assert claim is not None
     machine.claims.succeed(claim)
     assert machine.submissions.dismiss(job.id).status == "successful"
+
+
+def test_the_remaining_time_follows_the_pace_and_falls_between_reports(machine: Bench) -> None:
+    job = machine.submit(text="a")
+    assert machine.submissions.find(job.id).remaining_s(datetime.now(UTC)) is None
+    claim = machine.claims.claim()
+    assert claim is not None
+    machine.claims.progress(claim, "first", 0.5, 0.25)
+    seen = machine.submissions.find(job.id)
+    begun, updated = datetime.now(UTC) - timedelta(seconds=10), datetime.now(UTC)
+    seen = replace(seen, started=instant(begun), updated=instant(updated))
+    assert seen.remaining_s(updated) == pytest.approx(30.0, rel=1e-3)  # three times what a quarter took
+    assert seen.remaining_s(updated + timedelta(seconds=4)) == pytest.approx(26.0, rel=1e-3)
+    assert seen.remaining_s(updated + timedelta(seconds=99)) == 0.0
+    assert replace(seen, fraction=0.0).remaining_s(updated) is None
+    assert replace(seen, attempts=2).remaining_s(updated) is None
+    machine.claims.succeed(claim)
+    assert machine.submissions.find(job.id).remaining_s(datetime.now(UTC)) is None
 
 
 def test_pages_hold_every_job_once_the_newest_first(machine: Bench) -> None:

@@ -14,7 +14,6 @@ from service.cli.commands import app
 from service.cli.tolerance_lines import tolerance_lines, tolerance_warnings
 from service.convert.drafts import draft_line
 from service.problems import EXIT_WARNINGS
-from service.worker.catalogue import ANALYZE
 from service.worker.drafted_progress import DraftedProgress
 
 CASE = """
@@ -89,17 +88,20 @@ def test_the_draft_is_one_line_at_the_highest_load(draft: SteDatabase) -> None:
 
 
 def test_a_job_carries_the_draft_in_its_stages_and_its_fraction_stays(draft: SteDatabase) -> None:
-    told: list[tuple[str, float]] = []
-    progress = DraftedProgress(lambda stage, fraction: told.append((stage, fraction)))
+    told: list[tuple[str, float, float]] = []
+    progress = DraftedProgress(lambda *step: told.append(step), refines=True)
+    progress.plan({"compliance": 3.0, "contact": 1.0})
     progress("contact", 1.0)
     progress.draft(draft, "mesh draft -> standard")
+    progress.plan({"compliance": 6.0, "contact": 2.0})
     progress("compliance", 0.0)
-    assert told[0] == ("contact", 1.0)
-    stage, fraction = told[1]
+    progress("contact", 0.0)
+    assert told[0] == ("contact", 1.0, pytest.approx(0.8))  # a pass may follow
+    stage, fraction, whole = told[1]
     assert (stage.split("; ")[0], fraction) == ("compliance", 0.0)
     assert draft_line(draft, "mesh draft -> standard") in stage
-    assert ANALYZE.overall(*told[0]) is not None
-    assert ANALYZE.overall(stage, fraction) is None  # the whole job does not fall back
+    assert whole == told[0][2]  # the whole job does not fall back
+    assert told[2][2] == pytest.approx(0.8 + 0.75 * 0.8 * 0.2)
 
 
 def test_passes_are_listed_where_there_are_several() -> None:

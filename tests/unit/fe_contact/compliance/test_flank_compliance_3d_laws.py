@@ -233,9 +233,9 @@ def count_runs(monkeypatch: pytest.MonkeyPatch) -> list[Gear]:
     computed: list[Gear] = []
     genuine = flow.compute_flank_compliance_3d
 
-    def counting(gear: Gear, *arguments: object) -> FlankCompliance3D:
+    def counting(gear: Gear, *arguments: object, **reports: object) -> FlankCompliance3D:
         computed.append(gear)
-        return genuine(gear, *arguments)  # type: ignore[arg-type]
+        return genuine(gear, *arguments, **reports)  # type: ignore[arg-type]
 
     monkeypatch.setattr(flow, "compute_flank_compliance_3d", counting)
     return computed
