@@ -203,6 +203,20 @@ STUDIES: dict[str, Study] = {
             shared=True,
         ),
         Study(
+            "sweep",
+            "case",
+            "Maps",
+            "Map the figures",
+            "Map ripple, mesh harmonics, flank pressure and K_Hbeta over one or two of torque, alignment and "
+            "flank modifications.",
+            "examples/helical_ev_23_67.toml --over torque,tip_relief=0:16:2 -o map.html",
+            kind="sweep",
+            stages=(("compliance", 0.4), ("contact", 0.6)),
+            version="1",
+            shared=True,
+            further=(".csv",),
+        ),
+        Study(
             "modes",
             "scene",
             "Modes",

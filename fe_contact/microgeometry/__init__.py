@@ -17,6 +17,8 @@ from fe_contact.microgeometry.search_method import (
     NelderMead,
     SequentialLinearProgramming,
 )
+from fe_contact.microgeometry.sweep import Sweep, sweep
+from fe_contact.microgeometry.sweep_request import SweepAxis, SweepRequest
 from fe_contact.microgeometry.tolerance_study import ToleranceStudy, scatter
 from fe_contact.microgeometry.tolerances import Tolerances
 from fe_contact.microgeometry.variables import QUANTITIES, DesignVariable
@@ -46,6 +48,9 @@ __all__ = [
     "SearchRun",
     "SequentialLinearProgramming",
     "SobolSample",
+    "Sweep",
+    "SweepAxis",
+    "SweepRequest",
     "ToleranceStudy",
     "Tolerances",
     "WeightedMean",
@@ -54,4 +59,5 @@ __all__ = [
     "iso1328_tolerances",
     "optimize",
     "scatter",
+    "sweep",
 ]

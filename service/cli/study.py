@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 from service.cli.interrupt import until_interrupted
-from service.cli.number_list import number_list
 from service.cli.output import (
     Report,
     check_writable,
@@ -36,6 +35,7 @@ from service.registry import Study
 from service.report.write import write_whole
 from service.schemas import Case, read_model, read_table, validated
 from service.schemas.lines import located
+from service.schemas.number_list import number_list
 from service.schemas.scene import SceneInput
 from service.schemas.spelling import item_type, spelling_of
 from service.studies.computation import Means

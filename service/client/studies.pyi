@@ -130,6 +130,30 @@ class Studies(JobClient):
         samples: int = ...,
         seed: int = ...,
     ) -> Path: ...
+    def sweep(
+        self,
+        case: CaseLike,
+        progress: Watch | None = None,
+        *,
+        over: Sequence[str] = ...,
+        show: Sequence[
+            Literal[
+                "peak_to_peak", "harmonic_1", "harmonic_2", "harmonic_3", "max_pressure", "face_load_factor"
+            ]
+        ] = ...,
+    ) -> dict[str, Any]: ...
+    def sweep_file(
+        self,
+        case: CaseLike,
+        progress: Watch | None = None,
+        *,
+        over: Sequence[str] = ...,
+        show: Sequence[
+            Literal[
+                "peak_to_peak", "harmonic_1", "harmonic_2", "harmonic_3", "max_pressure", "face_load_factor"
+            ]
+        ] = ...,
+    ) -> Path: ...
     def modes(
         self,
         scene: SceneLike,

@@ -33,6 +33,9 @@ STUDIES = {
     "scatter": (
         "Tolerances", "Draw pairs within tolerances", {"Class": "8", "Pairs": "50"}, ["scatter"],
     ),
+    "sweep": (
+        "Maps", "Map the figures", {"Over": "torque, profile_crowning=0:10:5"}, ["sweep_map", "sweep_curves"],
+    ),
     "modes": (
         "Modes", "Find the modes", {"Top speed": "2000"}, ["modal_campbell", "modal_energy", "modal_motion"],
     ),

@@ -64,7 +64,7 @@ def condensed_errors(
         """Solve the sample on a rougher discretization, (T R, f, 1, 1) in m."""
         if rougher is None:
             return otherwise
-        return sample.solved(replace(points, places=(replace(points.places[0], contact=rougher),)), points)
+        return sample.solved(points.on(rougher), points)
 
     own = sample.taken([solution])
     plane = solved(contacts.plane, own)

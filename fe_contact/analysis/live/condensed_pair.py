@@ -156,6 +156,27 @@ class CondensedPair:
         nodes, plan = self._laid_out(checked)
         return CondensedSolution.of(checked, self._placed(checked)[1], nodes, plan.load)
 
+    def solve_rougher(
+        self,
+        pair: ParallelAxes,
+        torques: FloatArray,
+        misalignment: float = 0.0,
+        center_distance_change: float = 0.0,
+    ) -> tuple[CondensedSolution, ...]:
+        """Solve the contact in half the slices and on the coarse meshes, whichever there are.
+
+        What this changes of a result on the flanks is a measure of its error. Parameters and errors are those
+        of `table`.
+        """
+        checked = self._asked(pair, torques, misalignment, center_distance_change)
+        nodes, plan = self._laid_out(checked)
+        contacts, points = self._placed(checked)
+        return tuple(
+            CondensedSolution.of(checked, points.on(rougher), nodes, plan.load)
+            for rougher in (contacts.sliced, contacts.coarse)
+            if rougher is not None
+        )
+
     def _asked(self, pair: ParallelAxes, torques: FloatArray, misalignment: float, change: float) -> Checked:
         """Check a question, and compose its model."""
         self._refuse_other_bodies(pair)

@@ -89,6 +89,10 @@ class OperatingPoints:
         points = self._with_contacts(lambda contact: replace(nominal, pair=contact.pair, _problems={}))
         return replace(points, nominal=nominal)
 
+    def on(self, contact: PairContact) -> OperatingPoints:
+        """Return the same places, which are of one center distance, with another contact."""
+        return self._with_contacts(lambda _own: contact)
+
     def in_slices(self, count: int) -> OperatingPoints:
         """Return the same places in other slices."""
         return self._with_contacts(lambda contact: contact.in_slices(count))

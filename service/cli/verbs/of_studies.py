@@ -93,7 +93,9 @@ def _option(name: str, field: FieldInfo) -> Parameter:
 
 def _typed(default: Any) -> Any:
     """Return a default as it would be typed; an empty list is none."""
-    return ",".join(f"{item:g}" for item in default) or None if isinstance(default, tuple) else default
+    if not isinstance(default, tuple):
+        return default
+    return ",".join(item if isinstance(item, str) else f"{item:g}" for item in default) or None
 
 
 def _parameter(name: str, annotation: Any, default: Any = Parameter.empty) -> Parameter:

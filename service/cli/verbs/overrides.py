@@ -99,7 +99,7 @@ def _with(files: InputFile | list[InputFile], overrides: tuple[Override, ...]) -
 
 def _overrides(typed: Mapping[str, Any]) -> tuple[Override, ...]:
     """Return what was typed as overrides, shorthands first."""
-    from service.cli.number_list import number_list  # noqa: PLC0415 (start-up time)
+    from service.schemas.number_list import number_list  # noqa: PLC0415 (start-up time)
 
     made = []
     for name, (path, others) in _SHORTHANDS.items():

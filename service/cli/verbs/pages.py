@@ -45,8 +45,8 @@ class ViewOptions:
     @property
     def view(self) -> RunView:
         """The view that the options name."""
-        from service.cli.number_list import number_list  # noqa: PLC0415 (start-up time)
         from service.runs.run_view import RunView  # noqa: PLC0415 (start-up time)
+        from service.schemas.number_list import number_list  # noqa: PLC0415 (start-up time)
 
         cuts = tuple(number_list("--orders", self.orders)) if self.orders else ()
         return RunView(self.quantity, self.bearing, self.mesh, cuts, self.window, self.scale)

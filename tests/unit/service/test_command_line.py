@@ -32,6 +32,7 @@ VERBS = (
     "frontier",
     "optimize",
     "scatter",
+    "sweep",
     "plan",
     "serve",
     "submit",

@@ -15,11 +15,11 @@ from dynamics.assembly.assemble import assemble
 from dynamics.linearize import ModalAnalysis, modal_analysis
 from fe_contact.ste import SteDatabase
 from service.cli.commands import app
-from service.cli.number_list import number_list
 from service.client.portable import scene_of
 from service.convert.scene import dynamic_scene
 from service.problems import EXIT_FAILED, BadInput
 from service.report import write_report
+from service.schemas.number_list import number_list
 from service.studies.modes.run import facts
 
 

@@ -1,4 +1,4 @@
-"""Numbers on the command line: a list, or a range with its step."""
+"""Numbers in a text: a list, or a range with its step."""
 
 from __future__ import annotations
 

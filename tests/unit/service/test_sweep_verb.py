@@ -1,0 +1,131 @@
+"""``loa sweep``: names as in the case file or short, the same numbers in every form, three lines."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from spur_case import SPUR
+from typer.testing import CliRunner
+
+from service.cli.commands import app
+from service.input_file import InputFile
+from service.problems import BadInput
+from service.schemas import Case, read_model
+from service.studies.sweep.axes import SWEEPABLE, axis_of
+
+CASE = (
+    SPUR.replace("[pair.pinion]", "[pair.pinion]\ntip_relief_um = 15.0\ntip_relief_length_mm = 1.5")
+    + """
+[load]
+torque_n_m = [100.0, 200.0]
+[accuracy]
+level = "draft"
+model = "plane_strain"
+"""
+)
+OVER = "torque=100:200:50,pinion.tip_relief=0:20:10"
+
+
+@pytest.fixture
+def file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    file = tmp_path / "case.toml"
+    file.write_text(CASE, encoding="utf-8")
+    return file
+
+
+@pytest.fixture
+def case(file: Path) -> Case:
+    return read_model(Case, InputFile(file))
+
+
+def output(*arguments: object) -> str:
+    done = CliRunner().invoke(app, [str(argument) for argument in arguments])
+    assert done.exit_code == 0, done.output
+    return done.stdout
+
+
+@pytest.mark.parametrize("name", SWEEPABLE)
+def test_every_spelling_means_one_thing(name: str, case: Case) -> None:
+    for spelling in SWEEPABLE[name].spellings:
+        assert axis_of(case, f"{spelling}=1:3:1").name == name
+
+
+def test_a_name_without_a_gear_means_both_and_its_unit_may_be_left_out(case: Case) -> None:
+    axis = axis_of(case, "tip_relief_um=0:40:20")
+    assert axis.values == pytest.approx((0.0, 20e-6, 40e-6))
+    assert axis.variables == ("pinion.tip_relief", "wheel.tip_relief")
+    assert axis_of(case, "pair.pinion.tip_relief_um=0:40:20").variables == ("pinion.tip_relief",)
+
+
+def test_ranges_that_are_not_given_are_about_the_case(case: Case) -> None:
+    usual = {name: axis_of(case, name).values for name in ("torque", "pinion.tip_relief", "misalignment")}
+    assert usual["torque"][0] == pytest.approx(40.0) and usual["torque"][-1] == 200.0
+    assert (usual["pinion.tip_relief"][0], usual["pinion.tip_relief"][-1]) == pytest.approx((0.0, 30e-6))
+    np.testing.assert_allclose(usual["misalignment"], -np.array(usual["misalignment"])[::-1])
+    length = axis_of(case, "pinion.tip_relief_length").values
+    assert 0.0 < length[0] < 1.5e-3 < length[-1]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("tip_releif", "tip_relief"),
+        ("face_width", "other bodies"),
+        ("torque=3,2", "increasing"),
+        ("torque=300:100:50", "rises"),
+    ],
+)
+def test_what_is_no_axis_is_refused(case: Case, text: str, said: str) -> None:
+    with pytest.raises(BadInput, match=said):
+        axis_of(case, text)
+
+
+def test_files_and_terminal_say_the_same(file: Path, tmp_path: Path) -> None:
+    target = tmp_path / "map.csv"
+    ended = output("sweep", file, "--over", OVER, "-o", target).strip().splitlines()
+    best, largest, written = ended[-3:]
+    assert re.match(r"least mean peak-to-peak STE over the torques: [\d.]+ µm ±[\d.]+ µm at tip relief", best)
+    assert re.match(r"largest peak-to-peak STE: [\d.]+ µm ±[\d.]+ µm at torque", largest)
+    assert written == f"written to {target}"
+    told = json.loads(output("sweep", file, "--over", OVER, "--json"))
+    rows = list(csv.DictReader(target.read_text(encoding="utf-8").splitlines()))
+    assert len(rows) == len(told["points"]) == 9
+    for row, point in zip(rows, told["points"], strict=True):
+        assert row.keys() == point.keys()
+        for name, value in point.items():
+            assert float(row[name]) == pytest.approx(value, rel=1e-8)
+            assert name.endswith(("n_m", "tip_relief_um")) or "_error" in name or value > 0.0
+    largest_point = max(told["points"], key=lambda point: point["peak_to_peak_um"])
+    assert f"{largest_point['peak_to_peak_um']:.3g}" in largest
+
+
+def test_what_is_said_to_be_as_low_is(file: Path) -> None:
+    told = json.loads(output("sweep", file, "--over", OVER, "--json"))
+    points = told["points"]
+    least = min(points, key=lambda point: point["harmonic_1_um"])
+    alike = [
+        point
+        for point in points
+        if point["harmonic_1_um"] - least["harmonic_1_um"]
+        <= point["harmonic_1_error_um"] + least["harmonic_1_error_um"]
+    ]
+    said = told["least"]["harmonic_1_um"]
+    assert said["points_within_error"] == len(alike)
+    assert said["load.torque_n_m"] == least["load.torque_n_m"]
+
+
+def test_a_report_shows_a_stored_map(file: Path, tmp_path: Path) -> None:
+    stored, page = tmp_path / "map.nc", tmp_path / "map.html"
+    output("sweep", file, "--over", OVER, "-o", stored)
+    output("report", stored, "-o", page)
+    text = page.read_text(encoding="utf-8")
+    assert "tip relief of the pinion" in text and "As low" not in text
+    curve = tmp_path / "curve.png"
+    output("sweep", file, "--over", "torque=100:200:50", "--show", "max_pressure", "-o", curve)
+    assert curve.stat().st_size > 10_000
