@@ -26,7 +26,7 @@ from bounds.plausibility import Check, Checklist, Finding, PlausibilityWarning, 
 from bounds.reader import Reader
 from bounds.refused import RefusedValue, inside
 from bounds.text import Quantity, SiNote, Text, Words
-from bounds.unit import Unit, engineering
+from bounds.unit import Unit, engineering, leftover
 
 __all__ = [
     "DEPTHS",
@@ -61,6 +61,7 @@ __all__ = [
     "finding_of",
     "inside",
     "integers",
+    "leftover",
     "one_of",
     "required",
     "up_to",

@@ -8,6 +8,8 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
 DIGITS = 7
 """Digits of a number in a message, unless it says otherwise."""
+LEAST_LEFTOVER = 1e-12
+"""Residual from which on its digits are written."""
 
 
 @dataclass(frozen=True)
@@ -43,6 +45,21 @@ class Unit:
     def high(self, limit: float) -> str:
         """Return an upper limit, in SI, as text that is accepted when it is typed."""
         return self.after(_rounded(limit, self.factor, ROUND_FLOOR))
+
+
+def leftover(value: float, digits: int = 1) -> str:
+    """Write what should be zero, a residual or an imbalance: below `LEAST_LEFTOVER` only that it is.
+
+    Rounding decides smaller numbers; their digits say nothing.
+
+    Parameters
+    ----------
+    value : float
+        Its size counts.
+    digits : int
+        Significant digits of a number that is large enough.
+    """
+    return f"below {LEAST_LEFTOVER:g}" if abs(value) < LEAST_LEFTOVER else engineering(abs(value), digits)
 
 
 def engineering(value: float, digits: int = 3, sign: str = "") -> str:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from bounds import leftover
 from fe_contact.analysis import DeformedPair, deformed_pairs
 from fe_contact.options import Run
 from fe_contact.types import FloatArray
@@ -94,7 +95,7 @@ def _show(pairs: tuple[DeformedPair, ...], written: list[Path]) -> None:
     """Print the figures for people."""
     columns = ["position", "STE um", "pinion moves um", "wheel moves um", "residual"]
     rows = [
-        [f"{row['position']:.4g}", *(f"{value:.4g}" for name, value in row.items() if name != "position")]
+        [*(f"{row[name]:.4g}" for name in row if name != "residual"), leftover(row["residual"])]
         for row in _figures(pairs)
     ]
     out = console()

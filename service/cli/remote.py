@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from service.cli.output import Report, check_writable, console, print_json, progress_bar
+from service.cli.output import Report, check_writable, console, print_json, print_result, progress_bar
 from service.cli.warned import warn
 from service.client import JobState, LineOfActionClient, Result
 from service.convert.stamp import stamped
@@ -50,12 +50,14 @@ def run_submit(
             shutil.copyfile(client.fetch_file(result.key, result.kind), output)
             facts["file"] = str(output)
             warn(stamped(output))
-    _show(facts, as_json)
-    if "hash" not in facts and not as_json:
-        console().print(
-            f"Its result, once it has ended: loa fetch {state.id} --service {service} -o FILE",
-            highlight=False,
-        )
+    if as_json:
+        print_json(facts)
+        return
+    _tell(f"job {facts['job']}, {facts['process']}: {facts['status']}")
+    if "hash" in facts:
+        _show_result(str(facts["hash"]), str(facts["kind"]), output)
+    else:
+        _tell(f"Its result, once it has ended: loa fetch {state.id} --service {service} -o FILE")
 
 
 def _further(request: ProcessRequest) -> dict[str, Any]:
@@ -119,7 +121,10 @@ def run_fetch(name: str, output: Path, service: str, *, as_json: bool) -> None:
             file, key, kind = client.fetch_file(result.key, result.kind), result.key, result.kind
     shutil.copyfile(file, output)
     warn(stamped(output))
-    _show({"hash": key, "kind": kind, "file": str(output)}, as_json)
+    if as_json:
+        print_json({"hash": key, "kind": kind, "file": str(output)})
+    else:
+        _show_result(key, kind, output)
 
 
 def _ended(client: LineOfActionClient, job: str) -> Result:
@@ -132,11 +137,16 @@ def _ended(client: LineOfActionClient, job: str) -> Result:
         raise ResultNotReady(f"{error} Wait for it with: loa submit FILE --wait") from None
 
 
-def _show(facts: dict[str, object], as_json: bool) -> None:
-    """Print what was done."""
-    if as_json:
-        print_json(facts)
-        return
-    out = console()
-    for name, value in facts.items():
-        out.print(f"{name} {value}", highlight=False)
+def _show_result(key: str, kind: str, file: Path | None) -> None:
+    """Print which result it is, and of one in a file its main figures."""
+    _tell(f"{kind} {key}")
+    if file is not None:
+        from service.report.content import headlines_of  # noqa: PLC0415 (start-up time)
+        from service.report.inputs import read_inputs  # noqa: PLC0415 (start-up time)
+
+        print_result(headlines_of(read_inputs([file])), [file])
+
+
+def _tell(line: str) -> None:
+    """Print a line for people."""
+    console().print(line, highlight=False, soft_wrap=True)

@@ -11,9 +11,11 @@ from typing import Any
 
 from bounds import engineering
 from fe_contact.ste import SteDatabase
-from service.cli.output import console, print_json, table
+from service.cli.output import console, print_json, print_result, table
 from service.cli.warned import warn
 from service.convert.answers import curve_json
+from service.drawing.figure import number
+from service.drawing.page import Headline
 from service.problems import BadInput
 
 _FARTHEST = 1e6
@@ -116,15 +118,20 @@ def _show(curve: dict[str, Any]) -> None:
     out.print(
         f"torque {curve['torque_n_m']:.6g} N m, normal force {curve['normal_force_n']:.6g} N", highlight=False
     )
-    for name in ("mean", "peak_to_peak"):
-        error = curve.get(f"{name}_error_um")
-        band = "um, error not estimated" if error is None else f"±{engineering(error, 1)} um"
-        out.print(f"{name.replace('_', '-')} {curve[f'{name}_um']:.4f} {band}", highlight=False)
-    harmonics = ", ".join(f"{value:.4f}" for value in curve["harmonics_um"][:8])
-    out.print(f"harmonics {harmonics} um", highlight=False)
     if curve["period"] > 1:
         lines = sorted(zip(curve["amplitude_um"], curve["order"], strict=True), reverse=True)[:_SHOWN_ORDERS]
         orders = ", ".join(f"{order:.4g}: {amplitude:.4f}" for amplitude, order in lines)
         out.print(
             f"period {curve['period']} base pitches; largest orders of the mesh {orders} um", highlight=False
         )
+    harmonics = ", ".join(f"{value:.4f}" for value in curve["harmonics_um"][:_SHOWN_ORDERS])
+    out.print(f"harmonics {harmonics} um", highlight=False)
+    print_result([_headline(curve, name) for name in ("mean", "peak_to_peak")], [])
+
+
+def _headline(curve: dict[str, Any], name: str) -> Headline:
+    """Return a figure of the curve with its error."""
+    error = curve.get(f"{name}_error_um")
+    band = "error not estimated" if error is None else f"± {engineering(error, 2)} µm"
+    words = f"{name.replace('_', '-')} STE at {curve['torque_n_m']:.6g} N m"
+    return Headline(words, f"{number(curve[f'{name}_um'])} µm", band)

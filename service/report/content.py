@@ -29,22 +29,30 @@ def _page_of(read: Inputs) -> Page:
     if read.only_page is not None:
         return read.only_page
     database, run = read.database, read.run
-    headlines: list[Headline] = []
     sections: list[Section] = []
     alarms: list[str] = []
     if database is not None:
-        headlines += static_headlines(database, nominal_force(read))
         sections += (*static_results(database, nominal_force(read)), *static_making(database))
         alarms += static_alarms(database)
     for study in read.pages.values():
-        headlines += study.headlines
         sections += study.sections
         alarms += study.alarms
     if run is not None:
-        headlines += dynamic_headlines(run)
         sections += (*dynamic_results(run, read.view), *dynamic_making(run))
         alarms += dynamic_alarms(run)
-    return Page(_title(read), _lead(read), tuple(headlines), tuple(sections), tuple(alarms))
+    return Page(_title(read), _lead(read), headlines_of(read), tuple(sections), tuple(alarms))
+
+
+def headlines_of(read: Inputs) -> tuple[Headline, ...]:
+    """Return the main figures of the table, of the studies, and of the run."""
+    headlines: list[Headline] = []
+    if read.database is not None:
+        headlines += static_headlines(read.database, nominal_force(read))
+    for study in read.pages.values():
+        headlines += study.headlines
+    if read.run is not None:
+        headlines += dynamic_headlines(read.run)
+    return tuple(headlines)
 
 
 def nominal_force(read: Inputs) -> float | None:

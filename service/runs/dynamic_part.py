@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from bounds import leftover
 from dynamics.results import RunResult
 from dynamics.results.contact_state import contact_shares
 from service.drawing.effects_section import EffectRow, effects_section
@@ -44,7 +45,7 @@ def dynamic_headlines(run: RunResult) -> tuple[Headline, ...]:
     ]
     if run.energy is not None:
         headlines.append(
-            Headline("energy balance", f"{number(100 * run.energy.relative, 2)} %", "unaccounted for")
+            Headline("energy balance", f"{leftover(100 * run.energy.relative, 2)} %", "unaccounted for")
         )
     return tuple(headlines)
 
@@ -161,10 +162,10 @@ def _accuracy(run: RunResult) -> Table:
         rows += _errors(title, unit, run.receipt.get("error", {}).get(name, {}))
     if run.energy is not None:
         rows.append(
-            ("energy unaccounted for, % of the turnover of vibration", number(100 * run.energy.relative, 2))
+            ("energy unaccounted for, % of the turnover of vibration", leftover(100 * run.energy.relative, 2))
         )
         through = run.energy.relative_to_throughput
-        rows.append(("energy unaccounted for, % of the drive's work", number(100 * through, 2)))
+        rows.append(("energy unaccounted for, % of the drive's work", leftover(100 * through, 2)))
     return Table("Accuracy of the run", ("quantity", "value"), tuple(rows))
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from fe_contact.ste import SteDatabase
 from service.drawing.figure import Figure, Table
-from service.drawing.page import Page, Section
+from service.drawing.page import Headline, Page, Section
 
 
 @dataclass(frozen=True)
@@ -36,6 +36,6 @@ class Presentation:
     beside: Callable[[Any, SteDatabase], Page] | None = None
 
 
-def dynamics_page(title: str, figures: tuple[Figure, ...]) -> Page:
+def dynamics_page(title: str, figures: tuple[Figure, ...], headlines: tuple[Headline, ...]) -> Page:
     """Return the page of a study of a scene that is its figures."""
-    return Page("Dynamics of geared shafts", "", (), (Section(title, figures=figures),))
+    return Page("Dynamics of geared shafts", "", headlines, (Section(title, figures=figures),))

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from bounds import leftover
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
 from service.convert.effect_sizes import by_size, influence_place, influence_words, trifles_title
@@ -178,7 +179,7 @@ def _accuracy(database: SteDatabase) -> Table:
         ]
     worst = np.max(np.abs(database.residuals[good]), axis=0)
     rows += [
-        (f"largest residual, {name}", number(float(value), 2))
+        (f"largest residual, {name}", leftover(float(value), 2))
         for name, value in zip(_RESIDUALS, worst, strict=True)
     ]
     return Table("Accuracy", ("quantity", "value"), tuple(rows))

@@ -6,12 +6,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from bounds import engineering
+from bounds import engineering, leftover
 from dynamics.linearize import ModalAnalysis
 from service.convert.effect_lines import run_lines
 from service.drawing import palette
 from service.drawing.figure import Axis, Dash, Figure, FloatArray, Line, Note, Panel, Table, number
 from service.drawing.mode_bars import mode_bars
+from service.drawing.page import Headline
 from service.studies.presentation import Presentation, dynamics_page
 
 RPM = np.pi / 30.0
@@ -226,11 +227,35 @@ def _words(modes: ModalAnalysis) -> str:
     )
 
 
+def headlines(modes: ModalAnalysis) -> tuple[Headline, ...]:
+    """Return the lowest natural frequency, and the least damped critical speed."""
+    elastic = np.flatnonzero(modes.natural_frequency > 0.0)
+    if not elastic.size:
+        return ()
+    first = int(elastic[0])
+    kind = modes.kind(modes.natural_strain_energy[first], modes.natural_kinetic_energy[first])
+    frequency = f"{number(float(modes.natural_frequency[first]), 4)} Hz"
+    lowest = Headline("lowest natural frequency", frequency, kind)
+    return (lowest, _least_damped(modes)) if modes.speed.size else (lowest,)
+
+
+def _least_damped(modes: ModalAnalysis) -> Headline:
+    """Return the least damped of the critical speeds."""
+    count = modes.critical_speed.size
+    if not count:
+        return Headline("critical speeds", "none", "no mesh order meets a mode in this range")
+    least = int(np.argmin(modes.critical_damping_ratio))
+    damping = f"{number(100.0 * float(modes.critical_damping_ratio[least]), 3)} %"
+    order = f"mesh order {int(modes.critical_order[least])}"
+    speed = f"{number(float(modes.critical_speed[least]) / RPM, 4)} rpm"
+    return Headline("least damped critical speed", speed, f"{order}, damping ratio {damping}, of {count}")
+
+
 def _text(modes: ModalAnalysis) -> Iterator[Table | str]:
     """Modes and critical speeds."""
     start = modes.facts["equilibrium"]
     forces = ", ".join(f"{name} {force:.5g} N" for name, force in start["mesh_force"].items())
-    yield f"static equilibrium {start['status'].lower()}, {start['residual']:.1e} N left; {forces}"
+    yield f"static equilibrium {start['status'].lower()}, {leftover(start['residual'])} N left; {forces}"
     yield modes_table(modes)
     if modes.speed.size:
         yield ""
@@ -241,6 +266,6 @@ def _text(modes: ModalAnalysis) -> Iterator[Table | str]:
 
 PAGE = Presentation(
     lambda modes: modal_figures(modes)[0],
-    lambda modes: dynamics_page("Modes", modal_figures(modes)),
+    lambda modes: dynamics_page("Modes", modal_figures(modes), headlines(modes)),
     _text,
 )

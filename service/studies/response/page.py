@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from bounds import engineering
+from bounds import engineering, leftover
 from dynamics.linearize import ForcedResponse, peaks
 from service.convert.effect_lines import run_lines
 from service.drawing import palette
 from service.drawing.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Table, number
+from service.drawing.page import Headline
 from service.studies.presentation import Presentation, dynamics_page
 
 RPM = np.pi / 30.0
@@ -115,6 +116,26 @@ def _words(response: ForcedResponse) -> str:
     return text
 
 
+def headlines(response: ForcedResponse) -> tuple[Headline, ...]:
+    """Return the largest mesh force, and the largest bearing force or where flanks part."""
+    parting = response.speed[~response.in_contact] / RPM
+    largest = _largest("mesh force of", response.mesh, np.abs(response.mesh_force), response)
+    if parting.size:
+        at = f"{parting.size} of {response.speed.size} speeds"
+        return (largest, Headline("flanks part at", at, f"from {number(float(parting[0]), 4)} rpm on"))
+    if not response.bearing:
+        return (largest,)
+    force = np.sqrt(np.sum(np.abs(response.bearing_force[:, :3]) ** 2, axis=1))
+    return (largest, _largest("force on bearing", response.bearing, force, response))
+
+
+def _largest(what: str, names: Sequence[str], size: FloatArray, response: ForcedResponse) -> Headline:
+    """Name the part of the largest amplitude (part, speed, order) with its order and speed."""
+    part, s, h = map(int, np.unravel_index(int(np.argmax(size)), size.shape))
+    at = f"order {response.order[h]:g} at {number(float(response.speed[s]) / RPM, 4)} rpm"
+    return Headline(f"largest {what} {names[part]}", f"{number(float(size[part, s, h]), 3)} N", at)
+
+
 def _text(response: ForcedResponse) -> Iterator[Table | str]:
     """Peaks, and what the linear answer does not hold."""
     yield peak_table(response)
@@ -127,11 +148,13 @@ def _text(response: ForcedResponse) -> Iterator[Table | str]:
         "first-order theory: the other excitation changes "
         f"amplitudes by up to {engineering(worst, 2)} % of the largest"
     )
-    yield f"residual of the solves {response.residual:.1e}"
+    yield f"residual of the solves {leftover(response.residual)}"
     yield f"cost {engineering(sum(response.facts['seconds'].values()), 3)} CPU s"
     yield from run_lines(response.facts)
 
 
 PAGE = Presentation(
-    response_figure, lambda response: dynamics_page("Forced response", (response_figure(response),)), _text
+    response_figure,
+    lambda response: dynamics_page("Forced response", (response_figure(response),), headlines(response)),
+    _text,
 )

@@ -8,7 +8,7 @@ from itertools import chain
 from fe_contact.analysis.studies.sensitivity import RippleCurve, Sensitivity
 from service.drawing import palette
 from service.drawing.figure import Axis, Dash, Figure, FloatArray, Line, Panel, Table, number
-from service.drawing.page import Page, Section
+from service.drawing.page import Headline, Page, Section
 from service.studies.presentation import Presentation
 from service.studies.sensitivity.stored import PairStudy
 
@@ -110,7 +110,28 @@ def _words(studies: Sequence[PairStudy]) -> str:
 def page(studies: Sequence[PairStudy]) -> Page:
     """Return the page of studies."""
     section = Section("Sensitivity", figures=(sensitivity_figure(studies),))
-    return Page("Sensitivity of gear pairs", "", (), (section,))
+    return Page("Sensitivity of gear pairs", "", _headlines(studies), (section,))
+
+
+def _headlines(studies: Sequence[PairStudy]) -> tuple[Headline, ...]:
+    """Return the largest peak to peak over misalignment and over center distance."""
+    return (
+        _largest("misalignment", "µm", studies, _over_misalignment),
+        _largest("center distance", "%", studies, _over_distance),
+    )
+
+
+def _largest(
+    over: str, unit: str, studies: Sequence[PairStudy], curve_of: Callable[[PairStudy, Sensitivity], Curve]
+) -> Headline:
+    """Return the largest ripple of all curves over one deviation, with its error, change and place."""
+    named = [(study.name, *curve_of(study, curves)) for study in studies for curves in study.curves]
+    name, at, curve = max(named, key=lambda each: float(each[2].peak_to_peak.max()))
+    k = int(curve.peak_to_peak.argmax())
+    error, change = number(1e6 * float(curve.error[k]), 2), 100.0 * float(curve.relative_change[k])
+    where = f"{round(float(at[k]), 9):g} {unit}, {name}: {change:+.0f} % of the undeviated pair's"
+    value = f"{number(1e6 * float(curve.peak_to_peak[k]), 3)} µm"
+    return Headline(f"largest peak-to-peak STE over {over}", value, f"± {error} µm at {where}")
 
 
 PAGE = Presentation(

@@ -6,12 +6,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from bounds import engineering
+from bounds import engineering, leftover
 from dynamics.periodic import SteadyStates
 from dynamics.periodic.steady_states import BRANCH, DOWN, UP
 from service.convert.effect_lines import run_lines
 from service.drawing import palette
 from service.drawing.figure import Axis, Dash, Figure, FloatArray, Line, Panel, Reference, Table, number
+from service.drawing.page import Headline
 from service.studies.presentation import Presentation, dynamics_page
 from service.studies.steady.run import KINDS, facts, status_name
 
@@ -118,7 +119,7 @@ def _row(states: SteadyStates, index: int, mesh: int) -> tuple[str, ...]:
     if states.status[index]:
         left = (
             f"{status_name(int(states.status[index]))}, "
-            f"{engineering(1e6 * float(states.residual[index]), 2)} µm left"
+            f"{leftover(1e6 * float(states.residual[index]), 2)} µm left"
         )
         return (*start, left, *("none",) * 7)
     return (
@@ -156,6 +157,27 @@ def _words(states: SteadyStates) -> str:
     return text
 
 
+def headlines(states: SteadyStates) -> tuple[Headline, ...]:
+    """Return the largest motion, and the jumps or the largest mesh force."""
+    if not np.any(np.isfinite(states.rms_error)):
+        return ()
+    error = _largest(states, "rms transmission error", 1e6 * states.rms_error, "µm")
+    if not states.jump_curve.size:
+        return (error, _largest(states, "mesh force", states.largest_force, "N"))
+    sense = "rising" if states.jump_curve[0] == UP else "falling"
+    before, behind = (number(float(speed), 5) for speed in states.jump_speed[0] / RPM)
+    first = f"the first at {sense} speed between {before} and {behind} rpm"
+    return (error, Headline("jumps", str(states.jump_curve.size), first))
+
+
+def _largest(states: SteadyStates, what: str, values: FloatArray, unit: str) -> Headline:
+    """Name the largest of values (motion, mesh) with mesh, speed and stability."""
+    index, mesh = np.unravel_index(int(np.nanargmax(values)), values.shape)
+    at = f"{number(float(states.speed[index]) / RPM, 4)} rpm, {KINDS[int(states.instability[index])]}"
+    value = f"{number(float(values[index, mesh]), 3)} {unit}"
+    return Headline(f"largest {what} of {states.mesh[mesh]}", value, at)
+
+
 def _text(states: SteadyStates) -> Iterator[Table | str]:
     """Both sweeps, jumps, and what the branch came to."""
     yield steady_table(states)
@@ -173,5 +195,7 @@ def _text(states: SteadyStates) -> Iterator[Table | str]:
 
 
 PAGE = Presentation(
-    steady_figure, lambda states: dynamics_page("Steady states", (steady_figure(states),)), _text
+    steady_figure,
+    lambda states: dynamics_page("Steady states", (steady_figure(states),), headlines(states)),
+    _text,
 )

@@ -88,7 +88,7 @@ def _figure(result: SweepResult, quantity: SweptQuantity, point: int) -> tuple[s
     )
     error = engineering(float(quantity.error[point]) / shown.one, 2)
     value = f"{number(float(quantity.value[point]) / shown.one, 3)} {shown.unit}".strip()
-    return value, f"±{error} {shown.unit}".strip() + f" at {where}"
+    return value, f"± {error} {shown.unit}".strip() + f" at {where}"
 
 
 def _best_level(result: SweepResult, quantity: SweptQuantity) -> Headline:
@@ -104,7 +104,7 @@ def _best_level(result: SweepResult, quantity: SweptQuantity) -> Headline:
     others = ", ".join(f"{level:.6g}" for level in levels[alike])
     also = f"as low within the errors: {others} {axis.unit}" if others else f"below all others {BEYOND}"
     text = f"{number(float(value[best]), 3)} {shown.unit}".strip()
-    band = f"±{engineering(float(error[best]), 2)} {shown.unit}".strip()
+    band = f"± {engineering(float(error[best]), 2)} {shown.unit}".strip()
     where = f"at {axis.words} {levels[best]:.6g} {axis.unit}"
     return Headline(f"least mean {shown.words} over the torques", text, f"{band} {where}; {also}")
 

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bounds import engineering
+from bounds import engineering, leftover
 
 ROOT = Path(__file__).parents[3]
 NUMBERS = st.floats(allow_nan=False, allow_infinity=False, width=64).filter(lambda value: abs(value) > 1e-290)
@@ -50,6 +50,20 @@ def test_how_it_reads(value: float, digits: int, text: str) -> None:
 
 def test_a_sign_is_written_where_it_is_wanted() -> None:
     assert [engineering(value, 2, "+") for value in (140.0, -0.5, 3e9)] == ["+140", "-0.5", "+3e9"]
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (19e-18, "below 1e-12"),
+        (-3e-13, "below 1e-12"),
+        (0.0, "below 1e-12"),
+        (-2.4e-8, "20e-9"),
+        (0.3, "0.3"),
+    ],
+)
+def test_what_rounding_leaves_has_no_digits(value: float, text: str) -> None:
+    assert leftover(value) == text
 
 
 def test_no_other_way_of_writing_one_or_two_digits_is_left() -> None:

@@ -6,9 +6,12 @@ import re
 from pathlib import Path
 
 import pytest
+from scene_files import scene_file
+from small_table import small_table
 from typer.testing import CliRunner
 
 from service.cli.commands import app
+from service.client import LineOfActionClient
 
 SPUR = Path(__file__).parents[3] / "examples" / "palermo_spur_20_20.toml"
 COARSE = ("--level", "draft", "--set", "accuracy.positions=16")
@@ -38,3 +41,54 @@ def test_a_study_ends_with_its_headlines_and_its_file(verb: str, tmp_path: Path)
 
 def test_a_plan_ends_with_what_it_chose() -> None:
     assert "mesh standard" in last_lines("plan", SPUR, count=1)[0]
+
+
+@pytest.fixture(scope="module")
+def gears(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A scene with its table beside it."""
+    return scene_file(tmp_path_factory.mktemp("scene"))
+
+
+NUMBER = r"-?[\d.]+"
+
+
+@pytest.mark.parametrize(
+    ("verb", "speeds", "first", "second"),
+    [
+        ("modes", "0:6000:1000", r"lowest natural frequency: N Hz \(", r"least damped critical speed: N rpm"),
+        (
+            "response",
+            "1000:3000:500",
+            r"largest mesh force of .+: N N \(order N at",
+            "largest force on bearing",
+        ),
+        ("steady", "2000", r"largest rms transmission error of .+: N µm", "largest mesh force of .+: N N"),
+    ],
+)
+def test_a_study_of_a_scene_ends_with_what_is_largest(
+    verb: str, speeds: str, first: str, second: str, gears: Path, tmp_path: Path
+) -> None:
+    file = tmp_path / "result.nc"
+    *results, written = last_lines(verb, gears, "--speed-rpm", speeds, "-o", file)
+    for line, pattern in zip(results, (first, second), strict=True):
+        assert re.match(pattern.replace(" N ", f" {NUMBER} ").replace(": N", f": {NUMBER}"), line), line
+    assert written == f"written to {file}"
+
+
+def test_a_curve_ends_with_its_harmonics_mean_and_ripple(tmp_path: Path) -> None:
+    file = tmp_path / "ste.nc"
+    small_table().to_netcdf(file)
+    harmonics, mean, ripple = last_lines("ste", file, "--torque", 100)
+    assert harmonics.startswith("harmonics ")
+    assert re.fullmatch(rf"mean STE at 100 N m: {NUMBER} µm .+", mean)
+    assert re.fullmatch(rf"peak-to-peak STE at 100 N m: {NUMBER} µm .+", ripple)
+
+
+def test_a_fetched_result_ends_with_its_figures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    stored, file, key = tmp_path / "stored.nc", tmp_path / "fetched.nc", "ab" * 32
+    small_table().to_netcdf(stored)
+    monkeypatch.setattr(LineOfActionClient, "fetch_result", lambda *_: (stored, "database"))
+    *results, written = last_lines("fetch", key, "-o", file, count=4)
+    assert results[0] == f"database {key}"
+    assert [line.partition(" STE at ")[0] for line in results[1:]] == ["mean", "peak-to-peak"]
+    assert written == f"written to {file}"

@@ -24,7 +24,7 @@ from service.report import write_report
 from service.schemas import Case, read_model
 from service.studies.computation import Means
 from service.studies.sensitivity import Inputs
-from service.studies.sensitivity.page import sensitivity_figure, sensitivity_table
+from service.studies.sensitivity.page import page, sensitivity_figure, sensitivity_table
 from service.studies.sensitivity.run import RUN, studies_json, study_case
 from service.studies.sensitivity.stored import PairStudy, read_studies, write_studies
 
@@ -287,3 +287,10 @@ def test_a_study_is_on_the_report_page(tmp_path: Path) -> None:
 
 def test_there_are_examples_of_both_pairs() -> None:
     assert [file.stem for file in EXAMPLES] == ["sensitivity_automotive", "sensitivity_wind_turbine"]
+
+
+def test_its_headlines_are_the_largest_ripples() -> None:
+    skew, distance = page((study(), study("pair b", 2.0))).headlines
+    assert (skew.name, skew.value) == ("largest peak-to-peak STE over misalignment", "10.0 µm")
+    assert skew.remark == "± 0.20 µm at 30 µm, pair b: +150 % of the undeviated pair's"
+    assert (distance.value, distance.remark[:15]) == ("4.00 µm", "± 0.40 µm at 0 ")

@@ -90,8 +90,10 @@ def test_files_and_terminal_say_the_same(file: Path, tmp_path: Path) -> None:
     target = tmp_path / "map.csv"
     ended = output("sweep", file, "--over", OVER, "-o", target).strip().splitlines()
     best, largest, written = ended[-3:]
-    assert re.match(r"least mean peak-to-peak STE over the torques: [\d.]+ µm ±[\d.]+ µm at tip relief", best)
-    assert re.match(r"largest peak-to-peak STE: [\d.]+ µm ±[\d.]+ µm at torque", largest)
+    assert re.match(
+        r"least mean peak-to-peak STE over the torques: [\d.]+ µm ± [\d.]+ µm at tip relief", best
+    )
+    assert re.match(r"largest peak-to-peak STE: [\d.]+ µm ± [\d.]+ µm at torque", largest)
     assert written == f"written to {target}"
     told = json.loads(output("sweep", file, "--over", OVER, "--json"))
     rows = list(csv.DictReader(target.read_text(encoding="utf-8").splitlines()))
