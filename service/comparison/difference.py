@@ -8,7 +8,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from fe_contact.types import Estimate
+from service.drawing import palette
 from service.drawing.figure import Table, number
+
+COLORS = (palette.BLUE, palette.VERMILLION)
+"""Of the first result and of the second."""
 
 
 @dataclass(frozen=True)

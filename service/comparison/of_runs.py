@@ -11,7 +11,7 @@ import numpy as np
 from dynamics.orders import Waterfall
 from dynamics.results import RunResult
 from fe_contact.types import Estimate
-from service.comparison.difference import Difference, changed_fields, differences_table
+from service.comparison.difference import COLORS, Difference, changed_fields, differences_table
 from service.comparison.measured import MeasuredOrders
 from service.drawing import palette
 from service.drawing.figure import Axis, Dash, Figure, Line, Panel, number
@@ -22,7 +22,6 @@ from service.runs.run_view import QUANTITIES, SCALES, RunView, Signal, decibels,
 from service.runs.signal_spectrum import ORDERS, amplitude_spectrum, spectrum_window
 
 _DASHES: tuple[Dash, ...] = ("solid", "dash")
-_COLORS = (palette.BLUE, palette.VERMILLION)
 _ERRORS = {"bearing_force": "bearing_force_orders", "dynamic_transmission_error": "transmission_error_orders"}
 """Series whose orders have stated errors, and their name in the receipt of a run."""
 
@@ -60,7 +59,7 @@ def compare_runs(runs: dict[str, RunResult], view: RunView, measured: MeasuredOr
     found = tuple(_differences(sides, orders)) if len(sides) == 2 else ()
     figures = (_levels(sides, orders), _spectra(sides, measured))
     listed = (differences_table(found, tuple(runs)),) if found else ()
-    sections = [Section(signal.name[0].upper() + signal.name[1:], figures=figures, tables=listed)]
+    sections = [Section(signal.heading, figures=figures, tables=listed)]
     differing = changed_fields({name: run.case for name, run in runs.items()})
     if differing.rows:
         sections.append(Section("Scenes", tables=(differing,)))
@@ -138,7 +137,7 @@ def _levels(sides: tuple[_Side, ...], orders: tuple[int, ...]) -> Figure:
 def _spectra(sides: tuple[_Side, ...], measured: MeasuredOrders | None) -> Figure:
     """Draw the spectra near the end of the runs over mesh order."""
     lines = []
-    for side, color in zip(sides, _COLORS, strict=False):
+    for side, color in zip(sides, COLORS, strict=False):
         window = spectrum_window(side.run.time)
         frequency, amplitude = amplitude_spectrum(side.run, side.signal, window)
         order = frequency / float(np.median(side.run.mesh_frequency[side.signal.mesh, window]))

@@ -8,7 +8,7 @@ import numpy as np
 
 from fe_contact.ste import Curve, SteDatabase
 from fe_contact.types import Estimate, FloatArray
-from service.comparison.difference import Difference, changed_fields, differences_table
+from service.comparison.difference import COLORS, Difference, changed_fields, differences_table
 from service.comparison.measured import PER_PITCH, Aligned, MeasuredCurve, MeasuredOrders, aligned_to
 from service.drawing import palette
 from service.drawing.figure import Axis, Figure, Line, Panel, Table, number
@@ -19,7 +19,6 @@ from service.tables.pair import pair_title
 
 HARMONICS = 3  # in the table of differences
 SHOWN_HARMONICS = 8
-COLORS = (palette.BLUE, palette.VERMILLION)
 _UM = 1e6
 
 Named = dict[str, SteDatabase]

@@ -73,12 +73,7 @@ def dynamic_results(run: RunResult, view: RunView) -> tuple[Section, ...]:
     text = "" if len(run.mesh) == 1 else f"Of {len(run.mesh)} meshes, {run.mesh[signal.mesh]} is shown."
     motion = Section("Dynamic transmission error", text, figures=(dynamic_error(series),))
     shown = (signal_over_time(run, series, signal), signal_spectrum(run, signal))
-    return motion, Section(_heading(signal), figures=shown), *_orders(run, signal), *_forces(run)
-
-
-def _heading(signal: Signal) -> str:
-    """Write the name of the signal as a heading."""
-    return signal.name[0].upper() + signal.name[1:]
+    return motion, Section(signal.heading, figures=shown), *_orders(run, signal), *_forces(run)
 
 
 def dynamic_making(run: RunResult) -> tuple[Section, ...]:

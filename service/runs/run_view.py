@@ -103,6 +103,11 @@ class Signal:
         return f"{self.quantity.noun} {where}"
 
     @property
+    def heading(self) -> str:
+        """The name as a heading."""
+        return self.name[0].upper() + self.name[1:]
+
+    @property
     def label(self) -> str:
         """The quantity with its unit, as on an axis over time."""
         return f"{self.quantity.noun.rpartition(' ')[0]}, {self.quantity.unit}"
