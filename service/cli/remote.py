@@ -5,11 +5,12 @@ from __future__ import annotations
 import json
 import re
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from host.extras import MissingExtra
 from service.cli.output import Report, check_writable, console, print_json, print_result, progress_bar
 from service.cli.warned import warn
 from service.client import JobState, LineOfActionClient, Result
@@ -18,6 +19,9 @@ from service.input_file import InputFile
 from service.problems import BadInput, ResultNotReady
 from service.registry import studies_of
 from service.schemas import Case, read_table, validated
+
+if TYPE_CHECKING:
+    from service.drawing.page import Headline
 
 _OF_CASES = ("analyze", *studies_of("case"))
 _OF_SCENES = ("simulate", *studies_of("scene"))
@@ -141,10 +145,17 @@ def _show_result(key: str, kind: str, file: Path | None) -> None:
     """Print which result it is, and of one in a file its main figures."""
     _tell(f"{kind} {key}")
     if file is not None:
+        print_result(_headlines(file), [file])
+
+
+def _headlines(file: Path) -> Sequence[Headline]:
+    """Return the main figures of a result; none where the extra that reads all kinds is not installed."""
+    try:
         from service.report.content import headlines_of  # noqa: PLC0415 (start-up time)
         from service.report.inputs import read_inputs  # noqa: PLC0415 (start-up time)
-
-        print_result(headlines_of(read_inputs([file])), [file])
+    except MissingExtra:
+        return ()
+    return headlines_of(read_inputs([file]))
 
 
 def _tell(line: str) -> None:

@@ -11,11 +11,9 @@ from typing import Any
 
 from bounds import engineering
 from fe_contact.ste import SteDatabase
-from service.cli.output import console, print_json, print_result, table
+from service.cli.output import console, print_json, table
 from service.cli.warned import warn
 from service.convert.answers import curve_json
-from service.drawing.figure import number
-from service.drawing.page import Headline
 from service.problems import BadInput
 
 _FARTHEST = 1e6
@@ -126,12 +124,9 @@ def _show(curve: dict[str, Any]) -> None:
         )
     harmonics = ", ".join(f"{value:.4f}" for value in curve["harmonics_um"][:_SHOWN_ORDERS])
     out.print(f"harmonics {harmonics} um", highlight=False)
-    print_result([_headline(curve, name) for name in ("mean", "peak_to_peak")], [])
-
-
-def _headline(curve: dict[str, Any], name: str) -> Headline:
-    """Return a figure of the curve with its error."""
-    error = curve.get(f"{name}_error_um")
-    band = "error not estimated" if error is None else f"± {engineering(error, 2)} µm"
-    words = f"{name.replace('_', '-')} STE at {curve['torque_n_m']:.6g} N m"
-    return Headline(words, f"{number(curve[f'{name}_um'])} µm", band)
+    for name in ("mean", "peak_to_peak"):
+        error = curve.get(f"{name}_error_um")
+        band = "(error not estimated)" if error is None else f"± {engineering(error, 2)} µm"
+        value = f"{engineering(curve[f'{name}_um'], 4)} µm"
+        words = f"{name.replace('_', '-')} STE at {curve['torque_n_m']:.6g} N m"
+        out.print(f"{words}: {value} {band}", highlight=False)

@@ -85,7 +85,7 @@ def compare(
     *,
     files: Annotated[
         list[Path],
-        typer.Argument(help="Two STE databases, two runs, or one of them and a CSV file of a measurement."),
+        typer.Argument(help="Two STE databases, two runs, or one of them and a measurement (CSV, UFF)."),
     ],
     output: Annotated[Path, typer.Option("-o", "--output", help="Page to write.")] = Path("comparison.html"),
     torque: Annotated[
