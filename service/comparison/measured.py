@@ -85,7 +85,7 @@ def read_measured(path: Path, teeth: int) -> MeasuredCurve | MeasuredOrders:
         return MeasuredOrders(mesh, values, VALUES[names[1]])
     if names[1] != "transmission_error_um":
         raise BadInput.of("measured", names[1], '"transmission_error_um" over a position', _ADVICE)
-    return _curve(path, over if names[0] == "position" else over * teeth / 360.0, values)
+    return averaged(path, over if names[0] == "position" else over * teeth / 360.0, values)
 
 
 def _rows(path: Path) -> tuple[list[str], FloatArray]:
@@ -104,8 +104,14 @@ def _rows(path: Path) -> tuple[list[str], FloatArray]:
     return names, rows
 
 
-def _curve(path: Path, position: FloatArray, values: FloatArray) -> MeasuredCurve:
-    """Average the whole base pitches of a curve."""
+def averaged(path: Path, position: FloatArray, values: FloatArray) -> MeasuredCurve:
+    """Average the whole base pitches of a curve over positions (n,) in base pitches, values (n,) in µm.
+
+    Raises
+    ------
+    BadInput
+        Less than one base pitch is sampled, or too roughly; `path` is named.
+    """
     order = np.argsort(position, kind="stable")
     position, values = position[order], values[order]
     pitches = int(np.floor(position[-1] - position[0]))
