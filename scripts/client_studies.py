@@ -16,6 +16,8 @@ from service.client.study_method import FORMS, study_method
 from service.registry import STUDIES, Study
 
 HEAD = """# Written by scripts/client_studies.py from service.registry: do not edit.
+# fmt: off
+# ruff: noqa: E501 (a line for each parameter)
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Literal

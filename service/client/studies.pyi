@@ -1,4 +1,6 @@
 # Written by scripts/client_studies.py from service.registry: do not edit.
+# fmt: off
+# ruff: noqa: E501 (a line for each parameter)
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Literal
@@ -136,11 +138,7 @@ class Studies(JobClient):
         progress: Watch | None = None,
         *,
         over: Sequence[str] = ...,
-        show: Sequence[
-            Literal[
-                "peak_to_peak", "harmonic_1", "harmonic_2", "harmonic_3", "max_pressure", "face_load_factor"
-            ]
-        ] = ...,
+        show: Sequence[Literal["peak_to_peak", "harmonic_1", "harmonic_2", "harmonic_3", "max_pressure", "face_load_factor"]] = ...,
     ) -> dict[str, Any]: ...
     def sweep_file(
         self,
@@ -148,11 +146,7 @@ class Studies(JobClient):
         progress: Watch | None = None,
         *,
         over: Sequence[str] = ...,
-        show: Sequence[
-            Literal[
-                "peak_to_peak", "harmonic_1", "harmonic_2", "harmonic_3", "max_pressure", "face_load_factor"
-            ]
-        ] = ...,
+        show: Sequence[Literal["peak_to_peak", "harmonic_1", "harmonic_2", "harmonic_3", "max_pressure", "face_load_factor"]] = ...,
     ) -> Path: ...
     def modes(
         self,

@@ -26,7 +26,7 @@ def figure(result: SweepResult) -> Figure:
 
 def figures(result: SweepResult) -> tuple[Figure, ...]:
     """Draw all: of two axes maps, and curves of the first quantity."""
-    words = " ".join(f"{h.name.capitalize()}: {h.value} {h.remark}." for h in headlines(result))
+    words = " ".join(f"{h.name[0].upper()}{h.name[1:]}: {h.value} {h.remark}." for h in headlines(result))
     drawn = (maps(result), curves(result)) if len(result.axes) == 2 else (curves(result),)
     return tuple(replace(each, alternative=words) for each in drawn)
 
@@ -116,7 +116,7 @@ def page(result: SweepResult) -> Page:
     lead = f"{len(result.sweep.reason)} points over {over}"
     alarms = (f"{failed} points have no figures: the contact was not solved.",) if failed else ()
     tables = tuple(table(result, quantity) for quantity in result.quantities)
-    section = Section("Maps", "", figures(result), folded=tables)
+    section = Section(f"Over {over}", "", figures(result), folded=tables)
     return Page(f"Map over {over}", lead, headlines(result), (section,), alarms)
 
 

@@ -32,7 +32,7 @@ def curves(result: SweepResult) -> Figure:
     across = result.across
     return Figure(
         "sweep_curves",
-        f"{QUANTITIES[quantities[0].name].words} over {result.axes[across].words}".capitalize(),
+        _title(result),
         "Bands are the errors.",
         "",
         tuple(
@@ -96,3 +96,9 @@ def _alike(result: SweepResult) -> str:
     """Say what the dots of a map stand for."""
     at = "at the same torque " if TORQUE in result.sweep.axes else ""
     return f"as low as the least {at}within both errors"
+
+
+def _title(result: SweepResult) -> str:
+    """Name the first quantity and the axis that runs across."""
+    words = QUANTITIES[result.quantities[0].name].words
+    return f"{words[0].upper()}{words[1:]} over {result.axes[result.across].words}"
