@@ -24,7 +24,7 @@ class Inputs(BoundaryModel):
         description="One or two of torque, misalignment, center_distance_change and the flank modifications: "
         "NAME, or NAME=FIRST:LAST:STEP in the unit of the case file; without a gear a modification is that "
         "of both",
-        examples=[["torque", "pinion.tip_relief=0:40:5"]],
+        examples=[["torque", "pinion.profile_crowning=0:10:2"]],
     )
     show: Annotated[tuple[Shown, ...], Strict(False)] = Field(
         default=(
