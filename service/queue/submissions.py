@@ -9,7 +9,7 @@ from typing import Any
 
 from sqlalchemy import ColumnElement, Connection, Engine, func, insert, select, update
 
-from service.problems import NoSuchJob, QueueFull
+from service.problems import BadInput, NoSuchJob, QueueFull
 from service.queue.caller import ANYBODY, Caller
 from service.queue.delivery import AS_IT_IS, Delivery
 from service.queue.durations import end_computations
@@ -39,6 +39,7 @@ class Submissions:
         looked: str | None = None,
         caller: Caller = ANYBODY,
         delivery: Delivery = AS_IT_IS,
+        name: str | None = None,
     ) -> Job:
         """Enter a job; equal work that waits, runs or is `stored` already is shared.
 
@@ -53,14 +54,19 @@ class Submissions:
         caller : Caller
         delivery : Delivery
             The form in which this job shows its result.
+        name : str, optional
+            The caller's name for this request (``Idempotency-Key``): sent again, it is the same job, for as
+            long as the job is kept.
 
         Raises
         ------
+        BadInput
+            The name stands for other work of this caller.
         QueueFull
             New work, and as many computations wait as the limit allows; or the caller has as many
             unfinished jobs as it may.
         """
-        identifier = str(uuid.uuid4())
+        identifier = str(uuid.uuid4() if name is None else _identifier(caller, process, name))
         ended = _ended_since(key, looked or now(), stored)
         self._submit(identifier, process, key, inputs, stored, ended, caller, delivery)
         return self.find(identifier)
@@ -79,7 +85,10 @@ class Submissions:
     ) -> None:
         """Enter a job of this identifier, unless it is in already."""
         with writing(self._engine, in_turn=True) as connection:
-            if connection.execute(select(jobs.c.id).where(jobs.c.id == identifier)).first() is not None:
+            known = select(computations.c.key).join(jobs).where(jobs.c.id == identifier)
+            entered = connection.execute(known).scalar()
+            if entered is not None:
+                _refuse_unless_same(entered, key)
                 return
             if not stored:
                 _refuse_if_busy(connection, caller)
@@ -171,6 +180,23 @@ class Submissions:
         statement = select(computations.c.state, func.count()).group_by(computations.c.state)
         with reading(self._engine) as connection:
             return {row[0]: row[1] for row in connection.execute(statement)}
+
+
+_NAMES = uuid.UUID("4f5b2a0e-6c0f-4b7e-9a53-0d8f3a1c7e62")
+"""Name space of the identifiers of jobs that their callers name."""
+
+
+def _identifier(caller: Caller, process: str, name: str) -> uuid.UUID:
+    """Return the identifier of the job that a caller gives a name; another caller's is another."""
+    return uuid.uuid5(_NAMES, json.dumps([caller.name, process, name]))
+
+
+def _refuse_unless_same(entered: str, key: str) -> None:
+    """Raise if a name that stands for some work is used for other work."""
+    if entered != key:
+        raise BadInput.of(
+            "Idempotency-Key", None, "the name of one request", "Give a request with other inputs another."
+        )
 
 
 def _is_identifier(text: str) -> bool:

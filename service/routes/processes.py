@@ -37,6 +37,14 @@ logger = structlog.get_logger(__name__)
 
 After = Annotated[str, Query(max_length=64, description="Last process of the previous page")]
 _SUBJECTS = ("case", "scene")
+IdempotencyKey = Annotated[
+    str | None,
+    Header(
+        description="A name of the caller's for this request: sent again, it is the same job",
+        min_length=1,
+        max_length=255,
+    ),
+]
 Prefer = Annotated[str, Header(description="Jobs are always asynchronous (RFC 7240)", max_length=1000)]
 
 
@@ -96,13 +104,14 @@ def _add_execution(router: APIRouter, process: Process) -> None:
         context: Ctx,
         caller: From,
         prefer: Prefer = "respond-async",
+        idempotency_key: IdempotencyKey = None,
     ) -> StatusInfo:
         """Check the inputs and enter a job; equal work is shared, stored results are used."""
         output = getattr(request.outputs, process.output)
         field = f"outputs.{process.output}.transmissionMode"
         form = delivery(request.response, output and output.transmissionMode, field)
         inputs = process.prepare(cast(BoundaryModel, request.inputs), context.store)
-        status = _submit(context, process, inputs, caller, form)
+        status = _submit(context, process, inputs, caller, form, idempotency_key)
         response.headers["Location"] = f"/v1/jobs/{status.jobID}"
         if "respond-async" in [item.partition(";")[0].strip().lower() for item in prefer.split(",")]:
             response.headers["Preference-Applied"] = "respond-async"
@@ -124,14 +133,19 @@ def _add_execution(router: APIRouter, process: Process) -> None:
 
 
 def _submit(
-    context: Context, process: Process, inputs: dict[str, Any], caller: Caller, form: Delivery
+    context: Context,
+    process: Process,
+    inputs: dict[str, Any],
+    caller: Caller,
+    form: Delivery,
+    name: str | None,
 ) -> StatusInfo:
     """Enter a job and wake the scheduler."""
     key = process.key(inputs)
     looked = now()
     stored = context.store.find(key, process.kind) is not None
     job = context.submissions.submit(
-        process.id, key, inputs, stored=stored, looked=looked, caller=caller, delivery=form
+        process.id, key, inputs, stored=stored, looked=looked, caller=caller, delivery=form, name=name
     )
     facts = {"job": job.id, "computation": job.computation, "process": process.id, "key": key}
     logger.info("job entered", **facts, stored=stored)
