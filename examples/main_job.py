@@ -98,9 +98,9 @@ def _compute(address: str, out: Path) -> dict[str, float]:
     """Have the tables computed, fetch them, and run the dynamics on the first; wall seconds by step."""
     times: dict[str, float] = {}
     start = time.perf_counter()
-    with LineOfActionClient(address) as client:
+    with LineOfActionClient(address, progress=_show_progress) as client:
         for case, name in ((CASE, "ste.nc"), (HELICAL, "helical.nc")):
-            key = client.analysis_key(case, _show_progress)
+            key = client.analysis_key(case)
             shutil.copyfile(client.fetch_file(key), out / name)
     with urllib.request.urlopen(f"{address}/v1/results/{key}/figures"):  # drawn once: the page opens on them
         times["STE databases"], start = time.perf_counter() - start, time.perf_counter()

@@ -15,7 +15,7 @@ from pathlib import Path
 from main_job_summary import dynamic_lines, static_lines
 
 from dynamics.simulation import simulate
-from service.client import LineOfActionClient
+from service.client import JobState, LineOfActionClient
 
 EXAMPLES = Path(__file__).parent
 CASE, SCENE = EXAMPLES / "palermo_spur_20_20.toml", EXAMPLES / "palermo_scene.toml"
@@ -28,8 +28,12 @@ def main() -> None:
     parser.add_argument("--cache", type=Path, help="folder of fetched tables; default: the user's cache")
     parser.add_argument("-o", "--output", type=Path, default=Path("run_up.nc"), help="file of the run")
     asked = parser.parse_args()
-    with LineOfActionClient(asked.service, cache_dir=asked.cache) as client:
-        table = client.analyze(CASE, lambda state: print(f"{state.status} {state.stage}"))
+
+    def watch(state: JobState) -> None:
+        print(f"{state.status} {state.stage}")
+
+    with LineOfActionClient(asked.service, cache_dir=asked.cache, progress=watch) as client:
+        table = client.analyze(CASE)
         scene = client.scene(SCENE)
     run = simulate(scene)
     run.to_netcdf(asked.output)

@@ -105,7 +105,7 @@ def live(run: Composition, client: LineOfActionClient, key: str) -> bool:
 
 def shared(run: Composition, client: LineOfActionClient, case: Case) -> list[bool]:
     """Kill one of two schedulers while both work; assess that every job ends."""
-    jobs = [client.submit_case(_with_teeth(case, teeth)) for teeth in _TEETH]
+    jobs = [client.analyze.submit(_with_teeth(case, teeth)) for teeth in _TEETH]
     _until(lambda: sum(state.status == "running" for state in _states(client, jobs)) == 2, run)
     both = len(run.containers("work"))
     tried("kill", "--signal", "KILL", run.containers("work")[0])
@@ -150,7 +150,7 @@ def verdicts_of(run: Composition, scratch: Path) -> list[bool]:
     verdicts = [assess("all of it answers after, s", f"{first:.1f}", good=True)]
     with LineOfActionClient(run.url, cache_dir=scratch / "nobody", key="none") as nobody:
         try:
-            nobody.submit_case(the_case())
+            nobody.analyze.submit(the_case())
             refused = False
         except Unauthorised:
             refused = True
@@ -163,7 +163,7 @@ def verdicts_of(run: Composition, scratch: Path) -> list[bool]:
     run.compose("stop")
     run.start()
     with LineOfActionClient(run.url, cache_dir=scratch / "second", key=key["key"]) as client:
-        again = client.submit_case(the_case())
+        again = client.analyze.submit(the_case())
         client.fetch_file(client.result(again.id).key)
         found = again.status == "successful"
         verdicts.append(assess("table of before served after a restart", again.message, good=found))

@@ -77,7 +77,7 @@ def drawn(service: Service) -> bool:
 def interrupted(service: Service, client: LineOfActionClient, case: Case) -> tuple[str, list[bool]]:
     """Stop the service while it computes the three-dimensional case; return the job and the verdicts."""
     solid = case.model_copy(update={"accuracy": case.accuracy.model_copy(update={"model": "3d"})})
-    job = client.submit_case(solid).id
+    job = client.analyze.submit(solid).id
     while client.status(job).status == "accepted":
         time.sleep(0.05)
     state = client.status(job).status
@@ -92,7 +92,7 @@ def interrupted(service: Service, client: LineOfActionClient, case: Case) -> tup
 def resumed(client: LineOfActionClient, job: str, case: Case) -> list[bool]:
     """Assess what the next container makes of the jobs and results of the one before."""
     ended = client.wait(job, timeout=300.0)
-    first = client.submit_case(case)
+    first = client.analyze.submit(case)
     client.fetch_file(client.result(first.id).key)  # verified by its digest
     return [
         assess("interrupted job after the restart", ended.kind, good=ended.kind == "database"),

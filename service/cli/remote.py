@@ -14,6 +14,7 @@ from host.extras import MissingExtra
 from service.cli.output import Report, check_writable, console, print_json, print_result, progress_bar
 from service.cli.warned import warn
 from service.client import JobState, LineOfActionClient, Result
+from service.client.portable import scene_inputs
 from service.convert.stamp import stamped
 from service.input_file import InputFile
 from service.problems import BadInput, ResultNotReady
@@ -89,7 +90,7 @@ def _submitted(
     """Submit a file as what it holds."""
     content = read_table(file)
     if "shafts" in content and process not in _OF_CASES:
-        return client.submit_scene(file, process or "simulate", **further)
+        return client.submit(process or "simulate", scene_inputs(file) | further)
     if "pair" in content and process not in _OF_SCENES:
         case = validated(Case, content).model_dump(mode="json")
         return client.submit(process or "analyze", {"case": case, **further})

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 from dynamics.scene import Scene
@@ -11,8 +13,10 @@ from service.cli.output import Report
 from service.cli.remote import watching
 from service.cli.warned import warn
 from service.client import LineOfActionClient
-from service.client.mesh_tables import MeshTables, TableSource
+from service.client.mesh_tables import MeshTables
 from service.client.portable import case_of_mesh
+from service.client.scene_calls import ServiceTables
+from service.client.steps import Steps, finished
 from service.convert.checks import check_case
 from service.convert.plausibility import case_warnings, scene_warnings, within
 from service.convert.scene import TabledScene, check_scene, dynamic_scene
@@ -32,14 +36,26 @@ def scene_with_tables(scene: SceneInput, folder: Path, service: str | None, repo
 def tabled_scene(scene: SceneInput, folder: Path, service: str | None, report: Report) -> TabledScene:
     """Return the scene with its tables and with its cases written out; see `scene_with_tables`."""
     if service is None:
-        return _checked(scene, folder, _Here(report))
-    with LineOfActionClient(service) as client:
-        return _checked(scene, folder, client.tables(watching(report)))
+        return _checked(scene, _Tables(MeshTables(folder, _Here(report)), finished), folder)
+    with LineOfActionClient(service, progress=watching(report)) as client:
+        tables = MeshTables(folder, ServiceTables(client))
+        return _checked(scene, _Tables(tables, client.driver.run), folder)
 
 
-def _checked(scene: SceneInput, folder: Path, source: TableSource) -> TabledScene:
+@dataclass(frozen=True)
+class _Tables:
+    """Tables of meshes, and who performs the steps to get one."""
+
+    tables: MeshTables
+    run: Callable[[Steps[SteDatabase]], SteDatabase]
+
+    def of(self, index: int, mesh: MeshInput) -> SteDatabase:
+        """Return the database of a mesh."""
+        return self.run(self.tables.of(index, mesh))
+
+
+def _checked(scene: SceneInput, tables: _Tables, folder: Path) -> TabledScene:
     """Check the scene before anything is computed for it, then gather its tables."""
-    tables = MeshTables(folder, source)
     facts = {mesh.name: _facts(i, mesh, folder, tables) for i, mesh in enumerate(scene.meshes)}
     warn(scene_warnings(scene, check_scene(scene, facts)))
     databases = {mesh.name: tables.of(i, mesh) for i, mesh in enumerate(scene.meshes)}
@@ -58,7 +74,7 @@ def _written_out(scene: SceneInput, folder: Path) -> SceneInput:
     return scene.model_copy(update={"meshes": tuple(meshes)})
 
 
-def _facts(index: int, mesh: MeshInput, folder: Path, tables: MeshTables) -> PairFacts:
+def _facts(index: int, mesh: MeshInput, folder: Path, tables: _Tables) -> PairFacts:
     """Return the facts of a mesh's pair; of a case without computing anything."""
     field = f"meshes[{index}]"
     case = case_of_mesh(mesh, field, folder)
@@ -77,10 +93,12 @@ class _Here:
     def __init__(self, report: Report) -> None:
         self._report = report
 
-    def by_hash(self, key: str) -> SteDatabase:
+    def by_hash(self, key: str) -> Steps[SteDatabase]:
         """Refuse: only a service knows hashes."""
+        yield from ()
         raise BadInput.of("database_hash", key, "used together with a service", _ADVICE)
 
-    def by_case(self, case: Case) -> SteDatabase:
+    def by_case(self, case: Case) -> Steps[SteDatabase]:
         """Compute."""
+        yield from ()
         return analyzed(case, self._report)

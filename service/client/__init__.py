@@ -1,7 +1,25 @@
-"""The Python client: typed, synchronous, light (no mesher, no finite elements, no web framework)."""
+"""The Python client: typed, blocking and awaited, light (no mesher, no finite elements, no web framework)."""
 
+from service.client.bars import progress_bars
 from service.client.cache import ResultCache
-from service.client.client import LineOfActionClient
+from service.client.client import AsyncLineOfActionClient, LineOfActionClient
+from service.client.job import AsyncJob, Job
+from service.client.process import AsyncProcess, Process
+from service.client.report import Report
 from service.client.status import JobState, OfflineWarning, Result, Watch
 
-__all__ = ["JobState", "LineOfActionClient", "OfflineWarning", "Result", "ResultCache", "Watch"]
+__all__ = [
+    "AsyncJob",
+    "AsyncLineOfActionClient",
+    "AsyncProcess",
+    "Job",
+    "JobState",
+    "LineOfActionClient",
+    "OfflineWarning",
+    "Process",
+    "Report",
+    "Result",
+    "ResultCache",
+    "Watch",
+    "progress_bars",
+]

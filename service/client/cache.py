@@ -8,6 +8,7 @@ import json
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import asdict
 from pathlib import Path
 from tempfile import NamedTemporaryFile
 from typing import Any, BinaryIO, cast
@@ -56,18 +57,27 @@ class ResultCache:
                 return file
         return None
 
-    def remember(self, service: str, process: str, inputs: dict[str, Any], result: Result) -> None:
-        """Record the result of these inputs, for times when the service cannot be reached."""
+    def remember(
+        self, service: str, process: str, inputs: dict[str, Any], result: Result, version: str = ""
+    ) -> None:
+        """Record the result of these inputs; `version` is the service's, if it is known."""
         file = self._note(service, process, inputs)
         with self._part(file.parent) as stream:
-            stream.write(json.dumps({"key": result.key, "kind": result.kind, "href": result.href}).encode())
+            stream.write(json.dumps(asdict(result) | {"version": version}).encode())
             _settle(stream, file)
 
-    def recall(self, service: str, process: str, inputs: dict[str, Any]) -> Result | None:
-        """Return the earlier result of these inputs, if its file is here and undamaged."""
+    def recall(
+        self, service: str, process: str, inputs: dict[str, Any], version: str | None = None
+    ) -> Result | None:
+        """Return the earlier result of these inputs, if its file is here and undamaged.
+
+        If a version is given, only a result of a service of that version.
+        """
         try:
             facts = json.loads(self._note(service, process, inputs).read_text())
             result = Result(str(facts["key"]), str(facts["kind"]), str(facts["href"]))
+            if version not in (None, facts.get("version")):
+                return None
         except (OSError, ValueError, KeyError, TypeError):
             return None
         held = any(self.get(result.kind, result.key, suffix) is not None for suffix in (SUFFIX, FIGURES))

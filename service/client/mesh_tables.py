@@ -5,23 +5,24 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
+from service.client.offers import ANALYZE
 from service.client.portable import case_of_mesh
+from service.client.steps import Steps
 from service.problems import BadInput
 from service.schemas import Case
-from service.schemas.scene import MeshInput, SceneInput
+from service.schemas.scene import MeshInput
 
 if TYPE_CHECKING:
-    from dynamics.scene import Scene
     from fe_contact.ste import SteDatabase
 
 
 class TableSource(Protocol):
     """Who holds and computes STE databases."""
 
-    def by_hash(self, key: str) -> SteDatabase:
+    def by_hash(self, key: str) -> Steps[SteDatabase]:
         """Return the database of a content hash."""
 
-    def by_case(self, case: Case) -> SteDatabase:
+    def by_case(self, case: Case) -> Steps[SteDatabase]:
         """Return the database of a case."""
 
 
@@ -37,9 +38,9 @@ class MeshTables:
 
     def __init__(self, folder: Path, source: TableSource) -> None:
         self._folder, self._source = folder, source
-        self._asked: list[tuple[Case, SteDatabase]] = []
+        self._known: list[tuple[Case, SteDatabase]] = []
 
-    def of(self, index: int, mesh: MeshInput) -> SteDatabase:
+    def of(self, index: int, mesh: MeshInput) -> Steps[SteDatabase]:
         """Return the database of a mesh, the `index`-th of its scene.
 
         Raises
@@ -55,34 +56,26 @@ class MeshTables:
         case = case_of_mesh(mesh, field, self._folder)
         try:
             if case is not None:
-                return self._of_case(case)
+                return (yield from self._of_case(case))
             assert mesh.database_hash is not None  # the schema has seen to it
-            return self._source.by_hash(mesh.database_hash)
+            return (yield from self._source.by_hash(mesh.database_hash))
         except BadInput as error:
             raise error.within(field if case is None else f"{field}.case") from None
 
     def _in_file(self, field: str, name: str) -> SteDatabase:
         """Return the database in a file."""
-        from fe_contact.ste import SteDatabase  # noqa: PLC0415 (keeps the import of the client light)
-
         file = self._folder / name
         if not file.is_file():
             advice = "Check the path, or make one with: loa analyze"
             raise BadInput.of(field, str(file), "an STE database", advice)
-        return SteDatabase.from_netcdf(file)
-
-    def _of_case(self, case: Case) -> SteDatabase:
-        """Return the database of a case."""
-        known = next((database for other, database in self._asked if other == case), None)
-        if known is not None:
-            return known
-        database = self._source.by_case(case)
-        self._asked.append((case, database))
+        database: SteDatabase = ANALYZE.read(file)
         return database
 
-
-def scene_on_tables(scene: SceneInput, tables: MeshTables) -> Scene:
-    """Return the scene in SI on the tables of its meshes; raises as these, and for what cannot move."""
-    from service.convert.scene import dynamic_scene  # noqa: PLC0415 (keeps the import of the client light)
-
-    return dynamic_scene(scene, {mesh.name: tables.of(i, mesh) for i, mesh in enumerate(scene.meshes)})
+    def _of_case(self, case: Case) -> Steps[SteDatabase]:
+        """Return the database of a case."""
+        known = next((database for other, database in self._known if other == case), None)
+        if known is not None:
+            return known
+        database = yield from self._source.by_case(case)
+        self._known.append((case, database))
+        return database

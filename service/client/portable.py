@@ -22,6 +22,11 @@ def case_of(case: CaseLike) -> Case:
     return read_model(Case, case) if isinstance(case, Path | InputFile) else validated(Case, dict(case))
 
 
+def case_inputs(case: CaseLike) -> dict[str, Any]:
+    """Return ``{"case": ...}`` as JSON; raises `BadInput`."""
+    return {"case": case_of(case).model_dump(mode="json")}
+
+
 def scene_of(scene: SceneLike) -> tuple[SceneInput, Path]:
     """Return a scene and the folder its files are relative to; raises `BadInput`."""
     if isinstance(scene, SceneInput):
@@ -40,7 +45,7 @@ def inputs_of(source: CaseLike | SceneLike) -> dict[str, Any]:
     """Return ``{"case": ...}``, or of what has shafts ``{"scene": ...}``, as JSON; raises `BadInput`."""
     if isinstance(source, SceneInput) or (not isinstance(source, Case) and "shafts" in _table(source)):
         return scene_inputs(source)
-    return {"case": case_of(source).model_dump(mode="json")}
+    return case_inputs(source)
 
 
 def _table(source: Mapping[str, Any] | Path | InputFile) -> Mapping[str, Any]:

@@ -21,6 +21,8 @@ class JobState:
         Per cent of the stage.
     warnings : tuple of dict
         Implausible inputs: check, field, value, unit, message; empty in lists of jobs.
+    created, started, finished : str
+        RFC 3339, UTC; empty before.
     """
 
     id: str
@@ -31,6 +33,9 @@ class JobState:
     progress: int
     stage_progress: int
     warnings: tuple[dict[str, Any], ...] = ()
+    created: str = ""
+    started: str = ""
+    finished: str = ""
 
     @property
     def ended(self) -> bool:
@@ -38,11 +43,17 @@ class JobState:
         return self.status in ("successful", "failed", "dismissed")
 
     @classmethod
+    def cached(cls, process: str) -> JobState:
+        """Return the state of what was taken from the client's cache; it is no job of the service."""
+        return cls("", process, "successful", "Taken from the cache.", "", 100, 100)
+
+    @classmethod
     def from_json(cls, facts: dict[str, Any]) -> JobState:
         """Read a status document."""
         names = ("status", "message", "stage", "progress", "stage_progress")
         warnings = tuple(facts.get("warnings") or ())
-        known = {name: facts[name] for name in names}
+        known: dict[str, Any] = {name: facts[name] for name in names}
+        known |= {name: facts.get(name) or "" for name in ("created", "started", "finished")}
         return cls(facts["jobID"], facts["processID"], **known, warnings=warnings)
 
 

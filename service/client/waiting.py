@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from service.client.status import JobState
+from service.client.steps import Pause, Steps
 from service.problems import (
     DatabaseUnavailable,
     RateExceeded,
@@ -16,7 +17,8 @@ from service.problems import (
     Unreachable,
 )
 
-_AWAY = (Unreachable, DatabaseUnavailable, StoreUnavailable, RateExceeded)
+AWAY = (Unreachable, DatabaseUnavailable, StoreUnavailable, RateExceeded)
+"""Raised while a service is away, which jobs outlast."""
 _GROWTH = 1.1
 """Of each pause over the last: what is seen late is then about a tenth of the time waited."""
 
@@ -47,38 +49,38 @@ class Pace:
         return max(min(pause * _GROWTH, self.longest), self.interval)
 
 
-def ended(job: str, look: Callable[[], JobState], pace: Pace) -> JobState:
+def ended(job: str, look: Callable[[], Steps[JobState]], pace: Pace) -> Steps[JobState]:
     """Return the state in which a job ended.
 
     Raises
     ------
     StillRunning
-        It did not end within the time; it goes on.
+        It did not end within the time; it continues.
     ServiceError
         What `look` raises; that the service is away, only if it has never answered or not for too long.
     """
     try:
-        return _ended(job, look, pace)
+        return (yield from _ended(job, look, pace))
     except KeyboardInterrupt as stop:
         stop.add_note(f"Job {job} continues at the service. Repeat the request to join it.")
         raise
 
 
-def _ended(job: str, look: Callable[[], JobState], pace: Pace) -> JobState:
+def _ended(job: str, look: Callable[[], Steps[JobState]], pace: Pace) -> Steps[JobState]:
     """Look until it has ended."""
     begin, answered, pause = time.monotonic(), -math.inf, pace.interval
     while True:
         try:
-            state = look()
+            state = yield from look()
             if state.ended:
                 return state
             answered = time.monotonic()
-        except _AWAY:
+        except AWAY:
             if time.monotonic() - answered > pace.patience:
                 raise
         left = pace.timeout - (time.monotonic() - begin)
         if left <= 0.0:
             text = f"Job {job} did not end within {pace.timeout:g} s. It continues; check again later."
             raise StillRunning(text)
-        time.sleep(min(pause, left))
+        yield Pause(min(pause, left))
         pause = pace.longer(pause)

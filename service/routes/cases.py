@@ -19,6 +19,7 @@ from service.routes.media_types import JSON
 from service.routes.refusals import documented
 from service.schemas import Case
 from service.schemas.model import BoundaryModel
+from service.schemas.offers import ExampleBody
 from service.schemas.reading import validated
 from service.worker.process import on_demand
 
@@ -52,15 +53,6 @@ class TomlBody(BoundaryModel):
 class CaseBody(BaseModel):
     """A case with all defaults."""
 
-    case: dict[str, Any]
-
-
-class ExampleBody(BaseModel):
-    """A case to begin with."""
-
-    name: str
-    title: str
-    note: str
     case: dict[str, Any]
 
 

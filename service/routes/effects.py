@@ -3,22 +3,11 @@
 from __future__ import annotations
 
 from fastapi import APIRouter
-from pydantic import BaseModel
 
 from service.loading import LOADING
+from service.schemas.offers import EffectBody
 
 router = APIRouter(tags=["effects"])
-
-
-class EffectBody(BaseModel):
-    """The declaration of an effect."""
-
-    name: str
-    needs: list[str]
-    adds: list[str]
-    cost: str
-    sources: list[str]
-    valid_for: str
 
 
 @router.get("/effects", summary="Optional physics")

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import asyncio
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Query, Request
-from pydantic import BaseModel, Field
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
@@ -16,6 +15,7 @@ from service.routes.context import Ctx
 from service.routes.refusals import documented
 from service.routes.response_headers import described_headers
 from service.routes.results import HASH, Key, known_result
+from service.schemas.report import ReportBody
 from service.version import program_tag
 
 FIGURES = "service.report.as_json:stored_figures"
@@ -23,18 +23,6 @@ COMPARISON = "service.comparison.as_json:stored_comparison"
 _VERSION = ("ETag", "Cache-Control")
 
 router = APIRouter(tags=["results"])
-
-
-class ReportBody(BaseModel):
-    """A report: main results, and sections with figures and tables."""
-
-    title: str
-    lead: str
-    alarms: list[str]
-    headlines: list[dict[str, str]]
-    sections: list[dict[str, Any]] = Field(
-        description="title, text, figures (key, title, caption, alternative, plot, table), tables, folded"
-    )
 
 
 @router.get(

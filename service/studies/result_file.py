@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import reduce
+from operator import or_
 from pathlib import Path
 from typing import Any
 
@@ -23,12 +25,15 @@ class ResultFile:
         That it has in such files.
     write, read : callable
         Result and path to the file, and back; `read` raises the libraries' errors or ValueError.
+    result : type
+        What `read` returns, as an annotation: the client's types are written from it.
     """
 
     attribute: str
     values: tuple[str, ...]
     write: Callable[[Any, Path], object]
     read: Callable[[Path], Any]
+    result: Any
 
     def holds(self, attributes: Mapping[str, object]) -> bool:
         """Whether a file with these attributes is one."""
@@ -37,7 +42,7 @@ class ResultFile:
 
 def array_file(kind: type[ArrayFile]) -> ResultFile:
     """Return the file of a result of dynamics that has its own table of fields."""
-    return ResultFile("schema", (kind.SCHEMA,), kind.to_netcdf, kind.from_netcdf)
+    return ResultFile("schema", (kind.SCHEMA,), kind.to_netcdf, kind.from_netcdf, kind)
 
 
 def record_file(*kinds: tuple[str, type]) -> ResultFile:
@@ -48,4 +53,5 @@ def record_file(*kinds: tuple[str, type]) -> ResultFile:
         schema = next(name for name, kind in by_schema.items() if type(result) is kind)
         write_record(result, file, schema)
 
-    return ResultFile("schema", tuple(by_schema), write, lambda file: read_record(file, by_schema))
+    result = reduce(or_, by_schema.values())
+    return ResultFile("schema", tuple(by_schema), write, lambda file: read_record(file, by_schema), result)

@@ -46,7 +46,7 @@ def scene(tmp_path: Path) -> SceneInput:
 
 def test_the_ablation_of_a_case_is_that_of_python(served: Served, tmp_path: Path) -> None:
     seen: list[JobState] = []
-    told = figures_alone(served.client.ablate(CASE, seen.append, only=ONLY))
+    told = figures_alone(served.client.ablate.submit(CASE, only=ONLY).figures(seen.append))
     here = ablation_of(validated(Case, CASE), Inputs(only=tuple(ONLY)), Means(tmp_path, lambda *_: None))
     assert [effect["name"] for effect in told["effects"]] == ["tooth_coupling"]
     assert told["left_out"] == {"misalignment": "the gears are aligned"}
@@ -58,7 +58,7 @@ def test_the_ablation_of_a_case_is_that_of_python(served: Served, tmp_path: Path
 
 
 def test_it_is_served_as_figures_and_as_its_file(served: Served) -> None:
-    told = served.client.ablate(CASE, only=ONLY)
+    told = served.client.ablate.submit(CASE, only=ONLY).figures()
     job = served.client.submit("ablate", {"case": CASE, "only": ONLY[::-1]})  # the same question: stored
     assert job.status == "successful"
     served.has_figures_and_file("ablation", told, job.id)
@@ -88,7 +88,7 @@ def test_the_ablation_of_a_scene_is_that_of_python(served: Served, scene: SceneI
     overall = [ABLATE.overall(*step) for step in seen]
     assert overall and None not in overall and overall == sorted(overall)  # type: ignore[type-var]
     stored_results(data).put(product.key, product.kind, product.file)
-    told = figures_alone(client.ablate(scene, only=["lateral"]))
+    told = figures_alone(client.ablate.submit(scene, only=["lateral"]).figures())
     tables = {"mesh": SteDatabase.from_netcdf(tmp_path / "ste.nc")}
     means = Means(tmp_path, lambda *_: None)
     here = ablation_of(dynamic_scene(scene, tables), Inputs(only=("lateral",)), means)

@@ -84,7 +84,7 @@ def test_a_long_run_keeps_its_memory_and_ends_when_cancelled(
     given = read_model(SceneInput, scene_file(tmp_path, duration=DURATION, rate=RATE))
     (mesh,) = given.meshes
     mesh = mesh.model_copy(update={"database_file": None, "database_hash": KEY})
-    job = client.submit_scene(given.model_copy(update={"meshes": (mesh,)}))
+    job = client.simulate.submit(given.model_copy(update={"meshes": (mesh,)}))
     until(lambda: written(data) > 2.0)
     (pid,) = workers()
     before, at = resident_bytes(pid), written(data)
@@ -104,5 +104,5 @@ def test_a_long_run_keeps_its_memory_and_ends_when_cancelled(
     assert client.status(job.id).status == "dismissed"
     with pytest.raises(JobDismissed):
         client.result(job.id)
-    again = client.submit_scene(given.model_copy(update={"meshes": (mesh,)}))
+    again = client.simulate.submit(given.model_copy(update={"meshes": (mesh,)}))
     assert again.id != job.id and client.dismiss(again.id).status == "dismissed"

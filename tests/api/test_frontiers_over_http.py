@@ -55,7 +55,7 @@ def worked(inputs: dict[str, Any], workspace: Path, data: Path) -> tuple[dict[st
 
 def test_the_ladder_of_a_case_is_that_of_python(served: Served, tmp_path: Path) -> None:
     seen: list[JobState] = []
-    told = figures_alone(served.client.frontier(CASE, seen.append, rungs=CLOSED))
+    told = figures_alone(served.client.frontier.submit(CASE, rungs=CLOSED).figures(seen.append))
     here = frontier_of(validated(Case, CASE), Inputs(rungs=tuple(CLOSED)), Means(tmp_path, lambda *_: None))
     assert [rung["name"] for rung in told["rungs"]] == CLOSED
     assert told["rungs"][0]["mean_error"] > 1e-3 and told["reference"] == "thin_slices"
@@ -67,7 +67,7 @@ def test_the_ladder_of_a_case_is_that_of_python(served: Served, tmp_path: Path) 
 
 
 def test_it_is_served_as_figures_and_as_its_file(served: Served) -> None:
-    told = served.client.frontier(CASE, rungs=CLOSED)
+    told = served.client.frontier.submit(CASE, rungs=CLOSED).figures()
     job = served.client.submit("frontier", {"case": CASE, "rungs": CLOSED[::-1]})  # the same question: stored
     assert job.status == "successful"
     served.has_figures_and_file("frontier", told, job.id)
@@ -82,7 +82,7 @@ def test_the_ladder_of_a_scene_is_that_of_python(served: Served, scene: SceneInp
     made, progress = worked(inputs, tmp_path, data)
     assert progress == sorted(progress) and len(progress) == len(rungs) + 1
     stored_results(data).put(FRONTIER.key(inputs), "frontier", tmp_path / "frontier.nc")
-    told = figures_alone(client.frontier(scene, rungs=rungs))
+    told = figures_alone(client.frontier.submit(scene, rungs=rungs).figures())
     tables = {"mesh": SteDatabase.from_netcdf(tmp_path / "ste.nc")}
     means = Means(tmp_path, lambda *_: None)
     here = frontier_of(dynamic_scene(scene, tables), Inputs(rungs=tuple(rungs)), means)

@@ -64,7 +64,7 @@ def scene(case: dict[str, Any]) -> dict[str, Any]:
 
 def test_the_service_gives_what_python_gives(client: LineOfActionClient, case: dict[str, Any]) -> None:
     seen: list[JobState] = []
-    served = client.analyze(case, seen.append)
+    served = client.analyze.submit(case).result(seen.append)
     model = validated(Case, case)
     here = ste_database(gear_pair(model), table_axes(model), analysis_options(model), case=case_json(model))
     assert np.array_equal(served.static_transmission_error, here.static_transmission_error)
@@ -130,11 +130,11 @@ def test_a_scene_that_cannot_be_is_refused_before_it_is_a_job(
     wrong = copy.deepcopy(scene(case))
     wrong["shafts"][1]["origin_mm"] = [81.0, 0.0, 0.0]
     with pytest.raises(BadInput, match=r"shafts\[1\]\.origin_mm"):
-        client.submit_scene(wrong)
+        client.simulate.submit(wrong)
     wrong = copy.deepcopy(scene(case))
     wrong["meshes"][0]["case"]["pair"]["pinion"]["bore_diameter_mm"] = 95.0
     with pytest.raises(BadInput, match=r"meshes\[0\]\.case\.pair\.pinion\.bore_diameter_mm = 95\.0"):
-        client.submit_scene(wrong)
+        client.simulate.submit(wrong)
 
 
 def test_the_service_opens_no_file_for_a_caller(client: LineOfActionClient, case: dict[str, Any]) -> None:
@@ -151,4 +151,4 @@ def test_a_hash_nobody_knows_is_refused(client: LineOfActionClient, case: dict[s
     del wrong["meshes"][0]["case"]
     wrong["meshes"][0]["database_hash"] = "ab" * 32
     with pytest.raises(BadInput, match="the hash of a stored database"):
-        client.submit_scene(wrong)
+        client.simulate.submit(wrong)

@@ -62,7 +62,7 @@ def untimed(value: Any) -> Any:
 def test_the_optimization_is_that_of_python(served: Served, data: Path) -> None:
     client, http = served
     seen: list[JobState] = []
-    answer = client.optimize(CASE, STUDY, seen.append)
+    answer = client.optimize.submit(CASE, STUDY).figures(seen.append)
     told = figures_alone(answer)
     # on the gears as the job condensed them: linear algebra in more threads sums in another order
     here = optimization_of(validated(Case, CASE), validated(Inputs, STUDY), Means(data, lambda *_: None))
@@ -84,7 +84,7 @@ def test_the_optimization_is_that_of_python(served: Served, data: Path) -> None:
     assert job.status == "successful"
     reference = http.get(f"/v1/jobs/{job.id}/results", params=REFERENCES).json()["optimization"]
     assert http.get(reference["href"]).json() == answer
-    assert client.optimize_file(CASE, STUDY).suffix == ".nc"
+    assert client.optimize.submit(CASE, STUDY).file().suffix == ".nc"
 
 
 @pytest.mark.parametrize(("model", "crowned"), [("plane_strain", False), ("3d", True)])

@@ -45,7 +45,7 @@ def served(data: Path) -> Iterator[tuple[LineOfActionClient, TestClient]]:
 def test_the_pairs_are_those_of_python(served: tuple[LineOfActionClient, TestClient], data: Path) -> None:
     client, http = served
     seen: list[JobState] = []
-    answer = client.scatter(CASE, seen.append, **SAMPLING)
+    answer = client.scatter.submit(CASE, **SAMPLING).figures(seen.append)
     told = figures_alone(answer)
     # on the gears as the job condensed them: linear algebra in more threads sums in another order
     here = draw(validated(Case, CASE), Inputs(**SAMPLING), Means(data, lambda *_: None))

@@ -23,6 +23,7 @@ from dynamics.study import Response, Study, responses_of
 from fe_contact.ste import SteDatabase
 from service.app import create_app
 from service.client import JobState, LineOfActionClient
+from service.client.portable import scene_inputs
 from service.convert.scene import dynamic_scene
 from service.problems import BadInput
 from service.registry import STUDIES
@@ -86,7 +87,7 @@ def test_modes_are_those_of_python(
 ) -> None:
     client, http = served
     seen: list[JobState] = []
-    file = client.modes_file(scene, seen.append, speed_rpm=[0.0, 3000.0], orders=4)
+    file = client.modes.submit(scene, speed_rpm=[0.0, 3000.0], orders=4).file(seen.append)
     found = ModalAnalysis.from_netcdf(file)
     python = modes_of(here(scene, tmp_path), Inputs(speed_rpm=(0.0, 3000.0), orders=4), Means(tmp_path, none))
     for name in ("natural_frequency", "frequency", "critical_speed", "strain_energy"):
@@ -133,7 +134,7 @@ def test_the_work_of_a_study_is_served_as_figures_and_as_its_file(
     overall = [process.overall(*step) for step in seen]
     assert None not in overall and overall == sorted(overall)  # type: ignore[type-var]
     stored_results(data).put(product.key, product.kind, product.file)
-    job = client.submit_scene(scene, process.id, **further)
+    job = client.submit(process.id, scene_inputs(scene) | further)
     assert job.status == "successful"
     found = result.from_netcdf(client.fetch_file(client.result(job.id).key, process.kind))
     answer = http.get(f"/v1/{path}/{product.key}").json()
@@ -144,7 +145,7 @@ def test_a_study_over_http_has_the_bits_of_python_and_keeps_its_worst_run(
     served: tuple[LineOfActionClient, TestClient], scene: SceneInput, tmp_path: Path
 ) -> None:
     client, _ = served
-    made = Study.from_netcdf(client.study_file(scene, STUDY | {"keep_worst": 1}))
+    made = client.study(scene, STUDY | {"keep_worst": 1})
     alone = here(scene, tmp_path)
     values = dict(zip(made.factor, made.value[made.worst[0]].tolist(), strict=True))
     mesh = replace(alone.meshes[0], damping_ratio=values["meshes.mesh.damping_ratio"])
@@ -182,7 +183,7 @@ def test_bad_inputs_are_refused_by_name_before_there_is_a_job(
     client, http = served
     jobs = len(http.get("/v1/jobs").json()["jobs"])
     with pytest.raises(BadInput) as caught:
-        client.submit_scene(scene, process, **further)
+        client.submit(process, scene_inputs(scene) | further)
     assert any(field in fault.field for fault in caught.value.faults), caught.value.faults
     assert len(http.get("/v1/jobs").json()["jobs"]) == jobs
 

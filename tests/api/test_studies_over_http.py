@@ -23,7 +23,6 @@ from service.studies.computation import Means
 from service.studies.flank.run import flank_json, flanks_of
 from service.studies.root_stress import Inputs
 from service.studies.root_stress.run import root_stress_json, root_stress_of
-from service.studies.sensitivity.stored import read_studies
 from service.worker.catalogue import default_registry
 
 FLANK = default_registry()["flank"]
@@ -53,7 +52,7 @@ def served(data: Path) -> Iterator[tuple[LineOfActionClient, TestClient]]:
 def test_flank_results_are_those_of_python(served: tuple[LineOfActionClient, TestClient], data: Path) -> None:
     client, http = served
     seen: list[JobState] = []
-    file = client.flank_file(PLANE, seen.append, torque_n_m=30.0)
+    file = client.flank.submit(PLANE, torque_n_m=30.0).file(seen.append)
     found = LoadDistribution.from_netcdf(file)
     # on the gears as the job condensed them: linear algebra in more threads sums in another order
     here = flanks_of(case_at(validated(Case, PLANE), FlankPoint(torque_n_m=30.0)), data / "compliance")
@@ -83,10 +82,8 @@ def test_equal_questions_in_other_words_are_one_result() -> None:
 def test_a_study_comes_with_all_its_curves(served: tuple[LineOfActionClient, TestClient]) -> None:
     client, http = served
     seen: list[JobState] = []
-    file = client.sensitivity_file(
-        CASE, seen.append, misalignment_um=[20.0], center_distance_change_percent=[0.1]
-    )
-    (study,) = read_studies(file)
+    job = client.sensitivity.submit(CASE, misalignment_um=[20.0], center_distance_change_percent=[0.1])
+    (study,) = job.result(seen.append)
     assert study.name == "20/20"
     for curves in study.curves:
         assert curves.misalignment.deviation == pytest.approx([0.0, 20e-6])
@@ -112,7 +109,7 @@ def test_a_sensitivity_across_the_face_takes_a_case_of_the_plane_there() -> None
 
 def test_the_root_stress_is_that_of_python(served: tuple[LineOfActionClient, TestClient], data: Path) -> None:
     client, http = served
-    found = client.root_stress(PLANE, torque_n_m=30.0)
+    found = client.root_stress.submit(PLANE, torque_n_m=30.0).figures()
     point = FlankPoint(torque_n_m=30.0)
     means = Means(data, lambda *_: None)
     here = root_stress_json(root_stress_of(case_at(validated(Case, PLANE), point), Inputs(), means))

@@ -10,6 +10,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -54,18 +55,33 @@ def _as_a_user(
 
 def test_the_scripts_of_the_page_run_one_after_the_other(capsys: pytest.CaptureFixture[str]) -> None:
     scripts = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
-    assert len(scripts) == 4
-    names: dict[str, object] = {}
+    assert len(scripts) == 13  # the first one, and the recipes
+    names: dict[str, Any] = {}
     printed = []
     for script in scripts:
         exec(compile(script, "docs/client.md", "exec"), names)
         printed.append(capsys.readouterr().out)
-    assert re.search(r"Estimate\(value=2\.\d+e-06, error=.*unit='m'\)", printed[0])
-    assert float(printed[1]) == pytest.approx(100.0 / (0.04 * np.cos(np.radians(20.0))), rel=2e-3)
-    assert "['inside', 'inside', 'inside']" in printed[2]
-    assert names["key"] == names["ste"].metadata.content_hash  # type: ignore[attr-defined]
-    assert printed[3] == ""  # nothing failed
-    assert names["file"].is_file()  # type: ignore[attr-defined]
+    (table, followed, waited, many, awaited, study, arrays, live, before, lists, bars, shown, run_up) = (
+        printed
+    )
+    assert re.search(r"Estimate\(value=2\.\d+e-06, error=.*unit='m'\)", table)
+    assert followed.splitlines()[-1].split()[0] == "successful"
+    assert names["table"].identical(names["ste"])
+    assert waited == "" and names["file"].is_file()  # nothing failed
+    reliefs, ripples = np.array([list(map(float, line.split())) for line in many.splitlines()]).T
+    assert reliefs.tolist() == names["reliefs"]
+    assert float(awaited) == ripples.min() and len(set(ripples)) == len(reliefs)
+    pascals, megapascals, unit = study.split()
+    assert float(pascals) == pytest.approx(1e6 * float(megapascals)) and unit == "Pa"
+    assert "['inside', 'inside', 'inside']" in arrays
+    assert names["key"] == names["ste"].metadata.content_hash
+    assert 0.0 < float(live.split()[1]) < 0.1 * float(live.split()[0])
+    assert "transverse" not in before and "corner_contact" in before
+    assert names["again"].model_dump(mode="json") == names["example"].case
+    assert int(lists.split()[0]) >= 3 and {len(word) for word in lists.split()} & {64}
+    assert "simulate" in bars and names["run"].to_xarray()["mesh_force"].size > 1
+    assert shown == "" and "<svg" in names["report"]._repr_html_()
+    assert float(run_up) == pytest.approx(100.0 / (0.04 * np.cos(np.radians(20.0))), rel=2e-3)
 
 
 def test_the_paper_s_flow_runs_again_without_the_service(

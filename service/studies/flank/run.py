@@ -73,7 +73,9 @@ def flank_json(flanks: LoadDistribution) -> Json:
 RUN = Computation(
     lambda case, _inputs, means: flanks_of(case, means.home / "compliance", means.report),
     flank_json,
-    ResultFile("format", (FORMAT,), LoadDistribution.to_netcdf, LoadDistribution.from_netcdf),
+    ResultFile(
+        "format", (FORMAT,), LoadDistribution.to_netcdf, LoadDistribution.from_netcdf, LoadDistribution
+    ),
     narrowed=case_at,
     check=lambda case, _inputs: check_case(case, whole_table=False),
     normalized=lambda _case, _inputs: {},

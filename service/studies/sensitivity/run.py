@@ -145,7 +145,7 @@ def _ripple_json(curve: RippleCurve) -> Json:
 RUN = Computation(
     study_case,
     studies_json,
-    ResultFile("format", (FORMAT,), write_studies, read_studies),
+    ResultFile("format", (FORMAT,), write_studies, read_studies, tuple[PairStudy, ...]),
     narrowed=across_face,
     check=check_study,
     joined=joined,

@@ -152,7 +152,7 @@ def test_a_bad_case_is_refused_before_anything_is_sent(tmp_path: Path) -> None:
 
     wrong = CASE | {"load": {"torque_n_m": [float("nan")]}}
     with pytest.raises(BadInput, match=r"load\.torque_n_m\[0\] = nan"):
-        against(silent, tmp_path).submit_case(wrong)
+        against(silent, tmp_path).analyze.submit(wrong)
 
 
 def test_unknown_results_and_jobs_are_not_found(client: LineOfActionClient) -> None:

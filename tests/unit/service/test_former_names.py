@@ -6,7 +6,7 @@ import pytest
 import typer
 
 from service.cli.commands import app
-from service.client.studies import Studies
+from service.client.processes import Processes
 from service.registry import FORMER, STUDIES
 from service.worker.catalogue import default_registry
 
@@ -16,7 +16,7 @@ def test_a_former_name_is_the_present_one(former: str, name: str) -> None:
     processes = default_registry()
     assert former in processes
     assert processes[former] is processes[name]
-    assert getattr(Studies, former) is getattr(Studies, name)
+    assert getattr(Processes, former) is getattr(Processes, name)
     verbs = typer.main.get_command(app)
     context = typer.Context(verbs)
     assert verbs.get_command(context, former).name == verbs.get_command(context, name).name == name

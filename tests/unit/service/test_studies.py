@@ -11,7 +11,7 @@ from typer.main import get_command
 
 from service.cli.commands import app
 from service.client import LineOfActionClient
-from service.client.study_method import FORMS
+from service.client.offers import offers
 from service.registry import STUDIES, Study, study_of
 from service.report.stored_study import stored_study
 from service.schemas.model import BoundaryModel
@@ -50,13 +50,21 @@ def test_its_verb_has_an_option_for_everything_that_is_varied(study: Study) -> N
 
 
 @EVERY
-@pytest.mark.parametrize("ending", FORMS)
-def test_the_client_has_a_method_that_says_what_it_takes(study: Study, ending: str) -> None:
-    method = getattr(LineOfActionClient, f"{study.package}{ending}")
-    names = list(signature(method).parameters)
-    expected = ["study", "progress"] if study.from_file else ["progress", "options"]
-    assert names == ["self", study.argument, *expected]
-    assert method.__doc__.startswith(study.description)
+def test_the_client_has_a_process_that_says_what_it_takes(study: Study) -> None:
+    with LineOfActionClient("http://127.0.0.1:9") as client:
+        process = getattr(client, study.package)
+    expected = "study" if study.from_file else "options"
+    assert list(signature(process).parameters) == [study.argument, expected]
+    assert process.__doc__ == study.description
+
+
+def test_the_client_has_the_processes_of_the_service_and_no_others() -> None:
+    processes = default_registry()
+    assert list(offers()) == list(processes)
+    for name, offer in offers().items():
+        subject, *_ = offer.signature.parameters
+        known = set(processes[name].inputs.model_fields)
+        assert {subject} <= known or (subject == "given" and {"case", "scene"} <= known)
 
 
 @EVERY

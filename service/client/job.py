@@ -1,0 +1,150 @@
+"""A job of a service, and what it leaves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from service.client.job_calls import JobCalls
+from service.client.report import Report
+from service.client.result_calls import ResultCalls
+from service.client.status import JobState, Result, Watch
+from service.client.steps import Item, Items, Steps
+from service.client.surface import Awaiting, Blocking, Surface, listing, operation
+from service.problems import BadInput, JobDismissed, JobFailed
+
+if TYPE_CHECKING:
+    import xarray
+
+T = TypeVar("T")
+
+
+class _JobCalls(Surface, Generic[T]):
+    """The calls of a job.
+
+    Attributes
+    ----------
+    state : JobState
+        As last seen.
+    """
+
+    def __init__(
+        self, client: Surface, state: JobState, read: Callable[[Path], T], result: Result | None = None
+    ) -> None:
+        self.session, self.state = client.session, state
+        self._read, self._result = read, result
+
+    @property
+    def id(self) -> str:
+        """Identifier of the job."""
+        return self.state.id
+
+    @operation
+    def status(self) -> Steps[JobState]:
+        """Return the state of the job now; one that has ended stays as it is."""
+        if not self.state.ended:
+            self.state = yield from JobCalls.status(self, self.id)
+        return self.state
+
+    @operation
+    def dismiss(self) -> Steps[JobState]:
+        """Cancel the job, unless it has ended; its work ends unless other jobs share it."""
+        if not self.state.ended:
+            self.state = yield from JobCalls.dismiss(self, self.id)
+        return self.state
+
+    @listing
+    def events(self) -> Items[JobState]:
+        """Yield the state now and whenever it changes, until the job has ended; as the client's `events`."""
+        if self.state.ended:
+            yield Item(self.state)
+        else:
+            yield from JobCalls.events(self, self.id)
+
+    @operation
+    def wait(
+        self, progress: Watch | None = None, *, timeout: float | None = None, interval: float = 0.05
+    ) -> Steps[Result]:
+        """Wait for the job; return where its result is; as the client's `wait`."""
+        if self._result is None and self.state.status != "successful":
+            watch = self._seen(progress)
+            self._result = yield from JobCalls.wait(self, self.id, watch, timeout=timeout, interval=interval)
+        elif self._result is None:
+            self._result = yield from JobCalls.result(self, self.id)
+        return self._result
+
+    @operation
+    def result(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[T]:
+        """Wait for the job and return its result, as the libraries have it; raises as `wait`."""
+        return self._read((yield from _JobCalls.file(self, progress, timeout=timeout)))
+
+    @operation
+    def file(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[Path]:
+        """Wait for the job and return its netCDF file in the cache; raises as `wait`."""
+        found = yield from _JobCalls.wait(self, progress, timeout=timeout)
+        return (yield from ResultCalls.fetch_file(self, found.key, found.kind))
+
+    @operation
+    def dataset(
+        self, progress: Watch | None = None, *, timeout: float | None = None
+    ) -> Steps[xarray.Dataset]:
+        """Wait for the job and return its result as arrays with units and names; raises as `wait`."""
+        found = yield from _JobCalls.wait(self, progress, timeout=timeout)
+        return (yield from ResultCalls.fetch_dataset(self, found.key, found.kind))
+
+    @operation
+    def figures(
+        self, progress: Watch | None = None, *, timeout: float | None = None
+    ) -> Steps[dict[str, Any]]:
+        """Wait for the job and return the JSON document of its result; raises as `wait`."""
+        found = yield from _JobCalls.wait(self, progress, timeout=timeout)
+        return (yield from ResultCalls.fetch_figures(self, found.key, found.kind))
+
+    @operation
+    def report(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[Report]:
+        """Wait for the job and return the report on its result; notebooks show it; raises as `wait`."""
+        found = yield from _JobCalls.wait(self, progress, timeout=timeout)
+        return (yield from ResultCalls.report(self, found.key))
+
+    def ending(self) -> Steps[Result | None]:
+        """Wait until the job has ended and its file is cached; None without, and `result` raises why."""
+        with suppress(BadInput, JobFailed, JobDismissed):
+            yield from _JobCalls.file(self)
+            return self._result
+        return None
+
+    def _seen(self, progress: Watch | None) -> Watch:
+        """Return a watch that keeps the state and passes it on."""
+
+        def see(state: JobState) -> None:
+            self.state = state
+            watch = progress or self.session.progress
+            if watch is not None:
+                watch(state)
+
+        return see
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.id} {self.state.process} {self.state.status}>"
+
+
+class Job(_JobCalls[T], Blocking):
+    """A job whose calls block."""
+
+    def __init__(
+        self, client: Blocking, state: JobState, read: Callable[[Path], T], result: Result | None = None
+    ) -> None:
+        super().__init__(client, state, read, result)
+        self.driver = client.driver
+
+
+class AsyncJob(_JobCalls[T], Awaiting):
+    """A job whose calls are awaited."""
+
+    def __init__(
+        self, client: Awaiting, state: JobState, read: Callable[[Path], T], result: Result | None = None
+    ) -> None:
+        super().__init__(client, state, read, result)
+        self.driver = client.driver

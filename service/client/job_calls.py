@@ -1,0 +1,184 @@
+"""The jobs of a service: submit, look, wait, list, dismiss; whatever the processes compute."""
+
+from __future__ import annotations
+
+import math
+import uuid
+import warnings
+from collections.abc import Sequence
+from typing import Any
+
+from service.client.events import job_events
+from service.client.paging import pages
+from service.client.status import JobState, OfflineWarning, Result, Watch
+from service.client.steps import Items, Steps
+from service.client.surface import Surface, listing, operation
+from service.client.waiting import Pace, ended
+from service.problems import BadInput, ServiceError, Unreachable
+from service.version import solver_version
+
+_LONGEST_PAUSE_S = 2.0
+_REFERENCES = {"response": "document", "transmissionMode": "reference"}
+"""Whatever form a job was submitted with: say where its result is."""
+
+
+class JobCalls(Surface):
+    """The steps of any process, by identifiers of jobs; inputs are JSON."""
+
+    @operation
+    def submit(self, process: str, inputs: dict[str, Any]) -> Steps[JobState]:
+        """Enter a job; equal work is done once, whoever asks for it.
+
+        However often the network makes it be sent, it is one job: it carries an ``Idempotency-Key``.
+
+        Raises
+        ------
+        BadInput
+            The inputs cannot be used.
+        QueueFull, Unreachable, ServiceError
+        """
+        path, headers = f"/v1/processes/{process}/execution", {"Idempotency-Key": str(uuid.uuid4())}
+        body = {"inputs": inputs}
+        try:
+            return (
+                yield from self.session.exchange.read(
+                    JobState.from_json, "POST", path, json=body, headers=headers
+                )
+            )
+        except BadInput as error:
+            yield from self._note_other_version(error)
+            raise
+
+    @operation
+    def version(self) -> Steps[str]:
+        """Return the version of the service."""
+        return (yield from self.session.exchange.read(lambda facts: str(facts["version"]), "GET", "/v1/"))
+
+    @operation
+    def status(self, job: str) -> Steps[JobState]:
+        """Return the state of a job."""
+        return (yield from self.session.exchange.read(JobState.from_json, "GET", f"/v1/jobs/{job}"))
+
+    @operation
+    def dismiss(self, job: str) -> Steps[JobState]:
+        """Cancel a job; its work ends unless other jobs share it."""
+        return (yield from self.session.exchange.read(JobState.from_json, "DELETE", f"/v1/jobs/{job}"))
+
+    @listing
+    def jobs(
+        self,
+        *,
+        process: Sequence[str] = (),
+        status: Sequence[str] = (),
+        created: str = "../..",
+        limit: int | None = None,
+    ) -> Items[JobState]:
+        """Yield the states of jobs, the newest first; pages are fetched as they are needed.
+
+        Parameters
+        ----------
+        process, status : sequence of str
+            Only these; default: all.
+        created : str
+            An RFC 3339 instant, or an interval ``start/end`` with ``..`` for an open end.
+        limit : int, optional
+            Most jobs to yield; default: all.
+        """
+        wanted = {"processID": list(process), "status": list(status), "datetime": created}
+        yield from pages(self.session.exchange, "/v1/jobs", "jobs", JobState.from_json, wanted, limit)
+
+    @listing
+    def events(self, job: str) -> Items[JobState]:
+        """Yield the state of a job now and whenever it changes, until it has ended.
+
+        Raises
+        ------
+        NotFound
+        QueueFull
+            The service serves as many streams as it may.
+        Unreachable
+            The service was away for longer than the client's patience.
+        """
+        yield from job_events(self.session.exchange, job, self.session.patience)
+
+    @operation
+    def wait(
+        self,
+        job: str,
+        progress: Watch | None = None,
+        *,
+        timeout: float | None = None,
+        interval: float = 0.05,
+    ) -> Steps[Result]:
+        """Wait for a job and return where its result is. Whatever ends the wait, the job continues.
+
+        Parameters
+        ----------
+        job : str
+            Its identifier.
+        progress : callable, optional
+            Called with every state seen; default: that of the client.
+        timeout : float, optional
+            Seconds to wait at most.
+        interval : float
+            Seconds between the first two looks; later pauses grow, to 2 s.
+
+        Raises
+        ------
+        BadInput, JobFailed, JobDismissed
+            The job ended without a result.
+        StillRunning
+            It did not end within `timeout`; a TimeoutError too.
+        Unreachable
+            The service was away for longer than the client's patience.
+        """
+        watch = progress or self.session.progress
+
+        def look() -> Steps[JobState]:
+            state = yield from JobCalls.status(self, job)
+            if watch is not None:
+                watch(state)
+            return state
+
+        longest = math.inf if timeout is None else timeout
+        yield from ended(job, look, Pace(interval, _LONGEST_PAUSE_S, longest, self.session.patience))
+        return (yield from JobCalls.result(self, job))
+
+    @operation
+    def result(self, job: str) -> Steps[Result]:
+        """Return where the result of a job is; raises as `wait`, or `ResultNotReady`."""
+        path = f"/v1/jobs/{job}/results"
+        return (yield from self.session.exchange.read(Result.from_json, "GET", path, params=_REFERENCES))
+
+    @operation
+    def obtain(self, process: str, inputs: dict[str, Any], progress: Watch | None = None) -> Steps[Result]:
+        """Return where the result of inputs is, computed if need be: submit, wait.
+
+        When the service cannot be reached, the result that it gave for the same inputs before is taken, if
+        its file is in the cache; an `OfflineWarning` says so. Raises as `submit` and `wait`.
+        """
+        service, cache = self.session.exchange.base_url, self.session.cache
+        try:
+            state = yield from JobCalls.submit(self, process, inputs)
+            result = yield from JobCalls.wait(self, state.id, progress)
+        except Unreachable:
+            known = cache.recall(service, process, inputs)
+            if known is None:
+                raise
+            text = f"No service answers at {service}: the {known.kind} is from the cache."
+            warnings.warn(text, OfflineWarning, stacklevel=6)
+            return known
+        cache.remember(service, process, inputs, result)
+        return result
+
+    def _note_other_version(self, error: BadInput) -> Steps[None]:
+        """Add to a refusal that client and service are of different versions, if they are."""
+        try:
+            theirs = yield from JobCalls.version(self)
+        except ServiceError:
+            return
+        if theirs != solver_version():
+            error.add_note(
+                f"The service is version {theirs}, this client {solver_version()}: they "
+                "may differ. Install the version of the service."
+            )

@@ -1,0 +1,95 @@
+"""What a service says before anything is computed: plans, drawings, examples, effects, files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from pydantic import TypeAdapter
+
+from service.client.portable import CaseLike, SceneLike, case_inputs, scene_inputs
+from service.client.steps import Steps
+from service.client.surface import Surface, operation
+from service.schemas import Case, validated
+from service.schemas.offers import EffectBody, ExampleBody
+from service.schemas.outline import OutlineBody
+from service.schemas.plan import PlanBody
+from service.schemas.scene import SceneInput
+
+T = TypeVar("T")
+_EFFECTS, _EXAMPLES = TypeAdapter(tuple[EffectBody, ...]), TypeAdapter(tuple[ExampleBody, ...])
+
+
+class LookupCalls(Surface):
+    """Answers that need no job."""
+
+    @operation
+    def plan(self, case: CaseLike, *, time_budget_s: float | None = None) -> Steps[PlanBody]:
+        """Return what the analysis of a case will be, cost and be wrong by.
+
+        Parameters
+        ----------
+        case : model, mapping or Path
+        time_budget_s : float, optional
+            CPU seconds that may be spent.
+        """
+        inputs = case_inputs(case) | {"time_budget_s": time_budget_s}
+        return (yield from self._answer("/v1/plans", {"inputs": inputs}, PlanBody.model_validate))
+
+    @operation
+    def outline(self, case: CaseLike) -> Steps[OutlineBody]:
+        """Return the drawing of both gears, the path of contact and the figures of the pair."""
+        body = {"inputs": case_inputs(case)}
+        return (yield from self._answer("/v1/cases/outline", body, OutlineBody.model_validate))
+
+    @operation
+    def examples(self) -> Steps[tuple[ExampleBody, ...]]:
+        """Return cases to begin with."""
+        exchange = self.session.exchange
+        return (yield from exchange.read(_EXAMPLES.validate_python, "GET", "/v1/examples"))
+
+    @operation
+    def effects(self) -> Steps[tuple[EffectBody, ...]]:
+        """Return the optional physics, which a case switches in its table ``[effects]``."""
+        return (yield from self.session.exchange.read(_EFFECTS.validate_python, "GET", "/v1/effects"))
+
+    @operation
+    def case_from_toml(self, toml: str) -> Steps[Case]:
+        """Return the case in the text of a case file; raises `BadInput` with the lines at fault."""
+        return (yield from self._answer("/v1/cases/from-toml", {"toml": toml}, _case))
+
+    @operation
+    def case_to_toml(self, case: CaseLike) -> Steps[str]:
+        """Return a case with all defaults as the text of a case file."""
+        body = {"inputs": case_inputs(case)}
+        return (yield from self._answer("/v1/cases/to-toml", body, _text))
+
+    @operation
+    def scene_from_toml(self, toml: str) -> Steps[SceneInput]:
+        """Return the scene in the text of a scene file; raises `BadInput` with the lines at fault."""
+        return (yield from self._answer("/v1/scenes/from-toml", {"toml": toml}, _scene))
+
+    @operation
+    def scene_to_toml(self, scene: SceneLike) -> Steps[str]:
+        """Return a scene, its case files written out, as the text of a scene file."""
+        body = {"inputs": scene_inputs(scene)}
+        return (yield from self._answer("/v1/scenes/to-toml", body, _text))
+
+    def _answer(self, path: str, body: dict[str, Any], reader: Callable[[Any], T]) -> Steps[T]:
+        """Return what `reader` makes of the answer to a body."""
+        return (yield from self.session.exchange.read(reader, "POST", path, json=body))
+
+
+def _case(answer: dict[str, Any]) -> Case:
+    """Read a case."""
+    return validated(Case, answer["case"])
+
+
+def _scene(answer: dict[str, Any]) -> SceneInput:
+    """Read a scene."""
+    return validated(SceneInput, answer["scene"])
+
+
+def _text(answer: dict[str, Any]) -> str:
+    """Read the text of a file."""
+    return str(answer["toml"])

@@ -1,0 +1,136 @@
+# Written by scripts/client_types.py from service.registry: do not edit.
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Concatenate, Literal, ParamSpec, TypeVar
+
+from dynamics.ablation.ablate import Ablation as DynamicsAblation
+from dynamics.accuracy.frontier import Frontier as DynamicsFrontier
+from dynamics.linearize.forced_response import ForcedResponse as DynamicsForcedResponse
+from dynamics.linearize.modal_analysis import ModalAnalysis as DynamicsModalAnalysis
+from dynamics.periodic.steady_states import SteadyStates as DynamicsSteadyStates
+from dynamics.results import RunResult
+from dynamics.study.result import Study as DynamicsStudy
+from fe_contact.analysis.flanks.load_distribution import LoadDistribution as FeContactLoadDistribution
+from fe_contact.analysis.studies.ablation import Ablation as FeContactAblation
+from fe_contact.analysis.studies.frontier import Frontier as FeContactFrontier
+from fe_contact.microgeometry.optimization import Optimization as FeContactOptimization
+from fe_contact.microgeometry.tolerance_study import ToleranceStudy as FeContactToleranceStudy
+from fe_contact.ste import SteDatabase
+from service.client.portable import CaseLike, SceneLike
+from service.client.process import Offered
+from service.client.surface import Surface
+from service.studies.root_stress.run import Roots as ServiceRoots
+from service.studies.sensitivity.stored import PairStudy as ServicePairStudy
+from service.studies.sweep.run import SweepResult as ServiceSweepResult
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+def _offered(declared: Callable[Concatenate[Any, P], T]) -> Offered[P, T]: ...
+
+class Processes(Surface):
+    @_offered
+    def analyze(self, case: CaseLike) -> SteDatabase: ...
+    @_offered
+    def simulate(self, scene: SceneLike) -> RunResult: ...
+    @_offered
+    def flank(
+        self,
+        case: CaseLike,
+        *,
+        torque_n_m: float | None = ...,
+        normal_force_n: float | None = ...,
+        misalignment_um: float | None = ...,
+        center_distance_change_mm: float | None = ...,
+    ) -> FeContactLoadDistribution: ...
+    @_offered
+    def ablate(
+        self,
+        given: CaseLike | SceneLike,
+        *,
+        only: Sequence[str] | None = ...,
+    ) -> FeContactAblation | DynamicsAblation: ...
+    @_offered
+    def frontier(
+        self,
+        given: CaseLike | SceneLike,
+        *,
+        rungs: Sequence[str] | None = ...,
+        up_to: Literal["corrected_fine", "3d_draft", "3d_standard", "3d_fine"] = ...,
+        full_contact: int | None = ...,
+    ) -> FeContactFrontier | DynamicsFrontier: ...
+    @_offered
+    def sensitivity(
+        self,
+        case: CaseLike,
+        *,
+        misalignment_um: Sequence[float] = ...,
+        center_distance_change_percent: Sequence[float] = ...,
+    ) -> tuple[ServicePairStudy, ...]: ...
+    @_offered
+    def root_stress(
+        self,
+        case: CaseLike,
+        *,
+        torque_n_m: float | None = ...,
+        normal_force_n: float | None = ...,
+        misalignment_um: float | None = ...,
+        center_distance_change_mm: float | None = ...,
+    ) -> ServiceRoots: ...
+    @_offered
+    def optimize(
+        self,
+        case: CaseLike,
+        study: Mapping[str, Any],
+    ) -> FeContactOptimization: ...
+    @_offered
+    def scatter(
+        self,
+        case: CaseLike,
+        *,
+        tolerance_class: int = ...,
+        misalignment_um: float = ...,
+        distribution: Literal["normal", "uniform"] = ...,
+        samples: int = ...,
+        seed: int = ...,
+    ) -> FeContactToleranceStudy: ...
+    @_offered
+    def sweep(
+        self,
+        case: CaseLike,
+        *,
+        over: Sequence[str] = ...,
+        show: Sequence[Literal["peak_to_peak", "harmonic_1", "harmonic_2", "harmonic_3", "max_pressure", "face_load_factor"]] = ...,
+    ) -> ServiceSweepResult: ...
+    @_offered
+    def modes(
+        self,
+        scene: SceneLike,
+        *,
+        speed_rpm: Sequence[float] = ...,
+        orders: int = ...,
+        highest_frequency_hz: float | None = ...,
+    ) -> DynamicsModalAnalysis: ...
+    @_offered
+    def response(
+        self,
+        scene: SceneLike,
+        *,
+        speed_rpm: Sequence[float],
+        orders: int = ...,
+    ) -> DynamicsForcedResponse: ...
+    @_offered
+    def steady(
+        self,
+        scene: SceneLike,
+        *,
+        speed_rpm: Sequence[float],
+        branch: bool = ...,
+        repeat: int = ...,
+        settling_periods: int = ...,
+    ) -> DynamicsSteadyStates: ...
+    @_offered
+    def study(
+        self,
+        scene: SceneLike,
+        study: Mapping[str, Any],
+    ) -> DynamicsStudy: ...

@@ -1,0 +1,220 @@
+"""Stored results: their files, their figures, and what the service answers from them."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from service.client.cache import FIGURES
+from service.client.libraries import libraries
+from service.client.offers import ANALYZE
+from service.client.paging import pages
+from service.client.raw_columns import Column, query_columns, read_answer
+from service.client.report import Report
+from service.client.steps import Items, Steps
+from service.client.surface import Session, Surface, listing, operation
+from service.problems import DamagedFile, NotFound
+from service.registry import JSON, NETCDF
+from service.schemas.database_list import DatabaseEntry
+from service.schemas.live_answer import LiveOutput
+from service.schemas.query import QueryOutput
+from service.schemas.result_kinds import RESULT_KINDS, RESULTS, SUFFIX
+
+if TYPE_CHECKING:
+    import xarray
+
+    from fe_contact.ste import SteDatabase
+
+
+class ResultCalls(Surface):
+    """Stored results by their content hashes; a cached one needs no service."""
+
+    @listing
+    def databases(self, *, limit: int | None = None) -> Items[DatabaseEntry]:
+        """Yield the stored STE databases with their cases, the newest first, at most `limit`."""
+        yield from pages(
+            self.session.exchange, "/v1/databases", "databases", DatabaseEntry.model_validate, {}, limit
+        )
+
+    @operation
+    def fetch(self, key: str) -> Steps[SteDatabase]:
+        """Return the STE database of a content hash."""
+        file = yield from ResultCalls.fetch_file(self, key)
+        database: SteDatabase = ANALYZE.read(file)
+        return database
+
+    @operation
+    def fetch_dataset(self, key: str, kind: str = "database") -> Steps[xarray.Dataset]:
+        """Return a netCDF result as an xarray Dataset in memory, with units and names (SI).
+
+        Parameters
+        ----------
+        key : str
+            Its content hash.
+        kind : str
+            A name of `service.schemas.result_kinds.RESULT_KINDS`.
+        """
+        with libraries():
+            import xarray  # noqa: PLC0415 (keeps the import of the client light)
+
+        file = yield from ResultCalls.fetch_file(self, key, kind)
+        return xarray.load_dataset(file, engine="h5netcdf")
+
+    @operation
+    def fetch_file(self, key: str, kind: str = "database") -> Steps[Path]:
+        """Return the netCDF file of a result, from the disk cache or the service.
+
+        The file belongs to the cache: read it, or copy it.
+
+        Raises
+        ------
+        NotFound
+            The service has no such result.
+        DamagedFile
+            What arrived is not what was sent.
+        BadInput
+            The cache cannot be written.
+        """
+        file, _ = yield from ResultCalls.fetch_result(self, key, kind)
+        return file
+
+    @operation
+    def fetch_figures(self, key: str, kind: str) -> Steps[dict[str, Any]]:
+        """Return the JSON document of a result, as its verb prints it by ``--json``; as `fetch_file`."""
+        file, _ = yield from _fetched(self.session, key, (kind,), JSON)
+        figures: dict[str, Any] = json.loads(file.read_bytes())
+        return figures
+
+    @operation
+    def fetch_result(self, key: str, *kinds: str) -> Steps[tuple[Path, str]]:
+        """Return the file of a result of one of some kinds, default all, and its kind; as `fetch_file`."""
+        return (yield from _fetched(self.session, key, kinds or tuple(RESULT_KINDS), NETCDF))
+
+    @operation
+    def report(self, key: str, *, against: str | None = None) -> Steps[Report]:
+        """Return the report on a result: main results, figures for plotly.js, tables; notebooks show it.
+
+        Parameters
+        ----------
+        key : str
+            Its content hash.
+        against : str, optional
+            Another result of the same kind, table or run: the report then compares both.
+        """
+        parameters = {} if against is None else {"against": against}
+        path = f"{RESULTS}/{key}/figures"
+        return (yield from self.session.exchange.read(Report.model_validate, "GET", path, params=parameters))
+
+    @operation
+    def query(
+        self,
+        key: str,
+        position: Column,
+        deflection_um: Column,
+        *,
+        misalignment_um: Column = 0.0,
+        center_distance_change_mm: Column = 0.0,
+    ) -> Steps[QueryOutput]:
+        """Return force, tangent stiffness and validity of a stored database at many points.
+
+        Every column (a list, an array) has a value for each point, or one for all. Sent and answered as raw
+        float64, so nothing is rounded.
+
+        Raises
+        ------
+        BadInput
+            Columns of different lengths, too many points, a value that is not finite or out of bounds.
+        NotFound, Unreachable, ServiceError
+        """
+        columns = {
+            "position": position,
+            "deflection_um": deflection_um,
+            "misalignment_um": misalignment_um,
+            "center_distance_change_mm": center_distance_change_mm,
+        }
+        path, content = f"/v1/databases/{key}/query", query_columns(columns)
+        raw = yield from self.session.exchange.columns(path, content, columns=",".join(columns))
+        return read_answer(raw)
+
+    @operation
+    def ste(
+        self,
+        key: str,
+        torque_n_m: Sequence[float],
+        *,
+        misalignment_um: float = 0.0,
+        center_distance_change_mm: float = 0.0,
+        pinion: Mapping[str, Any] | None = None,
+        wheel: Mapping[str, Any] | None = None,
+        derivatives: bool = False,
+        flanks: bool = False,
+        condense: bool = False,
+        caller: str | None = None,
+    ) -> Steps[LiveOutput]:
+        """Return curves of the gears of a stored database with other flanks, loads and alignment, at once.
+
+        Parameters
+        ----------
+        key : str
+            Of the database.
+        torque_n_m : sequence of float
+            Increasing, at most twice the highest of the case.
+        misalignment_um, center_distance_change_mm : float
+        pinion, wheel : mapping, optional
+            Flank modifications as in a case file (``tip_relief_um`` ...); what is left out is as in the case.
+        derivatives : bool
+            Also return the derivatives of each curve by its flanks, the misalignment and the torque.
+        flanks : bool
+            Also return pressure over the driving gear's flank, load over the face, K_Hbeta.
+        condense : bool
+            Compute the compliance first if the service has none in its cache.
+        caller : str, optional
+            Name of the caller: a later request replaces its waiting one (`Superseded`).
+
+        Returns
+        -------
+        LiveOutput
+            ``curves`` with mean, peak-to-peak and harmonics, each with its error; assumptions; cost.
+
+        Raises
+        ------
+        BadInput
+            Named by the fields of the request.
+        NotAnalyzed
+            The compliance is not in the cache of the service: repeat with `condense`.
+        NotFound, QueueFull, Superseded, LiveUnavailable, Unreachable, ServiceError
+        """
+        question = {
+            "torque_n_m": list(torque_n_m),
+            "misalignment_um": misalignment_um,
+            "center_distance_change_mm": center_distance_change_mm,
+            "pinion": dict(pinion or {}),
+            "wheel": dict(wheel or {}),
+            "derivatives": derivatives,
+            "flanks": flanks,
+            "condense": condense,
+            "caller": caller,
+        }
+        path = f"/v1/databases/{key}/ste"
+        return (yield from self.session.exchange.read(LiveOutput.model_validate, "POST", path, json=question))
+
+
+def _fetched(session: Session, key: str, kinds: Sequence[str], form: str) -> Steps[tuple[Path, str]]:
+    """Return a form of a result, and its kind."""
+    suffix = FIGURES if form == JSON else SUFFIX
+    for kind in kinds:
+        cached = session.cache.get(kind, key, suffix)
+        if cached is not None:
+            return cached, kind
+    with session.cache.incoming() as file:
+        digest, headers = yield from session.exchange.download(f"{RESULTS}/{key}", form, file)
+        kind = headers.get("result-kind", kinds[0])
+        if kind not in kinds:
+            raise NotFound(f"Result {key!r} is no {kinds[0]}, but of the kind {kind}.")
+        coded = base64.b64encode(bytes.fromhex(digest)).decode()
+        if headers.get("content-digest") != f"sha-256=:{coded}:":
+            raise DamagedFile(f"The file of {kind} {key} was damaged in transfer. Fetch it again.")
+        return session.cache.keep(kind, key, file, digest, suffix), kind

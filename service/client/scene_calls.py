@@ -1,0 +1,67 @@
+"""Scenes of dynamics on the tables of a service."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from service.client.job_calls import JobCalls
+from service.client.libraries import libraries
+from service.client.mesh_tables import MeshTables
+from service.client.offers import ANALYZE
+from service.client.portable import CaseLike, SceneLike, case_inputs, scene_of
+from service.client.process import obtained
+from service.client.result_calls import ResultCalls
+from service.client.steps import Steps
+from service.client.surface import Surface, operation
+from service.schemas import Case
+
+if TYPE_CHECKING:
+    from dynamics.scene import Scene
+    from fe_contact.ste import SteDatabase
+
+
+class ServiceTables:
+    """A service as the source of a scene's STE databases."""
+
+    def __init__(self, client: Surface) -> None:
+        self._client = client
+
+    def by_hash(self, key: str) -> Steps[SteDatabase]:
+        """Return the database of a content hash."""
+        return ResultCalls.fetch(self._client, key)
+
+    def by_case(self, case: Case) -> Steps[SteDatabase]:
+        """Return the database of a case."""
+        return obtained(self._client, ANALYZE, case_inputs(case))
+
+
+class SceneCalls(Surface):
+    """Scenes on the tables of a service."""
+
+    @operation
+    def analysis_key(self, case: CaseLike) -> Steps[str]:
+        """Return the content hash of a case's database, after it has been computed."""
+        result = yield from JobCalls.obtain(self, ANALYZE.name, case_inputs(case))
+        return result.key
+
+    @operation
+    def scene(self, scene: SceneLike) -> Steps[Scene]:
+        """Return a scene in SI on tables of the service, for a local run by `dynamics.simulation.simulate`.
+
+        Its meshes take their tables by ``case``, ``case_file``, ``database_hash`` or ``database_file``; those
+        of cases are as from `analyze`, those of files are read here.
+
+        Raises
+        ------
+        BadInput
+            Named by the fields of the scene.
+        JobFailed, NotFound, Unreachable, ServiceError
+        """
+        inputs, folder = scene_of(scene)
+        source, tables = MeshTables(folder, ServiceTables(self)), {}
+        for index, mesh in enumerate(inputs.meshes):
+            tables[mesh.name] = yield from source.of(index, mesh)
+        with libraries():
+            from service.convert.scene import dynamic_scene  # noqa: PLC0415 (keeps the import of the client light)
+
+        return dynamic_scene(inputs, tables)

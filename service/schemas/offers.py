@@ -1,0 +1,27 @@
+"""What the service offers to begin with: optional physics and examples."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import BaseModel
+
+
+class EffectBody(BaseModel):
+    """The declaration of an effect."""
+
+    name: str
+    needs: list[str]
+    adds: list[str]
+    cost: str
+    sources: list[str]
+    valid_for: str
+
+
+class ExampleBody(BaseModel):
+    """A case to begin with."""
+
+    name: str
+    title: str
+    note: str
+    case: dict[str, Any]

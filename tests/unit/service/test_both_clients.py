@@ -1,0 +1,248 @@
+"""What the blocking and the awaited client share: names, answers, order, bounds, retries."""
+
+from __future__ import annotations
+
+import asyncio
+import inspect
+import time
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import httpx2
+import pytest
+from stored_jobs import StoredJobs, state
+
+from service.client import AsyncJob, AsyncLineOfActionClient, Job, LineOfActionClient
+from service.client.events import EventReader
+from service.problems import BadInput, JobFailed, Unreachable
+
+ADDRESS = "http://127.0.0.1:1"
+
+
+def case(teeth: int) -> dict[str, Any]:
+    """Return a case that its teeth name."""
+    gear = {"face_width_mm": 25.0, "bore_diameter_mm": 40.0}
+    return {
+        "pair": {
+            "normal_module_mm": 4.0,
+            "center_distance_mm": 80.0,
+            "pinion": {"teeth": teeth, **gear},
+            "wheel": {"teeth": 20, **gear},
+        },
+        "load": {"torque_n_m": [10.0, 100.0]},
+    }
+
+
+def public(surface: type) -> dict[str, str]:
+    """Return the signatures of what a surface offers."""
+    names = [name for name in dir(surface) if not name.startswith("_")]
+    calls = {name: getattr(surface, name) for name in names}
+    return {
+        name: str(inspect.signature(call)) if callable(call) else type(call).__name__
+        for name, call in calls.items()
+        if name not in ("driver", "session", "close", "job")  # of the driver
+    }
+
+
+@pytest.mark.parametrize(
+    ("blocking", "awaited"), [(LineOfActionClient, AsyncLineOfActionClient), (Job, AsyncJob)]
+)
+def test_both_have_one_surface(blocking: type, awaited: type) -> None:
+    assert public(blocking) == public(awaited)
+    assert {"submit", "events"} <= set(public(LineOfActionClient)) and {"result"} <= set(public(Job))
+
+
+def test_both_answer_alike(tmp_path: Path) -> None:
+    def blocking() -> list[Any]:
+        transport = httpx2.MockTransport(StoredJobs())
+        with LineOfActionClient(ADDRESS, cache_dir=tmp_path / "a", transport=transport) as client:
+            job = client.analyze.submit(case(20))
+            return [job.file().read_text(), job.state.status, job.wait(), client.status(job.id)]
+
+    async def awaited() -> list[Any]:
+        transport = httpx2.MockTransport(StoredJobs())
+        async with AsyncLineOfActionClient(ADDRESS, cache_dir=tmp_path / "b", transport=transport) as client:
+            job = await client.analyze.submit(case(20))
+            file = await job.file()
+            return [file.read_text(), job.state.status, await job.wait(), await client.status(job.id)]
+
+    assert blocking() == asyncio.run(awaited())
+
+
+@pytest.mark.parametrize("concurrency", [1, 3, 8])
+def test_a_map_keeps_the_order_and_the_bound(tmp_path: Path, concurrency: int) -> None:
+    """Each job is looked at another number of times; none is entered before there is room for it."""
+    teeth = range(12, 40)
+
+    def blocking(network: StoredJobs) -> list[str]:
+        transport = httpx2.MockTransport(network)
+        with LineOfActionClient(ADDRESS, cache_dir=tmp_path / "a", transport=transport) as client:
+            jobs = client.analyze.map(map(case, teeth), concurrency=concurrency)
+            return [job.file().read_text() for job in jobs]
+
+    async def awaited(network: StoredJobs) -> list[str]:
+        transport = httpx2.MockTransport(network)
+        async with AsyncLineOfActionClient(ADDRESS, cache_dir=tmp_path / "b", transport=transport) as client:
+            jobs = client.analyze.map(map(case, teeth), concurrency=concurrency)
+            return [(await job.file()).read_text() async for job in jobs]
+
+    one, other = StoredJobs(), StoredJobs()
+    expected = [f"analyze-{number}" for number in teeth]
+    assert blocking(one) == expected
+    assert asyncio.run(awaited(other)) == expected
+    assert (one.most_running, other.most_running) == (concurrency, concurrency)
+
+
+def test_a_map_takes_its_subjects_as_it_needs_them(tmp_path: Path) -> None:
+    taken: list[int] = []
+
+    def cases() -> Iterator[dict[str, Any]]:
+        for teeth in range(12, 10_000):
+            taken.append(teeth)
+            yield case(teeth)
+
+    with LineOfActionClient(
+        ADDRESS, cache_dir=tmp_path, transport=httpx2.MockTransport(StoredJobs())
+    ) as client:
+        jobs = client.analyze.map(cases(), concurrency=4)
+        for _ in range(5):
+            next(jobs)
+    assert len(taken) <= 5 + 4
+
+
+def test_a_job_that_fails_does_not_end_the_map(tmp_path: Path) -> None:
+    stored = StoredJobs()
+
+    def answer(request: httpx2.Request) -> httpx2.Response:
+        if "analyze-13" in request.url.path:
+            if request.url.path.endswith("/results"):
+                return httpx2.Response(500, json=JobFailed("no mesh").as_json())
+            return httpx2.Response(200, json=state("analyze-13", "failed"))
+        return stored(request)
+
+    with LineOfActionClient(ADDRESS, cache_dir=tmp_path, transport=httpx2.MockTransport(answer)) as client:
+        first, second, third = client.analyze.map(map(case, (12, 13, 14)))
+        assert (first.file().read_text(), third.file().read_text()) == ("analyze-12", "analyze-14")
+        with pytest.raises(JobFailed, match="no mesh"):
+            second.result()
+        with pytest.raises(BadInput, match="teeth"):
+            list(client.analyze.map([case(20), case(-1)]))
+
+
+def test_a_map_asks_nothing_of_what_this_version_gave_before(tmp_path: Path) -> None:
+    network = StoredJobs()
+
+    def mapped() -> list[str]:
+        with LineOfActionClient(
+            ADDRESS, cache_dir=tmp_path, transport=httpx2.MockTransport(network)
+        ) as client:
+            jobs = list(client.analyze.map(map(case, (12, 13))))
+            assert (
+                {job.state.status for job in jobs} == {job.status().status for job in jobs} == {"successful"}
+            )
+            assert [event.progress for job in jobs for event in job.events()][-1] >= 10
+            return [job.file().read_text() for job in jobs]
+
+    first = mapped()
+    assert len(network.keys) == 2
+    assert mapped() == first and len(network.keys) == 2
+    for damaged in tmp_path.rglob("*.nc"):
+        damaged.write_text("something else")
+    assert mapped() == first and len(network.keys) == 4
+    network.version = "2"  # may give something else
+    assert mapped() == first and len(network.keys) == 6
+
+
+def test_a_submission_that_is_sent_again_is_the_same_request(tmp_path: Path) -> None:
+    stored, sent = StoredJobs(), [0]
+
+    def answer(request: httpx2.Request) -> httpx2.Response:
+        reply = stored(request)
+        if request.method == "POST":
+            sent[0] += 1
+            if sent[0] % 2:  # it arrived, its answer did not
+                raise httpx2.ReadError("the line broke")
+        return reply
+
+    with LineOfActionClient(ADDRESS, cache_dir=tmp_path, transport=httpx2.MockTransport(answer)) as client:
+        client.analyze.submit(case(20))
+        client.analyze.submit(case(20))
+    first, again, second, again_too = stored.keys
+    assert first == again and second == again_too
+    assert first != second  # another call is another request
+
+
+def event(progress: int, status: str = "running") -> bytes:
+    """Return an event as the service sends it."""
+    document = httpx2.Response(200, json=state("j", status) | {"progress": progress}).content
+    return b"event: status\ndata: " + document + b"\n\n"
+
+
+@pytest.mark.parametrize("size", [1, 2, 3, 7, 50, 10_000])
+def test_events_are_read_from_pieces_of_any_size(size: int) -> None:
+    text = event(1) + b": the job goes on\r\n\r\n" + event(2).replace(b"\n", b"\r\n") + event(100)[:-2]
+    reader = EventReader()
+    documents = [d for at in range(0, len(text), size) for d in reader.documents(text[at : at + size])]
+    assert [document["progress"] for document in documents] == [1, 2]  # the last one is not complete
+
+
+def test_a_stream_that_breaks_is_taken_up_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(time, "sleep", lambda _seconds: None)
+    opened: list[str] = []
+
+    def pieces() -> Iterator[bytes]:
+        yield event(1)
+        if len(opened) == 1:
+            yield event(2)[:30]
+            raise httpx2.ReadError("the line broke")
+        yield event(3) + event(100, "successful")
+
+    def answer(request: httpx2.Request) -> httpx2.Response:
+        opened.append(request.url.path)
+        return httpx2.Response(200, content=pieces(), headers={"Content-Type": "text/event-stream"})
+
+    with LineOfActionClient(ADDRESS, cache_dir=tmp_path, transport=httpx2.MockTransport(answer)) as client:
+        seen = [found.progress for found in client.events("j")]
+    assert seen == [1, 3, 100]  # what did not change is not told twice
+    assert opened == ["/v1/jobs/j/events"] * 2
+
+
+def test_events_of_what_is_no_stream_are_refused(tmp_path: Path) -> None:
+    for reply in (
+        httpx2.Response(200, text="<html>"),
+        httpx2.Response(200, headers={"Content-Type": "text/event-stream"}),
+    ):
+        transport = httpx2.MockTransport(lambda _request, reply=reply: reply)  # type: ignore[misc]
+        with (
+            LineOfActionClient(ADDRESS, cache_dir=tmp_path, transport=transport) as client,
+            pytest.raises(Unreachable, match="not as this service does"),
+        ):
+            list(client.events("j"))
+
+
+@pytest.mark.parametrize(("limit", "requests"), [(None, 3), (1, 1), (100, 1), (101, 2), (250, 3), (900, 3)])
+def test_lists_come_page_by_page_as_far_as_they_are_wanted(
+    tmp_path: Path, limit: int | None, requests: int
+) -> None:
+    asked: list[httpx2.URL] = []
+
+    def answer(request: httpx2.Request) -> httpx2.Response:
+        asked.append(request.url)
+        begin, size = int(request.url.params.get("cursor", 0)), int(request.url.params["limit"])
+        numbers = range(begin, min(begin + size, 250))
+        link = {"rel": "next", "href": f"/v1/jobs?limit={size}&cursor={begin + size}"}
+        links = [link] if begin + size < 250 else []
+        return httpx2.Response(
+            200, json={"jobs": [state(str(n), "running") for n in numbers], "links": links}
+        )
+
+    with LineOfActionClient(ADDRESS, cache_dir=tmp_path, transport=httpx2.MockTransport(answer)) as client:
+        found = [
+            job.id for job in client.jobs(process=["analyze"], status=["running", "failed"], limit=limit)
+        ]
+    assert found == [str(n) for n in range(250)][:limit]
+    assert len(asked) == requests
+    assert asked[0].params.get_list("status") == ["running", "failed"]
+    assert all(a != b for a, b in pairwise(asked))

@@ -1,0 +1,33 @@
+"""What the client's models of plans and drawings declare is what the service answers, all of it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from service.convert.outline import outline_json
+from service.live.work import live_plan
+from service.schemas import Case, read_model
+from service.schemas.outline import OutlineBody
+from service.schemas.plan import PlanBody
+
+EXAMPLES = Path(__file__).parents[3] / "service" / "page" / "examples"
+
+
+def through_json(answer: dict[str, Any]) -> Any:
+    """Return an answer as it arrives."""
+    return json.loads(json.dumps(answer, allow_nan=False))
+
+
+@pytest.mark.parametrize("name", ["helical_ev_23_67", "industrial_spur_21_59"])
+def test_plans_and_drawings_are_as_declared(name: str, tmp_path: Path) -> None:
+    case = read_model(Case, EXAMPLES / f"{name}.toml")
+    plan = through_json(
+        live_plan({"case": case.model_dump(mode="json"), "time_budget_s": None, "cache": str(tmp_path)})
+    )
+    assert PlanBody.model_validate(plan).model_dump(mode="json") == plan
+    drawing = through_json(outline_json(case))
+    assert OutlineBody.model_validate(drawing).model_dump(mode="json") == drawing
