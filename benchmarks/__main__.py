@@ -8,6 +8,7 @@ from datetime import date
 from pathlib import Path
 
 from benchmarks import (
+    client_map,
     cold_start,
     corrected_plane,
     derivatives,
@@ -73,6 +74,7 @@ SUBJECTS = (
     neglected_effects,
     page_redraw,
     service_queries,
+    client_map,
     worker_cost,
     shared_table,
     cold_start,
