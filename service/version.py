@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from contextlib import suppress
 from functools import lru_cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -13,10 +14,10 @@ _PACKAGES = ("bounds", "dynamics", "fe_contact", "model_studies", "service")
 @lru_cache(maxsize=1)
 def solver_version() -> str:
     """Return the version of the installed project; code that runs uninstalled says so."""
-    try:
-        return version("lineofaction")
-    except PackageNotFoundError:
-        return "uninstalled"
+    for distribution in ("lineofaction", "lineofaction-client"):
+        with suppress(PackageNotFoundError):
+            return version(distribution)
+    return "uninstalled"
 
 
 @lru_cache(maxsize=1)

@@ -1,0 +1,75 @@
+"""The client as a distribution of its own: it needs three packages, and runs from its own files alone."""
+
+from __future__ import annotations
+
+import importlib.util
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import httpx2
+import pytest
+
+ROOT = Path(__file__).parents[3]
+WITHOUT = ("gmsh", "skfem", "numba", "scipy", "xarray", "h5py", "fastapi", "tenacity", "rich", "typer")
+USE = """
+import sys
+sys.modules.update(dict.fromkeys({without!r}))  # importing one of these fails now
+sys.path[:0] = [{tree!r}, {packages!r}]
+from pathlib import Path
+import httpx2
+import service
+from service.client import AsyncLineOfActionClient, LineOfActionClient
+from service.problems import Unreachable
+assert service.__file__.startswith({tree!r})
+def away(request):
+    raise httpx2.ConnectError("away")
+with LineOfActionClient("http://127.0.0.1:9", transport=httpx2.MockTransport(away), attempts=1) as client:
+    for call, subject in ((client.analyze, "palermo_spur_20_20"), (client.simulate, "palermo_scene"),
+                          (client.plan, "palermo_spur_20_20")):
+        try:
+            call(Path({examples!r}) / (subject + ".toml"))
+        except Unreachable:
+            print("away")
+try:
+    client.analyze._offer.read(Path("x.nc"))
+except ModuleNotFoundError as error:
+    print(error)
+"""
+
+
+@pytest.fixture(scope="module")
+def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The sources of the distribution."""
+    spec = importlib.util.spec_from_file_location("client_wheel", ROOT / "scripts" / "client_wheel.py")
+    assert spec is not None and spec.loader is not None
+    script = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(script)
+    folder = tmp_path_factory.mktemp("client")
+    script.collect(folder)
+    return folder
+
+
+def test_it_runs_from_its_own_files(tree: Path) -> None:
+    packages = str(Path(httpx2.__file__).parents[1])
+    code = USE.format(without=WITHOUT, tree=str(tree), packages=packages, examples=str(ROOT / "examples"))
+    command = [sys.executable, "-I", "-S", "-c", code]  # no editable install of the project in sight
+    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tree)
+    assert done.stderr == ""
+    *away, advice = done.stdout.splitlines()
+    assert away == ["away"] * 3
+    assert advice.endswith("Reading results needs the libraries: pip install lineofaction")
+
+
+def test_it_is_small_and_is_of_this_version(tree: Path) -> None:
+    project = tomllib.loads((tree / "pyproject.toml").read_text("utf-8"))["project"]
+    whole = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    assert project["version"] == whole["version"]
+    assert set(project["dependencies"]) < set(whole["dependencies"])
+    assert sum(file.stat().st_size for file in tree.rglob("*")) < 2_000_000
+    assert {"service/client/processes.pyi", "service/py.typed"} <= {
+        str(file.relative_to(tree)) for file in tree.rglob("*")
+    }
+    for heavy in ("fe_contact/contact", "fe_contact/analysis", "dynamics/integrators", "service/routes"):
+        assert not (tree / heavy).exists()
