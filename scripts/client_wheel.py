@@ -19,6 +19,8 @@ NEEDS = ("numpy", "pydantic", "httpx2")
 _LOADED = """
 import importlib, json, pkgutil, sys
 import service.client
+from service import schemas
+[getattr(schemas, name) for name in schemas.__all__]  # loaded on first use
 for module in pkgutil.walk_packages(service.client.__path__, "service.client."):
     importlib.import_module(module.name)
 files = (getattr(module, "__file__", None) for module in list(sys.modules.values()))

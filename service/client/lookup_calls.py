@@ -5,26 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from pydantic import TypeAdapter
-
+from service import schemas
 from service.client.portable import CaseLike, SceneLike, case_inputs, scene_inputs
 from service.client.steps import Steps
 from service.client.surface import Surface, operation
-from service.schemas import Case, validated
 from service.schemas.offers import EffectBody, ExampleBody
-from service.schemas.outline import OutlineBody
-from service.schemas.plan import PlanBody
-from service.schemas.scene import SceneInput
 
 T = TypeVar("T")
-_EFFECTS, _EXAMPLES = TypeAdapter(tuple[EffectBody, ...]), TypeAdapter(tuple[ExampleBody, ...])
 
 
 class LookupCalls(Surface):
     """Answers that need no job."""
 
     @operation
-    def plan(self, case: CaseLike, *, time_budget_s: float | None = None) -> Steps[PlanBody]:
+    def plan(self, case: CaseLike, *, time_budget_s: float | None = None) -> Steps[schemas.PlanBody]:
         """Return what the analysis of a case will be, cost and be wrong by.
 
         Parameters
@@ -34,27 +28,27 @@ class LookupCalls(Surface):
             CPU seconds that may be spent.
         """
         inputs = case_inputs(case) | {"time_budget_s": time_budget_s}
-        return (yield from self._answer("/v1/plans", {"inputs": inputs}, PlanBody.model_validate))
+        return (yield from self._answer("/v1/plans", {"inputs": inputs}, schemas.PlanBody.model_validate))
 
     @operation
-    def outline(self, case: CaseLike) -> Steps[OutlineBody]:
+    def outline(self, case: CaseLike) -> Steps[schemas.OutlineBody]:
         """Return the drawing of both gears, the path of contact and the figures of the pair."""
         body = {"inputs": case_inputs(case)}
-        return (yield from self._answer("/v1/cases/outline", body, OutlineBody.model_validate))
+        return (yield from self._answer("/v1/cases/outline", body, schemas.OutlineBody.model_validate))
 
     @operation
     def examples(self) -> Steps[tuple[ExampleBody, ...]]:
         """Return cases to begin with."""
         exchange = self.session.exchange
-        return (yield from exchange.read(_EXAMPLES.validate_python, "GET", "/v1/examples"))
+        return (yield from exchange.read(_examples, "GET", "/v1/examples"))
 
     @operation
     def effects(self) -> Steps[tuple[EffectBody, ...]]:
         """Return the optional physics, which a case switches in its table ``[effects]``."""
-        return (yield from self.session.exchange.read(_EFFECTS.validate_python, "GET", "/v1/effects"))
+        return (yield from self.session.exchange.read(_effects, "GET", "/v1/effects"))
 
     @operation
-    def case_from_toml(self, toml: str) -> Steps[Case]:
+    def case_from_toml(self, toml: str) -> Steps[schemas.Case]:
         """Return the case in the text of a case file; raises `BadInput` with the lines at fault."""
         return (yield from self._answer("/v1/cases/from-toml", {"toml": toml}, _case))
 
@@ -65,7 +59,7 @@ class LookupCalls(Surface):
         return (yield from self._answer("/v1/cases/to-toml", body, _text))
 
     @operation
-    def scene_from_toml(self, toml: str) -> Steps[SceneInput]:
+    def scene_from_toml(self, toml: str) -> Steps[schemas.SceneInput]:
         """Return the scene in the text of a scene file; raises `BadInput` with the lines at fault."""
         return (yield from self._answer("/v1/scenes/from-toml", {"toml": toml}, _scene))
 
@@ -80,16 +74,26 @@ class LookupCalls(Surface):
         return (yield from self.session.exchange.read(reader, "POST", path, json=body))
 
 
-def _case(answer: dict[str, Any]) -> Case:
+def _case(answer: dict[str, Any]) -> schemas.Case:
     """Read a case."""
-    return validated(Case, answer["case"])
+    return schemas.validated(schemas.Case, answer["case"])
 
 
-def _scene(answer: dict[str, Any]) -> SceneInput:
+def _scene(answer: dict[str, Any]) -> schemas.SceneInput:
     """Read a scene."""
-    return validated(SceneInput, answer["scene"])
+    return schemas.validated(schemas.SceneInput, answer["scene"])
 
 
 def _text(answer: dict[str, Any]) -> str:
     """Read the text of a file."""
     return str(answer["toml"])
+
+
+def _effects(answer: list[Any]) -> tuple[EffectBody, ...]:
+    """Read declarations of effects."""
+    return tuple(map(EffectBody.model_validate, answer))
+
+
+def _examples(answer: list[Any]) -> tuple[ExampleBody, ...]:
+    """Read examples."""
+    return tuple(map(ExampleBody.model_validate, answer))

@@ -9,11 +9,11 @@ from service.client.offers import ANALYZE
 from service.client.portable import case_of_mesh
 from service.client.steps import Steps
 from service.problems import BadInput
-from service.schemas import Case
-from service.schemas.scene import MeshInput
 
 if TYPE_CHECKING:
     from fe_contact.ste import SteDatabase
+    from service.schemas import Case
+    from service.schemas.scene import MeshInput
 
 
 class TableSource(Protocol):

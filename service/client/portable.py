@@ -4,22 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
+from service import schemas
 from service.input_file import InputFile
 from service.problems import BadInput
-from service.schemas import Case, read_model, read_table, validated
-from service.schemas.scene import MeshInput, SceneInput
 
-CaseLike = Case | Mapping[str, Any] | Path | InputFile
-SceneLike = SceneInput | Mapping[str, Any] | Path | InputFile
+if TYPE_CHECKING:
+    from service.schemas.scene import MeshInput
+
+CaseLike: TypeAlias = "schemas.Case | Mapping[str, Any] | Path | InputFile"
+SceneLike: TypeAlias = "schemas.SceneInput | Mapping[str, Any] | Path | InputFile"
 
 
-def case_of(case: CaseLike) -> Case:
+def case_of(case: CaseLike) -> schemas.Case:
     """Return a case from a model, a table or a file; raises `BadInput`."""
-    if isinstance(case, Case):
+    if isinstance(case, schemas.Case):
         return case
-    return read_model(Case, case) if isinstance(case, Path | InputFile) else validated(Case, dict(case))
+    if isinstance(case, Path | InputFile):
+        return schemas.read_model(schemas.Case, case)
+    return schemas.validated(schemas.Case, dict(case))
 
 
 def case_inputs(case: CaseLike) -> dict[str, Any]:
@@ -27,13 +31,13 @@ def case_inputs(case: CaseLike) -> dict[str, Any]:
     return {"case": case_of(case).model_dump(mode="json")}
 
 
-def scene_of(scene: SceneLike) -> tuple[SceneInput, Path]:
+def scene_of(scene: SceneLike) -> tuple[schemas.SceneInput, Path]:
     """Return a scene and the folder its files are relative to; raises `BadInput`."""
-    if isinstance(scene, SceneInput):
+    if isinstance(scene, schemas.SceneInput):
         return scene, Path()
     if isinstance(scene, Path | InputFile):
-        return read_model(SceneInput, scene), InputFile.of(scene).folder
-    return validated(SceneInput, dict(scene)), Path()
+        return schemas.read_model(schemas.SceneInput, scene), InputFile.of(scene).folder
+    return schemas.validated(schemas.SceneInput, dict(scene)), Path()
 
 
 def scene_inputs(scene: SceneLike) -> dict[str, Any]:
@@ -43,27 +47,29 @@ def scene_inputs(scene: SceneLike) -> dict[str, Any]:
 
 def inputs_of(source: CaseLike | SceneLike) -> dict[str, Any]:
     """Return ``{"case": ...}``, or of what has shafts ``{"scene": ...}``, as JSON; raises `BadInput`."""
-    if isinstance(source, SceneInput) or (not isinstance(source, Case) and "shafts" in _table(source)):
+    if isinstance(source, schemas.Case):
+        return case_inputs(source)
+    if isinstance(source, schemas.SceneInput) or "shafts" in _table(source):
         return scene_inputs(source)
     return case_inputs(source)
 
 
 def _table(source: Mapping[str, Any] | Path | InputFile) -> Mapping[str, Any]:
     """Return the table that was given, or that a file holds."""
-    return read_table(source) if isinstance(source, Path | InputFile) else source
+    return schemas.read_table(source) if isinstance(source, Path | InputFile) else source
 
 
-def case_of_mesh(mesh: MeshInput, field: str, folder: Path) -> Case | None:
+def case_of_mesh(mesh: MeshInput, field: str, folder: Path) -> schemas.Case | None:
     """Return the case of a mesh, from the scene or its file; None if the mesh names a database."""
     if mesh.case_file is None:
         return mesh.case
     try:
-        return read_model(Case, folder / mesh.case_file)
+        return schemas.read_model(schemas.Case, folder / mesh.case_file)
     except BadInput as error:
         raise error.within(f"{field}.case_file") from None
 
 
-def portable_scene(scene: SceneInput, folder: Path) -> SceneInput:
+def portable_scene(scene: schemas.SceneInput, folder: Path) -> schemas.SceneInput:
     """Return the scene with its case files written out.
 
     Raises

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from service import schemas
 from service.client.cache import FIGURES
 from service.client.libraries import libraries
 from service.client.offers import ANALYZE
@@ -19,8 +20,6 @@ from service.client.surface import Session, Surface, listing, operation
 from service.problems import DamagedFile, NotFound
 from service.registry import JSON, NETCDF
 from service.schemas.database_list import DatabaseEntry
-from service.schemas.live_answer import LiveOutput
-from service.schemas.query import QueryOutput
 from service.schemas.result_kinds import RESULT_KINDS, RESULTS, SUFFIX
 
 if TYPE_CHECKING:
@@ -117,7 +116,7 @@ class ResultCalls(Surface):
         *,
         misalignment_um: Column = 0.0,
         center_distance_change_mm: Column = 0.0,
-    ) -> Steps[QueryOutput]:
+    ) -> Steps[schemas.QueryOutput]:
         """Return force, tangent stiffness and validity of a stored database at many points.
 
         Every column (a list, an array) has a value for each point, or one for all. Sent and answered as raw
@@ -153,7 +152,7 @@ class ResultCalls(Surface):
         flanks: bool = False,
         condense: bool = False,
         caller: str | None = None,
-    ) -> Steps[LiveOutput]:
+    ) -> Steps[schemas.LiveOutput]:
         """Return curves of the gears of a stored database with other flanks, loads and alignment, at once.
 
         Parameters
@@ -199,7 +198,11 @@ class ResultCalls(Surface):
             "caller": caller,
         }
         path = f"/v1/databases/{key}/ste"
-        return (yield from self.session.exchange.read(LiveOutput.model_validate, "POST", path, json=question))
+        return (
+            yield from self.session.exchange.read(
+                schemas.LiveOutput.model_validate, "POST", path, json=question
+            )
+        )
 
 
 def _fetched(session: Session, key: str, kinds: Sequence[str], form: str) -> Steps[tuple[Path, str]]:

@@ -13,11 +13,11 @@ from service.client.process import obtained
 from service.client.result_calls import ResultCalls
 from service.client.steps import Steps
 from service.client.surface import Surface, operation
-from service.schemas import Case
 
 if TYPE_CHECKING:
     from dynamics.scene import Scene
     from fe_contact.ste import SteDatabase
+    from service.schemas import Case
 
 
 class ServiceTables:
