@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
+from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
 from dataclasses import dataclass
 from functools import wraps
 from typing import Any, Concatenate, Generic, ParamSpec, TypeVar, overload
@@ -70,7 +70,7 @@ class Operation(Generic[P, T]):
     @overload
     def __get__(self, surface: Blocking, owner: type) -> Callable[P, T]: ...
     @overload
-    def __get__(self, surface: Awaiting, owner: type) -> Callable[P, Awaitable[T]]: ...
+    def __get__(self, surface: Awaiting, owner: type) -> Callable[P, Coroutine[Any, Any, T]]: ...
     def __get__(self, surface: Any, owner: type) -> Callable[..., Any]:
         """Return the generator of a class, the method of an object."""
         steps = self._steps
