@@ -1,4 +1,6 @@
 # Written by scripts/client_types.py from service.registry: do not edit.
+# fmt: off
+# ruff: noqa: E501 (a line for each parameter)
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Concatenate, Literal, ParamSpec, TypeVar
 
