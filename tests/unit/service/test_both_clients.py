@@ -217,7 +217,7 @@ def test_events_of_what_is_no_stream_are_refused(tmp_path: Path) -> None:
         transport = httpx2.MockTransport(lambda _request, reply=reply: reply)  # type: ignore[misc]
         with (
             LineOfActionClient(ADDRESS, cache_dir=tmp_path, transport=transport) as client,
-            pytest.raises(Unreachable, match="not as this service does"),
+            pytest.raises(Unreachable, match="not an answer of this service"),
         ):
             list(client.events("j"))
 
