@@ -174,6 +174,22 @@ _MESH = (
         "1",
         "ISO 53: the basic racks leave 0.25 to 0.4",
     ),
+    Check(
+        "tip_thickness",
+        "normal tooth thickness at the tip over normal module",
+        0.2,
+        None,
+        "1",
+        "Roloff/Matek, Maschinenelemente: 0.2, case-hardened teeth 0.4",
+    ),
+    Check(
+        "contact_ratio",
+        "transverse contact ratio",
+        1.1,
+        None,
+        "1",
+        "Roloff/Matek, Maschinenelemente: above 1.1, if possible 1.25",
+    ),
 )
 CHECKS: dict[str, Check] = {check.name: check for check in (*_PARTS, *_DEVIATIONS, *_SHAFTS, *_LOADS, *_MESH)}
 """All checks by name."""

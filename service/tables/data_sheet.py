@@ -192,7 +192,7 @@ def _point_row(point: PathPoint) -> tuple[str, ...]:
 def data_sheet_section(pair: ParallelAxes) -> Section:
     """Return the sheet as a section: what speaks against it, the drawing, then the tables."""
     remarks = " ".join(f"Warning: {remark['message']}" for remark in pair_remarks(pair))
-    text = remarks or "No warnings: undercut, backlash, tip clearance."
+    text = remarks or "No warnings: undercut, backlash, tip clearance, tip thickness, contact ratio."
     return Section("Data sheet", text, figures=(pair_drawing(pair),), tables=data_sheet(pair))
 
 

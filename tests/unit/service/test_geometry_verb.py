@@ -113,6 +113,26 @@ def test_a_tip_near_the_mating_root_is_a_row_of_the_checks() -> None:
     assert CHECKS["tip_clearance"].source in " ".join(done.stdout.split())
 
 
+def test_a_pointed_tooth_and_a_short_path_of_contact_are_rows_of_the_checks() -> None:
+    said = geometry(SPUR).stdout
+    assert "(tip_thickness)" not in said
+    assert "(contact_ratio)" not in said
+    shifts = {"pinion.profile_shift_coefficient": 1.0, "wheel.profile_shift_coefficient": -0.2}
+    assert (
+        "warning (tip_thickness): pinion tip thickness over module = 0.16"
+        in geometry(SPUR, *overrides(shifts | {"center_distance_mm": 83.1})).stdout
+    )
+    stubs = {"pinion.tip_diameter_mm": 85.0, "wheel.tip_diameter_mm": 85.0}
+    assert (
+        "warning (contact_ratio): transverse contact ratio = 1.04" in geometry(SPUR, *overrides(stubs)).stdout
+    )
+
+
+def overrides(values: dict[str, float]) -> list[str]:
+    """Return the arguments that set fields of the pair."""
+    return [part for name, value in values.items() for part in ("--set", f"pair.{name}={value}")]
+
+
 @pytest.mark.parametrize("ending", ["png", "svg", "html"])
 def test_a_drawing_is_written(ending: str, tmp_path: Path) -> None:
     file = tmp_path / f"pair.{ending}"
