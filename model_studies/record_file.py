@@ -7,7 +7,7 @@ Numbers of records in a row are one variable with a first dimension that is call
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import Field, dataclass, fields, is_dataclass, replace
+from dataclasses import MISSING, Field, dataclass, fields, is_dataclass, replace
 from enum import Enum
 from pathlib import Path
 from types import NoneType, UnionType
@@ -66,6 +66,8 @@ def write_record(record: Any, path: Path, schema: str) -> None:
 def read_record(path: Path, kinds: Mapping[str, type]) -> Any:
     """Return what `write_record` wrote, bit by bit the same; `kinds` are the dataclasses by their schemas.
 
+    A field that has a default may be missing, in files of versions that did not know it.
+
     Raises
     ------
     UnreadableFile
@@ -113,6 +115,7 @@ def _together(kind: Any, plain: Any, place: _Place, taken: Any) -> Any:
         values = {
             field.name: _together(of, plain[field.name], place.of(field), taken)
             for field, of in _stored_fields(kind)
+            if field.name in plain or field.default is MISSING
         }
         return kind(**values)  # type: ignore[operator]  # is_dataclass says instances are types too
     if get_origin(kind) is tuple:

@@ -52,14 +52,17 @@ def nominal_deflection(pair: ParallelAxes, normal_force: float) -> float:
     return line_load(pair, normal_force) / (SINGLE_STIFFNESS * mean / STEEL.youngs_modulus)
 
 
-def nominal_root_stress(pair: ParallelAxes, normal_force: float) -> float:
-    """Return the larger nominal root stress of both gears, Pa: load at the end of single contact [2]_."""
+def nominal_root_stresses(pair: ParallelAxes, normal_force: float) -> tuple[float, float]:
+    """Return the nominal root stress of pinion and wheel, Pa: load at the end of single contact [2]_.
+
+    Of spur gears that is method B without its load factors; of helical gears the transverse section stands in
+    for the virtual spur gear.
+    """
     path, load = pair.path_of_contact, line_load(pair, normal_force)
     high = min(path.start + path.base_pitch, path.end)
     low = max(path.end - path.base_pitch, path.start)
     rolls = (high, float(pair.mating_roll_length(low)))
-    gears = (pair.pinion, pair.wheel)
-    return max(_root_stress(gear, load, roll) for gear, roll in zip(gears, rolls, strict=True))
+    return _root_stress(pair.pinion, load, rolls[0]), _root_stress(pair.wheel, load, rolls[1])
 
 
 def _root_stress(gear: Toothing, load: float, roll_length: float) -> float:

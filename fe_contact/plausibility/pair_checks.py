@@ -16,7 +16,7 @@ from fe_contact.material import Material
 from fe_contact.plausibility.check import CHECKS, assessed
 from fe_contact.plausibility.nominal_load import (
     nominal_deflection,
-    nominal_root_stress,
+    nominal_root_stresses,
     pitch_point_pressure,
 )
 from fe_contact.types import FloatArray
@@ -162,7 +162,7 @@ def _loads(pair: ParallelAxes, load: FloatArray, loads_as: str) -> Iterator[Find
     force, module = float(load[-1]), pair.pinion.normal_module
     value, unit = (float(pair.torque(force)), "N m") if loads_as == "torques" else (force, "N")
     intensity = float(pair.transverse_force(force)) / (pair.face_width * module)
-    pressure, stress = pitch_point_pressure(pair, force), nominal_root_stress(pair, force)
+    pressure, stress = pitch_point_pressure(pair, force), max(nominal_root_stresses(pair, force))
     deflection = nominal_deflection(pair, force) / module
     words = f"{intensity / 1e6:.3g} N/mm^2 of load over face width and module"
     lightest, heaviest = CHECKS["light_load"].low or 0.0, CHECKS["line_load"].high or math.inf

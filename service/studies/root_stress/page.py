@@ -30,7 +30,8 @@ def root_stress_figure(stresses: Json) -> Figure:
         title="Tooth-root stress",
         caption="Solid: the largest principal stress anywhere in the root beside the loaded flank, and the "
         "smallest one in the other root. Dashed: the stress along the profile at the two places where the "
-        "peaks occur; its range is what fatigue counts. The vertical line is the tension peak.",
+        "peaks occur; its range is what fatigue counts. The vertical line is the tension peak; "
+        "a horizontal one, of spur pairs, the nominal stress of ISO 6336-3 (method B, without load factors).",
         alternative=f"At {number(stresses['torque_n_m'], 4)} N m the largest stress is "
         f"{_said(stresses['pinion']['tension'])} on the pinion and "
         f"{_said(stresses['wheel']['tension'])} on the wheel.",
@@ -48,7 +49,10 @@ def _passage(gear: str, history: Json) -> Panel:
         Line("compression", way["position"], way["compression_mpa"], palette.BLUE),
         Line("at its peak", way["position"], way["at_compression_peak_mpa"], palette.SKY, "dash"),
     )
-    return Panel(_WAY, _STRESS, lines, (Reference(_said(peak), peak["position"]),), title=gear)
+    references = [Reference(_said(peak), peak["position"])]
+    if (nominal := history["iso_6336_3_mpa"]) is not None:
+        references.append(Reference(f"ISO 6336-3: {number(nominal)} MPa", nominal, "horizontal", at=0.2))
+    return Panel(_WAY, _STRESS, lines, tuple(references), title=gear)
 
 
 def _said(peak: Json) -> str:

@@ -9,6 +9,7 @@ from typing import Any
 from fe_contact.analysis import RootStressHistory, root_stress
 from fe_contact.analysis.flanks.root_stress_history import ROOTS, RootPassage, RootPeak
 from fe_contact.options import Run
+from fe_contact.plausibility.nominal_load import nominal_root_stresses
 from model_studies import in_unit
 from service.convert.case import analysis_options, boundary_errors, case_at, gear_pair, operating_point
 from service.convert.checks import check_case
@@ -26,12 +27,16 @@ MPA = 1e6
 
 @dataclass(frozen=True)
 class GearRoots:
-    """The roots of one gear: their peaks, where ISO 6336-3 takes its section (m), a tooth's passage."""
+    """The roots of one gear: their peaks, where ISO 6336-3 takes its section (m), a tooth's passage.
+
+    `nominal` is the stress of ISO 6336-3 in Pa: method B without its load factors, of spur gears.
+    """
 
     tension: RootPeak
     compression: RootPeak
     critical_coordinate: float = field(metadata=in_unit("m"))
     passage: RootPassage
+    nominal: float | None = field(default=None, metadata=in_unit("pa"))
 
 
 @dataclass(frozen=True)
@@ -70,12 +75,13 @@ def root_stress_of(case: Case, _inputs: Inputs, means: Means) -> Roots:
     JobFailed
         No mesh, or positions without a solution.
     """
-    run = Run(cache=means.home / "compliance", progress=means.report)
+    run, pair = Run(cache=means.home / "compliance", progress=means.report), gear_pair(case)
     with boundary_errors():
-        stress = root_stress(gear_pair(case), operating_point(case), analysis_options(case), run)
+        stress = root_stress(pair, operating_point(case), analysis_options(case), run)
+    nominal = (None, None) if pair.pinion.helix_angle else nominal_root_stresses(pair, stress.normal_force)
     return Roots(
-        _roots(stress.pinion),
-        _roots(stress.wheel),
+        _roots(stress.pinion, nominal[0]),
+        _roots(stress.wheel, nominal[1]),
         stress.torque,
         stress.normal_force,
         stress.misalignment,
@@ -85,10 +91,10 @@ def root_stress_of(case: Case, _inputs: Inputs, means: Means) -> Roots:
     )
 
 
-def _roots(history: RootStressHistory) -> GearRoots:
+def _roots(history: RootStressHistory, nominal: float | None) -> GearRoots:
     """One gear."""
     tension, compression = (history.peak(root) for root in ROOTS)
-    return GearRoots(tension, compression, history.critical_coordinate, history.passage())
+    return GearRoots(tension, compression, history.critical_coordinate, history.passage(), nominal)
 
 
 def root_stress_json(roots: Roots) -> Json:
@@ -110,6 +116,7 @@ def _gear_json(roots: GearRoots) -> Json:
     return {
         **{root: _peak_json(getattr(roots, root)) for root in ROOTS},
         "critical_section_mm": roots.critical_coordinate / MM,
+        "iso_6336_3_mpa": None if roots.nominal is None else roots.nominal / MPA,
         "passage": {
             "position": passage.position.tolist(),
             "tension_mpa": (passage.tension / MPA).tolist(),

@@ -11,7 +11,11 @@ import pytest
 from bounds import PlausibilityWarning
 from fe_contact import Gear, GearPair, SteDatabase, analyze
 from fe_contact.plausibility import flank_findings, pair_findings, root_findings, table_findings
-from fe_contact.plausibility.nominal_load import nominal_deflection, nominal_root_stress, pitch_point_pressure
+from fe_contact.plausibility.nominal_load import (
+    nominal_deflection,
+    nominal_root_stresses,
+    pitch_point_pressure,
+)
 
 
 def pair_of(module: float, unit: float = 1.0) -> GearPair:
@@ -93,7 +97,9 @@ def test_the_nominal_root_stress_is_that_of_iso_6336_3() -> None:
     pair = pair_of(4.0, 1e-3)
     force = float(pair.normal_force(100.0))
     tangential = 100.0 / pair.pinion.reference_radius
-    factor = nominal_root_stress(pair, force) / (tangential / (pair.face_width * pair.pinion.normal_module))
+    factor = max(nominal_root_stresses(pair, force)) / (
+        tangential / (pair.face_width * pair.pinion.normal_module)
+    )
     assert 2.3 < factor < 3.3
 
 

@@ -105,6 +105,19 @@ def test_rows_of_records_are_one_variable_with_unit_and_dimensions(tmp_path: Pat
         assert (read["first.load"].dims, float(read["first.load"])) == ((), 1.0 / 3.0)
 
 
+@dataclass(frozen=True)
+class Later(Cup):
+    """A later version of a record."""
+
+    handle: float | None = None
+
+
+def test_a_file_of_an_earlier_version_has_no_fields_but_the_defaults(tmp_path: Path) -> None:
+    file = tmp_path / "cup.nc"
+    write_record(cup("a", 1.0), file, SCHEMA)
+    assert read_record(file, {SCHEMA: Later}).handle is None
+
+
 def test_a_record_in_place_of_none_is_kept(tmp_path: Path) -> None:
     back = read_record(written(replace(STUDY, spare=cup("e", 5.0)), tmp_path), {SCHEMA: Study})
     assert back.spare.name == "e" and numbers(back.spare.height) == numbers(cup("e", 5.0).height)

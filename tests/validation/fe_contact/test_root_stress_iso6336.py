@@ -13,6 +13,7 @@ from fe_contact import Gear, GearPair, root_stress
 from fe_contact.geometry import tooth_profile
 from fe_contact.geometry.root_tangent import critical_section
 from fe_contact.options import AnalysisOptions, OperatingPoint
+from fe_contact.plausibility.nominal_load import nominal_root_stresses
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "reference"))
 from iso6336_root_stress import RootSection, nominal_stress, root_section
@@ -57,6 +58,16 @@ def test_the_critical_section_is_the_standards(case: tuple[int, int, float, floa
     profile = tooth_profile(pair.pinion)
     point = profile.flank(np.array([critical_section(profile)]))[0]
     assert point[0] == pytest.approx(0.5 * section.chord * MODULE, rel=1e-6)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_line_of_the_standard_is_the_standards(case: tuple[int, int, float, float, float]) -> None:
+    """The nominal stress beside computed ones, by another way through the generated fillet."""
+    pair, section = pair_and_section(*case)
+    torque = 100.0
+    nominal = nominal_stress(section, torque / pair.pinion.reference_radius, WIDTH, MODULE)
+    drawn, _ = nominal_root_stresses(pair, float(pair.normal_force(torque)))
+    assert drawn == pytest.approx(nominal, rel=5e-4)
 
 
 @pytest.mark.parametrize("case", [CASES[0], CASES[1], CASES[4]])
