@@ -72,6 +72,7 @@ def orders() -> Iterator[tuple[str, str, dict[str, Any]]]:
     )
     yield "optimize, spur, 800 evaluations", "optimize", {"case": spur, **study}
     yield "scatter, spur, 1000 pairs", "scatter", {"case": spur}
+    yield "sweep, spur, torque", "sweep", {"case": spur, "over": ["torque"]}
     rungs = {"rungs": ["thin_slices", "corrected", "3d_draft"]}
     yield "frontier, spur, 3 rungs", "frontier", {"case": spur, **rungs}
     yield "ablate, spur, all effects", "ablate", {"case": spur}

@@ -10,6 +10,7 @@ MODULES = {
         "alembic",
         "cbor2",
         "fastapi",
+        "fastapi_swagger",
         "httptools",
         "prometheus_client",
         "pydantic_settings",

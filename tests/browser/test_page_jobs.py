@@ -48,7 +48,7 @@ def test_a_result_opens_again_in_another_window(visit: Visit, browser: Browser, 
     later.get_by_role("button", name=re.compile("^Open modes")).first.press("Enter")
     again = later.locator("#jobs-result [data-figure=modal_campbell] .plot")
     expect(again).to_have_attribute("data-drawn", "yes")
-    assert later.evaluate("document.activeElement.id") == "jobs-result"
+    expect(later.locator("#jobs-result")).to_be_focused()
     assert not (told := found_inaccessible(later)), json.dumps(told, indent=1)
     later.close()
 

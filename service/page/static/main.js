@@ -154,7 +154,9 @@ class Page {
   /** Show what came of an earlier job. */
   async reopen({ jobID: job }) {
     this.address.push({ job });
+    const before = document.activeElement;
     await this.reopened.follow(job);
+    if (document.activeElement !== before) return; // the reader went on while plots were drawn
     byId(this.address.get("job") ? "jobs-result" : "results").focus();
   }
 
