@@ -7,15 +7,15 @@ import pytest
 from service.hardcases import HARD_SCENES, HardScene
 
 LONG = (
-    "ten_million_", "job_", "worker_killed_at_every_attempt", "mesher_without_end", "module_40_mm",
-    "sharp_tips", "undercut_9_teeth", "teeth_20_to_200", "poisson_0.49", "thin_rim",
+    "ten_million_", "job_", "worker_killed_at_every_attempt", "mesher_without_end",
+    "teeth_20_to_200", "thin_rim",
 )  # fmt: skip
-"""How scenes begin that the nightly run has alone: six CPU seconds and more each.
+"""How scenes begin that the nightly run has alone: seven CPU seconds and more each.
 
 Of the jobs that end badly the suite keeps `worker_killed_once`, whose result must be that of Python; what the
 others end by and say is shown in tests/unit/service/test_job_scheduler.py and
-tests/unit/fe_contact/mesh/test_triangulation_child.py. `module_0.2_mm` holds the law of `module_40_mm`; teeth
-like those of the rest have sound tables in test_odd_but_feasible.py.
+tests/unit/fe_contact/mesh/test_triangulation_child.py. Teeth like those of the last two have sound tables in
+test_odd_but_feasible.py.
 """
 SCENES = [
     pytest.param(scene, marks=[pytest.mark.nightly] * scene.name.startswith(LONG), id=scene.name)
