@@ -84,7 +84,9 @@ def test_every_plot_of_a_study_is_drawn_and_has_words(visit: Visit, name: str) -
     for key in STUDIES[name][3]:
         node = part.locator(f"[data-figure='{key}'] .plot")
         expect(node).to_have_attribute("data-drawn", "yes", timeout=PATIENCE)
-        assert node.locator(".scatterlayer .trace path, .barlayer .trace path, .heatmaplayer image").count() >= 1
+        assert (
+            node.locator(".scatterlayer .trace path, .barlayer .trace path, .heatmaplayer image").count() >= 1
+        )
         assert len(node.get_attribute("aria-label") or "") > 40
     assert part.locator(".plot").count() == part.locator(".plot[data-drawn=yes]").count()
 
