@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import asyncio
 from collections import deque
-from collections.abc import AsyncIterator, Generator, Iterable
+from collections.abc import AsyncIterator, Iterable
 from contextlib import AsyncExitStack
 from typing import Any, TypeVar
 
 import httpx2
 
-from service.client.steps import Item, Items, Open, Pause, Piece, Send, Steps, Stream
+from service.client.steps import Course, Item, Items, Open, Pause, Piece, Send, Steps, Stream
 
 T = TypeVar("T")
 
@@ -27,32 +27,29 @@ class AwaitingDriver:
 
     async def run(self, steps: Steps[T]) -> T:
         """Perform steps to their end; return their result."""
+        course = Course(steps)
         async with AsyncExitStack() as streams:
-            reply: Any = None
-            advance = steps.send
             try:
                 while True:
-                    action = advance(reply)
-                    advance, reply = await self._performed(action, streams, steps)
+                    await self._go_on(course, course.action(), streams)
             except StopIteration as end:
                 result: T = end.value
                 return result
 
     async def iterate(self, steps: Items[T]) -> AsyncIterator[T]:
         """Perform steps; yield the items they hand out."""
+        course = Course(steps)
         async with AsyncExitStack() as streams:
-            reply: Any = None
-            advance = steps.send
             while True:
                 try:
-                    action = advance(reply)
+                    action = course.action()
                 except StopIteration:
                     return
                 if isinstance(action, Item):
                     yield action.value
-                    advance, reply = steps.send, None
+                    course.answer(None)
                 else:
-                    advance, reply = await self._performed(action, streams, steps)
+                    await self._go_on(course, action, streams)
 
     async def map(self, operations: Iterable[Steps[T]], concurrency: int) -> AsyncIterator[T]:
         """Perform operations side by side; yield their results in order.
@@ -73,14 +70,14 @@ class AwaitingDriver:
                 task.cancel()
             await asyncio.gather(*window, return_exceptions=True)
 
-    async def _performed(
-        self, action: Send | Piece | Pause, streams: AsyncExitStack, steps: Generator[Any, Any, Any]
-    ) -> tuple[Any, Any]:
-        """Return how the steps go on after an action, and with what."""
+    async def _go_on(
+        self, course: Course[Any], action: Send | Piece | Pause, streams: AsyncExitStack
+    ) -> None:
+        """Perform an action and give back what came of it."""
         try:
-            return steps.send, await self._perform(action, streams)
-        except BaseException as error:  # noqa: BLE001 (whatever it is, the steps decide)
-            return steps.throw, error
+            course.answer(await self._perform(action, streams))
+        except BaseException as error:  # noqa: BLE001 (whatever it is, the operation decides)
+            course.fail(error)
 
     async def _perform(self, action: Send | Piece | Pause, streams: AsyncExitStack) -> Any:
         """Perform an action; return its answer."""

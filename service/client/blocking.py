@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable, Generator, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import islice
 from typing import Any, Generic, TypeVar, cast
 
 import httpx2
 
-from service.client.steps import Item, Items, Open, Pause, Piece, Send, Steps, Stream
+from service.client.steps import Course, Item, Items, Open, Pause, Piece, Send, Steps, Stream
 
 T = TypeVar("T")
 
@@ -37,32 +37,29 @@ class BlockingDriver:
 
     def run(self, steps: Steps[T]) -> T:
         """Perform steps to their end; return their result."""
+        course = Course(steps)
         with ExitStack() as streams:
-            reply: Any = None
-            advance = steps.send
             try:
                 while True:
-                    action = advance(reply)
-                    advance, reply = self._performed(action, streams, steps)
+                    self._go_on(course, course.action(), streams)
             except StopIteration as end:
                 result: T = end.value
                 return result
 
     def iterate(self, steps: Items[T]) -> Iterator[T]:
         """Perform steps; yield the items they hand out."""
+        course = Course(steps)
         with ExitStack() as streams:
-            reply: Any = None
-            advance = steps.send
             while True:
                 try:
-                    action = advance(reply)
+                    action = course.action()
                 except StopIteration:
                     return
                 if isinstance(action, Item):
                     yield action.value
-                    advance, reply = steps.send, None
+                    course.answer(None)
                 else:
-                    advance, reply = self._performed(action, streams, steps)
+                    self._go_on(course, action, streams)
 
     def map(self, operations: Iterable[Steps[T]], concurrency: int) -> Iterator[T]:
         """Perform operations side by side in this thread; yield their results in order.
@@ -73,37 +70,32 @@ class BlockingDriver:
         source, window = iter(operations), deque[_Begun[T]]()
         with ExitStack() as streams:
             while True:
-                window.extend(_Begun(steps) for steps in islice(source, concurrency - len(window)))
+                window.extend(_Begun(Course(steps)) for steps in islice(source, concurrency - len(window)))
                 if not window:
                     return
                 while not window[0].ended:
-                    self._go_on(min((each for each in window if not each.ended), key=_due), streams)
+                    self._until_pause(min((each for each in window if not each.ended), key=_due), streams)
                 yield window.popleft().result()
 
-    def _go_on(self, begun: _Begun[T], streams: ExitStack) -> None:
+    def _until_pause(self, begun: _Begun[Any], streams: ExitStack) -> None:
         """Perform what an operation wants until it pauses or ends."""
         time.sleep(max(begun.due - time.monotonic(), 0.0))
         try:
-            while True:
-                action = begun.advance(begun.reply)
-                if isinstance(action, Pause):
-                    begun.due = time.monotonic() + action.seconds
-                    begun.advance, begun.reply = begun.steps.send, None
-                    return
-                begun.advance, begun.reply = self._performed(action, streams, begun.steps)
+            while not isinstance(action := begun.course.action(), Pause):
+                self._go_on(begun.course, action, streams)
+            begun.due = time.monotonic() + action.seconds
+            begun.course.answer(None)
         except StopIteration as end:
             begun.ended, begun.value = True, end.value
         except Exception as error:  # noqa: BLE001 (raised in its turn)
             begun.ended, begun.error = True, error
 
-    def _performed(
-        self, action: Send | Piece | Pause, streams: ExitStack, steps: Generator[Any, Any, Any]
-    ) -> tuple[Any, Any]:
-        """Return how the steps go on after an action, and with what."""
+    def _go_on(self, course: Course[Any], action: Send | Piece | Pause, streams: ExitStack) -> None:
+        """Perform an action and give back what came of it."""
         try:
-            return steps.send, self._perform(action, streams)
-        except BaseException as error:  # noqa: BLE001 (whatever it is, the steps decide)
-            return steps.throw, error
+            course.answer(self._perform(action, streams))
+        except BaseException as error:  # noqa: BLE001 (whatever it is, the operation decides)
+            course.fail(error)
 
     def _perform(self, action: Send | Piece | Pause, streams: ExitStack) -> Any:
         """Perform an action; return its answer."""
@@ -127,16 +119,11 @@ class BlockingDriver:
 class _Begun(Generic[T]):
     """An operation of `BlockingDriver.map`: how it goes on, and when."""
 
-    steps: Steps[T]
+    course: Course[T]
     due: float = 0.0
-    reply: Any = None
     ended: bool = False
     value: T | None = None
     error: Exception | None = None
-    advance: Callable[[Any], Any] = field(init=False)
-
-    def __post_init__(self) -> None:
-        self.advance = self.steps.send
 
     def result(self) -> T:
         """Return what it returned, or raise what it raised."""

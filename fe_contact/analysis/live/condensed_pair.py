@@ -152,9 +152,8 @@ class CondensedPair:
 
         Parameters and errors are those of `table`.
         """
-        checked = self._asked(pair, torques, misalignment, center_distance_change)
-        nodes, plan = self._laid_out(checked)
-        return CondensedSolution.of(checked, self._placed(checked)[1], nodes, plan.load)
+        checked, _, points, nodes, load = self._posed(pair, torques, misalignment, center_distance_change)
+        return CondensedSolution.of(checked, points, nodes, load)
 
     def solve_rougher(
         self,
@@ -168,14 +167,21 @@ class CondensedPair:
         What this changes of a result on the flanks is a measure of its error. Parameters and errors are those
         of `table`.
         """
-        checked = self._asked(pair, torques, misalignment, center_distance_change)
-        nodes, plan = self._laid_out(checked)
-        contacts, points = self._placed(checked)
+        question = pair, torques, misalignment, center_distance_change
+        checked, contacts, points, nodes, load = self._posed(*question)
         return tuple(
-            CondensedSolution.of(checked, points.on(rougher), nodes, plan.load)
+            CondensedSolution.of(checked, points.on(rougher), nodes, load)
             for rougher in (contacts.sliced, contacts.coarse)
             if rougher is not None
         )
+
+    def _posed(
+        self, pair: ParallelAxes, torques: FloatArray, misalignment: float, change: float
+    ) -> tuple[Checked, CondensedContacts, OperatingPoints, PositionNodes, FloatArray]:
+        """Return the checked question, where its contacts stand, the positions and the loads."""
+        checked = self._asked(pair, torques, misalignment, change)
+        nodes, plan = self._laid_out(checked)
+        return checked, *self._placed(checked), nodes, plan.load
 
     def _asked(self, pair: ParallelAxes, torques: FloatArray, misalignment: float, change: float) -> Checked:
         """Check a question, and compose its model."""
