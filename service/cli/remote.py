@@ -31,10 +31,12 @@ _OF_BOTH = studies_of("case or scene")
 
 @dataclass(frozen=True)
 class ProcessRequest:
-    """A process to run on a file, None for the file's own, and further inputs as JSON."""
+    """A process to run on a file, None for the file's own, further inputs as JSON, terms of the job."""
 
     process: str | None = None
     inputs: str | None = None
+    title: str = ""
+    tags: tuple[str, ...] = ()
 
 
 def run_submit(
@@ -44,7 +46,7 @@ def run_submit(
     if output is not None:
         check_writable(output)
     further = _further(request)
-    with LineOfActionClient(service) as client:
+    with LineOfActionClient(service).with_terms(title=request.title, tags=request.tags) as client:
         state = _submitted(client, file, request.process, further)
         warn(state.warnings)
         facts: dict[str, object] = {"job": state.id, "process": state.process, "status": state.status}

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from copy import copy
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -74,6 +77,20 @@ class Client(Processes, JobCalls, ResultCalls, LookupCalls, SceneCalls):
     def _connect(self, transport: Any, options: dict[str, Any]) -> None:
         """Make the driver."""
         raise NotImplementedError
+
+    def with_terms(self, *, title: str = "", tags: Sequence[str] = ()) -> Self:
+        """Return this client with terms for what it submits; both share connections and cache.
+
+        Parameters
+        ----------
+        title : str
+            Name of its jobs, up to 200 characters.
+        tags : sequence of str
+            What its jobs are found by: up to 16, each of up to 40 letters, digits and ``._:/+-``.
+        """
+        view = copy(self)
+        view.session = replace(self.session, terms={"title": title, "tags": list(tags)})
+        return view
 
 
 class LineOfActionClient(Client, Blocking):

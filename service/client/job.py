@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
@@ -53,6 +53,12 @@ class _JobCalls(Surface, Generic[T]):
         """Cancel the job, unless it has ended; its work ends unless other jobs share it."""
         if not self.state.ended:
             self.state = yield from JobCalls.dismiss(self, self.id)
+        return self.state
+
+    @operation
+    def relabel(self, *, title: str | None = None, tags: Sequence[str] | None = None) -> Steps[JobState]:
+        """Change title and tags of the job, ended or not; None: they stay."""
+        self.state = yield from JobCalls.relabel(self, self.id, title=title, tags=tags)
         return self.state
 
     @listing

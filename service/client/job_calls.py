@@ -38,7 +38,7 @@ class JobCalls(Surface):
         QueueFull, Unreachable, ServiceError
         """
         path, headers = f"/v1/processes/{process}/execution", {"Idempotency-Key": str(uuid.uuid4())}
-        body = {"inputs": inputs}
+        body = {**self.session.terms, "inputs": inputs}
         try:
             return (
                 yield from self.session.exchange.read(
@@ -64,6 +64,16 @@ class JobCalls(Surface):
         """Cancel a job; its work ends unless other jobs share it."""
         return (yield from self.session.exchange.read(JobState.from_json, "DELETE", f"/v1/jobs/{job}"))
 
+    @operation
+    def relabel(
+        self, job: str, *, title: str | None = None, tags: Sequence[str] | None = None
+    ) -> Steps[JobState]:
+        """Change title and tags of a job, ended or not; None: they stay. Raises `BadInput`, `NotFound`."""
+        body = {"title": title, "tags": None if tags is None else list(tags)}
+        return (
+            yield from self.session.exchange.read(JobState.from_json, "PATCH", f"/v1/jobs/{job}", json=body)
+        )
+
     @listing
     def jobs(
         self,
@@ -71,6 +81,8 @@ class JobCalls(Surface):
         process: Sequence[str] = (),
         status: Sequence[str] = (),
         created: str = "../..",
+        tags: Sequence[str] = (),
+        title: str = "",
         limit: int | None = None,
     ) -> Items[JobState]:
         """Yield the states of jobs, the newest first; pages are fetched as they are needed.
@@ -81,10 +93,15 @@ class JobCalls(Surface):
             Only these; default: all.
         created : str
             An RFC 3339 instant, or an interval ``start/end`` with ``..`` for an open end.
+        tags : sequence of str
+            Only jobs that have all of these.
+        title : str
+            Only jobs that have all of these words in their title, in any case.
         limit : int, optional
             Most jobs to yield; default: all.
         """
         wanted = {"processID": list(process), "status": list(status), "datetime": created}
+        wanted |= {"tag": list(tags), "title": title}
         yield from pages(self.session.exchange, "/v1/jobs", "jobs", JobState.from_json, wanted, limit)
 
     @listing

@@ -23,6 +23,9 @@ class JobState:
         Implausible inputs: check, field, value, unit, message; empty in lists of jobs.
     created, started, finished : str
         RFC 3339, UTC; empty before.
+    title : str
+    tags : tuple of str
+        As given to the job.
     """
 
     id: str
@@ -36,6 +39,8 @@ class JobState:
     created: str = ""
     started: str = ""
     finished: str = ""
+    title: str = ""
+    tags: tuple[str, ...] = ()
 
     @property
     def ended(self) -> bool:
@@ -53,7 +58,8 @@ class JobState:
         names = ("status", "message", "stage", "progress", "stage_progress")
         warnings = tuple(facts.get("warnings") or ())
         known: dict[str, Any] = {name: facts[name] for name in names}
-        known |= {name: facts.get(name) or "" for name in ("created", "started", "finished")}
+        known |= {name: facts.get(name) or "" for name in ("created", "started", "finished", "title")}
+        known |= {"tags": tuple(facts.get("tags") or ())}
         return cls(facts["jobID"], facts["processID"], **known, warnings=warnings)
 
 

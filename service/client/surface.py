@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
-from dataclasses import dataclass
+from collections.abc import AsyncIterator, Callable, Coroutine, Iterator, Mapping
+from dataclasses import dataclass, field
 from functools import wraps
 from typing import Any, Concatenate, Generic, ParamSpec, TypeVar, overload
 
@@ -30,12 +30,15 @@ class Session:
         Seconds for which the service may be away while a job is waited for.
     progress : callable, optional
         Called with every state seen of any job that is waited for.
+    terms : mapping
+        What every submission asks beside its inputs: title, tags, as in its body.
     """
 
     exchange: Exchange
     cache: ResultCache
     patience: float
     progress: Watch | None
+    terms: Mapping[str, Any] = field(default_factory=dict)
 
 
 class Surface:

@@ -10,6 +10,7 @@ from typing import Any
 from sqlalchemy import select
 
 from service.queue.delivery import Delivery
+from service.queue.label import Label
 from service.queue.tables import computations, jobs
 
 ENDED = ("successful", "failed", "dismissed")
@@ -39,6 +40,7 @@ class Job:
     reference: str
     delivery: Delivery
     inputs: str
+    label: Label
 
     @property
     def ended(self) -> bool:
@@ -68,6 +70,8 @@ def select_jobs() -> Any:
         jobs.c.dismissed,
         jobs.c.asked,
         jobs.c.delivery,
+        jobs.c.title,
+        jobs.c.tags,
         computations,
     ).join(computations, jobs.c.computation_id == computations.c.id)
 
@@ -94,4 +98,5 @@ def job_of(row: Any) -> Job:
         reference=row.reference,
         delivery=Delivery.of(row.delivery),
         inputs=row.inputs,
+        label=Label.from_row(row),
     )

@@ -8,6 +8,7 @@ from typing import Any, Protocol
 
 from sqlalchemy import ColumnElement, case
 
+from service.queue.label import labeled
 from service.queue.tables import computations, jobs
 
 
@@ -35,6 +36,8 @@ class JobFilter:
         Of its creation, RFC 3339 in UTC with microseconds.
     shortest_s, longest_s : float or None
         Of the time it has run; a job that has not begun has none.
+    tags, words : tuple[str, ...]
+        All of these tags; all of these words in the title, in any case.
     """
 
     processes: tuple[str, ...] = ()
@@ -43,10 +46,12 @@ class JobFilter:
     latest: str | None = None
     shortest_s: float | None = None
     longest_s: float | None = None
+    tags: tuple[str, ...] = ()
+    words: tuple[str, ...] = ()
 
     def conditions(self) -> list[ColumnElement[bool]]:
         """Return what the database decides: all but the time run."""
-        conditions: list[ColumnElement[bool]] = []
+        conditions = labeled(self.tags, self.words)
         if self.processes:
             conditions.append(computations.c.process.in_(self.processes))
         if self.statuses:

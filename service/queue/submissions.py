@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import uuid
+from collections.abc import Sequence
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
@@ -11,11 +12,12 @@ from sqlalchemy import ColumnElement, Connection, Engine, func, insert, select, 
 
 from service.problems import BadInput, NoSuchJob, QueueFull
 from service.queue.caller import ANYBODY, Caller
-from service.queue.delivery import AS_IT_IS, Delivery
 from service.queue.durations import end_computations
 from service.queue.job import ENDED, Job, job_of, select_jobs
 from service.queue.job_filter import EVERY_JOB, JobFilter
+from service.queue.label import Label
 from service.queue.tables import computations, jobs
+from service.queue.terms import USUAL, Terms
 from service.store import BRIEF_MS, Mark, behind, instant, now, optional, reading, retried, writing
 from service.store.results import USE_NOTED_EVERY_S
 
@@ -38,7 +40,7 @@ class Submissions:
         stored: bool,
         looked: str | None = None,
         caller: Caller = ANYBODY,
-        delivery: Delivery = AS_IT_IS,
+        terms: Terms = USUAL,
         name: str | None = None,
     ) -> Job:
         """Enter a job; equal work that waits, runs or is `stored` already is shared.
@@ -52,8 +54,7 @@ class Submissions:
         looked : str, optional
             When that was requested: work that has ended since is shared too, its result being there by now.
         caller : Caller
-        delivery : Delivery
-            The form in which this job shows its result.
+        terms : Terms
         name : str, optional
             The caller's name for this request (``Idempotency-Key``): sent again, it is the same job, for as
             long as the job is kept.
@@ -68,7 +69,7 @@ class Submissions:
         """
         identifier = str(uuid.uuid4() if name is None else _identifier(caller, process, name))
         ended = _ended_since(key, looked or now(), stored)
-        self._submit(identifier, process, key, inputs, stored, ended, caller, delivery)
+        self._submit(identifier, process, key, inputs, stored, ended, caller, terms)
         return self.find(identifier)
 
     @retried
@@ -81,7 +82,7 @@ class Submissions:
         stored: bool,
         ended: ColumnElement[bool],
         caller: Caller,
-        delivery: Delivery,
+        terms: Terms,
     ) -> None:
         """Enter a job of this identifier, unless it is in already."""
         with writing(self._engine, in_turn=True) as connection:
@@ -98,7 +99,8 @@ class Submissions:
                     self._refuse_if_full(connection)
                 computation = _enter(connection, process, key, inputs, stored)
             row = {"id": identifier, "computation_id": computation, "created": now(), "dismissed": None}
-            connection.execute(insert(jobs).values(**row, caller=caller.name, delivery=str(delivery)))
+            row |= {"caller": caller.name, "delivery": str(terms.delivery), **terms.label.columns()}
+            connection.execute(insert(jobs).values(**row))
 
     def _refuse_if_full(self, connection: Connection) -> None:
         """Raise if the queue is at its limit."""
@@ -154,6 +156,19 @@ class Submissions:
                 statement.order_by(jobs.c.created.desc(), jobs.c.id.desc()).limit(limit)
             )
             return [job_of(row) for row in rows]
+
+    def relabel(self, identifier: str, title: str | None, tags: Sequence[str] | None) -> Job:
+        """Change title and tags of a job, ended or not; None: they stay. Raises `NoSuchJob`."""
+        label = self.find(identifier).label
+        changed = Label.of(label.title if title is None else title, label.tags if tags is None else tags)
+        self._relabel(identifier, changed)
+        return self.find(identifier)
+
+    @retried
+    def _relabel(self, identifier: str, label: Label) -> None:
+        """Write the label of a job."""
+        with writing(self._engine) as connection:
+            connection.execute(update(jobs).where(jobs.c.id == identifier).values(**label.columns()))
 
     def dismiss(self, identifier: str) -> Job:
         """Dismiss one caller's job, unless it ended; the work goes on while other jobs share it."""

@@ -65,6 +65,9 @@ jobs = Table(
     Column("asked", String),
     Column("caller", String, nullable=False, default=""),
     Column("delivery", String, nullable=False),
+    Column("title", String, nullable=False, server_default=""),
+    Column("title_folded", String, nullable=False, server_default=""),
+    Column("tags", Text, nullable=False, server_default=""),
 )
 Index("job_by_caller", jobs.c.caller)
 Index("job_by_computation", jobs.c.computation_id)

@@ -10,6 +10,7 @@ from pydantic import Field
 
 from service.problems import BadInput
 from service.queue.job_filter import JobFilter
+from service.schemas.label import Tag, Title
 from service.schemas.ogc import JobStatus
 
 _DURATION: dict[str, Any] = {"ge": 0, "le": 1_000_000_000}
@@ -41,11 +42,22 @@ def job_filter(
         int | None,
         Query(alias="maxDuration", description="Jobs that ran for at most this many seconds", **_DURATION),
     ] = None,
+    tag: Annotated[list[Tag], Query(max_length=16, description="Jobs that have all of these tags")] = [],  # noqa: B006
+    title: Annotated[
+        Title, Query(description="Jobs with all of these words in their title, in any case")
+    ] = "",
 ) -> JobFilter:
     """Return what the parameters ask for."""
     earliest, latest = _interval(instant)
     return JobFilter(
-        tuple(process_id), tuple(status), earliest, latest, float(shortest) if shortest else None, longest
+        tuple(process_id),
+        tuple(status),
+        earliest,
+        latest,
+        float(shortest) if shortest else None,
+        longest,
+        tuple(tag),
+        tuple(title.split()),
     )
 
 

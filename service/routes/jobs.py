@@ -12,6 +12,7 @@ from service.routes.context import Ctx
 from service.routes.cursor import Cursor, Limit, mark_of, page_links
 from service.routes.job_query import JobQuery
 from service.routes.refusals import documented
+from service.schemas.label import LabelChange
 from service.schemas.ogc import JobList, JobStatus, Link, StatusInfo
 from service.store import Mark
 from service.worker.process import Registry, on_demand
@@ -37,6 +38,12 @@ def job_status(job_id: str, context: Ctx) -> StatusInfo:
     return status_info(context.submissions.find(job_id), context.registry)
 
 
+@router.patch("/{job_id}", summary="Rename a job", responses=documented(NoSuchJob))
+def relabel_job(job_id: str, change: LabelChange, context: Ctx) -> StatusInfo:
+    """Change title and tags of a job, ended or not; what is left out stays."""
+    return status_info(context.submissions.relabel(job_id, change.title, change.tags), context.registry)
+
+
 @router.delete("/{job_id}", summary="Dismiss a job", responses=documented(NoSuchJob))
 def dismiss_job(job_id: str, context: Ctx) -> StatusInfo:
     """Cancel: the work ends unless other jobs share it. A job that has ended stays as it is."""
@@ -60,6 +67,8 @@ def status_info(job: Job, registry: Registry) -> StatusInfo:
         processID=job.process,
         jobID=job.id,
         status=status,
+        title=job.label.title,
+        tags=list(job.label.tags),
         message=job.message,
         created=job.created,
         started=job.started,

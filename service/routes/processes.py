@@ -12,7 +12,9 @@ from pydantic import BaseModel, create_model
 
 from service.problems import NoSuchProcess, QueueFull
 from service.queue.caller import Caller
-from service.queue.delivery import Delivery, delivery
+from service.queue.delivery import delivery
+from service.queue.label import Label
+from service.queue.terms import Terms
 from service.registry import NETCDF
 from service.routes.context import Context, Ctx, From
 from service.routes.cursor import Limit
@@ -111,7 +113,8 @@ def _add_execution(router: APIRouter, process: Process) -> None:
         field = f"outputs.{process.output}.transmissionMode"
         form = delivery(request.response, output and output.transmissionMode, field)
         inputs = process.prepare(cast(BoundaryModel, request.inputs), context.store)
-        status = _submit(context, process, inputs, caller, form, idempotency_key)
+        terms = Terms(form, Label.of(request.title, request.tags))
+        status = _submit(context, process, inputs, caller, terms, idempotency_key)
         response.headers["Location"] = f"/v1/jobs/{status.jobID}"
         if "respond-async" in [item.partition(";")[0].strip().lower() for item in prefer.split(",")]:
             response.headers["Preference-Applied"] = "respond-async"
@@ -137,7 +140,7 @@ def _submit(
     process: Process,
     inputs: dict[str, Any],
     caller: Caller,
-    form: Delivery,
+    terms: Terms,
     name: str | None,
 ) -> StatusInfo:
     """Enter a job and wake the scheduler."""
@@ -145,7 +148,7 @@ def _submit(
     looked = now()
     stored = context.store.find(key, process.kind) is not None
     job = context.submissions.submit(
-        process.id, key, inputs, stored=stored, looked=looked, caller=caller, delivery=form, name=name
+        process.id, key, inputs, stored=stored, looked=looked, caller=caller, terms=terms, name=name
     )
     facts = {"job": job.id, "computation": job.computation, "process": process.id, "key": key}
     logger.info("job entered", **facts, stored=stored)

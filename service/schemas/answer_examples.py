@@ -18,6 +18,8 @@ STATUS: Json = {
     "type": "process",
     "jobID": JOB,
     "status": "running",
+    "title": "Tip relief 20 um",
+    "tags": ["ev-3", "draft"],
     "message": "Runs: compliance.",
     "created": _INSTANT,
     "started": _INSTANT,

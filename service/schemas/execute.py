@@ -8,6 +8,7 @@ from typing import Any, Literal
 from pydantic import Field, create_model, model_validator
 
 from service.registry import JSON, NETCDF
+from service.schemas.label import Tags, Title
 from service.schemas.model import BoundaryModel, refuse
 from service.schemas.ogc import class_name
 
@@ -81,5 +82,7 @@ def execute_model(process: str, inputs: type[BoundaryModel], output: str) -> typ
         "inputs": (inputs, Field(description="Inputs of the process")),
         "outputs": (outputs, Field(default_factory=outputs, description="Requested outputs; default: all")),
         "response": (Literal["raw", "document"], form),
+        "title": (Title, Field("", description="Name of the job", examples=["Tip relief 20 um"])),
+        "tags": (Tags, Field([], description="What the job is found by", examples=[["ev-3", "draft"]])),
     }
     return create_model(f"Execute{title}", __base__=ExecuteBody, **fields)

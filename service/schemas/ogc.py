@@ -95,6 +95,8 @@ class StatusInfo(BaseModel):
     type: Literal["process"] = "process"
     jobID: str  # noqa: N815
     status: JobStatus
+    title: str = Field(default="", description="Name that the caller gave the job")
+    tags: list[str] = Field(default=[], description="Tags that the caller gave the job")
     message: str = Field(description="State of the job in words")
     created: str = Field(description="RFC 3339, UTC")
     started: str | None = None

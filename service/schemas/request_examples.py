@@ -96,6 +96,7 @@ speed_rpm = [955.0]
 """
 
 BODIES: dict[str, Json] = {
+    "/v1/jobs/{job_id}": {"title": "Tip relief 20 um", "tags": ["ev-3", "draft"]},
     "/v1/databases/{key}/query": QUERY,
     "/v1/databases/{key}/ste": {"torque_n_m": [100.0], "pinion": {"tip_relief_um": 10.0}},
     "/v1/plans": {"inputs": {"case": CASE}},

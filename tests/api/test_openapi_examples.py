@@ -17,6 +17,7 @@ from small_table import small_table
 
 from service.app import create_app
 from service.schemas.answer_examples import HASH
+from service.schemas.request_examples import request_example
 from service.settings import Settings
 
 BINARY = ("application/x-netcdf", "application/octet-stream")
@@ -110,12 +111,13 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
 
 
 LIVE = ("/v1/plans", "/v1/databases/{key}/ste")  # answered by a worker of their own: test_live_over_http
+OF_A_JOB = "/v1/jobs/{job_id}"
 
 
 @pytest.mark.parametrize(
     ("path", "kind", "body"),
-    [entry for entry in SENT if entry[0] not in LIVE],
-    ids=[f"{path} {kind}" for path, kind, _ in SENT if path not in LIVE],
+    [entry for entry in SENT if entry[0] not in (*LIVE, OF_A_JOB)],
+    ids=[f"{path} {kind}" for path, kind, _ in SENT if path not in (*LIVE, OF_A_JOB)],
 )
 def test_the_example_of_a_body_is_accepted(
     client: TestClient, path: str, kind: str, body: dict[str, Any]
@@ -126,3 +128,9 @@ def test_the_example_of_a_body_is_accepted(
     else:
         answer = client.post(url, json=body["example"])
     assert answer.status_code in (200, 201), answer.text
+
+
+def test_the_example_of_a_change_is_accepted(client: TestClient) -> None:
+    ((_, _, body),) = [entry for entry in SENT if entry[0] == OF_A_JOB]
+    job = client.post("/v1/processes/analyze/execution", json=request_example("analyze/execution")).json()
+    assert client.patch(f"/v1/jobs/{job['jobID']}", json=body["example"]).status_code == 200

@@ -32,11 +32,11 @@ def test_a_job_is_cancelled_from_the_list(visit: Visit, address: str) -> None:
         row = page.get_by_role("row").filter(
             has=page.get_by_role("button", name=re.compile("Cancel frontier"))
         )
-        row.get_by_role("button").press("Enter")
+        row.get_by_role("button", name=re.compile("^Cancel")).press("Enter")
         until(lambda: client.status(job.id).status == "dismissed")
     first = page.locator("#jobs-rows tr").first
     expect(first).to_contain_text("cancelled")
-    assert first.get_by_role("button").count() == 0
+    assert first.get_by_role("button", name=re.compile("^(Cancel|Open|Compare)")).count() == 0
 
 
 def test_a_result_opens_again_in_another_window(visit: Visit, browser: Browser, address: str) -> None:
@@ -51,6 +51,29 @@ def test_a_result_opens_again_in_another_window(visit: Visit, browser: Browser, 
     expect(later.locator("#jobs-result")).to_be_focused()
     assert not (told := found_inaccessible(later)), json.dumps(told, indent=1)
     later.close()
+
+
+def test_a_job_is_renamed_and_found_by_title_and_tag(visit: Visit, address: str) -> None:
+    page = visit.page
+    with LineOfActionClient(address) as client:
+        job = client.with_terms(tags=["EV-3"]).submit("analyze", {"case": CASE})
+        client.submit("analyze", {"case": CASE})
+        page.reload()
+        rows = page.locator("#jobs-rows tr")
+        row = rows.filter(has_text="#ev-3")
+        page.once("dialog", lambda dialog: dialog.accept("Tip relief"))
+        row.get_by_role("button", name=re.compile("^Rename analyze")).press("Enter")
+        expect(row).to_contain_text("Tip relief")
+        assert client.status(job.id).title == "Tip relief"
+    page.get_by_label("Find by words").fill("RELIEF #ev-3")
+    page.get_by_label("Find by words").press("Enter")
+    expect(rows).to_have_count(1)
+    expect(rows).to_contain_text("Tip relief")
+    page.get_by_label("Find by words").fill("#no-such-tag")
+    page.get_by_label("Find by words").press("Enter")
+    expect(page.locator("#jobs-none")).to_have_text("No such jobs.")
+    assert not (told := found_inaccessible(page)), json.dumps(told, indent=1)
+    assert visit.complaints == []
 
 
 def test_a_job_under_way_outlasts_a_service_that_is_away(visit: Visit, address: str, tmp_path: Path) -> None:

@@ -72,12 +72,15 @@ def submit(
     inputs: Annotated[
         str | None, typer.Option(help="Further inputs of that process, as a JSON object.")
     ] = None,
+    title: Annotated[str, typer.Option(help="Name of the job in lists.")] = "",
+    tag: Annotated[list[str] | None, typer.Option(help="Tag of the job; may be repeated.")] = None,
     json: AsJson = False,
 ) -> None:
     """Submit a case or a scene to a service."""
     from service.cli.remote import ProcessRequest, run_submit  # noqa: PLC0415 (start-up time)
 
-    run_submit(file, service, ProcessRequest(process, inputs), wait=wait, output=output, as_json=json)
+    request = ProcessRequest(process, inputs, title, tuple(tag or ()))
+    run_submit(file, service, request, wait=wait, output=output, as_json=json)
 
 
 @verbs.command(epilog="Example: loa fetch 3f1c0e5a-6c3d-4c1e-9b1e-2f6f0a1b2c3d -o ste.nc")

@@ -58,6 +58,11 @@ export async function post(path, body, signal) {
   return (await answer(await asked(path, { method: "POST", headers, body: JSON.stringify(body), signal }))).json();
 }
 
+export async function patch(path, body) {
+  const headers = { "Content-Type": "application/json" };
+  return (await answer(await asked(path, { method: "PATCH", headers, body: JSON.stringify(body) }))).json();
+}
+
 export async function dismiss(path) {
   return (await answer(await asked(path, { method: "DELETE" }))).json();
 }

@@ -3,7 +3,7 @@
 import { Problem, get, pause } from "./api.js";
 import { byId, duration, make } from "./elements.js";
 import { ENDED, WORDS, cancelled } from "./job.js";
-import { nameOf } from "./job_names.js";
+import { called, label, renamed, search } from "./job_label.js";
 
 const AT_ONCE = 10;
 const COMPARED = new Set(["analyze", "simulate"]); // processes whose results are compared
@@ -21,6 +21,8 @@ export class Jobs {
     this.shown = AT_ONCE;
     this.line = byId("jobs-line");
     document.addEventListener("jobs-changed", () => this.refresh());
+    this.search = byId("jobs-search");
+    this.search.addEventListener("change", () => this.refresh());
     byId("jobs-more").addEventListener("click", () => {
       this.shown += AT_ONCE;
       this.refresh();
@@ -32,12 +34,13 @@ export class Jobs {
     const turn = (this.turn = (this.turn ?? 0) + 1);
     for (;;) {
       try {
-        const { jobs } = await get(`/v1/jobs?limit=${this.shown + 1}`);
+        const { jobs } = await get(`/v1/jobs?limit=${this.shown + 1}&${search(this.search.value)}`);
         if (turn !== this.turn) return;
         this.show(jobs);
         if (jobs.every(({ status }) => ENDED.has(status))) return;
       } catch (problem) {
         if (!(problem instanceof Problem)) throw problem;
+        this.line.textContent = problem.status ? problem.message : "";
         if (problem.status !== 0) return; // an away service is asked again
       }
       await pause(AGAIN);
@@ -47,6 +50,7 @@ export class Jobs {
 
   show(jobs) {
     byId("jobs-none").hidden = jobs.length > 0;
+    byId("jobs-none").textContent = this.search.value ? "No such jobs." : "No jobs yet.";
     byId("jobs-table").hidden = !jobs.length;
     byId("jobs-more").hidden = jobs.length <= this.shown;
     const known = JSON.stringify(jobs);
@@ -59,7 +63,7 @@ export class Jobs {
 
   row(job) {
     const when = new Date(job.created).toLocaleString([], { dateStyle: "medium", timeStyle: "short" });
-    const name = nameOf(job.jobID);
+    const name = called(job);
     const about = `${job.processID}${name ? ` of ${name}` : ""}, ${when}`;
     const button = (text, action) => make(
       "button", { type: "button", class: "small", "data-job": job.jobID, "aria-label": `${text} ${about}`, onclick: action }, text,
@@ -70,8 +74,11 @@ export class Jobs {
     };
     const both = () => (job.status === "successful" && COMPARED.has(job.processID) ? button("Compare", () => this.choose(job)) : "");
     const action = ENDED.has(job.status) ? actions[job.status]?.() : button("Cancel", () => this.cancel(job));
-    const cells = [name, state(job), when, spent(job)].map((text) => make("td", {}, text));
-    return make("tr", {}, make("th", { scope: "row" }, job.processID), make("td", {}, action ?? "", " ", both()), ...cells);
+    const rename = button("Rename", () => this.rename(job));
+    const cells = [state(job), when, spent(job)].map((text) => make("td", {}, text));
+    return make(
+      "tr", {}, make("th", { scope: "row" }, job.processID), make("td", {}, action ?? "", " ", both(), " ", rename), label(job), ...cells,
+    );
   }
 
   /** The first of two jobs is remembered; the second one is compared with it. */
@@ -87,6 +94,11 @@ export class Jobs {
       if (!(problem instanceof Problem)) throw problem;
       this.line.textContent = problem.message;
     }
+  }
+
+  async rename(job) {
+    await renamed(job, this.line);
+    await this.refresh();
   }
 
   async cancel(job) {

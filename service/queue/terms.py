@@ -1,0 +1,26 @@
+"""What a caller asks of a job beside its inputs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from service.queue.delivery import AS_IT_IS, Delivery
+from service.queue.label import NO_LABEL, Label
+
+
+@dataclass(frozen=True)
+class Terms:
+    """The terms of a job.
+
+    Attributes
+    ----------
+    delivery : Delivery
+        The form in which it shows its result.
+    label : Label
+    """
+
+    delivery: Delivery = AS_IT_IS
+    label: Label = NO_LABEL
+
+
+USUAL = Terms()
