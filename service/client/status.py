@@ -26,6 +26,11 @@ class JobState:
     title : str
     tags : tuple of str
         As given to the job.
+    subject : str
+        What the job is about, in words.
+    differences : tuple of dict
+        The first inputs that differ from those of the caller's job before it of the same process, or from the
+        defaults: field, before, value.
     """
 
     id: str
@@ -41,6 +46,8 @@ class JobState:
     finished: str = ""
     title: str = ""
     tags: tuple[str, ...] = ()
+    subject: str = ""
+    differences: tuple[dict[str, Any], ...] = ()
 
     @property
     def ended(self) -> bool:
@@ -58,8 +65,11 @@ class JobState:
         names = ("status", "message", "stage", "progress", "stage_progress")
         warnings = tuple(facts.get("warnings") or ())
         known: dict[str, Any] = {name: facts[name] for name in names}
-        known |= {name: facts.get(name) or "" for name in ("created", "started", "finished", "title")}
+        known |= {
+            name: facts.get(name) or "" for name in ("created", "started", "finished", "title", "subject")
+        }
         known |= {"tags": tuple(facts.get("tags") or ())}
+        known |= {"differences": tuple((facts.get("differences") or {}).get("first", ()))}
         return cls(facts["jobID"], facts["processID"], **known, warnings=warnings)
 
 

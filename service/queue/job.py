@@ -10,6 +10,7 @@ from typing import Any
 from sqlalchemy import select
 
 from service.queue.delivery import Delivery
+from service.queue.differences import Differences
 from service.queue.label import Label
 from service.queue.tables import computations, jobs
 
@@ -41,6 +42,7 @@ class Job:
     delivery: Delivery
     inputs: str
     label: Label
+    differences: Differences
 
     @property
     def ended(self) -> bool:
@@ -72,6 +74,7 @@ def select_jobs() -> Any:
         jobs.c.delivery,
         jobs.c.title,
         jobs.c.tags,
+        jobs.c.differences,
         computations,
     ).join(computations, jobs.c.computation_id == computations.c.id)
 
@@ -99,4 +102,5 @@ def job_of(row: Any) -> Job:
         delivery=Delivery.of(row.delivery),
         inputs=row.inputs,
         label=Label.from_row(row),
+        differences=Differences.of(row.differences),
     )

@@ -100,6 +100,7 @@ class Submissions:
                 computation = _enter(connection, process, key, inputs, stored)
             row = {"id": identifier, "computation_id": computation, "created": now(), "dismissed": None}
             row |= {"caller": caller.name, "delivery": str(terms.delivery), **terms.label.columns()}
+            row |= {"differences": str(terms.differences)}
             connection.execute(insert(jobs).values(**row))
 
     def _refuse_if_full(self, connection: Connection) -> None:

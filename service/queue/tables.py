@@ -68,8 +68,10 @@ jobs = Table(
     Column("title", String, nullable=False, server_default=""),
     Column("title_folded", String, nullable=False, server_default=""),
     Column("tags", Text, nullable=False, server_default=""),
+    Column("differences", Text, nullable=False, server_default=""),
 )
 Index("job_by_caller", jobs.c.caller)
+Index("job_by_caller_and_time", jobs.c.caller, jobs.c.created)
 Index("job_by_computation", jobs.c.computation_id)
 Index("job_by_use", jobs.c.asked)
 Index("job_by_time", jobs.c.created)

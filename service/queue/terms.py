@@ -1,10 +1,11 @@
-"""What a caller asks of a job beside its inputs."""
+"""What is kept of a job beside its inputs."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 from service.queue.delivery import AS_IT_IS, Delivery
+from service.queue.differences import NOT_COMPARED, Differences
 from service.queue.label import NO_LABEL, Label
 
 
@@ -17,10 +18,13 @@ class Terms:
     delivery : Delivery
         The form in which it shows its result.
     label : Label
+    differences : Differences
+        What sets it apart from the caller's job before it.
     """
 
     delivery: Delivery = AS_IT_IS
     label: Label = NO_LABEL
+    differences: Differences = NOT_COMPARED
 
 
 USUAL = Terms()

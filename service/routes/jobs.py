@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from datetime import UTC, datetime
 
 from fastapi import APIRouter, Request
 
 from service.problems import NoSuchJob
+from service.queue.differences import Differences
 from service.queue.job import Job
+from service.queue.subject import subject_of
 from service.routes.context import Ctx
 from service.routes.cursor import Cursor, Limit, mark_of, page_links
 from service.routes.job_query import JobQuery
 from service.routes.refusals import documented
 from service.schemas.label import LabelChange
+from service.schemas.ogc import Differences as ShownDifferences
 from service.schemas.ogc import JobList, JobStatus, Link, StatusInfo
 from service.store import Mark
 from service.worker.process import Registry, on_demand
@@ -69,6 +73,8 @@ def status_info(job: Job, registry: Registry) -> StatusInfo:
         status=status,
         title=job.label.title,
         tags=list(job.label.tags),
+        subject=subject_of(job.inputs),
+        differences=_shown(job.differences),
         message=job.message,
         created=job.created,
         started=job.started,
@@ -82,3 +88,9 @@ def status_info(job: Job, registry: Registry) -> StatusInfo:
         links=links,
         warnings=list(input_warnings(job.inputs)),
     )
+
+
+def _shown(differences: Differences) -> ShownDifferences:
+    """Return the differences of a job as they are shown."""
+    facts = asdict(differences)
+    return ShownDifferences.model_validate(facts | {"since": facts["since"] or None})

@@ -13,6 +13,8 @@ from pydantic import BaseModel, create_model
 from service.problems import NoSuchProcess, QueueFull
 from service.queue.caller import Caller
 from service.queue.delivery import delivery
+from service.queue.differences import Differences
+from service.queue.former_jobs import FormerJobs
 from service.queue.label import Label
 from service.queue.terms import Terms
 from service.registry import NETCDF
@@ -113,7 +115,8 @@ def _add_execution(router: APIRouter, process: Process) -> None:
         field = f"outputs.{process.output}.transmissionMode"
         form = delivery(request.response, output and output.transmissionMode, field)
         inputs = process.prepare(cast(BoundaryModel, request.inputs), context.store)
-        terms = Terms(form, Label.of(request.title, request.tags))
+        since = _differences(context, process, caller, inputs, request.inputs)
+        terms = Terms(form, Label.of(request.title, request.tags), since)
         status = _submit(context, process, inputs, caller, terms, idempotency_key)
         response.headers["Location"] = f"/v1/jobs/{status.jobID}"
         if "respond-async" in [item.partition(";")[0].strip().lower() for item in prefer.split(",")]:
@@ -133,6 +136,16 @@ def _add_execution(router: APIRouter, process: Process) -> None:
         responses=documented(QueueFull)
         | {201: {"description": "The job", "headers": described_headers("Location", "Preference-Applied")}},
     )
+
+
+def _differences(
+    context: Context, process: Process, caller: Caller, inputs: dict[str, Any], stated: BoundaryModel
+) -> Differences:
+    """Return what sets normalized inputs apart from the caller's job before, or else from the defaults."""
+    former = FormerJobs(context.engine).newest(caller, process.id)
+    if former is None:
+        return Differences.between({}, stated.model_dump(mode="json", exclude_defaults=True))
+    return Differences.between(former[1], inputs, former[0])
 
 
 def _submit(

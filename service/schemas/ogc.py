@@ -17,6 +17,9 @@ CONFORMANCE = (
 )
 
 
+Value = bool | int | float | str | list[bool | int | float | str | None] | None
+
+
 class Link(BaseModel):
     """A link of RFC 8288."""
 
@@ -86,6 +89,22 @@ class ProcessDescription(ProcessSummary):
     outputs: dict[str, Any]
 
 
+class Difference(BaseModel):
+    """An input that differs from that of the job before, or from its default."""
+
+    field: str = Field(description="Path of the input", examples=["case.load.torque_n_m"])
+    before: Value = Field(description="Its former value; null: not stated; of a long list its length")
+    value: Value = Field(description="Its value here; null: not stated; of a long list its length")
+
+
+class Differences(BaseModel):
+    """The inputs in which a job differs from its caller's job before it of the same process."""
+
+    since: str | None = Field(description="The job before it; null: none, it is compared with the defaults")
+    first: list[Difference] = Field(description="The first of them, at most 12")
+    number: int = Field(ge=0, description="Number of all of them")
+
+
 class StatusInfo(BaseModel):
     """The state of a job."""
 
@@ -97,6 +116,8 @@ class StatusInfo(BaseModel):
     status: JobStatus
     title: str = Field(default="", description="Name that the caller gave the job")
     tags: list[str] = Field(default=[], description="Tags that the caller gave the job")
+    subject: str = Field(default="", description="What the job is about, in words: the pair, or the scene")
+    differences: Differences | None = Field(default=None, description="What sets the job apart")
     message: str = Field(description="State of the job in words")
     created: str = Field(description="RFC 3339, UTC")
     started: str | None = None

@@ -64,6 +64,7 @@ def test_a_job_is_renamed_and_found_by_title_and_tag(visit: Visit, address: str)
         page.once("dialog", lambda dialog: dialog.accept("Tip relief"))
         row.get_by_role("button", name=re.compile("^Rename analyze")).press("Enter")
         expect(row).to_contain_text("Tip relief")
+        expect(row).to_contain_text("20/20, module 1 mm, up to 1 N m")
         assert client.status(job.id).title == "Tip relief"
     page.get_by_label("Find by words").fill("RELIEF #ev-3")
     page.get_by_label("Find by words").press("Enter")
@@ -74,6 +75,15 @@ def test_a_job_is_renamed_and_found_by_title_and_tag(visit: Visit, address: str)
     expect(page.locator("#jobs-none")).to_have_text("No such jobs.")
     assert not (told := found_inaccessible(page)), json.dumps(told, indent=1)
     assert visit.complaints == []
+
+
+def test_a_job_tells_what_sets_it_apart(visit: Visit, address: str) -> None:
+    page = visit.page
+    with LineOfActionClient(address) as client:
+        for torques in ([0.5, 1.0], [0.5]):
+            client.submit("analyze", {"case": CASE | {"load": {"torque_n_m": torques}}})
+    page.reload()
+    expect(page.locator("#jobs-rows tr").first).to_contain_text("load.torque_n_m 0.5, 1 → 0.5")
 
 
 def test_a_job_under_way_outlasts_a_service_that_is_away(visit: Visit, address: str, tmp_path: Path) -> None:

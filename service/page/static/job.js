@@ -2,7 +2,7 @@
 
 import { Problem, dismiss, get, patiently, pause, post } from "./api.js";
 import { duration, make } from "./elements.js";
-import { remember, words } from "./job_names.js";
+import { remember } from "./job_cases.js";
 
 export const ENDED = new Set(["successful", "failed", "dismissed"]);
 const FIRST_LOOK = 150;
@@ -19,7 +19,7 @@ export async function submitted(target, process, inputs) {
   const status = await patiently(() => post(`/v1/processes/${process}/execution`, { inputs }), (problem) => {
     target.replaceChildren(...(problem ? [make("p", { class: "hint", role: "status" }, `${problem.message} ${AGAIN}`)] : []));
   });
-  remember(status.jobID, { name: words(inputs), case: inputs.case });
+  if (inputs.case) remember(status.jobID, inputs.case);
   document.dispatchEvent(new Event("jobs-changed"));
   return status;
 }

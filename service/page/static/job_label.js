@@ -1,20 +1,36 @@
 // @ts-check
-/** What a job is called in the list: its title and tags, or what it is about; and the search for them. */
+/** What a job is called in the list: its title, or what it is about; what sets it apart, its tags; and the search. */
 
 import { Problem, patch } from "./api.js";
 import { make } from "./elements.js";
-import { nameOf } from "./job_names.js";
 
-/** @typedef {{jobID: string, title: string, tags: string[]}} Named */
+/** @typedef {{field: string, before: unknown, value: unknown}} Difference */
+/** @typedef {{since: string | null, first: Difference[], number: number}} Differences */
+/** @typedef {{jobID: string, title: string, subject: string, tags: string[], differences: Differences | null}} Named */
+
+const MOST = 3; // differences in a row
 
 /** @param {Named} job @returns {string} */
-export const called = (job) => job.title || nameOf(job.jobID);
+export const called = (job) => job.title || job.subject;
 
-/** The words for a job, its tags below. @param {Named} job */
+/** The words for a job; below them what it is about, what sets it apart, and its tags. @param {Named} job */
 export function label(job) {
-  const tags = job.tags.length ? make("span", { class: "hint" }, job.tags.map((tag) => `#${tag}`).join(" ")) : null;
-  return make("td", { class: "called" }, called(job), tags);
+  const lines = [job.title && job.subject, apart(job.differences), job.tags.map((tag) => `#${tag}`).join(" ")];
+  return make("td", { class: "called" }, called(job), ...lines.filter(Boolean).map((text) => make("span", { class: "hint" }, text)));
 }
+
+/** The differences from the job before in a line; those from the defaults are what the job is about. @param {Differences | null} differences */
+function apart(differences) {
+  if (!differences?.since || !differences.number) return "";
+  const shown = differences.first.slice(0, MOST).map(({ field, before, value }) => (
+    `${field.replace(/^(case|scene)\./, "")} ${written(before)} → ${written(value)}`
+  ));
+  const more = differences.number - shown.length;
+  return `${shown.join("; ")}${more ? `; ${more} more` : ""}`;
+}
+
+/** @param {unknown} value */
+const written = (value) => (value === null ? "not set" : Array.isArray(value) ? value.join(", ") : String(value));
 
 /** Ask for a title and give it to a job; what goes wrong is said in `line`. @param {Named} job @param {HTMLElement} line */
 export async function renamed(job, line) {

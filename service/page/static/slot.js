@@ -5,7 +5,7 @@ import { Problem } from "./api.js";
 import { DesignNote } from "./design_note.js";
 import { make } from "./elements.js";
 import { followed, showFailure, submitted } from "./job.js";
-import { caseOf } from "./job_names.js";
+import { caseOf } from "./job_cases.js";
 import { sayUnknown } from "./notice.js";
 
 export class Slot {

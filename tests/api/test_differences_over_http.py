@@ -1,0 +1,90 @@
+"""Differences of jobs from those before them: of the same caller and process, on each database."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+from sqlalchemy import delete
+
+from service.access import KeyFile
+from service.app import create_app
+from service.client import LineOfActionClient
+from service.queue.tables import jobs
+from service.schemas.request_examples import CASE
+from service.settings import Settings
+from service.store import writing
+
+Json = dict[str, Any]
+
+
+@pytest.fixture
+def client(tmp_path: Path, database_url: str | None) -> Iterator[TestClient]:
+    """A client of an app whose scheduler does not run, on each database."""
+    app = create_app(Settings(data_directory=tmp_path, database_url=database_url))
+    yield TestClient(app)
+    app.state.context.close()
+
+
+def entered(client: TestClient, process: str = "analyze", relief: float = 0.0, **headers: str) -> Json:
+    """Return the job of the example with some tip relief."""
+    pinion = CASE["pair"]["pinion"] | {"tip_relief_um": relief, "tip_relief_length_mm": 1.5}
+    body = {"inputs": {"case": CASE | {"pair": CASE["pair"] | {"pinion": pinion}}}}
+    answer = client.post(f"/v1/processes/{process}/execution", json=body, headers=headers)
+    assert answer.status_code == 201, answer.text
+    return answer.json()  # type: ignore[no-any-return]
+
+
+def relieved(before: float, value: float) -> list[Json]:
+    """Return the difference in tip relief."""
+    return [{"field": "case.pair.pinion.tip_relief_um", "before": before, "value": value}]
+
+
+def test_a_job_is_compared_with_the_one_before_of_its_process(client: TestClient) -> None:
+    first = entered(client, relief=10.0)
+    entered(client, "flank", relief=30.0)
+    second, third = entered(client, relief=20.0), entered(client, relief=20.0)
+    assert second["differences"] == {"since": first["jobID"], "first": relieved(10.0, 20.0), "number": 1}
+    assert third["differences"] == {"since": second["jobID"], "first": [], "number": 0}
+    listed = client.get("/v1/jobs").json()["jobs"]
+    assert [job["differences"] for job in listed[:2]] == [third["differences"], second["differences"]]
+    assert {job["subject"] for job in listed} == {"20/20, module 4 mm, up to 400 N m"}
+
+
+def test_the_first_job_is_compared_with_the_defaults(client: TestClient) -> None:
+    first = entered(client, relief=10.0)["differences"]
+    assert first["since"] is None
+    stated = {difference["field"]: difference["value"] for difference in first["first"]}
+    assert stated["case.pair.normal_module_mm"] == 4.0
+    assert stated["case.pair.pinion.tip_relief_um"] == 10.0
+    assert "case.accuracy.level" not in stated
+    assert all(difference["before"] is None for difference in first["first"])
+
+
+def test_differences_outlast_the_job_before(client: TestClient) -> None:
+    first, second = entered(client), entered(client, relief=20.0)
+    with writing(client.app.state.context.engine) as connection:  # type: ignore[attr-defined]
+        connection.execute(delete(jobs).where(jobs.c.id == first["jobID"]))
+    assert client.get(f"/v1/jobs/{second['jobID']}").json()["differences"] == second["differences"]
+
+
+def test_callers_are_compared_with_their_own_jobs(tmp_path: Path, client: TestClient) -> None:
+    keys = {name: KeyFile(tmp_path / "keys.json").add(name) for name in ("ann", "ben")}
+    of = {name: {"Authorization": f"Bearer {key}"} for name, key in keys.items()}
+    entered(client, relief=10.0, **of["ann"])
+    assert entered(client, relief=20.0, **of["ben"])["differences"]["since"] is None
+    assert entered(client, relief=20.0, **of["ann"])["differences"]["first"] == relieved(10.0, 20.0)
+
+
+def test_the_client_has_them(client: TestClient, tmp_path: Path) -> None:
+    entered(client, relief=10.0)
+    entered(client, relief=20.0)
+    found = LineOfActionClient("http://testserver", cache_dir=tmp_path / "c", transport=client._transport)
+    newest = next(found.jobs())
+    assert (newest.subject, list(newest.differences)) == (
+        "20/20, module 4 mm, up to 400 N m",
+        relieved(10, 20),
+    )
