@@ -19,7 +19,10 @@ from service.problems import BadInput
 
 _PREFIX = "loa_"
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
-_FIELDS = {"name", "sha256", "created", "requests_per_minute", "unfinished_jobs"}
+_LIMITS = ("requests_per_minute", "unfinished_jobs", "highest_priority")
+_LEAST = {"highest_priority": -9}
+"""Of limits; of others 1."""
+_FIELDS = {"name", "sha256", "created", *_LIMITS}
 
 
 @dataclass(frozen=True)
@@ -38,6 +41,8 @@ class AccessKey:
         Beyond it requests are answered with 429; None: no limit.
     unfinished_jobs : int or None
         Jobs of this key that may wait or run at the same time; None: no limit but the queue's.
+    highest_priority : int or None
+        That jobs of this key may have, -9 to 9; None: any.
     """
 
     name: str
@@ -45,6 +50,7 @@ class AccessKey:
     created: str
     requests_per_minute: int | None = None
     unfinished_jobs: int | None = None
+    highest_priority: int | None = None
 
 
 class KeyFile:
@@ -77,14 +83,15 @@ class KeyFile:
         Raises
         ------
         BadInput
-            The name is taken or no name, or a limit is below one.
+            The name is taken or no name, or a limit is below its least value.
         """
         if _NAME.fullmatch(name) is None:
             bound = "1 to 64 letters, digits, dots, dashes or underscores, the first a letter or a digit"
             raise BadInput.of("name", name, bound, "For example: test-bench-3")
         for field, limit in limits.items():
-            if limit is not None and limit < 1:
-                raise BadInput.of(field, limit, "at least 1", "Leave it out for no limit.")
+            least = _LEAST.get(field, 1)
+            if limit is not None and limit < least:
+                raise BadInput.of(field, limit, f"at least {least}", "Leave it out for no limit.")
         known = self.read()
         if any(key.name == name for key in known):
             raise BadInput.of("name", name, "new", f"Take the old key back first: loa keys remove {name}")
@@ -138,7 +145,8 @@ def _checked(entry: dict[str, object]) -> AccessKey:
     key = AccessKey(**{name: entry[name] for name in _FIELDS & set(entry)})  # type: ignore[arg-type]
     if len(bytes.fromhex(key.sha256)) != hashlib.sha256().digest_size or not isinstance(key.name, str):
         raise ValueError(entry)
-    for limit in (key.requests_per_minute, key.unfinished_jobs):
-        if limit is not None and (not isinstance(limit, int) or limit < 1):
+    for field in _LIMITS:
+        limit = getattr(key, field)
+        if limit is not None and (not isinstance(limit, int) or limit < _LEAST.get(field, 1)):
             raise ValueError(entry)
     return key

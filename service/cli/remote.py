@@ -37,6 +37,12 @@ class ProcessRequest:
     inputs: str | None = None
     title: str = ""
     tags: tuple[str, ...] = ()
+    priority: int = 0
+
+    @property
+    def terms(self) -> dict[str, Any]:
+        """Return the terms of the job as the client takes them."""
+        return {"title": self.title, "tags": self.tags, "priority": self.priority}
 
 
 def run_submit(
@@ -46,7 +52,7 @@ def run_submit(
     if output is not None:
         check_writable(output)
     further = _further(request)
-    with LineOfActionClient(service).with_terms(title=request.title, tags=request.tags) as client:
+    with LineOfActionClient(service).with_terms(**request.terms) as client:
         state = _submitted(client, file, request.process, further)
         warn(state.warnings)
         facts: dict[str, object] = {"job": state.id, "process": state.process, "status": state.status}

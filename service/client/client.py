@@ -78,7 +78,7 @@ class Client(Processes, JobCalls, ResultCalls, LookupCalls, SceneCalls):
         """Make the driver."""
         raise NotImplementedError
 
-    def with_terms(self, *, title: str = "", tags: Sequence[str] = ()) -> Self:
+    def with_terms(self, *, title: str = "", tags: Sequence[str] = (), priority: int = 0) -> Self:
         """Return this client with terms for what it submits; both share connections and cache.
 
         Parameters
@@ -87,9 +87,11 @@ class Client(Processes, JobCalls, ResultCalls, LookupCalls, SceneCalls):
             Name of its jobs, up to 200 characters.
         tags : sequence of str
             What its jobs are found by: up to 16, each of up to 40 letters, digits and ``._:/+-``.
+        priority : int
+            -9 to 9: of the jobs that wait the oldest of the highest is next.
         """
         view = copy(self)
-        view.session = replace(self.session, terms={"title": title, "tags": list(tags)})
+        view.session = replace(self.session, terms={"title": title, "tags": list(tags), "priority": priority})
         return view
 
 

@@ -23,6 +23,7 @@ class JobState:
         Implausible inputs: check, field, value, unit, message; empty in lists of jobs.
     created, started, finished : str
         RFC 3339, UTC; empty before.
+    priority : int
     title : str
     tags : tuple of str
         As given to the job.
@@ -48,6 +49,7 @@ class JobState:
     tags: tuple[str, ...] = ()
     subject: str = ""
     differences: tuple[dict[str, Any], ...] = ()
+    priority: int = 0
 
     @property
     def ended(self) -> bool:
@@ -68,6 +70,7 @@ class JobState:
         known |= {
             name: facts.get(name) or "" for name in ("created", "started", "finished", "title", "subject")
         }
+        known |= {"priority": facts.get("priority", 0)}
         known |= {"tags": tuple(facts.get("tags") or ())}
         known |= {"differences": tuple((facts.get("differences") or {}).get("first", ()))}
         return cls(facts["jobID"], facts["processID"], **known, warnings=warnings)

@@ -15,10 +15,13 @@ class Caller:
         Of the access key; empty without one.
     unfinished_jobs : int or None
         Jobs that may wait or run at the same time; None: no limit but the queue's.
+    highest_priority : int or None
+        Of its jobs; None: any.
     """
 
     name: str = ""
     unfinished_jobs: int | None = None
+    highest_priority: int | None = None
 
 
 ANYBODY = Caller()

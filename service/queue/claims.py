@@ -64,7 +64,7 @@ class Claims:
         self._engine, self._owner, self._lease_s = engine, owner, lease_s
 
     def claim(self) -> Claim | None:
-        """Take the oldest computation that waits."""
+        """Take the oldest of the computations that wait with the highest priority."""
         return self._claim(uuid.uuid4().hex, time.monotonic())
 
     @retried
@@ -72,12 +72,13 @@ class Claims:
         """Take a computation under a lease of this name, unless that was done already."""
         mine = select(computations).where(computations.c.lease == lease)
         waiting = select(computations).where(computations.c.state == "accepted")
-        oldest = waiting.order_by(computations.c.created).limit(1).with_for_update(skip_locked=True)
+        turn = (computations.c.priority.desc(), computations.c.created)
+        first = waiting.order_by(*turn).limit(1).with_for_update(skip_locked=True)
         with writing(self._engine) as connection:
             row = connection.execute(mine).one_or_none()
             if row is not None:
                 return _claimed(row, requested)
-            row = connection.execute(oldest).one_or_none()
+            row = connection.execute(first).one_or_none()
             if row is None:
                 return None
             values = {"attempts": row.attempts + 1, "started": row.started or now(), "state": "running"}

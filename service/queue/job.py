@@ -43,6 +43,7 @@ class Job:
     inputs: str
     label: Label
     differences: Differences
+    priority: int
 
     @property
     def ended(self) -> bool:
@@ -103,4 +104,5 @@ def job_of(row: Any) -> Job:
         inputs=row.inputs,
         label=Label.from_row(row),
         differences=Differences.of(row.differences),
+        priority=row.priority,
     )

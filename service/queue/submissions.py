@@ -16,6 +16,7 @@ from service.queue.durations import end_computations
 from service.queue.job import ENDED, Job, job_of, select_jobs
 from service.queue.job_filter import EVERY_JOB, JobFilter
 from service.queue.label import Label
+from service.queue.priority import raised
 from service.queue.tables import computations, jobs
 from service.queue.terms import USUAL, Terms
 from service.store import BRIEF_MS, Mark, behind, instant, now, optional, reading, retried, writing
@@ -97,7 +98,9 @@ class Submissions:
             if computation is None:
                 if not stored:
                     self._refuse_if_full(connection)
-                computation = _enter(connection, process, key, inputs, stored)
+                computation = _enter(connection, process, key, inputs, stored, terms)
+            else:
+                connection.execute(raised(computation, terms.priority))
             row = {"id": identifier, "computation_id": computation, "created": now(), "dismissed": None}
             row |= {"caller": caller.name, "delivery": str(terms.delivery), **terms.label.columns()}
             row |= {"differences": str(terms.differences)}
@@ -250,7 +253,9 @@ def _shared(connection: Connection, key: str, ended: ColumnElement[bool]) -> str
     return connection.execute(statement.order_by(computations.c.created.desc()).limit(1)).scalar()
 
 
-def _enter(connection: Connection, process: str, key: str, inputs: dict[str, Any], stored: bool) -> str:
+def _enter(
+    connection: Connection, process: str, key: str, inputs: dict[str, Any], stored: bool, terms: Terms
+) -> str:
     """Enter a computation, ended at once if its result is stored."""
     identifier, instant = str(uuid.uuid4()), now()
     row: dict[str, Any] = {
@@ -258,6 +263,7 @@ def _enter(connection: Connection, process: str, key: str, inputs: dict[str, Any
         "process": process,
         "key": key,
         "inputs": json.dumps(inputs),
+        "priority": terms.priority,
         "state": "successful" if stored else "accepted",
         "message": "Taken from the store." if stored else "Waits for a worker.",
         "fraction": 1.0 if stored else 0.0,

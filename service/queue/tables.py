@@ -30,6 +30,7 @@ computations = Table(
     Column("owner", String, nullable=False, default=""),
     Column("lease", String, nullable=False, default=""),
     Column("leased_until", Float, nullable=False, default=0.0),
+    Column("priority", Integer, nullable=False, default=0, server_default="0"),
 )
 
 # Single flight: at most one computation of a key waits or runs.
@@ -42,6 +43,8 @@ Index(
 )
 Index("computation_by_lease", computations.c.lease)
 Index("computation_by_state", computations.c.state, computations.c.created)
+
+Index("computation_by_turn", computations.c.state, computations.c.priority, computations.c.created)
 
 # Counts of ended computations: they outlive the computations, see `service.queue.durations`.
 durations = Table(

@@ -20,11 +20,14 @@ class Terms:
     label : Label
     differences : Differences
         What sets it apart from the caller's job before it.
+    priority : int
+        Of its computation: the highest of the jobs that share it.
     """
 
     delivery: Delivery = AS_IT_IS
     label: Label = NO_LABEL
     differences: Differences = NOT_COMPARED
+    priority: int = 0
 
 
 USUAL = Terms()

@@ -59,7 +59,7 @@ def context_of(request: Request) -> Context:
 def caller_of(request: Request) -> Caller:
     """Return who sent a request; see `service.routes.access`."""
     key: AccessKey | None = getattr(request.state, "caller", None)
-    return ANYBODY if key is None else Caller(key.name, key.unfinished_jobs)
+    return ANYBODY if key is None else Caller(key.name, key.unfinished_jobs, key.highest_priority)
 
 
 From = Annotated[Caller, Depends(caller_of)]

@@ -73,6 +73,7 @@ def status_info(job: Job, registry: Registry) -> StatusInfo:
         status=status,
         title=job.label.title,
         tags=list(job.label.tags),
+        priority=job.priority,
         subject=subject_of(job.inputs),
         differences=_shown(job.differences),
         message=job.message,

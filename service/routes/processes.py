@@ -16,6 +16,7 @@ from service.queue.delivery import delivery
 from service.queue.differences import Differences
 from service.queue.former_jobs import FormerJobs
 from service.queue.label import Label
+from service.queue.priority import check_priority
 from service.queue.terms import Terms
 from service.registry import NETCDF
 from service.routes.context import Context, Ctx, From
@@ -116,7 +117,8 @@ def _add_execution(router: APIRouter, process: Process) -> None:
         form = delivery(request.response, output and output.transmissionMode, field)
         inputs = process.prepare(cast(BoundaryModel, request.inputs), context.store)
         since = _differences(context, process, caller, inputs, request.inputs)
-        terms = Terms(form, Label.of(request.title, request.tags), since)
+        check_priority(request.priority, caller)
+        terms = Terms(form, Label.of(request.title, request.tags), since, request.priority)
         status = _submit(context, process, inputs, caller, terms, idempotency_key)
         response.headers["Location"] = f"/v1/jobs/{status.jobID}"
         if "respond-async" in [item.partition(";")[0].strip().lower() for item in prefer.split(",")]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, create_model, model_validator
 
@@ -13,6 +13,7 @@ from service.schemas.model import BoundaryModel, refuse
 from service.schemas.ogc import class_name
 
 _FORMAT = {"mediaType", "encoding", "schema"}
+Priority = Annotated[int, Field(ge=-9, le=9)]
 _LINK = {"href", "rel", "type", "hreflang", "title"}
 
 
@@ -83,6 +84,10 @@ def execute_model(process: str, inputs: type[BoundaryModel], output: str) -> typ
         "outputs": (outputs, Field(default_factory=outputs, description="Requested outputs; default: all")),
         "response": (Literal["raw", "document"], form),
         "title": (Title, Field("", description="Name of the job", examples=["Tip relief 20 um"])),
+        "priority": (
+            Priority,
+            Field(0, description="Turn of the job: the oldest of the highest is next", examples=[1]),
+        ),
         "tags": (Tags, Field([], description="What the job is found by", examples=[["ev-3", "draft"]])),
     }
     return create_model(f"Execute{title}", __base__=ExecuteBody, **fields)

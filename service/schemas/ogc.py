@@ -116,6 +116,7 @@ class StatusInfo(BaseModel):
     status: JobStatus
     title: str = Field(default="", description="Name that the caller gave the job")
     tags: list[str] = Field(default=[], description="Tags that the caller gave the job")
+    priority: int = Field(default=0, description="Of the computation: the highest of the jobs that share it")
     subject: str = Field(default="", description="What the job is about, in words: the pair, or the scene")
     differences: Differences | None = Field(default=None, description="What sets the job apart")
     message: str = Field(description="State of the job in words")

@@ -11,6 +11,7 @@ from fastapi.testclient import TestClient
 from service_fakes import REGISTRY
 from typer.testing import CliRunner
 
+from service.access import KeyFile
 from service.app import create_app
 from service.cli.commands import app as command
 from service.client import LineOfActionClient
@@ -133,3 +134,15 @@ def test_the_verb_labels_what_it_submits(client: TestClient, monkeypatch: pytest
     assert result.exit_code == 0, result.output
     (job,) = client.get("/v1/jobs").json()["jobs"]
     assert (job["title"], job["tags"]) == ("Study 7", ["ev-3", "draft"])
+
+
+def test_a_priority_is_shown_and_bounded_by_the_key(client: TestClient, tmp_path: Path) -> None:
+    assert entered(client, priority=9).json()["priority"] == 9
+    for beyond in (10, -10, 0.5):
+        assert [fault["field"] for fault in entered(client, priority=beyond).json()["errors"]] == ["priority"]
+    key = KeyFile(tmp_path / "keys.json").add("ann", highest_priority=0)
+    client.headers["Authorization"] = f"Bearer {key}"
+    assert entered(client, priority=-1).status_code == 201
+    refused = entered(client, priority=1)
+    assert (refused.status_code, refused.json()["errors"][0]["field"]) == (422, "priority")
+    assert "the limit of key 'ann'" in refused.json()["detail"]

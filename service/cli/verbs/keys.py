@@ -27,6 +27,7 @@ def add(
     unfinished_jobs: Annotated[
         int | None, typer.Option(help="Limit on waiting and running jobs; default: no limit.")
     ] = None,
+    highest_priority: Annotated[int | None, typer.Option(help="Of its jobs, -9 to 9; default: any.")] = None,
     file: KeysFile = None,
     json: AsJson = False,
 ) -> None:
@@ -34,6 +35,7 @@ def add(
     from service.cli.keys import run_add  # noqa: PLC0415 (start-up time)
 
     limits = {"requests_per_minute": requests_per_minute, "unfinished_jobs": unfinished_jobs}
+    limits["highest_priority"] = highest_priority
     run_add(name, file, as_json=json, **limits)
 
 

@@ -74,12 +74,13 @@ def submit(
     ] = None,
     title: Annotated[str, typer.Option(help="Name of the job in lists.")] = "",
     tag: Annotated[list[str] | None, typer.Option(help="Tag of the job; may be repeated.")] = None,
+    priority: Annotated[int, typer.Option(help="-9 to 9; the highest is next.")] = 0,
     json: AsJson = False,
 ) -> None:
     """Submit a case or a scene to a service."""
     from service.cli.remote import ProcessRequest, run_submit  # noqa: PLC0415 (start-up time)
 
-    request = ProcessRequest(process, inputs, title, tuple(tag or ()))
+    request = ProcessRequest(process, inputs, title, tuple(tag or ()), priority)
     run_submit(file, service, request, wait=wait, output=output, as_json=json)
 
 

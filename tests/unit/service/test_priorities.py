@@ -1,0 +1,73 @@
+"""Turns of jobs: the oldest of the highest priority is next, shared work has its highest; bounds of keys."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from running_service import Bench, bench
+from service_fakes import REGISTRY
+
+from service.access import KeyFile
+from service.problems import BadInput
+from service.queue.caller import ANYBODY, Caller
+from service.queue.job import Job
+from service.queue.priority import check_priority
+from service.queue.terms import Terms
+
+
+@pytest.fixture
+def machine(tmp_path: Path, database_url: str | None) -> Iterator[Bench]:
+    """The table without a running scheduler, on each database."""
+    found = bench(tmp_path, REGISTRY, database_url=database_url)
+    yield found
+    found.close()
+
+
+def entered(machine: Bench, text: str, priority: int = 0) -> Job:
+    """Enter a job of this priority."""
+    inputs = {"wish": {"text": text}}
+    return machine.submissions.submit("fake", text, inputs, stored=False, terms=Terms(priority=priority))
+
+
+def turns(machine: Bench) -> str:
+    """Claim all that wait; return their texts in order."""
+    claims = iter(machine.claims.claim, None)
+    return "".join(claim.key for claim in claims if claim is not None)
+
+
+def test_the_oldest_of_the_highest_is_next(machine: Bench) -> None:
+    for text, priority in (("a", 0), ("b", -3), ("c", 2), ("d", 0), ("e", 2), ("f", -9)):
+        assert entered(machine, text, priority).priority == priority
+    assert turns(machine) == "ceadbf"
+
+
+def test_shared_work_has_the_highest_priority_of_its_jobs(machine: Bench) -> None:
+    low = entered(machine, "a", -1)
+    entered(machine, "b", 1)
+    entered(machine, "a", 2)
+    assert entered(machine, "a", 0).priority == machine.submissions.find(low.id).priority == 2
+    assert turns(machine) == "ab"
+
+
+def test_work_that_is_put_back_keeps_its_turn(machine: Bench) -> None:
+    entered(machine, "a")
+    entered(machine, "b", 3)
+    claim = machine.claims.claim()
+    assert claim is not None
+    machine.claims.put_back(claim, "Waits.", counted=False)
+    assert turns(machine) == "ba"
+
+
+def test_a_key_bounds_the_priority(tmp_path: Path) -> None:
+    file = KeyFile(tmp_path / "keys.json")
+    file.add("ann", highest_priority=-2)
+    with pytest.raises(BadInput, match="at least -9"):
+        file.add("ben", highest_priority=-10)
+    (key,) = file.read()
+    caller = Caller(key.name, highest_priority=key.highest_priority)
+    check_priority(-2, caller)
+    check_priority(9, ANYBODY)
+    with pytest.raises(BadInput, match="at most -2, the limit of key 'ann'"):
+        check_priority(-1, caller)
