@@ -8,12 +8,13 @@ from contextlib import asynccontextmanager
 from typing import Any
 
 from fastapi import FastAPI
+from prometheus_client import CollectorRegistry
 
 from service.access import open_keyring
 from service.live.kept_answers import KeptAnswers
 from service.live.pool import live_pool, reading_pool
+from service.management.registry import process_registry
 from service.queue.machinery import job_machinery
-from service.queue.workload import WorkloadReader
 from service.routes import (
     cases,
     databases,
@@ -89,7 +90,7 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
         **ABOUT,
     )
     app.state.context = context
-    app.state.metrics = Metrics(WorkloadReader(context.engine), context.writes)
+    app.state.metrics = Metrics(_registry(context))
     install_error_handlers(app)
     install_description(app)
     app.add_middleware(Access, keyring=keyring, always=not settings.loopback or bool(keyring))
@@ -102,6 +103,12 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
     for router in (page.router, description.router, health.router):
         app.include_router(router)
     return app
+
+
+def _registry(context: Context) -> CollectorRegistry:
+    """Return the metrics of the process."""
+    parts = (context.engine, context.store, context.writes, context.scheduler)
+    return process_registry(*parts, context.settings.workers)
 
 
 def _lifespan(context: Context, lock: DirectoryLock | None) -> Callable[[FastAPI], Any]:

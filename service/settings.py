@@ -26,6 +26,8 @@ class Settings(BaseSettings):
     ----------
     host, port : str, int
         Where it listens; beyond loopback only with access keys.
+    management_host, management_port : str, int or None
+        Where health, readiness and metrics are answered without a key; None: nowhere.
     data_directory : Path
         Jobs, results and the compliance cache.
     database_url : str or None
@@ -62,6 +64,8 @@ class Settings(BaseSettings):
 
     host: str = "127.0.0.1"
     port: int = Field(8321, ge=0, le=65535)
+    management_host: str = "127.0.0.1"
+    management_port: int | None = Field(None, ge=0, le=65535)
     data_directory: Annotated[Path, AfterValidator(absolute)] = Field(default_factory=data_home)
     database_url: SecretStr | None = None
     results_url: str | None = None

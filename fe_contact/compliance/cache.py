@@ -17,6 +17,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from fe_contact.cache_reads import COMPLIANCE_READS
 from fe_contact.compliance.flank import ComplianceChecks, FlankCompliance
 from fe_contact.compliance.flank_3d import FlankCompliance3D
 from fe_contact.compliance.root_stress import RootStressChecks, UnitRootStress
@@ -60,6 +61,13 @@ def content_hash(content: Json) -> str:
 
 def read_compliance(directory: Path, key: str, kind: type[Kept]) -> Kept | None:
     """Return the result kept under `key`, or None if there is none or its file is damaged."""
+    result = _read(directory, key, kind)
+    COMPLIANCE_READS.note(hit=result is not None)
+    return result
+
+
+def _read(directory: Path, key: str, kind: type[Kept]) -> Kept | None:
+    """Read the file of a key; raises nothing."""
     try:
         # NumPy leaves a file it opened itself open when the content is damaged.
         with _file(directory, key).open("rb") as stream, np.load(stream, allow_pickle=False) as file:

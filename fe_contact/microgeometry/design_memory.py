@@ -17,9 +17,9 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_contact.analysis.database.compute_database import SOLVER_VERSION
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.request import OptimizationRequest
+from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.ste.content_hash import content_hash
 from fe_contact.ste.facts import SCHEMA_VERSION
 from fe_contact.types import FloatArray

@@ -6,7 +6,7 @@ import shutil
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
-from fe_contact.analysis.database.compute_database import SOLVER_VERSION
+from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.workers import Remembering, Workers
 from fe_contact.workers.content import content_digest
 from service.directories import cache_home

@@ -16,7 +16,9 @@ from service.app import create_app
 from service.cli.bounded_http import BoundedHttp
 from service.cli.interrupt import leave
 from service.cli.log import log_to_standard_error
+from service.cli.managed import announce_management, managed
 from service.directories import keep_private
+from service.management.vitals import EventLoop, Vitals
 from service.problems import BadInput
 from service.routes.context import Context
 from service.settings import Settings, load_settings
@@ -37,11 +39,14 @@ def run_serve(*, works: bool = True, **options: object) -> None:
         app = create_app(settings, works=works)
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, _stopped)
-        _announce(listener)
-        http_server(app).run(sockets=[listener])
+        server = http_server(app)
+        with managed(settings, server.vitals, app.state.metrics.text) as where:
+            _announce(listener)
+            announce_management(where)
+            server.run(sockets=[listener])
 
 
-def http_server(app: FastAPI) -> uvicorn.Server:
+def http_server(app: FastAPI) -> _Server:
     """Return the server of an app."""
     config = uvicorn.Config(
         app,
@@ -53,15 +58,37 @@ def http_server(app: FastAPI) -> uvicorn.Server:
         timeout_keep_alive=_KEPT_S,
         lifespan="on",
     )
-    return _Server(config, app.state.context)
+    server = _Server(config, app.state.context)
+    app.state.metrics.count_connections(server.busy, server.idle)
+    return server
 
 
 class _Server(uvicorn.Server):
-    """Tells those who wait for a live answer at once that the service stops; the rest have time to end."""
+    """Tells those who wait for a live answer at once that the service stops; the rest have time to end.
+
+    Attributes
+    ----------
+    vitals : Vitals
+        Of the process that it serves in.
+    """
 
     def __init__(self, config: uvicorn.Config, context: Context) -> None:
         super().__init__(config)
-        self._context = context
+        self._context, self._loop = context, EventLoop()
+        self.vitals = Vitals(context.scheduler, context.writes, self._loop.fault)
+
+    def busy(self) -> int:
+        """Count the connections with a request."""
+        return len(self.server_state.connections) - self.idle()
+
+    def idle(self) -> int:
+        """Count the connections without one."""
+        return len(self.server_state.__dict__.get("idle", ()))
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Begin to serve."""
+        self._loop.loop = asyncio.get_running_loop()
+        await super().startup(sockets)
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """End the workers that somebody waits for, then what uvicorn ends."""

@@ -5,15 +5,23 @@ from __future__ import annotations
 import signal
 import threading
 from contextlib import closing
+from functools import partial
 from types import FrameType
+
+from prometheus_client import generate_latest
 
 from service.cli.interrupt import leave
 from service.cli.log import log_to_standard_error
+from service.cli.managed import announce_management, managed
 from service.directories import keep_private
+from service.management.registry import process_registry
+from service.management.vitals import Vitals
 from service.queue.machinery import job_machinery
 from service.settings import Settings, load_settings
 from service.store import DirectoryLock
+from service.store.deployment import Deployment
 from service.store.schema import shown
+from service.store.write_check import WriteCheck
 from service.worker.catalogue import default_registry
 
 
@@ -41,9 +49,14 @@ def run_work(**options: object) -> None:
 def _work(settings: Settings, stopped: threading.Event) -> None:
     """Run jobs until `stopped`."""
     with closing(job_machinery(settings, default_registry())) as machinery:
-        machinery.scheduler.start()
-        try:
-            print(f"lineofaction works for {shown(machinery.engine)}", flush=True)  # noqa: T201 (command line)
-            stopped.wait()
-        finally:
-            machinery.scheduler.stop()
+        engine, store, scheduler = machinery.engine, machinery.store, machinery.scheduler
+        writes = WriteCheck(Deployment(engine, store))
+        registry = process_registry(engine, store, writes, scheduler, settings.workers)
+        with managed(settings, Vitals(scheduler, writes), partial(generate_latest, registry)) as where:
+            scheduler.start()
+            try:
+                print(f"lineofaction works for {shown(engine)}", flush=True)  # noqa: T201 (command line)
+                announce_management(where)
+                stopped.wait()
+            finally:
+                scheduler.stop()

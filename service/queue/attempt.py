@@ -8,6 +8,7 @@ from pathlib import Path
 import structlog
 
 from service.queue.claims import Claim
+from service.queue.worker_figures import WorkerFigures
 from service.settings import LEAST_MEMORY_MB, Settings
 from service.worker.child_process import Launch
 from service.worker.memory import machine_memory_mb
@@ -29,15 +30,19 @@ class Attempt:
         Directory of the computation alone.
     log : Path
         What the worker writes to its standard error.
+    figures : WorkerFigures
+        Where its start and end are counted.
     """
 
     claim: Claim
     worker: Worker
     workspace: Path
     log: Path
+    figures: WorkerFigures
 
     def note_end(self, how: str) -> None:
-        """Log how the worker ended and, if it has been reaped, what it took."""
+        """Count and log how the worker ended and, if it has been reaped, what it took."""
+        self.figures.ended(self.claim.process, how, self.worker)
         usage = {} if self.worker.usage is None else self.worker.usage.as_json()
         logger.info(
             "worker ended",
@@ -50,15 +55,16 @@ class Attempt:
         )
 
 
-def begun(settings: Settings, entry: str, claim: Claim, launch: Launch) -> Attempt:
+def begun(settings: Settings, entry: str, claim: Claim, launch: Launch, figures: WorkerFigures) -> Attempt:
     """Launch a worker for a claim; raises what keeps the system from it."""
     workspace = workspace_of(settings, claim)
     log = settings.data_directory / "log" / f"{claim.id}.log"
     workspace.mkdir(parents=True, exist_ok=True)
     worker = Worker(_order(settings, entry, claim), log, launch)
+    figures.started(claim.process)
     facts = {"computation": claim.id, "process": claim.process, "key": claim.key}
     logger.info("worker started", **facts, pid=worker.pid, attempt=claim.attempts)
-    return Attempt(claim, worker, workspace, log)
+    return Attempt(claim, worker, workspace, log, figures)
 
 
 def workspace_of(settings: Settings, claim: Claim) -> Path:

@@ -19,6 +19,7 @@ from service.queue.claims import Claim, Claims
 from service.queue.housekeeper import Housekeeper
 from service.queue.leases import RENEWALS, Leases
 from service.queue.settlement import Ended, Settlement
+from service.queue.worker_figures import WorkerFigures
 from service.settings import Settings
 from service.store import ResultStore
 from service.worker.forks import Forks
@@ -55,7 +56,8 @@ class Scheduler:
         self._stopping = threading.Event()
         self._thread: threading.Thread | None = None
         self._wake_in: int | None = None
-        self._looked_at = 0.0
+        self._looked_at = self._turned_at = 0.0
+        self.figures = WorkerFigures()
 
     def start(self) -> None:
         """Take up what a dead service left behind, then begin; may be started again after a stop."""
@@ -70,6 +72,7 @@ class Scheduler:
             never_wait_at(end)
         self._selector.register(self._wake_out, selectors.EVENT_READ)
         self._stopping.clear()
+        self._turned_at = time.monotonic()
         self._leases.start()
         if self._housekeeper is not None:
             self._housekeeper.start()
@@ -96,6 +99,21 @@ class Scheduler:
         """Whether the thread runs."""
         return self._thread is not None and self._thread.is_alive()
 
+    @property
+    def turn_age_s(self) -> float:
+        """Seconds since its last turn ended, well or not; turns follow each other within `_HEARTBEAT_S`."""
+        return time.monotonic() - self._turned_at
+
+    @property
+    def busy(self) -> int:
+        """Workers that run."""
+        return len(self._running)
+
+    @property
+    def warm(self) -> bool:
+        """Whether there is a warm process to fork workers from."""
+        return self._forks.has_warmed_up
+
     def wake(self) -> None:
         """Look at the table now: something was submitted or dismissed."""
         if self._wake_in is not None:
@@ -113,6 +131,7 @@ class Scheduler:
                 else:
                     logger.exception("scheduler turn failed")
                 self._stopping.wait(_HEARTBEAT_S)
+            self._turned_at = time.monotonic()
         self._put_all_back()
         self._forks.close()
         self._leases.stop()
@@ -153,7 +172,8 @@ class Scheduler:
     def _begin(self, claim: Claim) -> None:
         """Start a worker for a claim."""
         try:
-            attempt = begun(self._settings, self._registry[claim.process].entry, claim, self._forks.launch)
+            entry = self._registry[claim.process].entry
+            attempt = begun(self._settings, entry, claim, self._forks.launch, self.figures)
         except Exception:
             reference = uuid.uuid4().hex[:12]
             logger.exception("no worker could be started", computation=claim.id, reference=reference)

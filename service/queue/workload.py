@@ -43,6 +43,8 @@ class Workload:
     ----------
     states : dict
         Computations by state.
+    queue : dict
+        Computations that wait or run by state and process.
     oldest_waiting_s : float
         Age of the oldest waiting computation; 0 if none does.
     durations : tuple of Durations
@@ -51,6 +53,7 @@ class Workload:
     """
 
     states: dict[str, int]
+    queue: dict[tuple[str, str], int]
     oldest_waiting_s: float
     durations: tuple[Durations, ...]
     results: tuple[tuple[str, int, int], ...]
@@ -73,6 +76,7 @@ class WorkloadReader:
         with reading(self._engine) as connection:
             return Workload(
                 _states(connection),
+                _queue(connection),
                 _oldest_waiting_s(connection),
                 _durations(connection),
                 _results(connection),
@@ -83,6 +87,14 @@ def _states(connection: Connection) -> dict[str, int]:
     """Count computations by state."""
     statement = select(computations.c.state, func.count()).group_by(computations.c.state)
     return {row[0]: row[1] for row in connection.execute(statement)}
+
+
+def _queue(connection: Connection) -> dict[tuple[str, str], int]:
+    """Count computations that wait or run by state and process."""
+    facts = (computations.c.state, computations.c.process)
+    live = computations.c.state.in_(("accepted", "running"))
+    rows = connection.execute(select(*facts, func.count()).where(live).group_by(*facts))
+    return {(row[0], row[1]): row[2] for row in rows}
 
 
 def _oldest_waiting_s(connection: Connection) -> float:

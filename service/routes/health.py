@@ -7,6 +7,8 @@ from typing import Any
 from fastapi import APIRouter, Depends, Request, Response
 from starlette.responses import PlainTextResponse
 
+from service.management.server import METRICS_TYPE
+from service.management.vitals import Vitals
 from service.problems import ServiceError
 from service.routes.caching import NO_STORE
 from service.routes.context import Ctx
@@ -43,12 +45,12 @@ def ready(context: Ctx) -> dict[str, Any]:
     if outcome.fault:
         raise NotReady(outcome.fault)
     counts = context.submissions.counts()
-    if not context.scheduler.alive:
-        raise NotReady("The scheduler does not run. Restart the service.")
+    if fault := Vitals(context.scheduler, context.writes).fault_of_health():
+        raise NotReady(fault)
     return {"status": "ready", "computations": counts}
 
 
 @router.get("/metrics", summary="Metrics for Prometheus", response_class=PlainTextResponse)
 def metrics(request: Request) -> Response:
     """Return the figures in the text exposition format."""
-    return Response(request.app.state.metrics.text(), media_type="text/plain; version=0.0.4; charset=utf-8")
+    return Response(request.app.state.metrics.text(), media_type=METRICS_TYPE)

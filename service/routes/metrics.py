@@ -1,47 +1,63 @@
-"""Figures for Prometheus: requests of this process, and what the database tells of all together."""
+"""Metrics of the requests that this process answers."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable
 
-from prometheus_client import CollectorRegistry, Counter, Histogram, Metric, generate_latest
-from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, HistogramMetricFamily
-from prometheus_client.registry import Collector
+from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
 
-from service.problems import DatabaseUnavailable
-from service.queue.workload import Workload, WorkloadReader
-from service.store.write_check import WriteCheck
-
-_STATES = ("accepted", "running", "successful", "failed", "dismissed")
-_ENDED = ["process", "outcome"]
+_METHODS = frozenset(("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "TRACE", "CONNECT"))
+"""Of RFC 9110 and RFC 5789; a caller may send any word."""
 
 
 class Metrics:
-    """Figures of one app."""
+    """Metrics of one app.
 
-    def __init__(self, workload: WorkloadReader, writes: WriteCheck) -> None:
-        self._registry = CollectorRegistry()
-        self._requests = Counter(
-            "loa_requests", "Requests answered", ["method", "route", "status"], registry=self._registry
-        )
-        self._seconds = Histogram("loa_request_seconds", "Time to answer", ["route"], registry=self._registry)
+    Parameters
+    ----------
+    registry : CollectorRegistry
+        With those of its process.
+    """
+
+    def __init__(self, registry: CollectorRegistry) -> None:
+        self._registry = registry
+        labels = ["method", "route", "status"]
+        self._requests = Counter("loa_requests", "Requests answered", labels, registry=registry)
+        text = "Time to answer, event streams left out"
+        self._seconds = Histogram("loa_request_seconds", text, labels, registry=registry)
         self._problems = Counter(
-            "loa_problems", "Requests answered with a problem", ["problem"], registry=self._registry
+            "loa_problems", "Requests answered with a problem", ["problem"], registry=registry
         )
+        self._open = Gauge("loa_event_streams", "Open event streams", ["route"], registry=registry)
+        self._events = Counter("loa_events", "Events sent", ["route"], registry=registry)
+        self._connections = Gauge("loa_connections", "Open HTTP connections", ["state"], registry=registry)
         self._dropped = Counter(
-            "loa_dropped_connections", "Idle connections closed to admit others", registry=self._registry
+            "loa_dropped_connections", "Idle connections closed to admit others", registry=registry
         )
-        self._registry.register(_FromDatabase(workload))
-        self._registry.register(_Writable(writes))
 
-    def observe(self, method: str, route: str, status: int, seconds: float) -> None:
-        """Note one answered request."""
-        self._requests.labels(method, route, str(status)).inc()
-        self._seconds.labels(route).observe(seconds)
+    def observe(self, method: str, route: str, status: int, seconds: float | None) -> None:
+        """Note one answered request; None: it was a stream, which lasts as long as its reader likes."""
+        labels = (method if method in _METHODS else "other", route, str(status))
+        self._requests.labels(*labels).inc()
+        if seconds is not None:
+            self._seconds.labels(*labels).observe(seconds)
 
     def refused(self, problem: str) -> None:
         """Note the kind of problem of an answer."""
         self._problems.labels(problem).inc()
+
+    def streams(self, route: str, change: int) -> None:
+        """Note an event stream that opened (1) or ended (-1)."""
+        self._open.labels(route).inc(change)
+
+    def sent(self, route: str, events: int) -> None:
+        """Note events of a stream."""
+        self._events.labels(route).inc(events)
+
+    def count_connections(self, busy: Callable[[], int], idle: Callable[[], int]) -> None:
+        """Take the functions that count open connections with a request, and those without."""
+        self._connections.labels("busy").set_function(busy)
+        self._connections.labels("idle").set_function(idle)
 
     def dropped(self) -> None:
         """Note an idle connection that made room for another."""
@@ -50,75 +66,3 @@ class Metrics:
     def text(self) -> bytes:
         """Return all figures in the text exposition format."""
         return generate_latest(self._registry)
-
-
-class _FromDatabase(Collector):
-    """Metrics of the database, read when requested; without one, that it is gone."""
-
-    def __init__(self, workload: WorkloadReader) -> None:
-        self._workload = workload
-
-    def collect(self) -> Iterable[Metric]:
-        """Return the figures."""
-        up = GaugeMetricFamily("loa_database_up", "Whether the database answers this process")
-        try:
-            load = self._workload.read()
-        except DatabaseUnavailable:
-            up.add_metric([], 0)
-            yield up
-            return
-        up.add_metric([], 1)
-        yield up
-        yield from _queue(load)
-        yield from _ended(load)
-        yield from _results(load)
-
-
-class _Writable(Collector):
-    """Metrics of writing, tried when requested."""
-
-    def __init__(self, writes: WriteCheck) -> None:
-        self._writes = writes
-
-    def collect(self) -> Iterable[Metric]:
-        """Return a figure for each part."""
-        outcome = self._writes.outcome()
-        text = "Whether this process can write to the database, and to the place of results"
-        writable = GaugeMetricFamily("loa_writable", text, labels=["part"])
-        writable.add_metric(["database"], float(not outcome.database))
-        writable.add_metric(["results"], float(not outcome.results))
-        yield writable
-
-
-def _queue(load: Workload) -> Iterable[Metric]:
-    """Return what waits, runs and has ended."""
-    states = GaugeMetricFamily("loa_computations", "Computations by state", labels=["state"])
-    for state in _STATES:
-        states.add_metric([state], load.states.get(state, 0))
-    oldest = GaugeMetricFamily("loa_oldest_waiting_seconds", "Age of the oldest waiting computation")
-    oldest.add_metric([], load.oldest_waiting_s)
-    return states, oldest
-
-
-def _ended(load: Workload) -> Iterable[Metric]:
-    """Return how long computations took, and in how many attempts."""
-    text = "Computations that ended, from their first start"
-    taken = HistogramMetricFamily("loa_computation_seconds", text, labels=_ENDED)
-    attempts = CounterMetricFamily(
-        "loa_computation_attempts", "Attempts at computations that ended", labels=_ENDED
-    )
-    for entry in load.durations:
-        names = [entry.process, entry.outcome]
-        taken.add_metric(names, list(entry.buckets), entry.seconds)
-        attempts.add_metric(names, entry.attempts)
-    return taken, attempts
-
-
-def _results(load: Workload) -> Iterable[Metric]:
-    """Return what is stored."""
-    number = GaugeMetricFamily("loa_results", "Results in the store", labels=["kind"])
-    size = GaugeMetricFamily("loa_result_bytes", "Bytes of results in the store", labels=["kind"])
-    for kind, count, total in load.results:
-        number.add_metric([kind], count)
-        size.add_metric([kind], total)
-    return number, size

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import time
 import uuid
+from functools import partial
 from typing import NoReturn
 
 import structlog
@@ -22,6 +23,7 @@ from service.problems import (
 from service.routes.errors import problem_of
 from service.routes.extent import Extent
 from service.routes.metrics import Metrics
+from service.routes.stream_figures import StreamFigures
 
 API_PREFIX = "/v1"
 logger = structlog.get_logger(__name__)
@@ -48,7 +50,8 @@ class Guard:
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
-        exchange = _Exchange(scope, receive, send, self._body_limit)
+        stream = StreamFigures(self._metrics, partial(_template, scope))
+        exchange = _Exchange(scope, receive, send, self._body_limit, stream)
         clear_contextvars()
         bind_contextvars(request_id=exchange.identifier)  # stands in every line that this request logs
         begin = time.perf_counter()
@@ -64,6 +67,7 @@ class Guard:
             await self._answer(Unexpected(exchange.identifier), exchange, scope)
         finally:
             self._open -= 1
+            stream.end()
             self._note(scope, exchange, time.perf_counter() - begin)
 
     def _refuse_beyond(self, path: str) -> None:
@@ -82,7 +86,7 @@ class Guard:
         """Count and log; a route is named by its template, so that figures stay few."""
         route = _template(scope)
         status = exchange.status or 0
-        self._metrics.observe(scope["method"], route, status, seconds)
+        self._metrics.observe(scope["method"], route, status, None if exchange.stream.route else seconds)
         facts = {"method": scope["method"], "route": route, "status": status, "seconds": round(seconds, 6)}
         problem = scope.get("state", {}).get("problem")
         if problem is not None:
@@ -103,7 +107,10 @@ def _template(scope: Scope) -> str:
 class _Exchange:
     """One request and its answer, watched."""
 
-    def __init__(self, scope: Scope, receive: Receive, send: Send, body_limit: int) -> None:
+    def __init__(
+        self, scope: Scope, receive: Receive, send: Send, body_limit: int, stream: StreamFigures
+    ) -> None:
+        self.stream = stream
         self._scope, self._receive, self._send, self._body_limit = scope, receive, send, body_limit
         self._received, self._whole, self._begin = 0, False, time.perf_counter()
         self._headers = dict(scope["headers"])
@@ -174,4 +181,5 @@ class _Exchange:
             self.status = message["status"]
             headers = [*message.get("headers", []), (b"x-request-id", self.identifier.encode()), _AS_SAID]
             message = {**message, "headers": headers}
+        self.stream.see(message)
         await self._send(message)

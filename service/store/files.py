@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
+from fe_contact.cache_reads import CacheReads
+
 SET_ASIDE = ".damaged"
 """Ending of what was found damaged: kept for a person to look at, never served."""
 PARTIAL = ".part"
@@ -39,9 +41,12 @@ class ResultFiles(Protocol):
     ----------
     address : str
         The folder, or the URL of the bucket and prefix.
+    reads : CacheReads
+        Of the cache on this machine; a folder needs none.
     """
 
     address: str
+    reads: CacheReads
 
     def put(self, name: str, file: Path, sha256: str) -> None:
         """Keep the bytes of `file`, durably when this returns; `file` stays."""
@@ -90,6 +95,7 @@ class DirectoryFiles:
 
     def __init__(self, directory: Path) -> None:
         self._directory, self.address = directory, str(directory)
+        self.reads = CacheReads()
 
     def put(self, name: str, file: Path, sha256: str) -> None:
         """Link the file to its name, or copy it where that cannot be."""

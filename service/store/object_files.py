@@ -12,6 +12,7 @@ from datetime import timedelta
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
+from fe_contact.cache_reads import CacheReads
 from service.bounded_folder import evict
 from service.problems import BadInput, StoreUnavailable
 from service.store.files import PARTIAL, KeptFile, WrongContent, digest_of, place_whole
@@ -41,6 +42,7 @@ class ObjectFiles:
     def __init__(self, store: S3Store, address: str, cache: Path, cache_bytes: int) -> None:
         self._store, self.address = store, address
         self._cache, self._cache_bytes = cache, cache_bytes
+        self.reads = CacheReads()
 
     def put(self, name: str, file: Path, sha256: str) -> None:
         """Send the file, in parts if it is long, and keep it in the cache."""
@@ -68,7 +70,9 @@ class ObjectFiles:
         with contextlib.suppress(FileNotFoundError):
             if digest_of(cached) == sha256:
                 os.utime(cached)
+                self.reads.note(hit=True)
                 return cached
+        self.reads.note(hit=False)
         self._fetch(name, sha256, cached)
         evict(self._cache, self._cache_bytes)
         return cached

@@ -23,6 +23,7 @@ from sqlalchemy import (
     update,
 )
 
+from fe_contact.cache_reads import CacheReads
 from service.problems import DamagedFile, NotFound
 from service.store.database import BRIEF_MS, instant, metadata, now, reading, writing
 from service.store.dialects import dialect_of
@@ -108,15 +109,21 @@ class ResultStore:
         Database of the index.
     files : ResultFiles
         Place of the files.
+
+    Attributes
+    ----------
+    lookups : CacheReads
+        How often a result was looked for with `find`, as by submissions, and was there.
     """
 
     def __init__(self, engine: Engine, files: ResultFiles) -> None:
         self._engine, self.files = engine, files
         self._noted: dict[tuple[str, str], float] = {}
+        self.lookups = CacheReads()
 
     def put(self, key: str, kind: str, file: Path) -> IndexLine:
         """Take `file` into the store: first the bytes, then the index; may be repeated if it failed."""
-        known = self.find(key, kind)
+        known = self._whole(key, kind)
         if known is None:
             known = self._put(key, kind, file)
         else:
@@ -156,6 +163,12 @@ class ResultStore:
         """Return the index's line, None if there is none or its file is gone."""
         if not is_key(key):
             return None
+        line = self._whole(key, kind)
+        self.lookups.note(hit=line is not None)
+        return line
+
+    def _whole(self, key: str, kind: str) -> IndexLine | None:
+        """Return the index's line if its file is there."""
         line = self._find(key, kind)
         return line if line is not None and self.files.has(line.file) else None
 

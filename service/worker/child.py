@@ -20,9 +20,11 @@ import threading
 import time
 import traceback
 import warnings
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, TextIO
 
+from fe_contact.cache_reads import COMPLIANCE_READS
 from host import kill_own_group, lock, lower_priority
 from service.problems import ServiceError
 from service.worker.disk import no_space
@@ -49,7 +51,13 @@ def work(descriptor: int) -> None:
         hold_to(order.memory_limit_mb)
     with os.fdopen(descriptor, "w", buffering=1) as channel:
         logging.getLogger("service").addHandler(_Telling(channel))
-        _send(channel, _outcome(order, _Reporter(channel)) | {"peak_mb": own_peak_mb()})
+        begun = replace(COMPLIANCE_READS)  # a forked child has those of its parent
+        outcome = _outcome(order, _Reporter(channel))
+        reads = {
+            "hits": COMPLIANCE_READS.hits - begun.hits,
+            "misses": COMPLIANCE_READS.misses - begun.misses,
+        }
+        _send(channel, outcome | {"peak_mb": own_peak_mb(), "compliance_reads": reads})
 
 
 def _first_line() -> tuple[bytes, bytes]:

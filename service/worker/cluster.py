@@ -8,8 +8,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
-from fe_contact.analysis.database.compute_database import SOLVER_VERSION
 from fe_contact.errors import InputError, WorkersLost
+from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.workers import ByDask, InProcess, OrHere, Remembering, RunCost, Workers, dask_workers
 from service.version import solver_version
 from service.worker.order import WorkOrder

@@ -58,6 +58,12 @@ class Forks:
         """Whether the next child is forked."""
         return self._server is not None and self._server.ready
 
+    @property
+    def has_warmed_up(self) -> bool:
+        """Whether a warm process has said that it is ready; for any thread."""
+        server = self._server
+        return server is not None and server.has_warmed_up
+
     def launch(self, ends: Ends) -> ChildProcess:
         """Fork a child, or start one; OSError: the system does neither."""
         self._launched += 1
@@ -109,6 +115,11 @@ class _Server:
             heard, _, _ = select.select([self._channel], [], [], 0.0)
             self._ready = bool(heard) and self._channel.recv(MESSAGE_BYTES) == READY
         return self._ready and self.usable
+
+    @property
+    def has_warmed_up(self) -> bool:
+        """Whether it said that it is ready, and has answered since."""
+        return self._ready and not self._gone
 
     def fork(self, ends: Ends) -> ForkedChild:
         """Fork a child."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from fe_contact.analysis.database.compute_database import SOLVER_VERSION
+from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.ste.content_hash import content_hash
 from fe_contact.ste.facts import SCHEMA_VERSION
 from service.convert.checks import check_case

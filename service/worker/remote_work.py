@@ -8,6 +8,8 @@ class RemoteWork:
 
     alive = True
     """Nothing here can be dead; whether others work shows in the figures of the table."""
+    turn_age_s = 0.0
+    """Nothing here can be late."""
 
     def start(self) -> None:
         """Do nothing."""

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 import structlog
 
+from fe_contact.cache_reads import CacheReads
 from host import Ended, ending_signal, kill_group, never_wait_at
 from service.worker.child_process import Ends, Launch, start_child
 from service.worker.order import Outcome, Product, WorkOrder
@@ -37,6 +38,7 @@ class Worker:
     def __init__(self, order: WorkOrder, log: Path, launch: Launch = start_child) -> None:
         self.started = time.monotonic()
         self.usage: Usage | None = None
+        self.compliance_reads = CacheReads()
         self._outcome: Outcome | None = None
         self._ended: Ended | None = None
         self._peak_mb: float | None = None
@@ -102,6 +104,7 @@ class Worker:
             logger.warning("worker warns", pid=self.pid, reason=message["warning"])
             return None
         self._peak_mb = message.get("peak_mb")
+        self.compliance_reads = CacheReads(**message.get("compliance_reads", {}))
         products = tuple(Product(p["key"], p["kind"], Path(p["file"])) for p in message.get("products", ()))
         facts = {name: message[name] for name in ("failure", "unexpected") if name in message}
         self._outcome = Outcome(products=products, faults=tuple(message.get("faults", ())), **facts)

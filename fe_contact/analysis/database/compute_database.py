@@ -23,6 +23,7 @@ from fe_contact.options import Run
 from fe_contact.planning.cost_model import log_name
 from fe_contact.planning.run_log import record
 from fe_contact.plausibility import merged, table_findings
+from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.content_hash import content_hash
@@ -31,7 +32,6 @@ from fe_contact.types import Json
 from fe_contact.workers import InProcess, RunCost
 from model_studies.progress import by_cost
 
-SOLVER_VERSION = "11"
 PACKAGES = ("lineofaction", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bounds import Finding, warn_of
-from fe_contact.analysis.database.compute_database import SOLVER_VERSION, software_versions
+from fe_contact.analysis.database.compute_database import software_versions
 from fe_contact.analysis.flanks.flank_file import SCHEMA_VERSION
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution, load_distribution
 from fe_contact.analysis.flanks.solved_operating_point import solved_point
@@ -16,6 +16,7 @@ from fe_contact.analysis.request.request import Checked
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
 from fe_contact.plausibility import flank_findings, merged, unexpected
+from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata
 from fe_contact.ste.content_hash import content_hash

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_contact.analysis.database.compute_database import SOLVER_VERSION, software_versions
+from fe_contact.analysis.database.compute_database import software_versions
 from fe_contact.analysis.pairs.operating_points import OperatingPoints, operating_points
 from fe_contact.analysis.pairs.slice_laws import mean_stiffness, parabolic_stiffness
 from fe_contact.analysis.pairs.slice_springs import SliceLaw, SpringContact
@@ -24,6 +24,7 @@ from fe_contact.analysis.pairs.tabulate import pair_facts, table_fields, table_s
 from fe_contact.analysis.request.request import Checked
 from fe_contact.contact import ContactSolution
 from fe_contact.planning import Plan, make_plan
+from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.content_hash import content_hash

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import fe_contact.compliance.flank_compliance_2d as flow
+from fe_contact.cache_reads import COMPLIANCE_READS
 from fe_contact.compliance import (
     FlankCompliance,
     PlaneHypothesis,
@@ -58,11 +59,12 @@ def same(first: FlankCompliance, second: FlankCompliance) -> bool:
 def test_second_call_reads_the_same_bits(
     tmp_path: Path, make_gear: MakeGear, coarse: MakeRecipe, counted: list[Gear]
 ) -> None:
-    gear = make_gear()
+    gear, before = make_gear(), replace(COMPLIANCE_READS)
     first = flank_compliance(gear, coarse(gear), cache=tmp_path / "deep" / "cache")
     second = flank_compliance(gear, coarse(gear), cache=tmp_path / "deep" / "cache")
     assert len(counted) == 1
     assert (first.from_cache, second.from_cache) == (False, True)
+    assert replace(before, hits=before.hits + 1, misses=before.misses + 1) == COMPLIANCE_READS
     assert same(first, second)
     assert [p.suffix for p in (tmp_path / "deep" / "cache").iterdir()] == [".npz"]
 

@@ -1,0 +1,28 @@
+"""How often a cache had what was looked for: counts of this process."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass
+class CacheReads:
+    """Reads of a cache since the process began.
+
+    Attributes
+    ----------
+    hits, misses : int
+        Reads that found what they looked for, whole; reads that did not.
+    """
+
+    hits: int = 0
+    misses: int = 0
+
+    def note(self, *, hit: bool) -> None:
+        """Count one read."""
+        self.hits += hit
+        self.misses += not hit
+
+
+COMPLIANCE_READS = CacheReads()
+"""Of the cache of compliances and root stresses."""

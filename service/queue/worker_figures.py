@@ -1,0 +1,56 @@
+"""What the workers of one scheduler did: counted by the process they worked for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from prometheus_client import Counter, Histogram, Metric
+from prometheus_client.registry import Collector
+
+from service.worker.usage import BYTES_PER_MB
+from service.worker.worker import Worker
+
+_MEMORY_MB = (128, 256, 512, 1024, 2048, 4096, 8192, 16384)
+"""Upper bounds of the classes of peak memory."""
+
+
+class WorkerFigures(Collector):
+    """Counts of starts, ends and resources; what follows from them is for who reads them."""
+
+    def __init__(self) -> None:
+        self._starts = Counter("loa_worker_starts", "Workers started", ["process"], registry=None)
+        self._ends = Counter("loa_worker_ends", "Workers ended", ["process", "outcome"], registry=None)
+        self._cpu = Counter("loa_worker_cpu_seconds", "CPU time of ended workers", ["process"], registry=None)
+        self._memory = Histogram(
+            "loa_worker_peak_memory_bytes",
+            "Most resident memory of ended workers",
+            ["process"],
+            buckets=[bound * BYTES_PER_MB for bound in _MEMORY_MB],
+            registry=None,
+        )
+        self._reads = Counter(
+            "loa_compliance_cache_reads",
+            "Bodies that workers looked for in the compliance cache",
+            ["outcome"],
+            registry=None,
+        )
+        for outcome in ("hit", "miss"):
+            self._reads.labels(outcome)
+
+    def started(self, process: str) -> None:
+        """Count a worker that was started."""
+        self._starts.labels(process).inc()
+
+    def ended(self, process: str, outcome: str, worker: Worker) -> None:
+        """Count a worker that ended, and what it took if it was reaped."""
+        self._ends.labels(process, outcome).inc()
+        self._reads.labels("hit").inc(worker.compliance_reads.hits)
+        self._reads.labels("miss").inc(worker.compliance_reads.misses)
+        if worker.usage is not None:
+            self._cpu.labels(process).inc(worker.usage.cpu_s)
+            self._memory.labels(process).observe(worker.usage.peak_mb * BYTES_PER_MB)
+
+    def collect(self) -> Iterable[Metric]:
+        """Return the figures."""
+        for figure in (self._starts, self._ends, self._cpu, self._memory, self._reads):
+            yield from figure.collect()
