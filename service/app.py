@@ -46,6 +46,7 @@ from service.store import DirectoryLock
 from service.store.deployment import Deployment
 from service.store.places import CACHE_DIRECTORY
 from service.store.write_check import WriteCheck
+from service.tracing.tracer import tracer
 from service.version import solver_version
 from service.worker.catalogue import default_registry
 from service.worker.process import Registry
@@ -88,6 +89,7 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
         docs_url=None,
         redoc_url=None,
         **ABOUT,
+        **tracer().options,
     )
     app.state.context = context
     app.state.metrics = Metrics(_registry(context))
@@ -125,6 +127,7 @@ def _lifespan(context: Context, lock: DirectoryLock | None) -> Callable[[FastAPI
         finally:
             context.stop_waiting()
             context.scheduler.stop()
+            tracer().flush()
             context.close()
             if lock is not None:
                 lock.release()

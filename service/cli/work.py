@@ -22,6 +22,7 @@ from service.store import DirectoryLock
 from service.store.deployment import Deployment
 from service.store.schema import shown
 from service.store.write_check import WriteCheck
+from service.tracing.tracer import tracer
 from service.worker.catalogue import default_registry
 
 
@@ -60,3 +61,4 @@ def _work(settings: Settings, stopped: threading.Event) -> None:
                 stopped.wait()
             finally:
                 scheduler.stop()
+                tracer().flush()

@@ -13,6 +13,7 @@ import httpx2
 
 from service.client.answers import problem_of, stranger
 from service.client.steps import Open, Pause, Piece, Send, Steps, Stream
+from service.client.trace import traced
 from service.problems import Unreachable
 
 _TRY_AGAIN = (429, 502, 503, 504)
@@ -52,7 +53,7 @@ class Exchange:
         """
 
         def once() -> Steps[httpx2.Response]:
-            return _checked((yield Send(method, path, options)))
+            return _checked((yield Send(method, path, traced(options))))
 
         return (yield from self._patiently(once))
 
@@ -90,7 +91,7 @@ class Exchange:
             into.seek(0)
             into.truncate()
             digest = hashlib.sha256()
-            stream: Stream = yield Open("GET", path, {"headers": {"Accept": media_type}})
+            stream: Stream = yield Open("GET", path, traced({"headers": {"Accept": media_type}}))
             _checked(stream.response)
             while (piece := (yield Piece(stream))) is not None:
                 digest.update(piece)
@@ -103,7 +104,7 @@ class Exchange:
         """Return the answer of a path with its body still to come; raises as `request`."""
 
         def once() -> Steps[Stream]:
-            stream: Stream = yield Open("GET", path, {"headers": {"Accept": media_type}})
+            stream: Stream = yield Open("GET", path, traced({"headers": {"Accept": media_type}}))
             _checked(stream.response)
             if stream.response.headers.get("content-type", "").partition(";")[0] != media_type:
                 raise stranger(stream.response)

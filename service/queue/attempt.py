@@ -7,9 +7,11 @@ from pathlib import Path
 
 import structlog
 
+from service.queue.attempt_trace import AttemptTrace
 from service.queue.claims import Claim
 from service.queue.worker_figures import WorkerFigures
 from service.settings import LEAST_MEMORY_MB, Settings
+from service.tracing.traceparent import trace_facts
 from service.worker.child_process import Launch
 from service.worker.memory import machine_memory_mb
 from service.worker.order import USABLE, WorkOrder
@@ -32,6 +34,8 @@ class Attempt:
         What the worker writes to its standard error.
     figures : WorkerFigures
         Where its start and end are counted.
+    trace : AttemptTrace
+        Its spans.
     """
 
     claim: Claim
@@ -39,10 +43,12 @@ class Attempt:
     workspace: Path
     log: Path
     figures: WorkerFigures
+    trace: AttemptTrace
 
     def note_end(self, how: str) -> None:
         """Count and log how the worker ended and, if it has been reaped, what it took."""
         self.figures.ended(self.claim.process, how, self.worker)
+        self.trace.end(how, self.worker.usage)
         usage = {} if self.worker.usage is None else self.worker.usage.as_json()
         logger.info(
             "worker ended",
@@ -52,6 +58,7 @@ class Attempt:
             attempt=self.claim.attempts,
             outcome=how,
             **usage,
+            **trace_facts(self.claim.traceparent),
         )
 
 
@@ -63,8 +70,9 @@ def begun(settings: Settings, entry: str, claim: Claim, launch: Launch, figures:
     worker = Worker(_order(settings, entry, claim), log, launch)
     figures.started(claim.process)
     facts = {"computation": claim.id, "process": claim.process, "key": claim.key}
+    facts |= trace_facts(claim.traceparent)
     logger.info("worker started", **facts, pid=worker.pid, attempt=claim.attempts)
-    return Attempt(claim, worker, workspace, log, figures)
+    return Attempt(claim, worker, workspace, log, figures, AttemptTrace(claim, worker.pid))
 
 
 def workspace_of(settings: Settings, claim: Claim) -> Path:

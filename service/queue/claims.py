@@ -10,7 +10,7 @@ import json
 import time
 import uuid
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from sqlalchemy import ColumnElement, Connection, Engine, Row, select, update
@@ -37,6 +37,10 @@ class Claim:
         Name of the lease it is held under: another for every claim.
     asked : float
         When it was claimed, on the holder's monotonic clock, s.
+    traceparent : str
+        Of the request that entered it; empty: it belongs to no trace.
+    waited_from : str
+        When it was entered or put back, RFC 3339; empty where that is not known.
     """
 
     id: str
@@ -46,6 +50,8 @@ class Claim:
     attempts: int
     lease: str
     asked: float = field(default_factory=time.monotonic, compare=False)
+    traceparent: str = field(default="", compare=False)
+    waited_from: str = field(default="", compare=False)
 
 
 class Claims:
@@ -85,7 +91,8 @@ class Claims:
             values |= {"owner": self._owner, "lease": lease, "leased_until": self._end(connection)}
             values |= {"message": "Starts.", "updated": now()}
             connection.execute(update(computations).where(computations.c.id == row.id).values(**values))
-            return _claimed(connection.execute(mine).one(), requested)
+            claim = _claimed(connection.execute(mine).one(), requested)
+            return replace(claim, waited_from=row.updated)
 
     def _end(self, connection: Connection) -> float:
         """Return when a lease that begins now ends, by the database's clock."""
@@ -199,4 +206,5 @@ def _running(connection: Connection, which: ColumnElement[bool]) -> list[Claim]:
 def _claimed(row: Row[Any], requested: float) -> Claim:
     """Return a row as a claim."""
     inputs = json.loads(row.inputs)
-    return Claim(row.id, row.process, row.key, inputs, row.attempts, row.lease, requested)
+    facts = (row.id, row.process, row.key, inputs, row.attempts, row.lease, requested)
+    return Claim(*facts, traceparent=row.traceparent)

@@ -187,14 +187,15 @@ class Scheduler:
     def _listen(self, running: Attempt) -> None:
         """Note progress; take the outcome when the channel ends."""
         steps, ended = running.worker.listen()
+        running.trace.see(steps)
         process = self._registry[running.claim.process]
         if ended:
             self._end(running, self._forget(running, keep_lease=True).finish())
             running.note_end(self._unsettled[-1].outcome.name)
         elif steps:
-            stage, fraction, whole = steps[-1]
-            known = process.overall(stage, fraction) if whole is None else whole
-            self._claims.progress(running.claim, stage, fraction, known)
+            last = steps[-1]
+            known = process.overall(last.stage, last.fraction) if last.whole is None else last.whole
+            self._claims.progress(running.claim, last.stage, last.fraction, known)
 
     def _end(self, running: Attempt, outcome: Outcome) -> None:
         """Let an attempt be settled; its lease is held until then."""

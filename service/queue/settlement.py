@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import time
 import uuid
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +12,7 @@ import structlog
 
 from service.queue.claims import Claim, Claims
 from service.store import ResultStore
+from service.tracing.tracer import tracer
 from service.worker.disk import no_space
 from service.worker.order import Outcome
 
@@ -50,7 +52,11 @@ class Settlement:
         noted stays for the next call.
         """
         outcome = ended.outcome
-        self._note(ended)
+        span = tracer().begin("settle", ended.claim.traceparent, time.time(), {})
+        try:
+            self._note(ended)
+        finally:
+            span.end(time.time(), {"loa.computation": ended.claim.id})
         if not outcome.died or ended.claim.attempts >= self.most_attempts:
             shutil.rmtree(ended.workspace, ignore_errors=True)
 

@@ -21,6 +21,7 @@ from service.queue.tables import computations, jobs
 from service.queue.terms import USUAL, Terms
 from service.store import BRIEF_MS, Mark, behind, instant, now, optional, reading, retried, writing
 from service.store.results import USE_NOTED_EVERY_S
+from service.tracing.traceparent import TRACEPARENT
 
 _LOOKED_AT = 500  # at a time, where durations are requested
 
@@ -269,6 +270,7 @@ def _enter(
         "fraction": 1.0 if stored else 0.0,
         "created": instant,
         "updated": instant,
+        "traceparent": TRACEPARENT.get(),
     }
     if stored:
         row |= {"started": instant, "finished": instant}

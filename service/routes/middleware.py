@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import re
 import time
 import uuid
 from functools import partial
@@ -24,6 +25,8 @@ from service.routes.errors import problem_of
 from service.routes.extent import Extent
 from service.routes.metrics import Metrics
 from service.routes.stream_figures import StreamFigures
+from service.tracing.traceparent import TRACEPARENT, trace_facts, valid_traceparent
+from service.tracing.tracer import tracer
 
 API_PREFIX = "/v1"
 logger = structlog.get_logger(__name__)
@@ -35,6 +38,7 @@ MOST_REQUESTS = 400
 """Answered at once by one server process; asked for its health it answers also then."""
 _VITAL = ("/health", "/ready")
 
+_IDENTIFIER = re.compile(rb"[A-Za-z0-9._-]{1,64}")
 _AS_SAID = (b"x-content-type-options", b"nosniff")  # a browser takes no answer for what it is not
 
 
@@ -53,7 +57,9 @@ class Guard:
         stream = StreamFigures(self._metrics, partial(_template, scope))
         exchange = _Exchange(scope, receive, send, self._body_limit, stream)
         clear_contextvars()
-        bind_contextvars(request_id=exchange.identifier)  # stands in every line that this request logs
+        TRACEPARENT.set(exchange.traceparent)
+        # both stand in every line that this request logs
+        bind_contextvars(request_id=exchange.identifier, **trace_facts(exchange.traceparent))
         begin = time.perf_counter()
         self._open += 1
         try:
@@ -104,6 +110,11 @@ def _template(scope: Scope) -> str:
     return f"{API_PREFIX}{template}" if inside else str(template)
 
 
+def _identifier(sent: bytes) -> str:
+    """Return the identifier that the caller sent, or another for none or one that a log should not hold."""
+    return sent.decode() if _IDENTIFIER.fullmatch(sent) else uuid.uuid4().hex[:12]
+
+
 class _Exchange:
     """One request and its answer, watched."""
 
@@ -117,7 +128,9 @@ class _Exchange:
         self._extent = Extent(self._headers.get(b"content-type", b"").decode("latin-1"))
         self.refusal: ServiceError | None = None
         self.status: int | None = None
-        self.identifier = uuid.uuid4().hex[:12]
+        self.identifier = _identifier(self._headers.get(b"x-request-id", b""))
+        sent = self._headers.get(b"traceparent", b"").decode("latin-1")
+        self.traceparent = tracer().current(valid_traceparent(sent))
 
     def refuse_announced(self) -> None:
         """Refuse a body that says itself that it is too long, or packed."""
@@ -180,6 +193,8 @@ class _Exchange:
         if message["type"] == "http.response.start":
             self.status = message["status"]
             headers = [*message.get("headers", []), (b"x-request-id", self.identifier.encode()), _AS_SAID]
+            if self.traceparent:
+                headers.append((b"traceparent", self.traceparent.encode()))
             message = {**message, "headers": headers}
         self.stream.see(message)
         await self._send(message)

@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import Any, TextIO
 
 from fe_contact.cache_reads import COMPLIANCE_READS
-from host import kill_own_group, lock, lower_priority
+from host import children_cpu_seconds, kill_own_group, lock, lower_priority
 from service.problems import ServiceError
 from service.worker.disk import no_space
 from service.worker.memory import hold_to, machine_memory_mb, out_of_memory
@@ -114,7 +114,8 @@ class _Reporter:
             return
         self._stage, self._sent = stage, instant
         fraction = min(max(float(fraction), 0.0), 1.0)
-        _send(self._channel, {"stage": stage, "fraction": fraction, "whole": whole})
+        clock = {"at": time.time(), "cpu_s": time.process_time() + children_cpu_seconds()}
+        _send(self._channel, {"stage": stage, "fraction": fraction, "whole": whole, **clock})
 
 
 def _send(channel: TextIO, message: dict[str, Any]) -> None:

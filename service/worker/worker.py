@@ -25,11 +25,26 @@ _OF_LITTLE_MEMORY = ("SIGKILL", "SIGABRT")  # by the system, and by libraries th
 
 
 class Step(NamedTuple):
-    """Progress of a worker: a stage, its fraction done, and that of the whole work if it is known."""
+    """Progress of a worker.
+
+    Attributes
+    ----------
+    stage : str
+    fraction : float
+        Of the stage that is done.
+    whole : float or None
+        Fraction of the whole work, if it is known.
+    at : float
+        When it was reported, s since 1970.
+    cpu_s : float
+        CPU time of the worker and of what it has waited for until then, s.
+    """
 
     stage: str
     fraction: float
     whole: float | None
+    at: float
+    cpu_s: float
 
 
 class Worker:
@@ -99,7 +114,7 @@ class Worker:
     def _taken(self, message: dict[str, Any]) -> Step | None:
         """Return a message as progress, or keep it as the outcome."""
         if "stage" in message:
-            return Step(message["stage"], message["fraction"], message["whole"])
+            return Step(**message)
         if "warning" in message:
             logger.warning("worker warns", pid=self.pid, reason=message["warning"])
             return None

@@ -1,0 +1,182 @@
+"""Traces: one from the caller's span to the stages of the worker; identifiers of callers are kept."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+from fastapi.testclient import TestClient
+from opentelemetry.sdk.trace import TracerProvider
+from running_service import until
+from served_app import served
+from service_fakes import REGISTRY
+from trace_receiver import TraceReceiver, trace_receiver
+
+from service.app import create_app
+from service.cli.log import log_to_standard_error
+from service.client import LineOfActionClient
+from service.settings import Settings
+from service.tracing.tracer import tracer
+
+EXECUTION = "/v1/processes/fake/execution"
+TRACE, PARENT = "4bf92f3577b34da6a3ce929d0e0e4736", "00f067aa0ba902b7"
+TRACEPARENT = f"00-{TRACE}-{PARENT}-01"
+
+
+@pytest.fixture
+def receiver(monkeypatch: pytest.MonkeyPatch) -> Iterator[TraceReceiver]:
+    """A receiver, and an environment that names it."""
+    with trace_receiver() as found:
+        monkeypatch.setenv("OTEL_EXPORTER_OTLP_ENDPOINT", found.address)
+        monkeypatch.setenv("OTEL_BSP_SCHEDULE_DELAY", "100")
+        tracer.cache_clear()
+        yield found
+        tracer().flush()
+        tracer.cache_clear()
+
+
+@pytest.fixture
+def log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """The file that standard error goes to."""
+    file = tmp_path / "service.log"
+    with file.open("w", buffering=1) as stream:
+        monkeypatch.setattr("sys.stderr", stream)
+        log_to_standard_error()
+        yield file
+
+
+def lines(log: Path, text: str) -> list[dict[str, object]]:
+    """Return the lines of a log that hold a text."""
+    return [json.loads(line) for line in log.read_text().splitlines() if text in line]
+
+
+def test_one_trace_leads_from_the_client_to_the_stages_of_the_worker(
+    receiver: TraceReceiver, tmp_path: Path
+) -> None:
+    app = create_app(Settings(data_directory=tmp_path), REGISTRY)
+    own = TracerProvider().get_tracer("test")
+    with served(app) as port, LineOfActionClient(f"http://127.0.0.1:{port}") as client:
+        with own.start_as_current_span("designer") as designer:
+            job = client.submit("fake", {"wish": {"mode": "slow", "text": "traced"}})
+        client.wait(job.id)
+        until(lambda: bool(receiver.named("settle")))
+    context = designer.get_span_context()
+    trace, caller = f"{context.trace_id:032x}", f"{context.span_id:016x}"
+    (request,) = receiver.named(f"POST {EXECUTION}")
+    (queue,), (attempt,), (settle,) = (receiver.named(n) for n in ("queue", "attempt fake", "settle"))
+    assert (request.trace, request.parent) == (trace, caller)
+    assert {span.trace for span in (queue, attempt, settle)} == {trace}
+    assert {span.parent for span in (queue, attempt, settle)} == {request.id}
+    stages = sorted((s for s in receiver.spans if s.parent == attempt.id), key=lambda s: s.begun)
+    assert [stage.name for stage in stages] == ["start", "first", "second"]
+    assert all(abs(after.begun - before.ended) < 1e-5 for before, after in pairwise(stages))
+    assert queue.begun <= queue.ended <= attempt.begun <= stages[0].begun + 1e-5
+    assert stages[-1].ended <= attempt.ended + 1e-5 and attempt.ended <= settle.begun + 1e-5
+    assert stages[2].ended - stages[2].begun > 0.9  # it sleeps for a second
+    spent = [stage.facts["loa.cpu_s"] for stage in stages]
+    assert min(spent) >= 0.0
+    assert sum(spent) == pytest.approx(attempt.facts["loa.cpu_s"], rel=1e-6)
+    assert attempt.facts["loa.outcome"] == "done" and not attempt.failed
+    assert receiver.services == {"lineofaction"}
+
+
+def test_an_attempt_that_died_keeps_its_stages_and_another_follows(
+    receiver: TraceReceiver, tmp_path: Path
+) -> None:
+    with TestClient(create_app(Settings(data_directory=tmp_path), REGISTRY)) as client:
+        body = {"inputs": {"wish": {"mode": "die_once"}}}
+        location = client.post(EXECUTION, json=body).headers["location"]
+        until(lambda: client.get(location).json()["status"] == "successful")
+        until(lambda: len(receiver.named("attempt fake")) == 2)
+    first, second = sorted(receiver.named("attempt fake"), key=lambda span: span.begun)
+    assert (first.facts["loa.outcome"], first.failed) == ("died", True)
+    assert (second.facts["loa.outcome"], second.failed) == ("done", False)
+    assert [s.name for s in receiver.spans if s.parent == first.id] == ["start", "first"]
+    assert len(receiver.named("queue")) == 2
+    assert len({span.trace for span in receiver.named("queue")}) == 1
+
+
+def test_probes_leave_no_spans(receiver: TraceReceiver, tmp_path: Path) -> None:
+    with TestClient(create_app(Settings(data_directory=tmp_path), REGISTRY)) as client:
+        for path in ("/health", "/ready", "/metrics"):
+            assert client.get(path).status_code == 200
+        client.get("/v1/jobs")
+    until(lambda: bool(receiver.spans))
+    assert {span.name for span in receiver.spans} == {"GET /v1/jobs"}
+
+
+def test_without_a_receiver_the_callers_identifiers_are_kept_all_the_same(log: Path, tmp_path: Path) -> None:
+    with TestClient(create_app(Settings(data_directory=tmp_path / "data"), REGISTRY)) as client:
+        headers = {"X-Request-ID": "order-4711", "traceparent": TRACEPARENT}
+        answer = client.post(EXECUTION, json={"inputs": {"wish": {"mode": "write"}}}, headers=headers)
+        until(lambda: client.get(answer.headers["location"]).json()["status"] == "successful")
+    assert answer.headers["x-request-id"] == "order-4711"
+    assert answer.headers["traceparent"] == TRACEPARENT
+    assert {line["event"] for line in lines(log, "order-4711")} == {"request", "job entered"}
+    events = {line["event"] for line in lines(log, f'"trace_id": "{TRACE}"')}
+    assert events == {"request", "job entered", "worker started", "worker ended"}
+
+
+@pytest.mark.parametrize(
+    "identifier", ["", "a" * 65, 'x", "event": "forged', "<script>", "a b", "../../etc", "ä"]
+)
+def test_an_identifier_that_could_harm_a_log_is_replaced(identifier: str, tmp_path: Path) -> None:
+    with TestClient(create_app(Settings(data_directory=tmp_path), REGISTRY)) as client:
+        answer = client.get("/health", headers={"X-Request-ID": identifier.encode()})
+    assert answer.headers["x-request-id"] not in ("", identifier)
+    assert len(answer.headers["x-request-id"]) == 12
+
+
+@pytest.mark.parametrize(
+    "sent",
+    [
+        "",
+        "00",
+        f"ff-{TRACE}-{PARENT}-01",
+        f"00-{'0' * 32}-{PARENT}-01",
+        f"00-{TRACE}-{'0' * 16}-01",
+        f"00-{TRACE.upper()}-{PARENT}-01",
+        f"00-{TRACE}-{PARENT}-01\u0661",
+        f"{TRACEPARENT}-more",
+    ],
+)
+def test_what_is_no_traceparent_is_left_out(sent: str, tmp_path: Path) -> None:
+    with TestClient(create_app(Settings(data_directory=tmp_path), REGISTRY)) as client:
+        answer = client.get("/health", headers={"traceparent": sent.encode()})
+    assert answer.status_code == 200
+    assert "traceparent" not in answer.headers
+
+
+def test_no_span_no_header(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    with TestClient(create_app(Settings(data_directory=tmp_path), REGISTRY)) as client:
+        assert "traceparent" not in client.get("/v1/jobs").headers
+
+
+def test_nothing_of_opentelemetry_is_loaded_by_the_client_and_its_sdk_by_nobody_unasked() -> None:
+    script = (
+        "import sys\n"
+        "from service.client import LineOfActionClient\n"
+        "from service.client.trace import traced\n"
+        "assert traced({'json': 1}) == {'json': 1}\n"
+        "assert not [name for name in sys.modules if name.startswith('opentelemetry')]\n"
+        "import service.cli.work, service.app\n"
+        "from service.tracing.tracer import Silent, tracer\n"
+        "assert isinstance(tracer(), Silent)\n"
+        "assert not [name for name in sys.modules if name.startswith('opentelemetry.sdk')]\n"
+    )
+    subprocess.run([sys.executable, "-c", script], check=True, cwd=Path(__file__).parents[2])
+
+
+def test_without_the_extra_the_log_says_what_to_install(log: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OTEL_EXPORTER_OTLP_ENDPOINT", "http://127.0.0.1:9")
+    monkeypatch.setattr("service.tracing.tracer.find_spec", lambda _name: None)
+    tracer.cache_clear()
+    assert tracer().current("sent") == "sent"
+    tracer.cache_clear()
+    (line,) = lines(log, "no traces")
+    assert "lineofaction[telemetry]" in str(line["reason"])
