@@ -110,7 +110,7 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
 def _registry(context: Context) -> CollectorRegistry:
     """Return the metrics of the process."""
     parts = (context.engine, context.store, context.writes, context.scheduler)
-    return process_registry(*parts, context.settings.workers)
+    return process_registry(*parts, context.settings)
 
 
 def _lifespan(context: Context, lock: DirectoryLock | None) -> Callable[[FastAPI], Any]:

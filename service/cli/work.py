@@ -52,7 +52,7 @@ def _work(settings: Settings, stopped: threading.Event) -> None:
     with closing(job_machinery(settings, default_registry())) as machinery:
         engine, store, scheduler = machinery.engine, machinery.store, machinery.scheduler
         writes = WriteCheck(Deployment(engine, store))
-        registry = process_registry(engine, store, writes, scheduler, settings.workers)
+        registry = process_registry(engine, store, writes, scheduler, settings)
         with managed(settings, Vitals(scheduler, writes), partial(generate_latest, registry)) as where:
             scheduler.start()
             try:

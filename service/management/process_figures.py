@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import platform
+import shutil
 from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
 
 from prometheus_client import Info, Metric
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily
@@ -49,6 +52,20 @@ class SchedulerFigures(Collector):
             ("loa_scheduler_turn_age_seconds", age, scheduler.turn_age_s),
         ):
             yield GaugeMetricFamily(name, text, value=float(value))
+
+
+class SpaceFigures(Collector):
+    """The file system of the data directory: workspaces, caches, and results that have no other place."""
+
+    def __init__(self, data_directory: Path) -> None:
+        self._directory = data_directory
+
+    def collect(self) -> Iterable[Metric]:
+        """Return the figures; none while the directory is not there."""
+        with suppress(OSError):
+            space = shutil.disk_usage(self._directory)
+            yield GaugeMetricFamily("loa_data_free_bytes", "Free space of the data directory", space.free)
+            yield GaugeMetricFamily("loa_data_size_bytes", "Size of its file system", space.total)
 
 
 class StoreFigures(Collector):

@@ -6,9 +6,10 @@ from prometheus_client import CollectorRegistry, ProcessCollector, disable_creat
 from sqlalchemy import Engine
 
 from service.management.database_figures import DatabaseFigures, WriteFigures
-from service.management.process_figures import SchedulerFigures, StoreFigures, build_info
+from service.management.process_figures import SchedulerFigures, SpaceFigures, StoreFigures, build_info
 from service.queue.scheduler import Scheduler
 from service.queue.workload import WorkloadReader
+from service.settings import Settings
 from service.store import ResultStore
 from service.store.write_check import WriteCheck
 from service.worker.remote_work import RemoteWork
@@ -19,7 +20,7 @@ def process_registry(
     store: ResultStore,
     writes: WriteCheck,
     scheduler: Scheduler | RemoteWork,
-    most_workers: int,
+    settings: Settings,
 ) -> CollectorRegistry:
     """Return the metrics that every process of the service has; who answers requests adds those.
 
@@ -32,7 +33,8 @@ def process_registry(
     registry.register(DatabaseFigures(WorkloadReader(engine)))
     registry.register(WriteFigures(writes))
     registry.register(StoreFigures(store))
+    registry.register(SpaceFigures(settings.data_directory))
     if isinstance(scheduler, Scheduler):
-        registry.register(SchedulerFigures(scheduler, most_workers))
+        registry.register(SchedulerFigures(scheduler, settings.workers))
         registry.register(scheduler.figures)
     return registry

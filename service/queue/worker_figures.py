@@ -12,6 +12,8 @@ from service.worker.worker import Worker
 
 _MEMORY_MB = (128, 256, 512, 1024, 2048, 4096, 8192, 16384)
 """Upper bounds of the classes of peak memory."""
+_ALARMING = ("died", "defect")
+"""Outcomes that an operator is to look into."""
 
 
 class WorkerFigures(Collector):
@@ -20,6 +22,8 @@ class WorkerFigures(Collector):
     def __init__(self) -> None:
         self._starts = Counter("loa_worker_starts", "Workers started", ["process"], registry=None)
         self._ends = Counter("loa_worker_ends", "Workers ended", ["process", "outcome"], registry=None)
+        text = "Warnings of ended workers, as that the Dask cluster is away"
+        self._warnings = Counter("loa_worker_warnings", text, ["process"], registry=None)
         self._cpu = Counter("loa_worker_cpu_seconds", "CPU time of ended workers", ["process"], registry=None)
         self._memory = Histogram(
             "loa_worker_peak_memory_bytes",
@@ -38,12 +42,16 @@ class WorkerFigures(Collector):
             self._reads.labels(outcome)
 
     def started(self, process: str) -> None:
-        """Count a worker that was started."""
+        """Count a worker that was started; what alerts are about counts from 0, not from its first time."""
         self._starts.labels(process).inc()
+        self._warnings.labels(process)
+        for outcome in _ALARMING:
+            self._ends.labels(process, outcome)
 
     def ended(self, process: str, outcome: str, worker: Worker) -> None:
         """Count a worker that ended, and what it took if it was reaped."""
         self._ends.labels(process, outcome).inc()
+        self._warnings.labels(process).inc(worker.warnings)
         self._reads.labels("hit").inc(worker.compliance_reads.hits)
         self._reads.labels("miss").inc(worker.compliance_reads.misses)
         if worker.usage is not None:
@@ -52,5 +60,5 @@ class WorkerFigures(Collector):
 
     def collect(self) -> Iterable[Metric]:
         """Return the figures."""
-        for figure in (self._starts, self._ends, self._cpu, self._memory, self._reads):
+        for figure in (self._starts, self._ends, self._warnings, self._cpu, self._memory, self._reads):
             yield from figure.collect()

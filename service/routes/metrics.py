@@ -6,6 +6,9 @@ from collections.abc import Callable
 
 from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
 
+from service.problems import ServiceError
+from service.problems.error import last_part
+
 _METHODS = frozenset(("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "TRACE", "CONNECT"))
 """Of RFC 9110 and RFC 5789; a caller may send any word."""
 
@@ -28,6 +31,8 @@ class Metrics:
         self._problems = Counter(
             "loa_problems", "Requests answered with a problem", ["problem"], registry=registry
         )
+        for kind in sorted(_kinds(ServiceError)):
+            self._problems.labels(kind)  # rates count from 0, not from the first time
         self._open = Gauge("loa_event_streams", "Open event streams", ["route"], registry=registry)
         self._events = Counter("loa_events", "Events sent", ["route"], registry=registry)
         self._connections = Gauge("loa_connections", "Open HTTP connections", ["state"], registry=registry)
@@ -66,3 +71,8 @@ class Metrics:
     def text(self) -> bytes:
         """Return all figures in the text exposition format."""
         return generate_latest(self._registry)
+
+
+def _kinds(problem: type[ServiceError]) -> set[str]:
+    """Return the names of a kind of problem and of all below it, as `ServiceError.kind`."""
+    return {last_part(problem.type)}.union(*(_kinds(below) for below in problem.__subclasses__()))

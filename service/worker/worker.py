@@ -54,6 +54,7 @@ class Worker:
         self.started = time.monotonic()
         self.usage: Usage | None = None
         self.compliance_reads = CacheReads()
+        self.warnings = 0
         self._outcome: Outcome | None = None
         self._ended: Ended | None = None
         self._peak_mb: float | None = None
@@ -116,6 +117,7 @@ class Worker:
         if "stage" in message:
             return Step(**message)
         if "warning" in message:
+            self.warnings += 1
             logger.warning("worker warns", pid=self.pid, reason=message["warning"])
             return None
         self._peak_mb = message.get("peak_mb")

@@ -98,6 +98,7 @@ def test_workers_store_and_build_are_told(client: TestClient) -> None:
     assert value(found["loa_result_lookups"], "_total", outcome="hit") == 1
     assert value(found["loa_result_lookups"], "_total", outcome="miss") == 2
     assert found["loa_queue_depth"].samples == []
+    assert 0 < value(found["loa_data_free_bytes"]) < value(found["loa_data_size_bytes"])
     (build,) = found["loa_build_info"].samples
     assert build.labels["python"] == platform.python_version()
     assert build.labels["solver"] == SOLVER_VERSION
@@ -120,6 +121,11 @@ def test_reads_of_the_compliance_cache_come_from_the_workers(client: TestClient)
     reads = families(client)["loa_compliance_cache_reads"]
     assert value(reads, "_total", outcome="miss") == 2
     assert value(reads, "_total", outcome="hit") == 1
+
+
+def test_warnings_of_workers_are_counted(client: TestClient) -> None:
+    run(client, "warn", "")
+    assert value(families(client)["loa_worker_warnings"], "_total", process="fake") == 1
 
 
 def test_event_streams_are_no_requests_that_take_long(client: TestClient) -> None:

@@ -29,6 +29,7 @@ class Wish(BoundaryModel):
         "refuse",
         "slow",
         "condense",
+        "warn",
     ] = "write"
     text: str = Field(default="", max_length=1_000_000)
     number: float = Field(default=0.0, ge=0.0, le=10.0)
