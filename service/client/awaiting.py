@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections import deque
-from collections.abc import AsyncIterator, Iterable
+from collections.abc import AsyncGenerator, AsyncIterator, Iterable
 from contextlib import AsyncExitStack
 from typing import Any, TypeVar
 
@@ -51,7 +51,7 @@ class AwaitingDriver:
                 else:
                     await self._go_on(course, action, streams)
 
-    async def map(self, operations: Iterable[Steps[T]], concurrency: int) -> AsyncIterator[T]:
+    async def map(self, operations: Iterable[Steps[T]], concurrency: int) -> AsyncGenerator[T, None]:
         """Perform operations side by side; yield their results in order.
 
         At most `concurrency` are begun or wait to be yielded. What one raises is raised in its turn; the

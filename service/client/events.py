@@ -11,14 +11,12 @@ import httpx2
 from service.client.answers import stranger
 from service.client.status import JobState
 from service.client.steps import Item, Items, Pause, Piece, Stream
-from service.client.waiting import AWAY
+from service.client.waiting import AWAY, AWAY_PAUSE_S, STOPS, note_continuing
 
 if TYPE_CHECKING:
     from service.client.exchange import Exchange
 
 EVENT_STREAM = "text/event-stream"
-_PAUSE_S = 0.5
-"""Before a stream that broke is opened again."""
 
 
 class EventReader:
@@ -52,7 +50,7 @@ def job_events(exchange: Exchange, job: str, patience: float) -> Items[JobState]
     """
     last: JobState | None = None
     answered = time.monotonic()
-    while last is None or not last.ended:
+    while True:
         try:
             stream: Stream = yield from exchange.opened(f"/v1/jobs/{job}/events", EVENT_STREAM)
             reader = EventReader()
@@ -65,7 +63,12 @@ def job_events(exchange: Exchange, job: str, patience: float) -> Items[JobState]
         except (httpx2.TransportError, *AWAY) as error:
             if last is None or time.monotonic() - answered > patience:
                 raise exchange.away(error) if isinstance(error, httpx2.TransportError) else error from None
+        except STOPS as stop:
+            note_continuing(stop, job)
+            raise
         else:
             if last is None:
                 raise stranger(stream.response)
-        yield Pause(_PAUSE_S)
+        if last.ended:
+            return
+        yield Pause(AWAY_PAUSE_S)

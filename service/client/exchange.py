@@ -145,18 +145,28 @@ def _checked(response: httpx2.Response) -> httpx2.Response:
 def _pause_s(attempt: int, error: Exception) -> float:
     """Return the seconds that the service asks to wait, else exponentially more."""
     if isinstance(error, _TryAgain):
-        requested = _retry_after_s(error.response.headers.get("retry-after", ""))
+        requested = _retry_after_s(error.response.headers)
         if requested is not None:
             return min(max(requested, 0.0), _LONGEST_PAUSE_S)
     return min(_FIRST_PAUSE_S * 2.0 ** (attempt - 1), _LONGEST_OWN_PAUSE_S)
 
 
-def _retry_after_s(text: str) -> float | None:
-    """Return the seconds of a ``Retry-After``, which is a number or a date (RFC 9110, 10.2.3)."""
-    if text.isdigit():
-        return float(text)
+def _retry_after_s(headers: Mapping[str, str]) -> float | None:
+    """Return the seconds of a ``Retry-After``, which is a number or a date (RFC 9110, 10.2.3).
+
+    A date counts from that of the answer: the service's clock may not be this one.
+    """
+    text = headers.get("retry-after", "")
+    when = _date(text)
+    if text.isdigit() or when is None:
+        return float(text) if text.isdigit() else None
+    return (when - (_date(headers.get("date", "")) or datetime.now(UTC))).total_seconds()
+
+
+def _date(text: str) -> datetime | None:
+    """Return a date of HTTP, None for a text that is none."""
     try:
         when = parsedate_to_datetime(text)
     except ValueError:
         return None
-    return (when if when.tzinfo else when.replace(tzinfo=UTC)).timestamp() - datetime.now(UTC).timestamp()
+    return when if when.tzinfo else when.replace(tzinfo=UTC)

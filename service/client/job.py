@@ -7,18 +7,20 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from service.client.job_calls import JobCalls
+from service.client.job_calls import JobCalls, pace_of_known, result_of
 from service.client.report import Report
 from service.client.result_calls import ResultCalls
 from service.client.status import JobState, Result, Watch
 from service.client.steps import Item, Items, Steps
 from service.client.surface import Awaiting, Blocking, Surface, listing, operation
-from service.problems import BadInput, JobDismissed, JobFailed
+from service.client.waiting import outlasting
+from service.problems import BadInput, DamagedFile, JobDismissed, JobFailed, NotFound
 
 if TYPE_CHECKING:
     import xarray
 
 T = TypeVar("T")
+Fetched = TypeVar("Fetched")
 
 
 class _JobCalls(Surface, Generic[T]):
@@ -75,8 +77,8 @@ class _JobCalls(Surface, Generic[T]):
     ) -> Steps[Result]:
         """Wait for the job; return where its result is; as the client's `wait`."""
         if self._result is None and self.state.status != "successful":
-            watch = self._seen(progress)
-            self._result = yield from JobCalls.wait(self, self.id, watch, timeout=timeout, interval=interval)
+            pace = pace_of_known(self.session, timeout, interval)
+            self._result = yield from result_of(self, self.id, self._seen(progress), pace)
         elif self._result is None:
             self._result = yield from JobCalls.result(self, self.id)
         return self._result
@@ -90,7 +92,7 @@ class _JobCalls(Surface, Generic[T]):
     def file(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[Path]:
         """Wait for the job and return its netCDF file in the cache; raises as `wait`."""
         found = yield from _JobCalls.wait(self, progress, timeout=timeout)
-        return (yield from ResultCalls.fetch_file(self, found.key, found.kind))
+        return (yield from self._patiently(lambda: ResultCalls.fetch_file(self, found.key, found.kind)))
 
     @operation
     def dataset(
@@ -98,7 +100,7 @@ class _JobCalls(Surface, Generic[T]):
     ) -> Steps[xarray.Dataset]:
         """Wait for the job and return its result as arrays with units and names; raises as `wait`."""
         found = yield from _JobCalls.wait(self, progress, timeout=timeout)
-        return (yield from ResultCalls.fetch_dataset(self, found.key, found.kind))
+        return (yield from self._patiently(lambda: ResultCalls.fetch_dataset(self, found.key, found.kind)))
 
     @operation
     def figures(
@@ -106,20 +108,24 @@ class _JobCalls(Surface, Generic[T]):
     ) -> Steps[dict[str, Any]]:
         """Wait for the job and return the JSON document of its result; raises as `wait`."""
         found = yield from _JobCalls.wait(self, progress, timeout=timeout)
-        return (yield from ResultCalls.fetch_figures(self, found.key, found.kind))
+        return (yield from self._patiently(lambda: ResultCalls.fetch_figures(self, found.key, found.kind)))
 
     @operation
     def report(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[Report]:
         """Wait for the job and return the report on its result; notebooks show it; raises as `wait`."""
         found = yield from _JobCalls.wait(self, progress, timeout=timeout)
-        return (yield from ResultCalls.report(self, found.key))
+        return (yield from self._patiently(lambda: ResultCalls.report(self, found.key)))
 
     def ending(self) -> Steps[Result | None]:
         """Wait until the job has ended and its file is cached; None without, and `result` raises why."""
-        with suppress(BadInput, JobFailed, JobDismissed):
+        with suppress(BadInput, JobFailed, JobDismissed, NotFound, DamagedFile):
             yield from _JobCalls.file(self)
             return self._result
         return None
+
+    def _patiently(self, fetch: Callable[[], Steps[Fetched]]) -> Steps[Fetched]:
+        """Return what `fetch` returns, through restarts of the service."""
+        return outlasting(fetch, self.session.patience)
 
     def _seen(self, progress: Watch | None) -> Watch:
         """Return a watch that keeps the state and passes it on."""

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
+import time
 import uuid
 import warnings
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 from service.client.events import job_events
 from service.client.paging import pages
 from service.client.status import JobState, OfflineWarning, Result, Watch
 from service.client.steps import Items, Steps
-from service.client.surface import Surface, listing, operation
-from service.client.waiting import Pace, ended
+from service.client.surface import Session, Surface, listing, operation
+from service.client.waiting import Pace, ended, outlasting
 from service.problems import BadInput, ServiceError, Unreachable
 from service.version import solver_version
 
@@ -22,14 +24,44 @@ _REFERENCES = {"response": "document", "transmissionMode": "reference"}
 """Whatever form a job was submitted with: say where its result is."""
 
 
+def pace_of_known(session: Session, timeout: float | None = None, interval: float = 0.05) -> Pace:
+    """Return the pace of waiting for a job that the service is known to have."""
+    longest = math.inf if timeout is None else timeout
+    return Pace(interval, _LONGEST_PAUSE_S, longest, session.patience, time.monotonic())
+
+
+def result_of(surface: Surface, job: str, progress: Watch | None, pace: Pace) -> Steps[Result]:
+    """Wait for a job and return where its result is; raises as `JobCalls.wait`."""
+    watch = progress or surface.session.progress
+
+    def look() -> Steps[JobState]:
+        state = yield from JobCalls.status(surface, job)
+        if watch is not None:
+            watch(state)
+        return state
+
+    yield from ended(job, look, pace)
+    return (yield from outlasting(lambda: JobCalls.result(surface, job), pace.patience))
+
+
 class JobCalls(Surface):
     """The steps of any process, by identifiers of jobs; inputs are JSON."""
 
     @operation
-    def submit(self, process: str, inputs: dict[str, Any]) -> Steps[JobState]:
+    def submit(
+        self, process: str, inputs: dict[str, Any], *, idempotency_key: str | None = None
+    ) -> Steps[JobState]:
         """Enter a job; equal work is done once, whoever asks for it.
 
         However often the network makes it be sent, it is one job: it carries an ``Idempotency-Key``.
+
+        Parameters
+        ----------
+        process : str
+        inputs : dict
+            As JSON.
+        idempotency_key : str, optional
+            Name of this submission: a later one of the same name is the same job. Default: a new name.
 
         Raises
         ------
@@ -37,7 +69,8 @@ class JobCalls(Surface):
             The inputs cannot be used.
         QueueFull, Unreachable, ServiceError
         """
-        path, headers = f"/v1/processes/{process}/execution", {"Idempotency-Key": str(uuid.uuid4())}
+        path = f"/v1/processes/{process}/execution"
+        headers = {"Idempotency-Key": idempotency_key or str(uuid.uuid4())}
         body = {**self.session.terms, "inputs": inputs}
         try:
             return (
@@ -149,17 +182,8 @@ class JobCalls(Surface):
         Unreachable
             The service was away for longer than the client's patience.
         """
-        watch = progress or self.session.progress
-
-        def look() -> Steps[JobState]:
-            state = yield from JobCalls.status(self, job)
-            if watch is not None:
-                watch(state)
-            return state
-
-        longest = math.inf if timeout is None else timeout
-        yield from ended(job, look, Pace(interval, _LONGEST_PAUSE_S, longest, self.session.patience))
-        return (yield from JobCalls.result(self, job))
+        known = pace_of_known(self.session, timeout, interval)
+        return (yield from result_of(self, job, progress, replace(known, answered=-math.inf)))
 
     @operation
     def result(self, job: str) -> Steps[Result]:
@@ -177,7 +201,7 @@ class JobCalls(Surface):
         service, cache = self.session.exchange.base_url, self.session.cache
         try:
             state = yield from JobCalls.submit(self, process, inputs)
-            result = yield from JobCalls.wait(self, state.id, progress)
+            result = yield from result_of(self, state.id, progress, pace_of_known(self.session))
         except Unreachable:
             known = cache.recall(service, process, inputs)
             if known is None:

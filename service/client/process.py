@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import uuid
 from collections.abc import AsyncIterator, Callable, Iterable, Iterator
+from contextlib import aclosing, suppress
 from pathlib import Path
 from typing import Any, Generic, ParamSpec, TypeVar, overload
 
@@ -13,6 +15,8 @@ from service.client.result_calls import ResultCalls
 from service.client.status import JobState, Result
 from service.client.steps import Steps
 from service.client.surface import Awaiting, Blocking, Surface
+from service.client.waiting import note_continuing, outlasting
+from service.problems import BadInput, ServiceError
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -20,19 +24,38 @@ CONCURRENCY = 8
 """Jobs of a `map` that are under way at once."""
 
 
+def _at_least_one(concurrency: int) -> int:
+    """Return a number of jobs; raises `BadInput` for one below 1."""
+    if concurrency < 1:
+        raise BadInput.of("concurrency", concurrency, "at least 1")
+    return concurrency
+
+
 def obtained(client: Surface, offer: Offer, inputs: dict[str, Any]) -> Steps[Any]:
     """Return the result of inputs: submit, wait, fetch, read."""
     result = yield from JobCalls.obtain(client, offer.name, inputs)
-    file: Path = yield from ResultCalls.fetch_file(client, result.key, result.kind)
+    patience = client.session.patience
+    file: Path = yield from outlasting(
+        lambda: ResultCalls.fetch_file(client, result.key, result.kind), patience
+    )
     return offer.read(file)
 
 
 class _Mapping:
-    """The jobs of one `map`: what the cache holds of the service's version is not computed again."""
+    """The jobs of one `map`: what the cache holds of the service's version is not computed again.
+
+    From the first answer on, the service may be away or busy for the client's patience.
+    """
 
     def __init__(self, client: Surface, offer: Offer, job: Callable[[JobState, Result | None], Any]) -> None:
         self._client, self._offer, self._job = client, offer, job
         self._version: str | None = None
+        self._under_way: set[str] = set()
+
+    def all_ended(self, subjects: Iterable[Any], options: dict[str, Any]) -> Iterator[Steps[Any]]:
+        """Yield the steps of a job for each subject."""
+        for subject in subjects:
+            yield self.ended(self._offer.inputs(subject, **options))
 
     def ended(self, inputs: dict[str, Any]) -> Steps[Any]:
         """Return the job of inputs after it has ended, with or without a result."""
@@ -43,11 +66,32 @@ class _Mapping:
         known = cache.recall(service, name, inputs, self._version)
         if known is not None:
             return self._job(JobState.cached(name), known)
-        job = self._job((yield from JobCalls.submit(self._client, name, inputs)), None)
+        job = self._job((yield from self._submitted(inputs)), None)
+        self._under_way.add(job.id)
         found = yield from job.ending()
+        self._under_way.discard(job.id)
         if found is not None:
             cache.remember(service, name, inputs, found, self._version)
         return job
+
+    def dismissed(self) -> Steps[None]:
+        """Dismiss what is under way: nobody will take it."""
+        for job in self._under_way:
+            with suppress(ServiceError, RuntimeError):  # away; the client is closed
+                yield from JobCalls.dismiss(self._client, job)
+
+    def note_continuing(self, error: BaseException) -> None:
+        """Note on an error which jobs it does not end."""
+        for job in sorted(self._under_way):
+            note_continuing(error, job)
+
+    def _submitted(self, inputs: dict[str, Any]) -> Steps[JobState]:
+        """Enter a job, once however often it is sent; return its state."""
+        key = str(uuid.uuid4())
+        return outlasting(
+            lambda: JobCalls.submit(self._client, self._offer.name, inputs, idempotency_key=key),
+            self._client.session.patience,
+        )
 
 
 class _Calls(Generic[P, T]):
@@ -57,12 +101,6 @@ class _Calls(Generic[P, T]):
         self._client, self._offer = client, offer
         self.__doc__ = offer.description
         self.__signature__ = offer.signature
-
-    def _ended_ones(self, subjects: Iterable[Any], options: dict[str, Any], job: Any) -> Iterator[Steps[Any]]:
-        """Yield the steps of a job for each subject."""
-        mapping = _Mapping(self._client, self._offer, job)
-        for subject in subjects:
-            yield mapping.ended(self._offer.inputs(subject, **options))
 
 
 class Process(_Calls[P, T]):
@@ -90,7 +128,8 @@ class Process(_Calls[P, T]):
     ) -> Iterator[Job[T]]:
         """Yield the ended job of every subject, in order.
 
-        What the cache holds is not asked for again while the service has the version that gave it.
+        What the cache holds is not asked for again while the service has the version that gave it. A loop
+        that is left early dismisses the jobs under way; an error notes which of them continue.
 
         Parameters
         ----------
@@ -106,7 +145,15 @@ class Process(_Calls[P, T]):
         BadInput
             A subject cannot be used; that of a job which failed is raised by its `result`.
         """
-        return self._client.driver.map(self._ended_ones(subjects, options, self._job), concurrency)
+        mapping, driver = _Mapping(self._client, self._offer, self._job), self._client.driver
+        try:
+            yield from driver.map(mapping.all_ended(subjects, options), _at_least_one(concurrency))
+        except GeneratorExit:
+            driver.run(mapping.dismissed())
+            raise
+        except BaseException as error:
+            mapping.note_continuing(error)
+            raise
 
     def _job(self, state: JobState, result: Result | None = None) -> Job[T]:
         """Return the job of a state."""
@@ -130,11 +177,25 @@ class AsyncProcess(_Calls[P, T]):
         steps = JobCalls.submit(self._client, self._offer.name, inputs)
         return self._job(await self._client.driver.run(steps))
 
-    def map(
+    async def map(
         self, subjects: Iterable[Any], *, concurrency: int = CONCURRENCY, **options: Any
     ) -> AsyncIterator[AsyncJob[T]]:
-        """Yield the ended job of every subject, in order; as of `Process`."""
-        return self._client.driver.map(self._ended_ones(subjects, options, self._job), concurrency)
+        """Yield the ended job of every subject, in order; as of `Process`.
+
+        A loop that is left early closes this when it is collected; `contextlib.aclosing` closes it at once.
+        """
+        mapping, driver = _Mapping(self._client, self._offer, self._job), self._client.driver
+        jobs = driver.map(mapping.all_ended(subjects, options), _at_least_one(concurrency))
+        try:
+            async with aclosing(jobs):
+                async for job in jobs:
+                    yield job
+        except GeneratorExit:
+            await driver.run(mapping.dismissed())
+            raise
+        except BaseException as error:
+            mapping.note_continuing(error)
+            raise
 
     def _job(self, state: JobState, result: Result | None = None) -> AsyncJob[T]:
         """Return the job of a state."""

@@ -4,21 +4,22 @@ from __future__ import annotations
 
 import math
 import time
+from asyncio import CancelledError
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeVar
 
 from service.client.status import JobState
 from service.client.steps import Pause, Steps
-from service.problems import (
-    DatabaseUnavailable,
-    RateExceeded,
-    StillRunning,
-    StoreUnavailable,
-    Unreachable,
-)
+from service.problems import DatabaseUnavailable, StillRunning, StoreUnavailable, TryLater, Unreachable
 
-AWAY = (Unreachable, DatabaseUnavailable, StoreUnavailable, RateExceeded)
-"""Raised while a service is away, which jobs outlast."""
+T = TypeVar("T")
+AWAY = (Unreachable, DatabaseUnavailable, StoreUnavailable, TryLater)
+"""Raised while a service is away or busy, which jobs outlast."""
+STOPS = (KeyboardInterrupt, CancelledError)
+"""Raised where the caller stops an operation."""
+AWAY_PAUSE_S = 0.5
+"""Before a service that was away is asked again."""
 _GROWTH = 1.1
 """Of each pause over the last: what is seen late is then about a tenth of the time waited."""
 
@@ -37,12 +38,15 @@ class Pace:
         Seconds to wait at most.
     patience : float
         Seconds for which the service may be away; jobs outlast its restart.
+    answered : float
+        When it answered last, on the monotonic clock: it is not waited for if it never did.
     """
 
     interval: float
     longest: float
     timeout: float
     patience: float
+    answered: float = -math.inf
 
     def longer(self, pause: float) -> float:
         """Return the pause after a pause."""
@@ -61,14 +65,33 @@ def ended(job: str, look: Callable[[], Steps[JobState]], pace: Pace) -> Steps[Jo
     """
     try:
         return (yield from _ended(job, look, pace))
-    except KeyboardInterrupt as stop:
-        stop.add_note(f"Job {job} continues at the service. Repeat the request to join it.")
+    except STOPS as stop:
+        note_continuing(stop, job)
         raise
+
+
+def note_continuing(error: BaseException, job: str) -> None:
+    """Note on an error, once, that it does not end a job."""
+    note = f"Job {job} continues at the service. Repeat the request to join it."
+    if note not in getattr(error, "__notes__", ()):
+        error.add_note(note)
+
+
+def outlasting(once: Callable[[], Steps[T]], patience: float) -> Steps[T]:
+    """Return what `once` returns, which is run again while the service is away, for `patience` seconds."""
+    begin = time.monotonic()
+    while True:
+        try:
+            return (yield from once())
+        except AWAY:
+            if time.monotonic() - begin > patience:
+                raise
+        yield Pause(AWAY_PAUSE_S)
 
 
 def _ended(job: str, look: Callable[[], Steps[JobState]], pace: Pace) -> Steps[JobState]:
     """Look until it has ended."""
-    begin, answered, pause = time.monotonic(), -math.inf, pace.interval
+    begin, answered, pause = time.monotonic(), pace.answered, pace.interval
     while True:
         try:
             state = yield from look()
