@@ -74,6 +74,9 @@ class Client(Processes, JobCalls, ResultCalls, LookupCalls, SceneCalls):
         self.session = Session(Exchange(options["base_url"], attempts), cache, patience, progress)
         self._connect(transport, options)
 
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.session.exchange.base_url}>"
+
     def _connect(self, transport: Any, options: dict[str, Any]) -> None:
         """Make the driver."""
         raise NotImplementedError

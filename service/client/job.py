@@ -139,7 +139,7 @@ class _JobCalls(Surface, Generic[T]):
         return see
 
     def __repr__(self) -> str:
-        return f"<{type(self).__name__} {self.id} {self.state.process} {self.state.status}>"
+        return f"<{type(self).__name__} {self.id or 'cached'} {self.state}>"
 
 
 class Job(_JobCalls[T], Blocking):

@@ -5,10 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+_ADVICE = (
+    "Results as objects need the libraries: pip uninstall lineofaction-client, pip install lineofaction. "
+    "job.figures(), job.report() and job.file() do not."
+)
+
 
 @contextmanager
-def libraries() -> Iterator[None]:
+def libraries(advice: str = _ADVICE) -> Iterator[None]:
     """Say what to install where the body imports what is not here.
+
+    Parameters
+    ----------
+    advice : str
+        What to say.
 
     Raises
     ------
@@ -20,5 +30,4 @@ def libraries() -> Iterator[None]:
     except ModuleNotFoundError as error:
         if type(error) is not ModuleNotFoundError:
             raise
-        advice = "Reading results needs the libraries: pip install lineofaction"
         raise ModuleNotFoundError(f"{error.name} is not installed. {advice}", name=error.name) from None

@@ -23,7 +23,7 @@ def case_of(case: CaseLike) -> schemas.Case:
         return case
     if isinstance(case, Path | InputFile):
         return schemas.read_model(schemas.Case, case)
-    return schemas.validated(schemas.Case, dict(case))
+    return schemas.validated(schemas.Case, _table("case", case))
 
 
 def case_inputs(case: CaseLike) -> dict[str, Any]:
@@ -37,7 +37,7 @@ def scene_of(scene: SceneLike) -> tuple[schemas.SceneInput, Path]:
         return scene, Path()
     if isinstance(scene, Path | InputFile):
         return schemas.read_model(schemas.SceneInput, scene), InputFile.of(scene).folder
-    return schemas.validated(schemas.SceneInput, dict(scene)), Path()
+    return schemas.validated(schemas.SceneInput, _table("scene", scene)), Path()
 
 
 def scene_inputs(scene: SceneLike) -> dict[str, Any]:
@@ -49,14 +49,18 @@ def inputs_of(source: CaseLike | SceneLike) -> dict[str, Any]:
     """Return ``{"case": ...}``, or of what has shafts ``{"scene": ...}``, as JSON; raises `BadInput`."""
     if isinstance(source, schemas.Case):
         return case_inputs(source)
-    if isinstance(source, schemas.SceneInput) or "shafts" in _table(source):
+    if isinstance(source, schemas.SceneInput):
         return scene_inputs(source)
-    return case_inputs(source)
+    table = schemas.read_table(source) if isinstance(source, Path | InputFile) else _table("case", source)
+    return scene_inputs(source) if "shafts" in table else case_inputs(source)
 
 
-def _table(source: Mapping[str, Any] | Path | InputFile) -> Mapping[str, Any]:
-    """Return the table that was given, or that a file holds."""
-    return schemas.read_table(source) if isinstance(source, Path | InputFile) else source
+def _table(field: str, source: object) -> dict[str, Any]:
+    """Return a table; raises `BadInput` for what is none, such as a path as text."""
+    if isinstance(source, Mapping):
+        return dict(source)
+    advice = "A file is given as pathlib.Path."
+    raise BadInput.of(field, repr(source)[:80], f"a Path, a dictionary or a model of a {field}", advice)
 
 
 def case_of_mesh(mesh: MeshInput, field: str, folder: Path) -> schemas.Case | None:

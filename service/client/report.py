@@ -6,13 +6,10 @@ from collections.abc import Iterable, Iterator
 from html import escape
 from typing import Any
 
+from service.client.line_chart import Curve, LineChart
 from service.schemas.report import ReportBody
 
-_WIDTH, _HEIGHT, _MARGIN = 640.0, 220.0, 10.0
-_COLORS = ("#0b62a4", "#b5500a", "#2d7d46", "#7a3e9d", "#8a6d00", "#555555")
-
 Json = dict[str, Any]
-Curve = tuple[list[float], list[float]]
 
 
 class Report(ReportBody):
@@ -30,14 +27,17 @@ class Report(ReportBody):
             )
         )
 
+    def __repr__(self) -> str:
+        """Return title and main results; the sections are long."""
+        results = "; ".join(f"{h['name']} {h['value']} {h['remark']}".strip() for h in self.headlines)
+        return f"<{type(self).__name__} {self.title}: {results}>"
+
     def _picture(self) -> Iterator[str]:
-        """Yield the first figure that has curves."""
+        """Yield the first figure that has curves over a quantity."""
         for figure in (figure for section in self.sections for figure in section["figures"]):
-            curves = list(_curves(figure["plot"]["data"]))
-            if curves:
-                words = escape(figure["alternative"], quote=True)
-                caption = f"<figcaption>{escape(figure['title'])}</figcaption>"
-                yield f"<figure>{_drawing(curves, words)}{caption}</figure>"
+            chart = _chart(figure)
+            if chart is not None:
+                yield f"<figure>{chart.svg()}<figcaption>{escape(figure['title'])}</figcaption></figure>"
                 return
 
 
@@ -55,32 +55,33 @@ def _table(head: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
     return f"<table><tr>{top}</tr>{body}</table>"
 
 
+def _chart(figure: Json) -> LineChart | None:
+    """Return the curves over the first pair of axes; None of a drawing, whose axes have one scale."""
+    layout, curves = figure["plot"]["layout"], list(_curves(figure["plot"]["data"]))
+    axes = [layout[name] for name in ("xaxis", "yaxis")]
+    if not curves or any("scaleanchor" in axis or axis.get("type") != "linear" for axis in axes):
+        return None
+    across, up = ([_title(layout[name]) for name in layout if name.startswith(f"{of}axis")] for of in "xy")
+    titled = [title for title in across if title]  # stacked axes have it below the last one
+    return LineChart(curves, titled[0] if titled else "", up[0], figure["alternative"])
+
+
+def _title(axis: Json) -> str:
+    """Return the title of an axis."""
+    return str((axis.get("title") or {}).get("text") or "")
+
+
 def _curves(traces: Iterable[Json]) -> Iterator[Curve]:
-    """Yield what is drawn as a line on the first pair of axes."""
+    """Yield what is drawn as a line on the first pair of axes; beside others a curve has a name."""
     for trace in traces:
-        drawn = trace["type"] == "scatter" and trace.get("mode") == "lines" and trace["line"].get("width", 1)
+        drawn = (
+            trace["type"] == "scatter" and "lines" in trace.get("mode", "") and trace["line"].get("width", 1)
+        )
         points = [
             (float(x), float(y))
             for x, y in zip(trace.get("x", ()), trace.get("y", ()), strict=False)
             if x is not None and y is not None
         ]
         if drawn and trace.get("yaxis", "y") == "y" and len(points) > 1:
-            yield [x for x, _ in points], [y for _, y in points]
-
-
-def _drawing(curves: list[Curve], words: str) -> str:
-    """Return curves as a picture that needs no script."""
-    left, right = (edge(edge(xs) for xs, _ in curves) for edge in (min, max))
-    low, high = (edge(edge(ys) for _, ys in curves) for edge in (min, max))
-    across = (_WIDTH - 2.0 * _MARGIN) / ((right - left) or 1.0)
-    up = (_HEIGHT - 2.0 * _MARGIN) / ((high - low) or 1.0)
-    lines = []
-    for number, (xs, ys) in enumerate(curves):
-        points = " ".join(
-            f"{_MARGIN + (x - left) * across:.1f},{_HEIGHT - _MARGIN - (y - low) * up:.1f}"
-            for x, y in zip(xs, ys, strict=True)
-        )
-        color = _COLORS[number % len(_COLORS)]
-        lines.append(f'<polyline fill="none" stroke="{color}" stroke-width="1.5" points="{points}"/>')
-    size = f'viewBox="0 0 {_WIDTH:g} {_HEIGHT:g}" width="{_WIDTH:g}"'
-    return f'<svg role="img" aria-label="{words}" {size}>{"".join(lines)}</svg>'
+            x, y = zip(*points, strict=True)
+            yield Curve(x, y, trace.get("name") or "", trace["line"].get("color") or "")

@@ -32,6 +32,8 @@ class JobState:
     differences : tuple of dict
         The first inputs that differ from those of the caller's job before it of the same process, or from the
         defaults: field, before, value.
+    remaining_s : float, optional
+        Seconds that a running job still needs, by its pace; None: not known.
     """
 
     id: str
@@ -50,11 +52,35 @@ class JobState:
     subject: str = ""
     differences: tuple[dict[str, Any], ...] = ()
     priority: int = 0
+    remaining_s: float | None = None
 
     @property
     def ended(self) -> bool:
         """Whether the job has ended."""
         return self.status in ("successful", "failed", "dismissed")
+
+    @property
+    def words(self) -> str:
+        """What the job does now: its stage while it runs, else waits, done, failed or dismissed."""
+        if self.status == "running":
+            return self.stage or "starts"
+        return {"accepted": "waits", "successful": "done"}.get(self.status, self.status)
+
+    @property
+    def time_left(self) -> str:
+        """The time that a running job still needs, as ``12 s left``; empty if it is not known."""
+        seconds = self.remaining_s
+        if seconds is None or self.ended:
+            return ""
+        minutes = round(seconds / 60.0)
+        if seconds < 100.0:
+            return f"{seconds:.0f} s left"
+        return f"{minutes} min left" if minutes < 100 else f"{minutes / 60.0:.1f} h left"
+
+    def __str__(self) -> str:
+        """Return a line: ``analyze: contact, 58 %, 12 s left``."""
+        running = (f"{self.progress} %", self.time_left) if self.status == "running" else ()
+        return ", ".join(part for part in (f"{self.process}: {self.words}", *running) if part)
 
     @classmethod
     def cached(cls, process: str) -> JobState:
@@ -73,6 +99,7 @@ class JobState:
         known |= {"priority": facts.get("priority", 0)}
         known |= {"tags": tuple(facts.get("tags") or ())}
         known |= {"differences": tuple((facts.get("differences") or {}).get("first", ()))}
+        known |= {"remaining_s": facts.get("remaining_s")}
         return cls(facts["jobID"], facts["processID"], **known, warnings=warnings)
 
 

@@ -65,7 +65,7 @@ def test_the_scripts_of_the_page_run_one_after_the_other(capsys: pytest.CaptureF
         printed
     )
     assert re.search(r"Estimate\(value=2\.\d+e-06, error=.*unit='m'\)", table)
-    assert followed.splitlines()[-1].split()[0] == "successful"
+    assert followed.splitlines()[-1] == "analyze: done"
     assert names["table"].identical(names["ste"])
     assert waited == "" and names["file"].is_file()  # nothing failed
     reliefs, ripples = np.array([list(map(float, line.split())) for line in many.splitlines()]).T

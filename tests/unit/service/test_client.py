@@ -155,6 +155,14 @@ def test_a_bad_case_is_refused_before_anything_is_sent(tmp_path: Path) -> None:
         against(silent, tmp_path).analyze.submit(wrong)
 
 
+@pytest.mark.parametrize("text", ["case.toml", "[pair]", b"case.toml", None, 3])
+def test_what_is_neither_case_nor_path_is_refused_in_words(tmp_path: Path, text: Any) -> None:
+    client = LineOfActionClient("http://127.0.0.1:9", cache_dir=tmp_path, attempts=1)
+    for call, field in ((client.analyze, "case"), (client.simulate, "scene"), (client.ablate, "case")):
+        with pytest.raises(BadInput, match=f"{field} = .*must be a Path, a dictionary.*pathlib"):
+            call(text)
+
+
 def test_unknown_results_and_jobs_are_not_found(client: LineOfActionClient) -> None:
     with pytest.raises(NotFound):
         client.fetch("cd" * 32)
