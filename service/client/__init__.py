@@ -4,6 +4,7 @@ from service.client.bars import progress_bars
 from service.client.cache import ResultCache
 from service.client.client import AsyncLineOfActionClient, LineOfActionClient
 from service.client.job import AsyncJob, Job
+from service.client.live_options import LiveOptions
 from service.client.process import AsyncProcess, Process
 from service.client.report import Report
 from service.client.status import JobState, OfflineWarning, Result, Watch
@@ -15,6 +16,7 @@ __all__ = [
     "Job",
     "JobState",
     "LineOfActionClient",
+    "LiveOptions",
     "OfflineWarning",
     "Process",
     "Report",

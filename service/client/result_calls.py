@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import base64
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 from service import schemas
 from service.client.cache import FIGURES
 from service.client.libraries import libraries
+from service.client.live_options import LiveOptions
 from service.client.offers import ANALYZE
 from service.client.paging import pages
 from service.client.raw_columns import Column, query_columns, read_answer
@@ -140,18 +141,7 @@ class ResultCalls(Surface):
 
     @operation
     def ste(
-        self,
-        key: str,
-        torque_n_m: Sequence[float],
-        *,
-        misalignment_um: float = 0.0,
-        center_distance_change_mm: float = 0.0,
-        pinion: Mapping[str, Any] | None = None,
-        wheel: Mapping[str, Any] | None = None,
-        derivatives: bool = False,
-        flanks: bool = False,
-        condense: bool = False,
-        caller: str | None = None,
+        self, key: str, torque_n_m: Sequence[float], **options: Unpack[LiveOptions]
     ) -> Steps[schemas.LiveOutput]:
         """Return curves of the gears of a stored database with other flanks, loads and alignment, at once.
 
@@ -161,17 +151,8 @@ class ResultCalls(Surface):
             Of the database.
         torque_n_m : sequence of float
             Increasing, at most twice the highest of the case.
-        misalignment_um, center_distance_change_mm : float
-        pinion, wheel : mapping, optional
-            Flank modifications as in a case file (``tip_relief_um`` ...); what is left out is as in the case.
-        derivatives : bool
-            Also return the derivatives of each curve by its flanks, the misalignment and the torque.
-        flanks : bool
-            Also return pressure over the driving gear's flank, load over the face, K_Hbeta.
-        condense : bool
-            Compute the compliance first if the service has none in its cache.
-        caller : str, optional
-            Name of the caller: a later request replaces its waiting one (`Superseded`).
+        **options
+            See `LiveOptions`.
 
         Returns
         -------
@@ -186,23 +167,10 @@ class ResultCalls(Surface):
             The compliance is not in the cache of the service: repeat with `condense`.
         NotFound, QueueFull, Superseded, LiveUnavailable, Unreachable, ServiceError
         """
-        question = {
-            "torque_n_m": list(torque_n_m),
-            "misalignment_um": misalignment_um,
-            "center_distance_change_mm": center_distance_change_mm,
-            "pinion": dict(pinion or {}),
-            "wheel": dict(wheel or {}),
-            "derivatives": derivatives,
-            "flanks": flanks,
-            "condense": condense,
-            "caller": caller,
-        }
-        path = f"/v1/databases/{key}/ste"
-        return (
-            yield from self.session.exchange.read(
-                schemas.LiveOutput.model_validate, "POST", path, json=question
-            )
-        )
+        pinion, wheel = dict(options.get("pinion") or {}), dict(options.get("wheel") or {})
+        question = {**options, "torque_n_m": list(torque_n_m), "pinion": pinion, "wheel": wheel}
+        reader, path = schemas.LiveOutput.model_validate, f"/v1/databases/{key}/ste"
+        return (yield from self.session.exchange.read(reader, "POST", path, json=question))
 
 
 def _fetched(session: Session, key: str, kinds: Sequence[str], form: str) -> Steps[tuple[Path, str]]:

@@ -4,19 +4,22 @@ from __future__ import annotations
 
 import asyncio
 import inspect
+import json
 import time
 from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import httpx2
 import pytest
 from stored_jobs import StoredJobs, state
 
-from service.client import AsyncJob, AsyncLineOfActionClient, Job, LineOfActionClient
+from service.client import AsyncJob, AsyncLineOfActionClient, Job, LineOfActionClient, LiveOptions
 from service.client.events import EventReader
-from service.problems import BadInput, JobFailed, Unreachable
+from service.problems import BadInput, JobFailed, NotFound, Unreachable
+from service.schemas.live import LiveInput
 
 ADDRESS = "http://127.0.0.1:1"
 
@@ -52,6 +55,27 @@ def public(surface: type) -> dict[str, str]:
 def test_both_have_one_surface(blocking: type, awaited: type) -> None:
     assert public(blocking) == public(awaited)
     assert {"submit", "events"} <= set(public(LineOfActionClient)) and {"result"} <= set(public(Job))
+
+
+def test_a_live_question_has_the_options_of_its_schema_and_no_others(tmp_path: Path) -> None:
+    assert set(LiveOptions.__annotations__) == set(LiveInput.model_fields) - {"torque_n_m"}
+    asked: list[Any] = []
+
+    def answer(request: httpx2.Request) -> httpx2.Response:
+        asked.append(json.loads(request.content))
+        return httpx2.Response(404, json=NotFound("no table").as_json())
+
+    relief = MappingProxyType({"tip_relief_um": 10.0})
+    transport = httpx2.MockTransport(answer)
+    with (
+        LineOfActionClient(ADDRESS, cache_dir=tmp_path, transport=transport) as client,
+        pytest.raises(NotFound),
+    ):
+        client.ste("ab" * 32, (100.0,), pinion=relief, derivatives=True)
+    (question,) = asked
+    sent = LiveInput.model_validate(question)
+    assert sent.torque_n_m == (100.0,) and sent.derivatives and not sent.flanks
+    assert question["pinion"] == dict(relief)
 
 
 def test_both_answer_alike(tmp_path: Path) -> None:
