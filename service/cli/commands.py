@@ -7,7 +7,7 @@ from typing import Annotated, TextIO
 
 import typer
 
-from service.cli.verbs import keys, motion, new, pages, serving, studies, tables, upkeep
+from service.cli.verbs import keys, motion, new, pages, remote_jobs, serving, studies, tables, upkeep
 from service.cli.verbs.of_studies import StudyGroup
 
 _EPILOG = (
@@ -28,7 +28,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for family in (new, tables, motion, studies, pages, serving):
+for family in (new, tables, motion, studies, pages, serving, remote_jobs):
     for verb in family.verbs.registered_commands:  # the whole sentence, which the list would cut off
         verb.short_help = (verb.callback.__doc__ or "").partition("\n")[0]
     app.add_typer(family.verbs)

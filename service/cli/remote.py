@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from host.extras import MissingExtra
-from service.cli.output import Report, check_writable, console, print_json, print_result, progress_bar
+from service.cli.output import Report, check_writable, console, print_json, print_result
+from service.cli.remote_jobs import waited
 from service.cli.warned import warn
 from service.client import JobState, LineOfActionClient, Result
 from service.client.portable import scene_inputs
@@ -57,7 +58,7 @@ def run_submit(
         warn(state.warnings)
         facts: dict[str, object] = {"job": state.id, "process": state.process, "status": state.status}
         if wait or output is not None:
-            result = _waited(client, state)
+            result = waited(client, state.id)
             facts |= {"status": "successful", "hash": result.key, "kind": result.kind}
         if output is not None:
             shutil.copyfile(client.fetch_file(result.key, result.kind), output)
@@ -107,12 +108,6 @@ def _submitted(
     )
 
 
-def _waited(client: LineOfActionClient, state: JobState) -> Result:
-    """Wait with a bar."""
-    with progress_bar() as report:
-        return client.wait(state.id, watching(report))
-
-
 def watching(report: Report) -> Callable[[JobState], None]:
     """Return the client's progress callback that feeds a bar."""
 
@@ -123,14 +118,14 @@ def watching(report: Report) -> Callable[[JobState], None]:
     return watch
 
 
-def run_fetch(name: str, output: Path, service: str, *, as_json: bool) -> None:
+def run_fetch(name: str, output: Path, service: str, *, wait: bool, as_json: bool) -> None:
     """Fetch by hash or by job."""
     check_writable(output)
     with LineOfActionClient(service) as client:
         if re.fullmatch("[0-9a-f]{64}", name):
             key, (file, kind) = name, client.fetch_result(name)
         else:
-            result = _ended(client, name)
+            result = _ended(client, name, wait=wait)
             file, key, kind = client.fetch_file(result.key, result.kind), result.key, result.kind
     shutil.copyfile(file, output)
     warn(stamped(output))
@@ -140,14 +135,14 @@ def run_fetch(name: str, output: Path, service: str, *, as_json: bool) -> None:
         _show_result(key, kind, output)
 
 
-def _ended(client: LineOfActionClient, job: str) -> Result:
-    """Return the result of a job that has ended."""
+def _ended(client: LineOfActionClient, job: str, *, wait: bool) -> Result:
+    """Return the result of a job that has ended, or does while it is waited for."""
     if not re.fullmatch(r"[0-9a-fA-F-]{1,64}", job):
         raise BadInput.of("name", job, "the identifier of a job or a content hash", "loa submit prints both.")
     try:
-        return client.result(job)
+        return waited(client, job) if wait else client.result(job)
     except ResultNotReady as error:
-        raise ResultNotReady(f"{error} Wait for it with: loa submit FILE --wait") from None
+        raise ResultNotReady(f"{error} Wait for it with: loa fetch {job} --wait -o FILE") from None
 
 
 def _show_result(key: str, kind: str, file: Path | None) -> None:

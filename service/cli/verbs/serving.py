@@ -93,9 +93,10 @@ def fetch(
         typer.Option("-o", "--output", help="File to write: netCDF or JSON, by its kind."),
     ],
     service: Service = DEFAULT_SERVICE,
+    wait: Annotated[bool, typer.Option("--wait", help="Wait for the job.")] = False,
     json: AsJson = False,
 ) -> None:
     """Fetch the result of a job, or a result by its hash, from a service or the cache."""
     from service.cli.remote import run_fetch  # noqa: PLC0415 (start-up time)
 
-    run_fetch(name, output, service, as_json=json)
+    run_fetch(name, output, service, wait=wait, as_json=json)

@@ -37,6 +37,8 @@ VERBS = (
     "serve",
     "submit",
     "fetch",
+    "jobs",
+    "dismiss",
 )
 
 
