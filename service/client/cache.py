@@ -129,7 +129,9 @@ def _holds(file: Path, digest: str) -> bool:
 
 
 def _settle(stream: BinaryIO, file: Path) -> None:
-    """Let what was written appear under its name: a reader sees all of it, or nothing."""
+    """Let what was written appear under its name: a reader sees all of it, or nothing.
+
+    What a power failure cuts short is found damaged when it is read, so the disk is not waited for.
+    """
     stream.flush()
-    os.fsync(stream.fileno())
     Path(stream.name).replace(file)
