@@ -31,7 +31,6 @@ computations = Table(
     Column("lease", String, nullable=False, default=""),
     Column("leased_until", Float, nullable=False, default=0.0),
     Column("priority", Integer, nullable=False, default=0, server_default="0"),
-
     Column("traceparent", String, nullable=False, default="", server_default=""),
 )
 
