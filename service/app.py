@@ -34,6 +34,7 @@ from service.routes import (
 )
 from service.routes.access import Access
 from service.routes.context import Context
+from service.routes.direct import DirectRoutes
 from service.routes.errors import install_error_handlers
 from service.routes.job_results import job_results_router
 from service.routes.metrics import Metrics
@@ -95,6 +96,7 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
     app.state.metrics = Metrics(_registry(context))
     install_error_handlers(app)
     install_description(app)
+    app.add_middleware(DirectRoutes, router=queries.router, prefix=API_PREFIX)
     app.add_middleware(Access, keyring=keyring, always=not settings.loopback or bool(keyring))
     app.add_middleware(Guard, body_limit=settings.body_limit, metrics=app.state.metrics)
     jobs_shown = (landing.router, processes_router(offered), jobs.router, job_results_router(offered))

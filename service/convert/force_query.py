@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from fe_contact.ste.compiled_force import CompiledForce
 
 _ROW = {"position": 0, "misalignment_um": 1, "center_distance_change_mm": 2, "deflection_um": 3}
+_FACTOR = {name: factor(name) for name in _ROW}
 _REQUIRED = ("position", "deflection_um")
 
 
@@ -30,7 +31,7 @@ class ForceAnswer(NamedTuple):
 
 def points_of_model(query: QueryInput) -> FloatArray:
     """Return the points of a query in SI units, (4, n) as `CompiledForce.force_at` takes them."""
-    columns = {name: np.atleast_1d(np.array(getattr(query, name), dtype=float)) for name in LIMITS}
+    columns = {name: np.array(getattr(query, name), dtype=float, ndmin=1) for name in LIMITS}
     return _points(columns, max(column.size for column in columns.values()))
 
 
@@ -65,7 +66,7 @@ def _points(columns: dict[str, FloatArray], size: int) -> FloatArray:
     """Put columns in SI units into the rows of an array; what is not given is 0."""
     points = np.zeros((len(_ROW), size))
     for name, column in columns.items():
-        points[_ROW[name]] = column * factor(name)
+        np.multiply(column, _FACTOR[name], out=points[_ROW[name]])
     return points
 
 

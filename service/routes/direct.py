@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Awaitable, Callable
 from typing import Any
 
+from fastapi import APIRouter
 from fastapi.routing import APIRoute
 from starlette.requests import Request
 from starlette.responses import Response
+from starlette.types import ASGIApp, Receive, Scope, Send
 
 Handler = Callable[[Request], Awaitable[Response]]
 
@@ -32,3 +34,34 @@ class DirectRoute(APIRoute):
         """Return the coroutine itself."""
         handler: Handler = self.endpoint.direct  # type: ignore[attr-defined]
         return handler
+
+
+class DirectRoutes:
+    """In front of the framework's router, which compares a path with every route it has.
+
+    Parameters
+    ----------
+    app : ASGIApp
+        What serves all other requests, and those that a direct route refuses by their method.
+    router : APIRouter
+        Its direct routes are answered here.
+    prefix : str
+        Under which the router is included.
+    """
+
+    def __init__(self, app: ASGIApp, router: APIRouter, prefix: str) -> None:
+        self._app, self._prefix = app, prefix
+        self._routes = [route for route in router.routes if isinstance(route, DirectRoute)]
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve one request."""
+        for route in self._routes:
+            if scope["type"] == "http" and scope["method"] in route.methods:
+                path = scope["path"]
+                match = route.path_regex.match(path.removeprefix(self._prefix))
+                if match is not None and path.startswith(self._prefix):
+                    scope |= {"route": route, "path_params": match.groupdict()}
+                    response = await route.get_route_handler()(Request(scope, receive, send))
+                    await response(scope, receive, send)
+                    return
+        await self._app(scope, receive, send)

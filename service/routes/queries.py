@@ -55,7 +55,7 @@ async def _answer(request: Request) -> Response:
     accepted = negotiated(request.headers.get("accept", "*/*"), offered)
     if accepted is None:
         raise NotAcceptable(f"An answer can be {', '.join(READ)}. Accept one of them.")
-    named = request.query_params.get("columns", _COLUMNS)
+    named = request.query_params.get("columns", _COLUMNS) if request.scope["query_string"] else _COLUMNS
     if len(named) > _LONGEST_COLUMNS:  # also of bodies that do not need it
         raise BadInput.of("columns", named, f"a text of at most {_LONGEST_COLUMNS} characters")
     columns = named.split(",")

@@ -254,3 +254,13 @@ def test_a_key_that_is_none_is_refused(client: TestClient, key: str) -> None:
 def test_an_unknown_table_is_not_found(client: TestClient) -> None:
     answer = client.post(f"/v1/databases/{'0' * 64}/query", json={"position": [0.0], "deflection_um": [0.0]})
     assert problem(answer, 404)["type"] == "urn:lineofaction:problem:not-found"
+
+
+def test_only_the_query_itself_passes_the_router_by(client: TestClient) -> None:
+    body = {"position": [0.3], "deflection_um": [5.0]}
+    assert client.post(PATH, json=body).status_code == 200
+    assert client.get(PATH).status_code == 405
+    assert client.post(PATH.removeprefix("/v1"), json=body).status_code == 404
+    assert client.post(f"{PATH}/", json=body, follow_redirects=False).status_code in (307, 404)
+    told = client.get("/metrics").text
+    assert 'method="POST",route="/v1/databases/{key}/query",status="200"' in told
