@@ -7,7 +7,7 @@ import re
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from urllib.request import urlopen
@@ -17,14 +17,14 @@ _TICK = os.sysconf("SC_CLK_TCK")
 
 @contextmanager
 def running(
-    directory: Path, log: Path | None = None
+    directory: Path, log: Path | None = None, options: Sequence[str] = ()
 ) -> Iterator[tuple[str, subprocess.Popen[str], tuple[float, float]]]:
     """Run the service; its address, process, and seconds elapsed and CPU seconds until it answered.
 
-    Its log goes to a file, if one is named.
+    Its log goes to a file, if one is named; `options` are those of ``loa serve``.
     """
     begin = time.perf_counter()
-    command = [sys.executable, "-m", "service.cli", "serve", "--port", "0"]
+    command = [sys.executable, "-m", "service.cli", "serve", "--port", "0", *options]
     with (log or Path(os.devnull)).open("w") as errors:
         process = subprocess.Popen(
             [*command, "--data-directory", str(directory)], stdout=subprocess.PIPE, stderr=errors, text=True

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
+from functools import partial
 from typing import Any
 
 from fastapi import FastAPI
@@ -15,6 +16,7 @@ from service.live.kept_answers import KeptAnswers
 from service.live.pool import live_pool, reading_pool
 from service.management.registry import process_registry
 from service.queue.machinery import job_machinery
+from service.queue.watcher import Watcher
 from service.routes import (
     cases,
     databases,
@@ -143,6 +145,6 @@ def _context(settings: Settings, registry: Registry, works: bool) -> Context:
     pools, engine = (live_pool(settings), reading_pool(settings)), parts.engine
     kept = KeptAnswers(settings.data_directory / CACHE_DIRECTORY / "figures")
     writes = WriteCheck(Deployment(engine, parts.store))
-    return Context(
-        settings, registry, parts.submissions, parts.scheduler, parts.store, *pools, kept, engine, writes
-    )
+    watcher = Watcher(engine, partial(events.event_of, registry=registry))
+    queue = (parts.submissions, parts.scheduler, parts.store)
+    return Context(settings, registry, *queue, *pools, kept, engine, writes, watcher)

@@ -14,8 +14,9 @@ from service.live.pool import LivePool
 from service.queue.caller import ANYBODY, Caller
 from service.queue.scheduler import Scheduler
 from service.queue.submissions import Submissions
+from service.queue.watcher import Watcher
 from service.routes.open_databases import OpenDatabases
-from service.routes.streams import Streams
+from service.routes.streams import JobEvent, Streams
 from service.settings import Settings
 from service.store import ResultStore
 from service.store.write_check import WriteCheck
@@ -37,11 +38,13 @@ class Context:
     kept: KeptAnswers
     engine: Engine
     writes: WriteCheck
+    watcher: Watcher[JobEvent]
     databases: OpenDatabases = field(default_factory=OpenDatabases)
     streams: Streams = field(default_factory=Streams)
 
     def stop_waiting(self) -> None:
-        """End the workers of those who wait for an answer."""
+        """End the workers of those who wait for an answer, and the streams of those who wait for an event."""
+        self.watcher.stop()
         self.live.stop()
         self.reader.stop()
 

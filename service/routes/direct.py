@@ -56,11 +56,11 @@ class DirectRoutes:
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve one request."""
         for route in self._routes:
-            if scope["type"] == "http" and scope["method"] in route.methods:
+            if scope["type"] == "http" and scope["method"] in (route.methods or ()):
                 path = scope["path"]
                 match = route.path_regex.match(path.removeprefix(self._prefix))
                 if match is not None and path.startswith(self._prefix):
-                    scope |= {"route": route, "path_params": match.groupdict()}
+                    scope.update(route=route, path_params=match.groupdict())
                     response = await route.get_route_handler()(Request(scope, receive, send))
                     await response(scope, receive, send)
                     return

@@ -3,25 +3,31 @@
 from __future__ import annotations
 
 import asyncio
-import time
+import contextlib
 from collections.abc import AsyncIterator
+from typing import Annotated
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Header
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response, StreamingResponse
 from starlette.types import Receive, Scope, Send
 
 from service.problems import NoSuchJob, QueueFull
+from service.queue.job import Job
 from service.routes.caching import NO_STORE
 from service.routes.context import Context, Ctx
 from service.routes.jobs import status_info
 from service.routes.refusals import documented
 from service.routes.response_headers import described_headers
-from service.routes.streams import Streams
+from service.routes.streams import JobEvent, Streams
+from service.worker.process import Registry
 
-LOOK_S = 0.25
 HEARTBEAT_S = 15.0
 EVENT_STREAM = "text/event-stream"
+LastEvent = Annotated[
+    str | None,
+    Header(description="The `id` of the last event that arrived: it is not sent again", max_length=100),
+]
 
 router = APIRouter(prefix="/jobs", tags=["jobs"])
 
@@ -43,19 +49,31 @@ class TooManyStreams(QueueFull):
             "content": {EVENT_STREAM: {"schema": {"type": "string"}}},
             "headers": described_headers("Cache-Control"),
         },
+        204: {"description": "The last event was the final one: browsers connect no more"},
         **documented(NoSuchJob, TooManyStreams),
     },
 )
-async def job_events(job_id: str, context: Ctx) -> Response:
+async def job_events(job_id: str, context: Ctx, last_event_id: LastEvent = None) -> Response:
     """Send the status now and whenever it changes; the stream ends after the final one.
 
-    Who reconnects gets the current status. Comments keep the connection open.
+    Who reconnects gets the current status, unless it is that of the last event. Comments keep the connection
+    open.
     """
-    await run_in_threadpool(context.submissions.find, job_id)
+    job = await run_in_threadpool(context.submissions.find, job_id)
+    event = await run_in_threadpool(event_of, job, context.registry)
+    if event.last and event.id == last_event_id:
+        return Response(status_code=204)
     if not context.streams.enter():
         raise TooManyStreams(f"{context.streams.most} event streams are open. Poll the status, or try again.")
     headers = {"Cache-Control": NO_STORE, "X-Accel-Buffering": "no"}
-    return _Stream(context.streams, _changes(context, job_id), headers)
+    return _Stream(context.streams, _changes(context, job, event, last_event_id), headers)
+
+
+def event_of(job: Job, registry: Registry) -> JobEvent:
+    """Return the event of a job as it is."""
+    document = status_info(job, registry).model_dump_json().encode()
+    text = b"event: status\nid: %s\ndata: %s\n\n" % (job.updated.encode(), document)
+    return JobEvent(job.updated, text, job.ended)
 
 
 class _Stream(StreamingResponse):
@@ -73,19 +91,45 @@ class _Stream(StreamingResponse):
             self._streams.leave()
 
 
-async def _changes(context: Context, job_id: str) -> AsyncIterator[bytes]:
-    """Yield events until the job has ended; a thread is taken for each look only."""
-    sent, last = b"", time.monotonic()
-    while True:
-        job = await run_in_threadpool(context.submissions.find, job_id)
-        status = await run_in_threadpool(status_info, job, context.registry)
-        document = status.model_dump_json().encode()
-        if document != sent:
-            sent, last = document, time.monotonic()
-            yield b"event: status\ndata: " + document + b"\n\n"
-        elif time.monotonic() - last > HEARTBEAT_S:
-            last = time.monotonic()
-            yield b": the job goes on\n\n"
-        if job.ended:
-            return
-        await asyncio.sleep(LOOK_S)
+class _Latest:
+    """The latest event, passed from the watcher's thread to a coroutine; None: there will be no more."""
+
+    def __init__(self, event: JobEvent) -> None:
+        self.event: JobEvent | None = event
+        self._loop, self._changed = asyncio.get_running_loop(), asyncio.Event()
+
+    def tell(self, event: JobEvent | None) -> None:
+        """Take an event, in any thread; who has not sent the one before sends this one instead."""
+        with contextlib.suppress(RuntimeError):  # the loop was closed
+            self._loop.call_soon_threadsafe(self._take, event)
+
+    def _take(self, event: JobEvent | None) -> None:
+        self.event = event
+        self._changed.set()
+
+    async def changed(self, patience_s: float) -> bool:
+        """Wait for the next event; False: there is none yet."""
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(patience_s):
+                await self._changed.wait()
+        changed = self._changed.is_set()
+        self._changed.clear()
+        return changed
+
+
+async def _changes(context: Context, job: Job, event: JobEvent, sent: str | None) -> AsyncIterator[bytes]:
+    """Yield events until the job has ended."""
+    if event.last:
+        yield event.text
+        return
+    latest = _Latest(event)
+    with context.watcher.following(job, latest.tell):
+        while latest.event is not None:
+            if latest.event.id != sent:
+                current = latest.event
+                yield current.text
+                if current.last:
+                    return
+                sent = current.id
+            while not await latest.changed(HEARTBEAT_S):
+                yield b": the job goes on\n\n"

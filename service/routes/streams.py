@@ -1,13 +1,32 @@
-"""Count of open event streams; of one event loop, so without a lock."""
+"""What event streams share: their events, and a count of those open."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
+
+
+class JobEvent(NamedTuple):
+    """A state of a job as all its streams send it, made once.
+
+    Attributes
+    ----------
+    id : str
+        When the state changed last, RFC 3339: a browser that reconnects names it (``Last-Event-ID``).
+    text : bytes
+        The server-sent event.
+    last : bool
+        Whether nothing more happens to the job.
+    """
+
+    id: str
+    text: bytes
+    last: bool
 
 
 @dataclass
 class Streams:
-    """A count with a bound.
+    """A count with a bound, of one event loop, so without a lock.
 
     Attributes
     ----------
@@ -15,7 +34,7 @@ class Streams:
         Streams that may be open at once.
     """
 
-    most: int = 64
+    most: int = 256
     _open: int = 0
 
     def enter(self) -> bool:

@@ -16,6 +16,7 @@ from sqlalchemy.exc import DBAPIError
 from sqlalchemy.exc import TimeoutError as PoolTimeout
 
 from service.problems import BadInput
+from service.store.commits import Commits, PostgresCommits, SqliteCommits
 
 _PRAGMAS = (
     "PRAGMA busy_timeout=10000",  # first: the others may have to wait too
@@ -54,6 +55,9 @@ class Dialect(Protocol):
     def clock(self, connection: Connection) -> float:
         """Return the seconds since 1970 on the one clock that all users of the database read."""
 
+    def commits(self, engine: Engine) -> Commits:
+        """Return a connection that hears of commits."""
+
     def lost(self, error: DBAPIError) -> bool:
         """Whether the database, not the statement, is why it failed: another attempt may succeed."""
 
@@ -89,6 +93,10 @@ class SQLite:
     def clock(self, connection: Connection) -> float:
         """Return the machine's time: all users are on it."""
         return time.time()
+
+    def commits(self, engine: Engine) -> Commits:
+        """Return what reads the version of the file."""
+        return SqliteCommits(engine)
 
     def lost(self, error: DBAPIError) -> bool:
         """Whether others held the file for too long."""
@@ -196,6 +204,10 @@ class PostgreSQL:
     def clock(self, connection: Connection) -> float:
         """Return the server's time."""
         return float(connection.execute(text("SELECT extract(epoch FROM clock_timestamp())")).scalar_one())
+
+    def commits(self, engine: Engine) -> Commits:
+        """Return what the server notifies."""
+        return PostgresCommits(engine)
 
     def lost(self, error: DBAPIError) -> bool:
         """Whether the connection broke or never was, or the server asks to try again.

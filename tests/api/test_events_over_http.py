@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import Coroutine, Iterator
+from collections.abc import Callable, Coroutine, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
+from running_service import until
 from service_fakes import REGISTRY
 
 from service.app import create_app
@@ -35,7 +37,7 @@ def execute(client: TestClient, **wish: Any) -> str:
 def documents(text: str) -> list[dict[str, Any]]:
     """Return the status documents of a stream."""
     blocks = [block for block in text.split("\n\n") if block and not block.startswith(":")]
-    assert all(block.startswith("event: status\ndata: ") for block in blocks)
+    assert all(block.startswith("event: status\nid: ") for block in blocks)
     return [json.loads(block.partition("data: ")[2]) for block in blocks]
 
 
@@ -55,6 +57,36 @@ def test_who_comes_after_the_end_gets_the_final_state(client: TestClient) -> Non
     location = execute(client, text="table")
     first = documents(client.get(f"{location}/events").text)
     assert documents(client.get(f"{location}/events").text) == first[-1:]
+
+
+def test_who_names_the_last_event_is_not_sent_it_again(
+    client: TestClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(events, "HEARTBEAT_S", 0.05)
+    location = execute(client, mode="hang")
+    until(lambda: client.get(location).json()["stage_progress"] > 0)  # nothing more happens by itself
+    now = client.get(location).json()["updated"]
+    cancel = partial(client.delete, location)
+    sent = _apart(_listen_and_leave(client.app, f"{location}/events", b"status", last=now, after=cancel))
+    assert [status["status"] for status in documents(sent.decode())] == ["dismissed"]
+
+
+def test_a_browser_that_has_the_final_event_is_told_to_connect_no_more(client: TestClient) -> None:
+    location = execute(client, text="table")
+    text = client.get(f"{location}/events").text
+    last = text.rpartition("id: ")[2].partition("\n")[0]
+    answer = client.get(f"{location}/events", headers={"Last-Event-ID": last})
+    assert (answer.status_code, answer.content) == (204, b"")
+    assert client.get(f"{location}/events", headers={"Last-Event-ID": "another"}).status_code == 200
+
+
+def test_a_service_that_stops_ends_its_streams(client: TestClient) -> None:
+    location = execute(client, mode="hang")
+    until(lambda: client.get(location).json()["stage_progress"] > 0)
+    stop = client.app.state.context.stop_waiting  # type: ignore[attr-defined]
+    sent = _apart(_listen_and_leave(client.app, f"{location}/events", b"never", after=stop))
+    assert documents(sent.decode())[-1]["status"] in ("accepted", "running")
+    client.delete(location)
 
 
 def test_an_unknown_job_has_no_stream(client: TestClient) -> None:
@@ -99,10 +131,26 @@ def _apart(coroutine: Coroutine[Any, Any, Any]) -> Any:
         return thread.submit(asyncio.run, coroutine).result()
 
 
-async def _listen_and_leave(app: Any, path: str, wanted: bytes = b"\n\n") -> bytes:
-    """Return what the app sends until `wanted` is among it, then disconnect."""
+async def _listen_and_leave(
+    app: Any,
+    path: str,
+    wanted: bytes = b"\n\n",
+    *,
+    last: str = "",
+    after: Callable[[], object] = lambda: None,
+) -> bytes:
+    """Return what the app sends until `wanted` is among it, then disconnect.
+
+    `after` is called with the first event or comment; `last` is the event that the caller had last.
+    """
     heard, enough = [], asyncio.Event()
-    scope = {"type": "http", "method": "GET", "path": path, "query_string": b"", "headers": []}
+    scope = {
+        "type": "http",
+        "method": "GET",
+        "path": path,
+        "query_string": b"",
+        "headers": [(b"last-event-id", last.encode())] if last else [],
+    }
     asked = iter([{"type": "http.request", "body": b"", "more_body": False}])
 
     async def receive() -> dict[str, Any]:
@@ -113,6 +161,8 @@ async def _listen_and_leave(app: Any, path: str, wanted: bytes = b"\n\n") -> byt
 
     async def send(message: dict[str, Any]) -> None:
         heard.append(message.get("body", b""))
+        if len(heard) == 2:
+            asyncio.get_running_loop().run_in_executor(None, after)
         if wanted in heard[-1]:
             enough.set()
 

@@ -1,0 +1,148 @@
+"""The one watcher of jobs of a process: it tells all who follow jobs that one changed."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Collection, Iterator
+from contextlib import closing, contextmanager
+from dataclasses import dataclass, field
+from typing import Generic, TypeVar
+
+import structlog
+from sqlalchemy import Engine, func, select
+
+from service.queue.job import Job, job_of, select_jobs
+from service.queue.tables import computations, jobs
+from service.store import dialect_of, reading
+
+REST_S = 0.2
+"""Between two looks at the table, however often it changes."""
+NET_S = 5.0
+"""After which it is looked at although no commit was heard of: a connection may be dead without a sign."""
+_RETRY_S = 1.0
+
+T = TypeVar("T")
+Told = Callable[[T | None], None]
+logger = structlog.get_logger(__name__)
+
+
+@dataclass
+class _Followed(Generic[T]):
+    """A job, when it changed last as far as is known, and who is told."""
+
+    updated: str
+    followers: list[Told[T]] = field(default_factory=list)
+
+
+class Watcher(Generic[T]):
+    """Follows jobs in a thread that runs while there are followers; a lost database is waited for.
+
+    Parameters
+    ----------
+    engine : Engine
+    show : callable
+        Makes of a job what followers are told, once for all of them.
+    """
+
+    def __init__(self, engine: Engine, show: Callable[[Job], T]) -> None:
+        self._engine, self._show = engine, show
+        self._jobs: dict[str, _Followed[T]] = {}
+        self._lock, self._stopped = threading.Lock(), threading.Event()
+        self._thread: threading.Thread | None = None
+        self._new = False
+
+    @contextmanager
+    def following(self, job: Job, told: Told[T]) -> Iterator[None]:
+        """Call `told` with each state after that of `job`, and with None when there will be no more.
+
+        It is called in the watcher's thread. States that follow each other within `REST_S` may be one.
+        """
+        with self._lock:
+            followed = self._jobs.setdefault(job.id, _Followed(job.updated))
+            followed.updated = min(followed.updated, job.updated)  # someone may be told twice, nobody never
+            followed.followers.append(told)
+            self._new = True
+            if self._thread is None:
+                self._stopped.clear()
+                self._thread = threading.Thread(target=self._loop, name="watcher", daemon=True)
+                self._thread.start()
+        try:
+            yield
+        finally:
+            with self._lock:
+                followed.followers.remove(told)
+                if not followed.followers and self._jobs.get(job.id) is followed:
+                    del self._jobs[job.id]
+
+    def stop(self) -> None:
+        """Tell all followers that there is no more, and end the thread."""
+        with self._lock:
+            thread = self._thread
+            self._stopped.set()
+            self._tell(list(self._jobs), None)
+        if thread is not None:
+            thread.join(_RETRY_S)  # it may wait for a database that is away
+
+    def _loop(self) -> None:
+        """Watch as long as anybody follows; what fails is tried again."""
+        while self._goes_on():
+            try:
+                self._look()
+                with closing(dialect_of(self._engine).commits(self._engine)) as commits:
+                    self._look()  # what was committed before anything could be heard
+                    looked = time.monotonic()
+                    while self._jobs and not self._stopped.is_set():
+                        if commits.heard() or self._new or time.monotonic() - looked > NET_S:
+                            self._look()
+                            looked = time.monotonic()
+                            self._stopped.wait(REST_S)
+            except Exception as error:  # noqa: BLE001 (the database may be back soon)
+                logger.warning("jobs not watched", error=type(error).__name__)
+                self._stopped.wait(_RETRY_S)
+
+    def _goes_on(self) -> bool:
+        """Whether anybody follows; if not, the next follower starts another thread."""
+        with self._lock:
+            if self._jobs and not self._stopped.is_set():
+                return True
+            self._thread = None
+            return False
+
+    def _look(self) -> None:
+        """Tell the followers of jobs that changed, and of those that are gone."""
+        self._new = False
+        with self._lock:
+            known = {identifier: followed.updated for identifier, followed in self._jobs.items()}
+        updated = self._updated(known)
+        changed = [identifier for identifier in updated if updated[identifier] != known[identifier]]
+        for job in self._read(changed):
+            shown = self._show(job)
+            with self._lock:
+                if job.id in self._jobs:
+                    self._jobs[job.id].updated = job.updated
+                self._tell([job.id], shown)
+        with self._lock:
+            self._tell(known.keys() - updated.keys(), None)
+
+    def _tell(self, identifiers: Collection[str], shown: T | None) -> None:
+        """Tell the followers of jobs; the lock is held."""
+        for identifier in identifiers:
+            if identifier in self._jobs:
+                for told in self._jobs[identifier].followers:
+                    told(shown)
+
+    def _updated(self, identifiers: Collection[str]) -> dict[str, str]:
+        """Return when jobs changed last, without their inputs."""
+        instant = func.coalesce(jobs.c.dismissed, computations.c.updated)
+        statement = select(jobs.c.id, instant).join(computations).where(jobs.c.id.in_(identifiers))
+        with reading(self._engine) as connection:
+            return {row[0]: row[1] for row in connection.execute(statement)}
+
+    def _read(self, identifiers: Collection[str]) -> list[Job]:
+        """Return jobs."""
+        if not identifiers:
+            return []
+        statement = select_jobs().where(jobs.c.id.in_(identifiers))
+        with reading(self._engine) as connection:
+            return [job_of(row) for row in connection.execute(statement)]

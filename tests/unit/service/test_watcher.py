@@ -1,0 +1,184 @@
+"""The watcher of jobs: all followers are told at the cost of one, and an outage is outlasted."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+from postgres_server import PostgresServer
+from running_service import Bench, bench, until
+from service_fakes import REGISTRY
+from sqlalchemy import delete, event
+
+from service.queue import watcher as watching
+from service.queue.claims import Claim
+from service.queue.job import Job
+from service.queue.tables import jobs
+from service.queue.watcher import Watcher
+from service.store import writing
+from service.store.database import database_engine
+
+
+@pytest.fixture
+def machine(tmp_path: Path, database_url: str | None) -> Iterator[Bench]:
+    """The table without a running scheduler, on each database."""
+    found = bench(tmp_path, REGISTRY, database_url=database_url)
+    yield found
+    found.close()
+
+
+@pytest.fixture
+def watcher(machine: Bench, monkeypatch: pytest.MonkeyPatch) -> Iterator[Watcher[Job]]:
+    """A watcher as of another process: it has connections of its own, and looks when it hears alone."""
+    monkeypatch.setattr(watching, "NET_S", 1e6)
+    engine = database_engine(machine.settings.database_address or machine.settings.data_directory / FILE)
+    found = Watcher(engine, lambda job: job)
+    yield found
+    found.stop()
+    engine.dispose()
+
+
+FILE = "service.sqlite3"
+
+
+def claimed(machine: Bench) -> Claim:
+    """Claim the work that waits."""
+    claim = machine.claims.claim()
+    assert claim is not None
+    return claim
+
+
+def test_every_follower_is_told_every_state_in_order(machine: Bench, watcher: Watcher[Job]) -> None:
+    job, told = machine.submit(text="a"), [list[Job | None]() for _ in range(5)]
+    with ExitStack() as following:
+        for each in told:
+            following.enter_context(watcher.following(job, each.append))
+        claim = claimed(machine)
+        until(lambda: all(each for each in told))
+        for fraction in (0.2, 0.4):
+            machine.claims.progress(claim, "first", fraction, fraction)
+            until(lambda fraction=fraction: all(_fraction(each) == fraction for each in told))
+        machine.claims.succeed(claim)
+        until(lambda: all(_status(each) == "successful" for each in told))
+    for each in told:
+        states = [(state.status, state.fraction) for state in each if state is not None]
+        assert states == [("running", 0.0), ("running", 0.2), ("running", 0.4), ("successful", 1.0)]
+
+
+def _fraction(told: list[Job | None]) -> float:
+    return told[-1].fraction if told and told[-1] is not None else -1.0
+
+
+def _status(told: list[Job | None]) -> str:
+    return told[-1].status if told and told[-1] is not None else ""
+
+
+def test_a_state_that_was_reached_before_anybody_followed_is_told(
+    machine: Bench, watcher: Watcher[Job]
+) -> None:
+    job = machine.submit(text="a")
+    machine.claims.succeed(claimed(machine))
+    told: list[Job | None] = []
+    with watcher.following(job, told.append):
+        until(lambda: _status(told) == "successful")
+
+
+def test_a_dismissal_is_told_to_those_of_that_job_alone(machine: Bench, watcher: Watcher[Job]) -> None:
+    mine, other = machine.submit(text="same"), machine.submit(text="same")
+    told: list[Job | None] = []
+    spared: list[Job | None] = []
+    with watcher.following(mine, told.append), watcher.following(other, spared.append):
+        machine.submissions.dismiss(mine.id)
+        until(lambda: _status(told) == "dismissed")
+        claimed(machine)
+        until(lambda: _status(spared) == "running")
+    assert [_status([state]) for state in spared] == ["running"]
+
+
+def test_two_hundred_followers_cost_the_questions_of_one(machine: Bench, watcher: Watcher[Job]) -> None:
+    pair, claims = [machine.submit(text=text) for text in "ab"], [claimed(machine) for _ in range(2)]
+    heard = threading.Semaphore(0)
+    told: list[Job | None] = []
+    asked: list[str] = []
+    with ExitStack() as following:
+        for number in range(200):
+            following.enter_context(watcher.following(pair[number % 2], lambda _: heard.release()))
+        following.enter_context(watcher.following(pair[0], told.append))
+        until(lambda: _status(told) == "running")  # everything before is told by now
+        event.listen(watcher._engine, "before_cursor_execute", lambda *words: asked.append(words[2]))
+        while heard.acquire(blocking=False):
+            pass
+        for claim in claims:
+            machine.claims.succeed(claim)
+        for _ in range(200):
+            assert heard.acquire(timeout=60.0)
+    assert sum("coalesce" in statement for statement in asked) <= 4
+    assert sum("computation.inputs" in statement for statement in asked) <= 2
+
+
+def test_what_is_not_heard_is_seen(
+    machine: Bench, watcher: Watcher[Job], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    deaf = type(
+        "Deaf", (), {"heard": lambda self: bool(threading.Event().wait(0.02)), "close": lambda self: None}
+    )
+    monkeypatch.setattr(watching, "NET_S", 0.1)
+    monkeypatch.setattr(
+        watching, "dialect_of", lambda _: type("None", (), {"commits": lambda self, _: deaf()})()
+    )
+    job, told = machine.submit(text="a"), list[Job | None]()
+    with watcher.following(job, told.append):
+        claimed(machine)
+        until(lambda: _status(told) == "running")
+        machine.submissions.dismiss(job.id)
+        until(lambda: _status(told) == "dismissed")
+
+
+def test_a_job_that_is_removed_ends_its_streams(machine: Bench, watcher: Watcher[Job]) -> None:
+    job, told = machine.submit(text="a"), list[Job | None]()
+    with watcher.following(job, told.append):
+        with writing(machine.engine) as connection:
+            connection.execute(delete(jobs).where(jobs.c.id == job.id))
+        until(lambda: told == [None])
+
+
+def test_without_followers_there_is_no_thread(machine: Bench, watcher: Watcher[Job]) -> None:
+    job = machine.submit(text="a")
+    for _ in range(2):
+        with watcher.following(job, lambda _: None):
+            assert watcher._thread is not None
+        until(lambda: watcher._thread is None)
+
+
+def test_a_stop_tells_all_who_follow(machine: Bench, watcher: Watcher[Job]) -> None:
+    told: list[Job | None] = []
+    with watcher.following(machine.submit(text="a"), told.append):
+        watcher.stop()
+        assert told == [None]
+
+
+def test_lost_connections_lose_no_state(
+    postgres: PostgresServer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(watching, "NET_S", 1e6)  # by what is heard, or after the loss, alone
+    url = postgres.emptied_database()
+    machine = bench(tmp_path, REGISTRY, database_url=url)
+    engine = database_engine(url)
+    watcher, told = Watcher(engine, lambda job: job), list[Job | None]()
+    try:
+        with watcher.following(machine.submit(text="a"), told.append):
+            claim = claimed(machine)
+            until(lambda: _status(told) == "running")
+            assert postgres.end_connections(url) > 0
+            machine.claims.progress(claim, "first", 0.5, 0.5)
+            until(lambda: _fraction(told) == 0.5)
+            postgres.fall_and_rise(0.2)
+            machine.claims.succeed(claim)
+            until(lambda: _status(told) == "successful")
+    finally:
+        watcher.stop()
+        engine.dispose()
+        machine.close()
