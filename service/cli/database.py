@@ -28,14 +28,16 @@ def run_upgrade(*, as_json: bool, **options: object) -> None:
 
 
 def run_status(*, as_json: bool, **options: object) -> None:
-    """Tell both schemas; fail if they differ."""
+    """Tell both schemas; fail if this program cannot use that of the database."""
     schema, name = _schema(options)
-    stored, current = schema.revision(), REVISIONS[-1]
-    facts: Json = {"database": name, "schema": stored, "program": current}
-    facts["up_to_date"] = stored == current
-    state = "up to date" if stored == current else f"this program needs {current}"
-    _tell(facts, f"{name}: {stored or 'no tables'}, {state}", as_json=as_json)
-    if stored != current:
+    numbers, current = schema.numbers(), REVISIONS[-1]
+    facts: Json = {"database": name, "schema": numbers.newest, "program": current}
+    facts |= {"up_to_date": numbers.ours, "usable": numbers.usable}
+    newer = f"newer, but this program ({current}) can use it"
+    needed = newer if numbers.usable else f"this program needs {current}"
+    state = "up to date" if numbers.ours else needed
+    _tell(facts, f"{name}: {numbers.newest or 'no tables'}, {state}", as_json=as_json)
+    if not numbers.usable:
         raise typer.Exit(EXIT_FAILED)
 
 

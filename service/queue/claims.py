@@ -13,11 +13,13 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from sqlalchemy import ColumnElement, Connection, Engine, Row, select, update
+from packaging.version import InvalidVersion, Version
+from sqlalchemy import ColumnElement, Connection, Engine, Row, delete, select, update
 
 from service.queue.durations import end_computations
-from service.queue.tables import computations
+from service.queue.tables import computations, jobs
 from service.store import dialect_of, now, reading, retried, writing
+from service.version import solver_version
 
 DEFAULT_LEASE_S = 60.0
 
@@ -41,6 +43,8 @@ class Claim:
         Of the request that entered it; empty: it belongs to no trace.
     waited_from : str
         When it was entered or put back, RFC 3339; empty where that is not known.
+    program : str
+        Version of the program that entered it, whose name the result has; empty: 0.2.0 or older.
     """
 
     id: str
@@ -50,6 +54,7 @@ class Claim:
     attempts: int
     lease: str
     asked: float = field(default_factory=time.monotonic, compare=False)
+    program: str = ""
     traceparent: str = field(default="", compare=False)
     waited_from: str = field(default="", compare=False)
 
@@ -64,27 +69,34 @@ class Claims:
         Name of the scheduler, the same after a restart.
     lease_s : float
         How long a claim holds without being renewed.
+    program : str
+        Version of this program.
     """
 
-    def __init__(self, engine: Engine, owner: str = "", lease_s: float = DEFAULT_LEASE_S) -> None:
+    def __init__(
+        self,
+        engine: Engine,
+        owner: str = "",
+        lease_s: float = DEFAULT_LEASE_S,
+        program: str = solver_version(),
+    ) -> None:
         self._engine, self._owner, self._lease_s = engine, owner, lease_s
+        self.program = program
+        self._newer: set[str] = set()
 
     def claim(self) -> Claim | None:
-        """Take the oldest of the computations that wait with the highest priority."""
+        """Take the oldest waiting computation of the highest priority; pass over newer programs' ones."""
         return self._claim(uuid.uuid4().hex, time.monotonic())
 
     @retried
     def _claim(self, lease: str, requested: float) -> Claim | None:
         """Take a computation under a lease of this name, unless that was done already."""
         mine = select(computations).where(computations.c.lease == lease)
-        waiting = select(computations).where(computations.c.state == "accepted")
-        turn = (computations.c.priority.desc(), computations.c.created)
-        first = waiting.order_by(*turn).limit(1).with_for_update(skip_locked=True)
         with writing(self._engine) as connection:
             row = connection.execute(mine).one_or_none()
             if row is not None:
                 return _claimed(row, requested)
-            row = connection.execute(first).one_or_none()
+            row = self._first(connection)
             if row is None:
                 return None
             values = {"attempts": row.attempts + 1, "started": row.started or now(), "state": "running"}
@@ -93,6 +105,36 @@ class Claims:
             connection.execute(update(computations).where(computations.c.id == row.id).values(**values))
             claim = _claimed(connection.execute(mine).one(), requested)
             return replace(claim, waited_from=row.updated)
+
+    def _first(self, connection: Connection) -> Row[Any] | None:
+        """Return the computation whose turn it is, and lock it; newer programs' are passed over."""
+        waiting = select(computations).where(computations.c.state == "accepted")
+        turn = (computations.c.priority.desc(), computations.c.created)
+        first = waiting.order_by(*turn).limit(1).with_for_update(skip_locked=True)
+        while True:
+            row = connection.execute(first.where(computations.c.program.not_in(self._newer))).one_or_none()
+            if row is None or not _is_newer(row.program, self.program):
+                return row
+            self._newer.add(row.program)
+
+    @retried
+    def adopt(self, claim: Claim, key: str, inputs: dict[str, Any]) -> Claim | None:
+        """Give a computation of another program the name that this one has for it.
+
+        None: a computation of this name waits or runs; the jobs of the other are its own now.
+        """
+        live = computations.c.state.in_(("accepted", "running")) & (computations.c.id != claim.id)
+        same = select(computations.c.id).where(computations.c.key == key, live)
+        values = {"key": key, "inputs": json.dumps(inputs), "program": self.program}
+        with writing(self._engine, in_turn=True) as connection:
+            other = connection.execute(same).scalar()
+            if other is None:
+                connection.execute(update(computations).where(_under([claim])).values(**values))
+                return replace(claim, key=key, inputs=inputs, program=self.program)
+            mine = jobs.c.computation_id == claim.id
+            connection.execute(update(jobs).where(mine).values(computation_id=other))
+            connection.execute(delete(computations).where(_under([claim])))
+            return None
 
     def _end(self, connection: Connection) -> float:
         """Return when a lease that begins now ends, by the database's clock."""
@@ -207,4 +249,12 @@ def _claimed(row: Row[Any], requested: float) -> Claim:
     """Return a row as a claim."""
     inputs = json.loads(row.inputs)
     facts = (row.id, row.process, row.key, inputs, row.attempts, row.lease, requested)
-    return Claim(*facts, traceparent=row.traceparent)
+    return Claim(*facts, row.program, traceparent=row.traceparent)
+
+
+def _is_newer(program: str, than: str) -> bool:
+    """Whether a version of the program is newer than another; what is no version is old."""
+    try:
+        return Version(program) > Version(than)
+    except InvalidVersion:
+        return False

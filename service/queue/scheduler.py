@@ -14,6 +14,7 @@ import structlog
 
 from host import never_wait_at
 from service.problems import DatabaseUnavailable, ServiceError, StoreUnavailable
+from service.queue.adoption import Adoption
 from service.queue.attempt import Attempt, begun
 from service.queue.claims import Claim, Claims
 from service.queue.housekeeper import Housekeeper
@@ -49,6 +50,7 @@ class Scheduler:
         self._settings, self._registry, self._claims = settings, registry, claims
         self._housekeeper = housekeeper
         self._settlement = Settlement(claims, store, settings.attempts)
+        self._adoption = Adoption(claims, registry, store, settings.data_directory / "work")
         self._leases = Leases(claims, settings.lease_s)
         self._forks = Forks(registry.modules, settings.data_directory / "log" / "warm.log")
         self._running: dict[int, Attempt] = {}
@@ -157,7 +159,7 @@ class Scheduler:
         self._enforce_dismissals()
         self._take_up()
         while len(self._running) < self._settings.workers and (claim := self._claims.claim()) is not None:
-            self._begin(claim)
+            self._take(claim)
 
     def _listen_to_all(self) -> None:
         """Hear workers and wake-ups; wait for one if there is none."""
@@ -168,6 +170,17 @@ class Scheduler:
                 os.read(self._wake_out, 65536)
             elif key.fd in self._running:
                 self._listen(self._running[key.fd])
+
+    def _take(self, claim: Claim) -> None:
+        """Begin a claim, whichever program entered it."""
+        try:
+            ours = self._adoption.adopted(claim)
+        except _OUTAGES:
+            with contextlib.suppress(ServiceError):
+                self._claims.put_back(claim, "Waits for a worker.", counted=False)
+            raise
+        if ours is not None:
+            self._begin(ours)
 
     def _begin(self, claim: Claim) -> None:
         """Start a worker for a claim."""

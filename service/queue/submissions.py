@@ -22,6 +22,7 @@ from service.queue.terms import USUAL, Terms
 from service.store import BRIEF_MS, Mark, behind, instant, now, optional, reading, retried, writing
 from service.store.results import USE_NOTED_EVERY_S
 from service.tracing.traceparent import TRACEPARENT
+from service.version import solver_version
 
 _LOOKED_AT = 500  # at a time, where durations are requested
 
@@ -88,10 +89,11 @@ class Submissions:
     ) -> None:
         """Enter a job of this identifier, unless it is in already."""
         with writing(self._engine, in_turn=True) as connection:
-            known = select(computations.c.key).join(jobs).where(jobs.c.id == identifier)
-            entered = connection.execute(known).scalar()
+            known = select(computations.c.key, computations.c.program).join(jobs)
+            entered = connection.execute(known.where(jobs.c.id == identifier)).one_or_none()
             if entered is not None:
-                _refuse_unless_same(entered, key)
+                if entered.program == solver_version():  # another program names the same work differently
+                    _refuse_unless_same(entered.key, key)
                 return
             if not stored:
                 _refuse_if_busy(connection, caller)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from sqlalchemy import BigInteger, Column, Float, ForeignKey, Index, Integer, String, Table, Text, text
 
 from service.store.database import metadata
+from service.version import solver_version
 
 _LIVE = text("state IN ('accepted', 'running')")
 
@@ -32,6 +33,7 @@ computations = Table(
     Column("leased_until", Float, nullable=False, default=0.0),
     Column("priority", Integer, nullable=False, default=0, server_default="0"),
     Column("traceparent", String, nullable=False, default="", server_default=""),
+    Column("program", String, nullable=False, default=solver_version),
 )
 
 # Single flight: at most one computation of a key waits or runs.

@@ -5,17 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sqlalchemy import Connection, Engine, inspect, text
+from sqlalchemy import Connection, Engine
 
 from service.problems import BadInput
 from service.store.dialects import RESTORE, dialect_of
 from service.store.migrations import REVISIONS
 from service.store.outages import damaged, retried
+from service.store.schema_numbers import SchemaNumbers, schema_numbers, write_oldest
 
 if TYPE_CHECKING:
     from alembic.config import Config
-
-_UNNUMBERED = "computation"  # a table that databases had before their schemas had numbers
 
 
 class Schema:
@@ -30,10 +29,14 @@ class Schema:
         self._engine = engine
 
     @retried
+    def numbers(self) -> SchemaNumbers:
+        """Return the numbers of the schema."""
+        with self._engine.begin() as connection:
+            return schema_numbers(connection)
+
     def revision(self) -> str | None:
         """Return the number of the schema; None: there are no tables."""
-        with self._engine.begin() as connection:
-            return _revision(connection)
+        return self.numbers().newest
 
     @retried
     def check(self) -> None:
@@ -53,36 +56,38 @@ class Schema:
     def upgrade(self) -> None:
         """Bring the tables up to date, all or nothing; processes that do so at the same time take turns.
 
+        Programs of the version before may run meanwhile. A newer schema that this program can use stays.
+
         Raises
         ------
         BadInput
-            The schema is newer than this program.
+            The schema is newer, and this program cannot use it.
         """
         with self._engine.execution_options(immediate=True).begin() as connection:
             dialect_of(connection).take_turn(connection)
-            revision = _revision(connection)
-            _refuse_newer(revision, self._engine)
-            if revision != REVISIONS[-1]:
-                _migrate(connection, revision)
+            numbers = schema_numbers(connection)
+            _refuse_newer(numbers, self._engine)
+            if not numbers.usable:
+                _migrate(connection, numbers.newest)
 
 
 def prepare_schema(engine: Engine) -> None:
-    """See to it that the tables are this program's: upgraded if the database is ours alone, refused if not.
+    """See to it that this program can use the tables: upgraded if the database is ours alone, refused if not.
 
     Raises
     ------
     BadInput
-        The schema is newer, or older and not ours to change.
+        The schema is newer and has more than additions, or is older and not ours to change.
     """
     schema = Schema(engine)
-    revision = schema.revision()
-    if revision == REVISIONS[-1]:
+    numbers = schema.numbers()
+    if numbers.usable:
         return
     if dialect_of(engine).upgrades_itself:
         schema.upgrade()
         return
-    _refuse_newer(revision, engine)
-    state = "it has no tables" if revision is None else f"it has {revision}"
+    _refuse_newer(numbers, engine)
+    state = "it has no tables" if numbers.newest is None else f"it has {numbers.newest}"
     bound = f"of schema {REVISIONS[-1]}: {state}"
     raise BadInput.of("database_url", shown(engine), bound, "Run loa database upgrade first.")
 
@@ -92,19 +97,10 @@ def shown(engine: Engine) -> str:
     return engine.url.render_as_string(hide_password=True)
 
 
-def _revision(connection: Connection) -> str | None:
-    """Read the number of the schema."""
-    tables = inspect(connection).get_table_names()
-    if "alembic_version" in tables:
-        revision = connection.execute(text("SELECT version_num FROM alembic_version")).scalar()
-        return None if revision is None else str(revision)
-    return REVISIONS[0] if _UNNUMBERED in tables else None
-
-
-def _refuse_newer(revision: str | None, engine: Engine) -> None:
-    """Raise if the schema is none that we know."""
-    if revision is not None and revision not in REVISIONS:
-        bound = f"of schema {REVISIONS[-1]} or older: it has {revision}"
+def _refuse_newer(numbers: SchemaNumbers, engine: Engine) -> None:
+    """Raise if the schema is none that we know or can use."""
+    if numbers.unknown and not numbers.usable:
+        bound = f"of schema {REVISIONS[-1]} or older: it has {numbers.newest}"
         tip = "A newer lineofaction made it. Use that one, or another database."
         raise BadInput.of("database_url", shown(engine), bound, tip)
 
@@ -114,9 +110,10 @@ def _migrate(connection: Connection, revision: str | None) -> None:
     from alembic import command  # noqa: PLC0415 (start-up time: seldom needed)
 
     config = _config(connection)
-    if revision is not None and not inspect(connection).has_table("alembic_version"):
+    if revision is not None:
         command.stamp(config, revision)
     command.upgrade(config, REVISIONS[-1])
+    write_oldest(connection)
 
 
 def _config(connection: Connection) -> Config:

@@ -94,7 +94,7 @@ class PostgresServer:
         self.end_connections(self._shared)
         with psycopg.connect(self._shared, autocommit=True) as connection:
             found = connection.execute("SELECT tablename FROM pg_tables WHERE schemaname = 'public'")
-            tables = [sql.Identifier(name) for (name,) in found if name != "alembic_version"]
+            tables = [sql.Identifier(name) for (name,) in found if not name.endswith("_version")]
             connection.execute(sql.SQL("TRUNCATE {}").format(sql.SQL(", ").join(tables)))
         return self._shared
 

@@ -30,6 +30,7 @@ class Wish(BoundaryModel):
         "slow",
         "condense",
         "warn",
+        "sign",
     ] = "write"
     text: str = Field(default="", max_length=1_000_000)
     number: float = Field(default=0.0, ge=0.0, le=10.0)

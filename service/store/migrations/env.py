@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from alembic import context
 
-context.configure(connection=context.config.attributes["connection"], transactional_ddl=True)
+from service.store.schema_numbers import NEWEST
+
+context.configure(
+    connection=context.config.attributes["connection"], version_table=NEWEST, transactional_ddl=True
+)
 with context.begin_transaction():
     context.run_migrations()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sqlite3
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -21,7 +22,7 @@ import service.store.results
 from service.problems import BadInput
 from service.store import open_database, writing
 from service.store.database import database_engine, metadata
-from service.store.migrations import REVISIONS
+from service.store.migrations import REVISIONS, USABLE_SINCE
 from service.store.schema import Schema
 
 OLD = """
@@ -114,7 +115,7 @@ def test_the_steps_make_the_tables_that_the_program_declares(fresh: Engine) -> N
     assert Schema(fresh).revision() is None
     Schema(fresh).upgrade()
     found = inspect(fresh)
-    assert set(found.get_table_names()) == set(metadata.tables) | {"alembic_version"}
+    assert set(found.get_table_names()) == set(metadata.tables) | {"alembic_version", "schema_version"}
     for table in metadata.sorted_tables:
         columns = {column["name"]: column["nullable"] for column in found.get_columns(table.name)}
         assert columns == {column.name: column.nullable for column in table.columns}, table.name
@@ -125,11 +126,35 @@ def test_the_steps_make_the_tables_that_the_program_declares(fresh: Engine) -> N
         assert indices == declared, table.name
 
 
+def number(engine: Engine, **numbers: str) -> None:
+    """Let the tables of the schema's numbers say so."""
+    with writing(engine) as connection:
+        for table, stated in numbers.items():
+            connection.execute(text(f"UPDATE {table} SET version_num = '{stated}'"))
+
+
+@both
+def test_a_newer_schema_that_only_adds_is_used_and_left_alone(fresh: Engine) -> None:
+    """The older program of a rolling upgrade starts, and starts again, on what the newer one has made."""
+    Schema(fresh).upgrade()
+    number(fresh, schema_version="9999")
+    open_database(fresh.url.render_as_string(hide_password=False)).dispose()
+    Schema(fresh).upgrade()
+    assert Schema(fresh).revision() == "9999"
+
+
+@both
+def test_the_program_of_version_0_2_0_finds_the_schema_it_knows(fresh: Engine) -> None:
+    """It compares this one number with its own last step, 0007."""
+    Schema(fresh).upgrade()
+    with fresh.begin() as connection:
+        assert connection.execute(text("SELECT version_num FROM alembic_version")).scalars().all() == ["0007"]
+
+
 @both
 def test_a_newer_schema_is_refused_and_left_alone(fresh: Engine) -> None:
     Schema(fresh).upgrade()
-    with writing(fresh) as connection:
-        connection.execute(text("UPDATE alembic_version SET version_num = '9999'"))
+    number(fresh, schema_version="9999", alembic_version="9998")
     url = fresh.url.render_as_string(hide_password=False)
     for refused in (lambda: open_database(url), Schema(fresh).upgrade):
         with pytest.raises(BadInput, match=f"of schema {REVISIONS[-1]} or older: it has 9999"):
@@ -153,6 +178,33 @@ def test_a_step_that_fails_leaves_the_old_schema(tmp_path: Path, monkeypatch: py
         Schema(engine).upgrade()
     assert Schema(engine).revision() is None
     assert inspect(engine).get_table_names() == []
+
+
+def test_steps_that_other_programs_live_through_only_add() -> None:
+    """Programs from `USABLE_SINCE` on read and write what they did: tables and columns stay."""
+    folder = Path(service.store.results.__file__).with_name("migrations") / "versions"
+    taking = re.compile(r"\.(?:drop_|alter_column|rename_)\w*")
+    for number in REVISIONS[REVISIONS.index(USABLE_SINCE) + 1 :]:
+        (file,) = folder.glob(f"r{number}_*.py")
+        assert taking.findall(file.read_text()) == [], file.name
+
+
+@both
+def test_rows_of_a_program_that_knows_no_newer_column_are_taken(fresh: Engine) -> None:
+    Schema(fresh).upgrade()
+    facts = "'c', 'fake', 'k', '{}', 'accepted', '', 0, 0, '', '[]', '', 0, '', '', '', '', 0"
+    names = (
+        "id, process, key, inputs, state, stage, stage_fraction, fraction, message, faults, reference,"
+        "attempts, created, updated, owner, lease, leased_until"
+    )
+    with writing(fresh) as connection:
+        connection.execute(text(f"INSERT INTO computation ({names}) VALUES ({facts})"))
+        job = (
+            "INSERT INTO job (id, computation_id, created, caller, delivery) VALUES ('j', 'c', '', '', '{}')"
+        )
+        connection.execute(text(job))
+        result = "INSERT INTO result (key, kind, sha256, size, created, file, used)"
+        connection.execute(text(f"{result} VALUES ('k', 'database', '', 0, '', '', '')"))
 
 
 def test_the_numbers_are_those_of_the_steps() -> None:
