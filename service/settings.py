@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import Annotated
 
 from pydantic import AfterValidator, Field, SecretStr, ValidationError, field_validator
-from pydantic_settings import BaseSettings, SettingsConfigDict
+from pydantic_settings import BaseSettings, PydanticBaseSettingsSource, SettingsConfigDict
 
 from service.directories import absolute, data_home
 from service.problems import BadInput, Fault
+from service.secret_files import SecretFiles
 
 LEAST_MEMORY_MB = 256
 """What a worker needs to load the program."""
@@ -20,7 +21,7 @@ _SCHEDULER = re.compile(r"(?:tcp|tls|ws|wss|ucx)://[^\s/]+:[0-9]{1,5}")
 
 
 class Settings(BaseSettings):
-    """The settings of the service.
+    """The settings of the service; every `SecretStr` may be in a file too, see `service.secret_files`.
 
     Attributes
     ----------
@@ -93,6 +94,18 @@ class Settings(BaseSettings):
         if find_spec("distributed") is None:
             raise ValueError("left out without the extra dask: pip install 'lineofaction[dask]'")
         return address
+
+    @classmethod
+    def settings_customise_sources(
+        cls,
+        settings_cls: type[BaseSettings],
+        init_settings: PydanticBaseSettingsSource,
+        env_settings: PydanticBaseSettingsSource,
+        dotenv_settings: PydanticBaseSettingsSource,
+        file_secret_settings: PydanticBaseSettingsSource,
+    ) -> tuple[PydanticBaseSettingsSource, ...]:
+        """Let options come before the environment, and that before files of secrets."""
+        return init_settings, env_settings, SecretFiles(settings_cls)
 
     @property
     def database_address(self) -> str | None:
