@@ -13,7 +13,7 @@ from importlib.util import find_spec
 from host.ending import Ended, ending_signal
 from host.extras import MissingExtra, missing_extra, require
 from host.limits import limit_file_size, limit_memory
-from host.proc import memory_figure, processes_in
+from host.proc import family_cpu_seconds, memory_figure, processes_in
 from host.sessions import (
     halt,
     has_exited,
@@ -55,6 +55,7 @@ __all__ = [
     "children_peak_memory",
     "end_after",
     "ending_signal",
+    "family_cpu_seconds",
     "halt",
     "has_exited",
     "kill",

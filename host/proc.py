@@ -40,6 +40,26 @@ def _works_in(process: Path, directory: Path, command: bytes) -> bool:
     return False
 
 
+def family_cpu_seconds(pid: int, proc: Path = _PROC) -> float | None:
+    """Return the CPU seconds of a process and its descendants, those it has waited for and living ones.
+
+    None where the system does not tell it, and once the process has ended.
+    """
+    with suppress(OSError, ValueError, IndexError):
+        stat = (proc / str(pid) / "stat").read_text(encoding="ascii", errors="replace")
+        ticks = sum(int(figure) for figure in stat.rpartition(")")[2].split()[11:15])  # own and of the dead
+        children = [int(c) for t in (proc / str(pid) / "task").iterdir() for c in _children(t)]
+        return ticks / os.sysconf("SC_CLK_TCK") + sum(family_cpu_seconds(c, proc) or 0.0 for c in children)
+    return None
+
+
+def _children(task: Path) -> list[str]:
+    """Return the ids of the children of a task; none where the system does not list them."""
+    with suppress(OSError):
+        return (task / "children").read_text(encoding="ascii").split()
+    return []
+
+
 def memory_figure(name: str, pid: int | str = "self", proc: Path = _PROC) -> int | None:
     """Return a figure of a process's memory in bytes, such as VmHWM or VmData.
 

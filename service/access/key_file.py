@@ -19,7 +19,7 @@ from service.problems import BadInput
 
 _PREFIX = "loa_"
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
-_LIMITS = ("requests_per_minute", "unfinished_jobs", "highest_priority")
+_LIMITS = ("requests_per_minute", "unfinished_jobs", "highest_priority", "max_cost_s")
 _LEAST = {"highest_priority": -9}
 """Of limits; of others 1."""
 _FIELDS = {"name", "sha256", "created", *_LIMITS}
@@ -43,6 +43,8 @@ class AccessKey:
         Jobs of this key that may wait or run at the same time; None: no limit but the queue's.
     highest_priority : int or None
         That jobs of this key may have, -9 to 9; None: any.
+    max_cost_s : int or None
+        CPU seconds that each job of this key may take; None: no limit.
     """
 
     name: str
@@ -51,6 +53,7 @@ class AccessKey:
     requests_per_minute: int | None = None
     unfinished_jobs: int | None = None
     highest_priority: int | None = None
+    max_cost_s: int | None = None
 
 
 class KeyFile:

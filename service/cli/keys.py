@@ -34,7 +34,14 @@ def run_list(path: Path | None, *, as_json: bool) -> None:
     if as_json:
         print_json({"file": str(file.path), "keys": keys})
         return
-    titles = ["name", "created", "requests per minute", "unfinished jobs", "highest priority"]
+    titles = [
+        "name",
+        "created",
+        "requests per minute",
+        "unfinished jobs",
+        "highest priority",
+        "CPU s of a job",
+    ]
     rows = [["no limit" if value is None else str(value) for value in key.values()] for key in keys]
     console().print(table(titles, rows, f"Keys in {file.path}"))
 

@@ -39,11 +39,13 @@ class ProcessRequest:
     title: str = ""
     tags: tuple[str, ...] = ()
     priority: int = 0
+    max_cost_s: float | None = None
 
     @property
     def terms(self) -> dict[str, Any]:
         """Return the terms of the job as the client takes them."""
-        return {"title": self.title, "tags": self.tags, "priority": self.priority}
+        names = ("title", "tags", "priority", "max_cost_s")
+        return {name: getattr(self, name) for name in names}
 
 
 def run_submit(

@@ -81,7 +81,9 @@ class Client(Processes, JobCalls, ResultCalls, LookupCalls, SceneCalls):
         """Make the driver."""
         raise NotImplementedError
 
-    def with_terms(self, *, title: str = "", tags: Sequence[str] = (), priority: int = 0) -> Self:
+    def with_terms(
+        self, *, title: str = "", tags: Sequence[str] = (), priority: int = 0, max_cost_s: float | None = None
+    ) -> Self:
         """Return this client with terms for what it submits; both share connections and cache.
 
         Parameters
@@ -92,9 +94,14 @@ class Client(Processes, JobCalls, ResultCalls, LookupCalls, SceneCalls):
             What its jobs are found by: up to 16, each of up to 40 letters, digits and ``._:/+-``.
         priority : int
             -9 to 9: of the jobs that wait the oldest of the highest is next.
+        max_cost_s : float, optional
+            CPU seconds that each job may take; default: no limit.
         """
         view = copy(self)
-        view.session = replace(self.session, terms={"title": title, "tags": list(tags), "priority": priority})
+        view.session = replace(
+            self.session,
+            terms={"title": title, "tags": list(tags), "priority": priority, "max_cost_s": max_cost_s},
+        )
         return view
 
 

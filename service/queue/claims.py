@@ -45,6 +45,8 @@ class Claim:
         When it was entered or put back, RFC 3339; empty where that is not known.
     program : str
         Version of the program that entered it, whose name the result has; empty: 0.2.0 or older.
+    max_cost_s : float or None
+        CPU seconds that it may take, as far as known when it was claimed; None: no limit.
     """
 
     id: str
@@ -55,6 +57,7 @@ class Claim:
     lease: str
     asked: float = field(default_factory=time.monotonic, compare=False)
     program: str = ""
+    max_cost_s: float | None = None
     traceparent: str = field(default="", compare=False)
     waited_from: str = field(default="", compare=False)
 
@@ -156,6 +159,14 @@ class Claims:
         with reading(self._engine) as connection:
             return set(connection.execute(select(computations.c.id).where(_under(claims))).scalars())
 
+    @retried
+    def max_cost_s(self, claim: Claim) -> float | None:
+        """Return the CPU seconds that a computation may take now; None: no limit."""
+        statement = select(computations.c.max_cost_s).where(computations.c.id == claim.id)
+        with reading(self._engine) as connection:
+            limit: float | None = connection.execute(statement).scalar()
+            return limit
+
     def progress(self, claim: Claim, stage: str, stage_fraction: float, fraction: float | None) -> None:
         """Note how far the work is; the fraction of the whole never falls."""
         values: dict[str, Any] = {
@@ -249,7 +260,7 @@ def _claimed(row: Row[Any], requested: float) -> Claim:
     """Return a row as a claim."""
     inputs = json.loads(row.inputs)
     facts = (row.id, row.process, row.key, inputs, row.attempts, row.lease, requested)
-    return Claim(*facts, row.program, traceparent=row.traceparent)
+    return Claim(*facts, row.program, row.max_cost_s, row.traceparent)
 
 
 def _is_newer(program: str, than: str) -> bool:

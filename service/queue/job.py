@@ -44,6 +44,7 @@ class Job:
     label: Label
     differences: Differences
     priority: int
+    max_cost_s: float | None
 
     @property
     def ended(self) -> bool:
@@ -105,4 +106,5 @@ def job_of(row: Any) -> Job:
         label=Label.from_row(row),
         differences=Differences.of(row.differences),
         priority=row.priority,
+        max_cost_s=row.max_cost_s,
     )

@@ -17,6 +17,7 @@ from service.problems import DatabaseUnavailable, ServiceError, StoreUnavailable
 from service.queue.adoption import Adoption
 from service.queue.attempt import Attempt, begun
 from service.queue.claims import Claim, Claims
+from service.queue.cost_limit import reached
 from service.queue.housekeeper import Housekeeper
 from service.queue.leases import RENEWALS, Leases
 from service.queue.settlement import Ended, Settlement
@@ -157,6 +158,7 @@ class Scheduler:
         self._enforce_deadline()
         self._settle_all()
         self._enforce_dismissals()
+        self._enforce_costs()
         self._take_up()
         while len(self._running) < self._settings.workers and (claim := self._claims.claim()) is not None:
             self._take(claim)
@@ -271,6 +273,14 @@ class Scheduler:
             if running.worker.age > self._settings.deadline_s:
                 self._kill(running, "too late", keep_lease=True)
                 self._end(running, Outcome(failure=_too_late(self._settings.deadline_s)))
+
+    def _enforce_costs(self) -> None:
+        """End workers that have used the CPU time that their computation may take."""
+        for running in list(self._running.values()):
+            why = reached(running, self._claims)
+            if why is not None:
+                self._kill(running, "too costly", keep_lease=True)
+                self._end(running, Outcome(failure=why))
 
     def _enforce_dismissals(self) -> None:
         """End workers of computations that nobody wants, or that another scheduler has."""

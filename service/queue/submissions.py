@@ -12,6 +12,7 @@ from sqlalchemy import ColumnElement, Connection, Engine, func, insert, select, 
 
 from service.problems import BadInput, NoSuchJob, QueueFull
 from service.queue.caller import ANYBODY, Caller
+from service.queue.cost_limit import extended
 from service.queue.durations import end_computations
 from service.queue.job import ENDED, Job, job_of, select_jobs
 from service.queue.job_filter import EVERY_JOB, JobFilter
@@ -104,6 +105,7 @@ class Submissions:
                 computation = _enter(connection, process, key, inputs, stored, terms)
             else:
                 connection.execute(raised(computation, terms.priority))
+                connection.execute(extended(computation, terms.max_cost_s))
             row = {"id": identifier, "computation_id": computation, "created": now(), "dismissed": None}
             row |= {"caller": caller.name, "delivery": str(terms.delivery), **terms.label.columns()}
             row |= {"differences": str(terms.differences)}
@@ -267,6 +269,7 @@ def _enter(
         "key": key,
         "inputs": json.dumps(inputs),
         "priority": terms.priority,
+        "max_cost_s": terms.max_cost_s,
         "state": "successful" if stored else "accepted",
         "message": "Taken from the store." if stored else "Waits for a worker.",
         "fraction": 1.0 if stored else 0.0,

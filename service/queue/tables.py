@@ -31,6 +31,7 @@ computations = Table(
     Column("owner", String, nullable=False, default=""),
     Column("lease", String, nullable=False, default=""),
     Column("leased_until", Float, nullable=False, default=0.0),
+    Column("max_cost_s", Float),
     Column("priority", Integer, nullable=False, default=0, server_default="0"),
     Column("traceparent", String, nullable=False, default="", server_default=""),
     Column("program", String, nullable=False, default=solver_version),

@@ -22,12 +22,15 @@ class Terms:
         What sets it apart from the caller's job before it.
     priority : int
         Of its computation: the highest of the jobs that share it.
+    max_cost_s : float or None
+        CPU seconds that it may take; None: no limit.
     """
 
     delivery: Delivery = AS_IT_IS
     label: Label = NO_LABEL
     differences: Differences = NOT_COMPARED
     priority: int = 0
+    max_cost_s: float | None = None
 
 
 USUAL = Terms()

@@ -62,7 +62,9 @@ def context_of(request: Request) -> Context:
 def caller_of(request: Request) -> Caller:
     """Return who sent a request; see `service.routes.access`."""
     key: AccessKey | None = getattr(request.state, "caller", None)
-    return ANYBODY if key is None else Caller(key.name, key.unfinished_jobs, key.highest_priority)
+    if key is None:
+        return ANYBODY
+    return Caller(key.name, key.unfinished_jobs, key.highest_priority, key.max_cost_s)
 
 
 From = Annotated[Caller, Depends(caller_of)]

@@ -74,6 +74,7 @@ def status_info(job: Job, registry: Registry) -> StatusInfo:
         title=job.label.title,
         tags=list(job.label.tags),
         priority=job.priority,
+        max_cost_s=job.max_cost_s,
         subject=subject_of(job.inputs),
         differences=_shown(job.differences),
         message=job.message,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from functools import cache
 from typing import Annotated, Any, cast
@@ -10,8 +11,10 @@ import structlog
 from fastapi import APIRouter, Header, Query, Response
 from pydantic import BaseModel, create_model
 
-from service.problems import NoSuchProcess, QueueFull
+from service.live.order import LiveOrder
+from service.problems import LiveUnavailable, NoSuchProcess, QueueFull
 from service.queue.caller import Caller
+from service.queue.cost_limit import cost_limit, refuse_beyond
 from service.queue.delivery import delivery
 from service.queue.differences import Differences
 from service.queue.former_jobs import FormerJobs
@@ -118,7 +121,8 @@ def _add_execution(router: APIRouter, process: Process) -> None:
         inputs = process.prepare(cast(BoundaryModel, request.inputs), context.store)
         since = _differences(context, process, caller, inputs, request.inputs)
         check_priority(request.priority, caller)
-        terms = Terms(form, Label.of(request.title, request.tags), since, request.priority)
+        limit = cost_limit(request.max_cost_s, caller)
+        terms = Terms(form, Label.of(request.title, request.tags), since, request.priority, limit)
         status = _submit(context, process, inputs, caller, terms, idempotency_key)
         response.headers["Location"] = f"/v1/jobs/{status.jobID}"
         if "respond-async" in [item.partition(";")[0].strip().lower() for item in prefer.split(",")]:
@@ -135,7 +139,7 @@ def _add_execution(router: APIRouter, process: Process) -> None:
         name=process.id.replace("-", "_"),
         summary=process.title,
         description=process.description,
-        responses=documented(QueueFull)
+        responses=documented(QueueFull, LiveUnavailable)
         | {201: {"description": "The job", "headers": described_headers("Location", "Preference-Applied")}},
     )
 
@@ -162,6 +166,8 @@ def _submit(
     key = process.key(inputs)
     looked = now()
     stored = context.store.find(key, process.kind) is not None
+    if not stored and terms.max_cost_s is not None:
+        refuse_beyond(terms.max_cost_s, _predicted(context, process, inputs))
     job = context.submissions.submit(
         process.id, key, inputs, stored=stored, looked=looked, caller=caller, terms=terms, name=name
     )
@@ -169,6 +175,16 @@ def _submit(
     logger.info("job entered", **facts, stored=stored)
     context.scheduler.wake()
     return status_info(job, context.registry)
+
+
+def _predicted(context: Context, process: Process, inputs: dict[str, Any]) -> dict[str, float]:
+    """Return the CPU seconds by stage that the plan of a process predicts; none where it has no plan."""
+    if not process.plan:
+        return {}
+    cache = str(context.settings.data_directory / "compliance")
+    order = LiveOrder(process.plan, {**inputs, "time_budget_s": None, "cache": cache})
+    stages: dict[str, float] = json.loads(context.live.ask(order).result())["prediction"]["stages"]
+    return stages
 
 
 def _summary(process: Process) -> dict[str, Any]:

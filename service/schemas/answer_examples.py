@@ -21,6 +21,7 @@ STATUS: Json = {
     "title": "Tip relief 20 um",
     "tags": ["ev-3", "draft"],
     "priority": 0,
+    "max_cost_s": 600.0,
     "subject": "20/20, module 4 mm, up to 400 N m",
     "differences": {
         "since": "8a1d2c3b-2f6f-4d1c-8b1e-6c3d0a1b2c3e",

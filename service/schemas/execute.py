@@ -14,6 +14,7 @@ from service.schemas.ogc import class_name
 
 _FORMAT = {"mediaType", "encoding", "schema"}
 Priority = Annotated[int, Field(ge=-9, le=9)]
+Cost = Annotated[float, Field(gt=0.0, le=1e9)]
 _LINK = {"href", "rel", "type", "hreflang", "title"}
 
 
@@ -90,4 +91,8 @@ def execute_model(process: str, inputs: type[BoundaryModel], output: str) -> typ
         ),
         "tags": (Tags, Field([], description="What the job is found by", examples=[["ev-3", "draft"]])),
     }
+    fields["max_cost_s"] = (
+        Cost | None,
+        Field(None, description="CPU seconds that the job may take; default: no limit", examples=[600.0]),
+    )
     return create_model(f"Execute{title}", __base__=ExecuteBody, **fields)

@@ -117,6 +117,9 @@ class StatusInfo(BaseModel):
     title: str = Field(default="", description="Name that the caller gave the job")
     tags: list[str] = Field(default=[], description="Tags that the caller gave the job")
     priority: int = Field(default=0, description="Of the computation: the highest of the jobs that share it")
+    max_cost_s: float | None = Field(
+        default=None, description="CPU seconds after which the computation is ended; null: no limit"
+    )
     subject: str = Field(default="", description="What the job is about, in words: the pair, or the scene")
     differences: Differences | None = Field(default=None, description="What sets the job apart")
     message: str = Field(description="State of the job in words")

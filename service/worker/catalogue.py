@@ -20,6 +20,7 @@ ANALYZE = Process(
     prepare=on_demand("service.worker.preparations:prepare_analyze"),
     entry="service.worker.analysis_work:analyze_case",
     stages=(),
+    plan="service.live.work:live_plan",
     name_result=on_demand("service.worker.preparations:name_database"),
 )
 SIMULATE = Process(

@@ -44,6 +44,8 @@ class Process:
         What the work reports, in order, where it does not predict the cost of its stages.
     action : str
         What a button for it says; empty: it is no study.
+    plan : str
+        ``"module:function"`` of the live worker that predicts the cost of inputs; empty: none does.
     name_result : callable, optional
         Normalized inputs to the result's content hash, where the work itself defines one; default: the hash
         of the inputs with the process and the version of the program.
@@ -60,6 +62,7 @@ class Process:
     entry: str
     stages: tuple[Stage, ...]
     action: str = ""
+    plan: str = ""
     name_result: Callable[[Json], str] | None = None
 
     def key(self, inputs: Json) -> str:

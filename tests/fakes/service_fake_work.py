@@ -73,6 +73,8 @@ def _misbehave(order: WorkOrder, mode: str) -> None:
         grandchild = subprocess.Popen(["sleep", "600"])
         (order.data_directory / f"grandchild_{order.key[:8]}").write_text(str(grandchild.pid))
         time.sleep(600)
+    if mode == "burn":
+        subprocess.run(["sh", "-c", "while :; do :; done"], check=True)
     if mode == "die" or (mode == "die_once" and _first_time(order)):
         os._exit(7)
     if mode == "leave_and_die" and _first_time(order):

@@ -18,6 +18,7 @@ class Wish(BoundaryModel):
     mode: Literal[
         "write",
         "hang",
+        "burn",
         "die",
         "die_once",
         "abort",

@@ -28,6 +28,9 @@ def add(
         int | None, typer.Option(help="Limit on waiting and running jobs; default: no limit.")
     ] = None,
     highest_priority: Annotated[int | None, typer.Option(help="Of its jobs, -9 to 9; default: any.")] = None,
+    max_cost_s: Annotated[
+        int | None, typer.Option("--max-cost", help="CPU seconds of a job; default: no limit.")
+    ] = None,
     file: KeysFile = None,
     json: AsJson = False,
 ) -> None:
@@ -35,7 +38,7 @@ def add(
     from service.cli.keys import run_add  # noqa: PLC0415 (start-up time)
 
     limits = {"requests_per_minute": requests_per_minute, "unfinished_jobs": unfinished_jobs}
-    limits["highest_priority"] = highest_priority
+    limits |= {"highest_priority": highest_priority, "max_cost_s": max_cost_s}
     run_add(name, file, as_json=json, **limits)
 
 

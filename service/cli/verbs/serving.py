@@ -75,12 +75,15 @@ def submit(
     title: Annotated[str, typer.Option(help="Name of the job in lists.")] = "",
     tag: Annotated[list[str] | None, typer.Option(help="Tag of the job; may be repeated.")] = None,
     priority: Annotated[int, typer.Option(help="-9 to 9; the highest is next.")] = 0,
+    max_cost_s: Annotated[
+        float | None, typer.Option("--max-cost", help="CPU seconds that the job may take; default: no limit.")
+    ] = None,
     json: AsJson = False,
 ) -> None:
     """Submit a case or a scene to a service."""
     from service.cli.remote import ProcessRequest, run_submit  # noqa: PLC0415 (start-up time)
 
-    request = ProcessRequest(process, inputs, title, tuple(tag or ()), priority)
+    request = ProcessRequest(process, inputs, title, tuple(tag or ()), priority, max_cost_s)
     run_submit(file, service, request, wait=wait, output=output, as_json=json)
 
 

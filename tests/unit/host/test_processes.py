@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -107,3 +108,22 @@ def test_limits_and_processes_of_linux(tmp_path: Path) -> None:
         host.limit_file_size(child.pid, 0)
     assert child.returncode != 0
     assert host.memory_figure("VmHWM", child.pid) is None
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="this system has no /proc")
+def test_the_cpu_time_of_a_family_counts_the_living_and_the_dead() -> None:
+    """A shell has one busy child after the other: while both live, and once the first is dead."""
+    dies = "i=0; while [ $i -lt 200000 ]; do i=$((i+1)); done"
+    script = f"sh -c '{dies}'; sh -c 'while :; do :; done'; :"
+    family = subprocess.Popen(["sh", "-c", script], start_new_session=True)
+    try:
+        spent = [0.0]
+        while spent[-1] < 1.0:
+            spent.append(host.family_cpu_seconds(family.pid) or 0.0)
+            time.sleep(0.02)
+        assert spent == sorted(spent)
+        assert spent[-1] < 2.0
+    finally:
+        os.killpg(family.pid, signal.SIGKILL)
+        family.wait()
+    assert host.family_cpu_seconds(family.pid) is None
