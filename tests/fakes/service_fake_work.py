@@ -91,6 +91,11 @@ def _misbehave(order: WorkOrder, mode: str) -> None:
     if mode == "condense":
         for hit in (False, True, False):
             COMPLIANCE_READS.note(hit=hit)
+    _raise(mode)
+
+
+def _raise(mode: str) -> None:
+    """Raise the error that is requested, if one is."""
     if mode == "mesh":
         raise MeshError("element 7 has a negative Jacobian")
     if mode == "input":
