@@ -9,20 +9,70 @@ from model_studies.progress import Progress, by_cost, silent
 
 
 class Stage(NamedTuple):
-    """A stage of the work and its share of the time (the shares of a process sum to 1)."""
+    """A stage of the work and its usual share of the time (the shares of a process sum to 1)."""
 
     name: str
     share: float
 
 
-def overall(stages: Iterable[tuple[str, float]], stage: str, fraction: float) -> float | None:
-    """Return the fraction of the whole work, None for a stage that was not declared."""
-    done = 0.0
-    for name, share in stages:
-        if name == stage:
-            return min(1.0, done + share * fraction)
-        done += share
-    return None
+_PACE_KNOWN = 0.1
+"""Fraction of a stage from which on its pace alone says what it takes."""
+
+
+class PacedFraction:
+    """The fraction done of work whose cost nobody predicts, by the time that its stages take; it never falls.
+
+    The usual shares say what stages take that have not begun, in proportion to the time so far. A stage under
+    way takes what its pace says, that of the last one counts alone in the end. Stages that are left out, such
+    as that of tables which are stored, have no share.
+
+    Parameters
+    ----------
+    stages : iterable of Stage
+        In the order in which they are done.
+    """
+
+    def __init__(self, stages: Iterable[tuple[str, float]]) -> None:
+        self._shares = dict(stages)
+        self._seen: list[str] = []
+        self._begun_s = self._last_s = self._first_s = 0.0
+        self._done = 0.0
+
+    def at(self, stage: str, fraction: float, elapsed_s: float) -> float | None:
+        """Return the fraction of the whole when that of a stage is reached, None for an undeclared stage.
+
+        Parameters
+        ----------
+        stage : str
+        fraction : float
+            Of the stage, 0 to 1.
+        elapsed_s : float
+            Seconds on a clock that never falls.
+        """
+        if stage not in self._shares:
+            return None
+        if not self._seen:
+            self._first_s = self._last_s = elapsed_s
+        if stage not in self._seen:
+            self._seen.append(stage)
+            self._begun_s = self._last_s
+        self._last_s = elapsed_s
+        self._done = max(self._done, min(self._fraction(stage, fraction), 1.0))
+        return self._done
+
+    def _fraction(self, stage: str, fraction: float) -> float:
+        """Return the time so far over that of the whole as it is expected now."""
+        names = list(self._shares)
+        share, ahead = self._shares[stage], sum(self._shares[n] for n in names[names.index(stage) + 1 :])
+        before = sum(self._shares[name] for name in self._seen if name != stage)
+        past_s, stage_s = self._begun_s - self._first_s, self._last_s - self._begun_s
+        if past_s <= 0.0:
+            return share * fraction / (share + ahead)
+        usual_s = past_s * share / before
+        known = min(fraction / _PACE_KNOWN, 1.0)
+        whole_s = (1.0 - known) * max(usual_s, stage_s) + (known * stage_s / fraction if fraction else 0.0)
+        later_s = ahead * (past_s + whole_s) / (before + share)
+        return (past_s + stage_s) / (past_s + whole_s + later_s)
 
 
 _FIRST = 0.8

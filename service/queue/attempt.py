@@ -11,10 +11,12 @@ from service.queue.attempt_trace import AttemptTrace
 from service.queue.claims import Claim
 from service.queue.worker_figures import WorkerFigures
 from service.settings import LEAST_MEMORY_MB, Settings
+from service.stages import PacedFraction
 from service.tracing.traceparent import trace_facts
 from service.worker.child_process import Launch
 from service.worker.memory import machine_memory_mb
 from service.worker.order import USABLE, WorkOrder
+from service.worker.process import Process
 from service.worker.worker import Worker
 
 logger = structlog.get_logger(__name__)
@@ -36,6 +38,8 @@ class Attempt:
         Where its start and end are counted.
     trace : AttemptTrace
         Its spans.
+    fraction : PacedFraction
+        Of the work, where it does not predict its cost.
     """
 
     claim: Claim
@@ -44,6 +48,7 @@ class Attempt:
     log: Path
     figures: WorkerFigures
     trace: AttemptTrace
+    fraction: PacedFraction
 
     def note_end(self, how: str) -> None:
         """Count and log how the worker ended and, if it has been reaped, what it took."""
@@ -62,17 +67,20 @@ class Attempt:
         )
 
 
-def begun(settings: Settings, entry: str, claim: Claim, launch: Launch, figures: WorkerFigures) -> Attempt:
+def begun(
+    settings: Settings, process: Process, claim: Claim, launch: Launch, figures: WorkerFigures
+) -> Attempt:
     """Launch a worker for a claim; raises what keeps the system from it."""
     workspace = workspace_of(settings, claim)
     log = settings.data_directory / "log" / f"{claim.id}.log"
     workspace.mkdir(parents=True, exist_ok=True)
-    worker = Worker(_order(settings, entry, claim), log, launch)
+    worker = Worker(_order(settings, process.entry, claim), log, launch)
     figures.started(claim.process)
     facts = {"computation": claim.id, "process": claim.process, "key": claim.key}
     facts |= trace_facts(claim.traceparent)
     logger.info("worker started", **facts, pid=worker.pid, attempt=claim.attempts)
-    return Attempt(claim, worker, workspace, log, figures, AttemptTrace(claim, worker.pid))
+    trace = AttemptTrace(claim, worker.pid)
+    return Attempt(claim, worker, workspace, log, figures, trace, PacedFraction(process.stages))
 
 
 def workspace_of(settings: Settings, claim: Claim) -> Path:

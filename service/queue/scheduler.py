@@ -187,8 +187,8 @@ class Scheduler:
     def _begin(self, claim: Claim) -> None:
         """Start a worker for a claim."""
         try:
-            entry = self._registry[claim.process].entry
-            attempt = begun(self._settings, entry, claim, self._forks.launch, self.figures)
+            process = self._registry[claim.process]
+            attempt = begun(self._settings, process, claim, self._forks.launch, self.figures)
         except Exception:
             reference = uuid.uuid4().hex[:12]
             logger.exception("no worker could be started", computation=claim.id, reference=reference)
@@ -203,13 +203,13 @@ class Scheduler:
         """Note progress; take the outcome when the channel ends."""
         steps, ended = running.worker.listen()
         running.trace.see(steps)
-        process = self._registry[running.claim.process]
         if ended:
             self._end(running, self._forget(running, keep_lease=True).finish())
             running.note_end(self._unsettled[-1].outcome.name)
         elif steps:
             last = steps[-1]
-            known = process.overall(last.stage, last.fraction) if last.whole is None else last.whole
+            paced = running.fraction.at(last.stage, last.fraction, running.worker.age)
+            known = paced if last.whole is None else last.whole
             self._claims.progress(running.claim, last.stage, last.fraction, known)
 
     def _end(self, running: Attempt, outcome: Outcome) -> None:

@@ -11,7 +11,7 @@ from service.loading import LOADING
 from service.problems import NoSuchProcess
 from service.registry import FORMER
 from service.schemas.model import BoundaryModel
-from service.stages import Stage, overall
+from service.stages import Stage
 from service.worker.key import content_key
 
 if TYPE_CHECKING:
@@ -70,10 +70,6 @@ class Process:
         if self.name_result is not None:
             return self.name_result(inputs)
         return content_key(self.id, self.version, inputs)
-
-    def overall(self, stage: str, fraction: float) -> float | None:
-        """Return the fraction of the whole job, None for a stage that was not declared."""
-        return overall(self.stages, stage, fraction)
 
 
 def on_demand(entry: str) -> Callable[..., Any]:

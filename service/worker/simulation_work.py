@@ -19,7 +19,7 @@ from service.convert.runs import staged
 from service.convert.scene import TabledScene, dynamic_scene
 from service.problems import BadInput, JobFailed
 from service.schemas.scene import MeshInput, SceneInput
-from service.store import stored_results
+from service.store import ResultStore, stored_results
 from service.worker.analysis_work import database_of
 from service.worker.catalogue import ANALYZE
 from service.worker.order import Product, Progress, WorkOrder
@@ -47,13 +47,27 @@ def ordered_scene(order: WorkOrder, progress: Progress) -> OrderedScene:
     inputs = SceneInput.model_validate_json(json.dumps(order.inputs["scene"]))
     products: list[Product] = []
     databases: dict[str, SteDatabase] = {}
-    tables = by_cost(partial(progress, "analysis"), dict.fromkeys((mesh.name for mesh in inputs.meshes), 1.0))
+    costs = {mesh.name: float(_stored_key(order, mesh) is None) for mesh in inputs.meshes}
+    tables = by_cost(partial(progress, "analysis"), costs)
     for index, mesh in enumerate(inputs.meshes):
         databases[mesh.name] = _table(order, index, mesh, products, partial(tables, mesh.name))
     scene = dynamic_scene(inputs, databases)
     warnings = {name: database.metadata.warnings for name, database in databases.items()}
     tabled = TabledScene(inputs, databases, scene)
     return OrderedScene(tabled, tuple(products), scene_warnings(inputs, scene, warnings))
+
+
+def _store(order: WorkOrder) -> ResultStore:
+    """Return the store of an order."""
+    return stored_results(order.data_directory, order.database_url, order.results_url)
+
+
+def _stored_key(order: WorkOrder, mesh: MeshInput) -> str | None:
+    """Return the name of the stored database of a mesh, None if it has to be computed."""
+    if mesh.case is None:
+        return str(mesh.database_hash)
+    key = ANALYZE.key({"case": case_json(mesh.case)})
+    return None if _store(order).find(key, "database") is None else key
 
 
 def _run(scene: Scene, file: Path, progress: Progress) -> None:
@@ -70,13 +84,11 @@ def _table(
     order: WorkOrder, index: int, mesh: MeshInput, products: list[Product], report: Report
 ) -> SteDatabase:
     """Return the database of a mesh, from the store or computed now; what is computed joins `products`."""
-    store = stored_results(order.data_directory, order.database_url, order.results_url)
-    if mesh.case is None:
-        return SteDatabase.from_netcdf(store.verified(str(mesh.database_hash), "database").path)
+    known = _stored_key(order, mesh)
+    if known is not None:
+        return SteDatabase.from_netcdf(_store(order).verified(known, "database").path)
+    assert mesh.case is not None
     key = ANALYZE.key({"case": case_json(mesh.case)})
-    if store.find(key, "database") is not None:
-        return SteDatabase.from_netcdf(store.verified(key, "database").path)
-
     file = order.workspace / f"database_{index}.nc"
     if file.is_file():  # of a worker that died after it
         products.append(Product(key, "database", file))

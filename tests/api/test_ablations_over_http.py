@@ -18,6 +18,7 @@ from service.convert.scene import dynamic_scene
 from service.problems import BadInput
 from service.schemas import Case, validated
 from service.schemas.scene import SceneInput
+from service.stages import PacedFraction
 from service.store import stored_results
 from service.store.results import IndexLine
 from service.studies.ablate import Inputs
@@ -85,7 +86,8 @@ def test_the_ablation_of_a_scene_is_that_of_python(served: Served, scene: SceneI
     seen: list[tuple[str, float]] = []
     order = WorkOrder(ABLATE.entry, inputs, ABLATE.key(inputs), tmp_path, data)
     (product,) = study_work.ablate(order, lambda *step: seen.append(step))
-    overall = [ABLATE.overall(*step) for step in seen]
+    paced = PacedFraction(ABLATE.stages)
+    overall = [paced.at(*step, float(instant)) for instant, step in enumerate(seen)]
     assert overall and None not in overall and overall == sorted(overall)  # type: ignore[type-var]
     stored_results(data).put(product.key, product.kind, product.file)
     told = figures_alone(client.ablate.submit(scene, only=["lateral"]).figures())

@@ -20,6 +20,7 @@ from service.convert.result_figures import figures_of
 from service.convert.scene import dynamic_scene
 from service.schemas import Case, validated
 from service.schemas.scene import SceneInput
+from service.stages import PacedFraction
 from service.store import stored_results
 from service.studies.computation import Means
 from service.studies.frontier import Inputs
@@ -47,8 +48,9 @@ def scene(tmp_path: Path) -> SceneInput:
 def worked(inputs: dict[str, Any], workspace: Path, data: Path) -> tuple[dict[str, Any], list[float]]:
     """Do the work in this process; return its JSON and the progress of the whole job."""
     seen: list[float | None] = []
+    paced = PacedFraction(FRONTIER.stages)
     order = WorkOrder(FRONTIER.entry, inputs, FRONTIER.key(inputs), workspace, data)
-    (product,) = study_work.frontier(order, lambda *step: seen.append(FRONTIER.overall(*step)))
+    (product,) = study_work.frontier(order, lambda *step: seen.append(paced.at(*step, float(len(seen)))))
     assert (product.key, product.kind) == (order.key, "frontier")
     return figures_of("frontier", product.file), [part for part in seen if part is not None]
 

@@ -30,6 +30,7 @@ from service.registry import STUDIES
 from service.schemas import read_model
 from service.schemas.scene import SceneInput
 from service.settings import Settings
+from service.stages import PacedFraction
 from service.store import stored_results
 from service.studies.computation import Means
 from service.studies.modes import Inputs
@@ -131,7 +132,8 @@ def test_the_work_of_a_study_is_served_as_figures_and_as_its_file(
     order = WorkOrder(process.entry, inputs, process.key(inputs), tmp_path, data)
     work = getattr(importlib.import_module(module), function)
     (product,) = work(order, lambda *step: seen.append(step))
-    overall = [process.overall(*step) for step in seen]
+    paced = PacedFraction(process.stages)
+    overall = [paced.at(*step, float(instant)) for instant, step in enumerate(seen)]
     assert None not in overall and overall == sorted(overall)  # type: ignore[type-var]
     stored_results(data).put(product.key, product.kind, product.file)
     job = client.submit(process.id, scene_inputs(scene) | further)
