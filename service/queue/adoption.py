@@ -51,8 +51,8 @@ class Adoption:
             return claim
         shutil.rmtree(self.workspaces / claim.id, ignore_errors=True)
         try:
-            process = self.registry[claim.process]
-            inputs = process.prepare(validated(process.inputs, claim.inputs), self.store)
+            process, store = self.registry[claim.process], self.store.within(claim.project)
+            inputs = process.prepare(validated(process.inputs, claim.inputs), store)
         except (BadInput, NoSuchProcess) as error:
             text = f"Version {self.claims.program} of the program refuses this job of an older one. {error}"
             self.claims.fail(claim, text, [fault.as_json() for fault in error.faults])

@@ -94,6 +94,7 @@ def _order(settings: Settings, entry: str, claim: Claim) -> WorkOrder:
         entry=entry,
         inputs=claim.inputs,
         key=claim.key,
+        project=claim.project,
         workspace=workspace_of(settings, claim),
         data_directory=settings.data_directory,
         memory_limit_mb=_memory_mb(settings),

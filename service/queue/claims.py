@@ -16,6 +16,7 @@ from typing import Any
 from packaging.version import InvalidVersion, Version
 from sqlalchemy import ColumnElement, Connection, Engine, Row, delete, select, update
 
+from service.project import COMMON, address_of, at_address
 from service.queue.durations import end_computations
 from service.queue.tables import computations, jobs
 from service.store import dialect_of, now, reading, retried, writing
@@ -47,6 +48,8 @@ class Claim:
         Version of the program that entered it, whose name the result has; empty: 0.2.0 or older.
     max_cost_s : float or None
         CPU seconds that it may take, as far as known when it was claimed; None: no limit.
+    project : str
+        Whose jobs wanted it.
     """
 
     id: str
@@ -60,6 +63,7 @@ class Claim:
     max_cost_s: float | None = None
     traceparent: str = field(default="", compare=False)
     waited_from: str = field(default="", compare=False)
+    project: str = COMMON
 
 
 class Claims:
@@ -127,8 +131,9 @@ class Claims:
         None: a computation of this name waits or runs; the jobs of the other are its own now.
         """
         live = computations.c.state.in_(("accepted", "running")) & (computations.c.id != claim.id)
-        same = select(computations.c.id).where(computations.c.key == key, live)
-        values = {"key": key, "inputs": json.dumps(inputs), "program": self.program}
+        address = address_of(claim.project, key)
+        same = select(computations.c.id).where(computations.c.key == address, live)
+        values = {"key": address, "inputs": json.dumps(inputs), "program": self.program}
         with writing(self._engine, in_turn=True) as connection:
             other = connection.execute(same).scalar()
             if other is None:
@@ -258,9 +263,9 @@ def _running(connection: Connection, which: ColumnElement[bool]) -> list[Claim]:
 
 def _claimed(row: Row[Any], requested: float) -> Claim:
     """Return a row as a claim."""
-    inputs = json.loads(row.inputs)
-    facts = (row.id, row.process, row.key, inputs, row.attempts, row.lease, requested)
-    return Claim(*facts, row.program, row.max_cost_s, row.traceparent)
+    inputs, (project, key) = json.loads(row.inputs), at_address(row.key)
+    facts = (row.id, row.process, key, inputs, row.attempts, row.lease, requested)
+    return Claim(*facts, row.program, row.max_cost_s, row.traceparent, project=project)
 
 
 def _is_newer(program: str, than: str) -> bool:

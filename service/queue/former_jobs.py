@@ -19,7 +19,7 @@ def _newest() -> Select[Any]:
     """Return the statement for the newest job of a caller and a process."""
     recent = (
         select(jobs.c.id, jobs.c.created, jobs.c.computation_id)
-        .where(jobs.c.caller == bindparam("caller"))
+        .where(jobs.c.caller == bindparam("caller"), jobs.c.project == bindparam("project"))
         .order_by(jobs.c.created.desc(), jobs.c.id.desc())
         .limit(_LOOKED_AT)
         .subquery()
@@ -37,15 +37,16 @@ _NEWEST = _newest()  # made once: composing it takes longer than running it
 
 
 class FormerJobs:
-    """The newest jobs of callers.
+    """The newest jobs of the callers of a project.
 
     Parameters
     ----------
     engine : Engine
+    project : str
     """
 
-    def __init__(self, engine: Engine) -> None:
-        self._engine = engine
+    def __init__(self, engine: Engine, project: str) -> None:
+        self._engine, self._project = engine, project
 
     @retried
     def newest(self, caller: Caller, process: str) -> tuple[str, dict[str, Any]] | None:
@@ -53,7 +54,7 @@ class FormerJobs:
 
         Jobs before the caller's last 200 are not looked at.
         """
-        sought = {"caller": caller.name, "process": process}
+        sought = {"caller": caller.name, "project": self._project, "process": process}
         with reading(self._engine) as connection:
             row = connection.execute(_NEWEST, sought).one_or_none()
         return None if row is None else (row.id, json.loads(row.inputs))

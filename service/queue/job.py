@@ -9,6 +9,7 @@ from typing import Any
 
 from sqlalchemy import select
 
+from service.project import at_address
 from service.queue.delivery import Delivery
 from service.queue.differences import Differences
 from service.queue.label import Label
@@ -45,6 +46,7 @@ class Job:
     differences: Differences
     priority: int
     max_cost_s: float | None
+    caller: str
 
     @property
     def ended(self) -> bool:
@@ -66,8 +68,13 @@ class Job:
         return max(left - (instant - updated).total_seconds(), 0.0)
 
 
-def select_jobs() -> Any:
-    """Select jobs with their computations."""
+def select_jobs(project: str) -> Any:
+    """Select the jobs of a project with their computations: callers find jobs in no other way."""
+    return jobs_of_all_projects().where(jobs.c.project == project)
+
+
+def jobs_of_all_projects() -> Any:
+    """Select jobs with their computations, for those who know which of them their callers have found."""
     return select(
         jobs.c.id.label("job_id"),
         jobs.c.created.label("job_created"),
@@ -77,6 +84,7 @@ def select_jobs() -> Any:
         jobs.c.title,
         jobs.c.tags,
         jobs.c.differences,
+        jobs.c.caller,
         computations,
     ).join(computations, jobs.c.computation_id == computations.c.id)
 
@@ -88,7 +96,7 @@ def job_of(row: Any) -> Job:
         id=row.job_id,
         computation=row.id,
         process=row.process,
-        key=row.key,
+        key=at_address(row.key)[1],
         status="dismissed" if dismissed else row.state,
         message="Cancelled." if dismissed else row.message,
         stage=row.stage,
@@ -107,4 +115,5 @@ def job_of(row: Any) -> Job:
         differences=Differences.of(row.differences),
         priority=row.priority,
         max_cost_s=row.max_cost_s,
+        caller=row.caller,
     )

@@ -79,7 +79,7 @@ class Settlement:
         """Store what was made; a file system that does not take it will not do so at a repetition either."""
         try:
             for product in outcome.products:
-                self.store.put(product.key, product.kind, product.file)
+                self.store.within(claim.project).put(product.key, product.kind, product.file)
         except OSError as error:
             reference = uuid.uuid4().hex[:12]
             logger.exception("result could not be stored", computation=claim.id, reference=reference)

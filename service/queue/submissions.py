@@ -11,6 +11,7 @@ from typing import Any
 from sqlalchemy import ColumnElement, Connection, Engine, func, insert, select, update
 
 from service.problems import BadInput, NoSuchJob, QueueFull
+from service.project import COMMON, address_of
 from service.queue.caller import ANYBODY, Caller
 from service.queue.cost_limit import extended
 from service.queue.durations import end_computations
@@ -29,11 +30,25 @@ _LOOKED_AT = 500  # at a time, where durations are requested
 
 
 class Submissions:
-    """Jobs as their callers see them."""
+    """Jobs as the callers of one project see them.
 
-    def __init__(self, engine: Engine, queue_limit: int) -> None:
+    Parameters
+    ----------
+    engine : Engine
+    queue_limit : int
+        Computations of all projects that may wait.
+    project : str
+        There are no jobs but those of this project.
+    """
+
+    def __init__(self, engine: Engine, queue_limit: int, project: str = COMMON) -> None:
         self._engine = engine
         self._queue_limit = queue_limit
+        self._project = project
+
+    def within(self, project: str) -> Submissions:
+        """Return the same for another project."""
+        return Submissions(self._engine, self._queue_limit, project)
 
     def submit(
         self,
@@ -71,9 +86,10 @@ class Submissions:
             New work, and as many computations wait as the limit allows; or the caller has as many
             unfinished jobs as it may.
         """
-        identifier = str(uuid.uuid4() if name is None else _identifier(caller, process, name))
-        ended = _ended_since(key, looked or now(), stored)
-        self._submit(identifier, process, key, inputs, stored, ended, caller, terms)
+        identifier = str(uuid.uuid4() if name is None else self._identifier(caller, process, name))
+        address = address_of(self._project, key)
+        ended = _ended_since(address, looked or now(), stored)
+        self._submit(identifier, process, address, inputs, stored, ended, caller, terms)
         return self.find(identifier)
 
     @retried
@@ -107,8 +123,8 @@ class Submissions:
                 connection.execute(raised(computation, terms.priority))
                 connection.execute(extended(computation, terms.max_cost_s))
             row = {"id": identifier, "computation_id": computation, "created": now(), "dismissed": None}
-            row |= {"caller": caller.name, "delivery": str(terms.delivery), **terms.label.columns()}
-            row |= {"differences": str(terms.differences)}
+            row |= {"caller": caller.name, "project": self._project, "delivery": str(terms.delivery)}
+            row |= {"differences": str(terms.differences), **terms.label.columns()}
             connection.execute(insert(jobs).values(**row))
 
     def _refuse_if_full(self, connection: Connection) -> None:
@@ -129,7 +145,7 @@ class Submissions:
         row = None
         if _is_identifier(identifier):
             with reading(self._engine) as connection:
-                row = connection.execute(select_jobs().where(jobs.c.id == identifier)).one_or_none()
+                row = connection.execute(self._jobs().where(jobs.c.id == identifier)).one_or_none()
         if row is None:
             raise NoSuchJob(f"There is no job {identifier!r}.")
         self._note_use(row)
@@ -157,7 +173,7 @@ class Submissions:
     @retried
     def _newest(self, limit: int, job_filter: JobFilter, after: Mark | None) -> list[Job]:
         """Return jobs that meet what the database decides."""
-        statement = select_jobs().where(*job_filter.conditions())
+        statement = self._jobs().where(*job_filter.conditions())
         if after is not None:
             statement = statement.where(behind(after, jobs.c.created, jobs.c.id))
         with reading(self._engine) as connection:
@@ -198,9 +214,18 @@ class Submissions:
             if connection.execute(others.limit(1)).first() is None:
                 _abandon(connection, owner)
 
+    def _jobs(self) -> Any:
+        """Select the jobs of the project."""
+        return select_jobs(self._project)
+
+    def _identifier(self, caller: Caller, process: str, name: str) -> uuid.UUID:
+        """Return the identifier of the job that a caller gives a name; another caller's is another."""
+        named = [caller.name, process, name]
+        return uuid.uuid5(_NAMES, json.dumps(named if self._project == COMMON else [self._project, *named]))
+
     @retried
     def counts(self) -> dict[str, int]:
-        """Return how many computations are in each state."""
+        """Return how many computations of all projects are in each state."""
         statement = select(computations.c.state, func.count()).group_by(computations.c.state)
         with reading(self._engine) as connection:
             return {row[0]: row[1] for row in connection.execute(statement)}
@@ -208,11 +233,6 @@ class Submissions:
 
 _NAMES = uuid.UUID("4f5b2a0e-6c0f-4b7e-9a53-0d8f3a1c7e62")
 """Name space of the identifiers of jobs that their callers name."""
-
-
-def _identifier(caller: Caller, process: str, name: str) -> uuid.UUID:
-    """Return the identifier of the job that a caller gives a name; another caller's is another."""
-    return uuid.uuid5(_NAMES, json.dumps([caller.name, process, name]))
 
 
 def _refuse_unless_same(entered: str, key: str) -> None:

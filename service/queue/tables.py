@@ -37,7 +37,7 @@ computations = Table(
     Column("program", String, nullable=False, default=solver_version),
 )
 
-# Single flight: at most one computation of a key waits or runs.
+# Single flight: at most one computation of a key waits or runs. A key is an address: see `service.project`.
 Index(
     "computation_in_flight",
     computations.c.key,
@@ -76,9 +76,11 @@ jobs = Table(
     Column("title_folded", String, nullable=False, server_default=""),
     Column("tags", Text, nullable=False, server_default=""),
     Column("differences", Text, nullable=False, server_default=""),
+    Column("project", String, nullable=False, default=""),
 )
 Index("job_by_caller", jobs.c.caller)
 Index("job_by_caller_and_time", jobs.c.caller, jobs.c.created)
 Index("job_by_computation", jobs.c.computation_id)
 Index("job_by_use", jobs.c.asked)
 Index("job_by_time", jobs.c.created)
+Index("job_by_project", jobs.c.project, jobs.c.created)

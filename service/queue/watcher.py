@@ -12,7 +12,7 @@ from typing import Generic, TypeVar
 import structlog
 from sqlalchemy import Engine, func, select
 
-from service.queue.job import Job, job_of, select_jobs
+from service.queue.job import Job, job_of, jobs_of_all_projects
 from service.queue.tables import computations, jobs
 from service.store import dialect_of, reading
 
@@ -143,6 +143,6 @@ class Watcher(Generic[T]):
         """Return jobs."""
         if not identifiers:
             return []
-        statement = select_jobs().where(jobs.c.id.in_(identifiers))
+        statement = jobs_of_all_projects().where(jobs.c.id.in_(identifiers))
         with reading(self._engine) as connection:
             return [job_of(row) for row in connection.execute(statement)]

@@ -89,5 +89,5 @@ def _opens(path: Path) -> bool:
 def _enter(store: ResultStore, file: KeptFile, name: ResultName, sha256: str) -> bool:
     """Enter a file; whether it is the one of its result."""
     made = instant(datetime.fromtimestamp(file.modified, UTC))
-    line = IndexLine(name.key, name.kind, sha256, file.size, file.name, now())
+    line = IndexLine(name.key, name.kind, sha256, file.size, file.name, now(), project=name.project)
     return store.enter(line, made=min(made, line.used)).file == file.name

@@ -25,6 +25,7 @@ from sqlalchemy import (
 
 from fe_contact.cache_reads import CacheReads
 from service.problems import DamagedFile, NotFound
+from service.project import COMMON, address_of, at_address
 from service.store.database import BRIEF_MS, instant, metadata, now, reading, writing
 from service.store.dialects import dialect_of
 from service.store.files import SET_ASIDE, ResultFiles, WrongContent, digest_of
@@ -46,8 +47,10 @@ results = Table(
     Column("file", String, nullable=False, default=""),
     Column("used", String, nullable=False, default=""),
     Column("reindexed", String),
+    Column("project", String, nullable=False, default=""),
 )
 Index("result_by_use", results.c.used)
+Index("result_by_project", results.c.project, results.c.kind, results.c.created)
 
 
 @dataclass(frozen=True)
@@ -70,6 +73,8 @@ class IndexLine:
         When it was last requested, within an hour.
     reindexed : str or None
         When the line was rebuilt from its file: the result is as old as that, or older.
+    project : str
+        Whose result it is.
     """
 
     key: str
@@ -79,6 +84,12 @@ class IndexLine:
     file: str
     used: str
     reindexed: str | None = None
+    project: str = COMMON
+
+    @property
+    def address(self) -> str:
+        """The key of the line in the index."""
+        return address_of(self.project, self.key)
 
 
 @dataclass(frozen=True)
@@ -109,6 +120,9 @@ class ResultStore:
         Database of the index.
     files : ResultFiles
         Place of the files.
+    project : str
+        Whose results are put, found, read and listed here: there are no others. Upkeep (`lines`, `enter`,
+        `strike`, `set_aside`) is of all projects.
 
     Attributes
     ----------
@@ -116,10 +130,18 @@ class ResultStore:
         How often a result was looked for with `find`, as by submissions, and was there.
     """
 
-    def __init__(self, engine: Engine, files: ResultFiles) -> None:
-        self._engine, self.files = engine, files
+    def __init__(self, engine: Engine, files: ResultFiles, project: str = COMMON) -> None:
+        self._engine, self.files, self.project = engine, files, project
         self._noted: dict[tuple[str, str], float] = {}
         self.lookups = CacheReads()
+
+    def within(self, project: str) -> ResultStore:
+        """Return the same for another project."""
+        if project == self.project:
+            return self
+        other = ResultStore(self._engine, self.files, project)
+        other.lookups = self.lookups
+        return other
 
     def put(self, key: str, kind: str, file: Path) -> IndexLine:
         """Take `file` into the store: first the bytes, then the index; may be repeated if it failed."""
@@ -134,8 +156,8 @@ class ResultStore:
     def _put(self, key: str, kind: str, file: Path) -> IndexLine:
         """Place the file under a name of its own, and enter it if nobody was quicker."""
         sha256 = digest_of(file)
-        name = new_name(key, kind, sha256)
-        line = IndexLine(key, kind, sha256, file.stat().st_size, name, now())
+        name = new_name(self.project, key, kind, sha256)
+        line = IndexLine(key, kind, sha256, file.stat().st_size, name, now(), project=self.project)
         self.files.put(name, file, sha256)
         entered = self.enter(line)
         if entered.file != name:
@@ -149,13 +171,14 @@ class ResultStore:
         With `made`, the date of its file, it is marked as entered anew: by `service.store.reindex`.
         """
         with writing(self._engine, in_turn=True) as connection:
-            before = _line(connection, line.key, line.kind)
+            before = _line(connection, line.address, line.kind)
             if before is not None and (before.file == line.file or self.files.has(before.file)):
                 return before
             facts = {"sha256": line.sha256, "size": line.size, "file": line.file, "used": line.used}
             facts["reindexed"] = None if made is None else line.used
             insert = dialect_of(connection).insert(results)
-            statement = insert.values(key=line.key, kind=line.kind, created=made or line.used, **facts)
+            named = {"key": line.address, "kind": line.kind, "project": line.project}
+            statement = insert.values(**named, created=made or line.used, **facts)
             connection.execute(statement.on_conflict_do_update(index_elements=["key", "kind"], set_=facts))
         return line
 
@@ -176,18 +199,19 @@ class ResultStore:
     def _find(self, key: str, kind: str | None) -> IndexLine | None:
         """Return the index's line of a key; its only one, if no kind is named."""
         with reading(self._engine) as connection:
-            return _line(connection, key, kind)
+            return _line(connection, address_of(self.project, key), kind)
 
     @retried
     def page(self, kind: str, limit: int, after: Mark | None = None) -> list[tuple[Mark, IndexLine]]:
         """Return up to `limit` lines of a kind with their places, the newest first, those behind `after`."""
-        statement = select(results).where(results.c.kind == kind)
+        statement = select(results).where(results.c.project == self.project, results.c.kind == kind)
         if after is not None:
-            statement = statement.where(behind(after, results.c.created, results.c.key))
+            last = Mark(after.created, address_of(self.project, after.name))
+            statement = statement.where(behind(last, results.c.created, results.c.key))
         ordered = statement.order_by(results.c.created.desc(), results.c.key.desc()).limit(limit)
         with reading(self._engine) as connection:
             rows = connection.execute(ordered).all()
-        return [(Mark(row.created, row.key), _read(row)) for row in rows]
+        return [(Mark(row.created, at_address(row.key)[1]), _read(row)) for row in rows]
 
     def verified(self, key: str, kind: str | None = None) -> StoredResult:
         """Return the result of a kind, or of whichever it is, after comparing its bytes with its digest.
@@ -229,7 +253,7 @@ class ResultStore:
     @optional
     def _note_use(self, key: str, kind: str) -> None:
         """Write down that a result was requested; nobody waits for that."""
-        mine = (results.c.key == key, results.c.kind == kind)
+        mine = (results.c.key == address_of(self.project, key), results.c.kind == kind)
         before = instant(datetime.now(UTC) - timedelta(seconds=USE_NOTED_EVERY_S))
         with writing(self._engine, patience_ms=BRIEF_MS) as connection:
             connection.execute(update(results).where(*mine, results.c.used < before).values(used=now()))
@@ -243,7 +267,7 @@ class ResultStore:
     @retried
     def strike(self, line: IndexLine, *, unused_since: str | None = None) -> bool:
         """Remove a line from the index, if it is still that one and, given an instant, was not used since."""
-        mine = [results.c.key == line.key, results.c.kind == line.kind, results.c.file == line.file]
+        mine = [results.c.key == line.address, results.c.kind == line.kind, results.c.file == line.file]
         if unused_since is not None:
             mine.append(results.c.used < unused_since)
         with writing(self._engine) as connection:
@@ -268,9 +292,9 @@ def is_key(key: str) -> bool:
     return len(key) == hashlib.sha256().digest_size * 2 and set(key) <= set("0123456789abcdef")
 
 
-def _line(connection: Connection, key: str, kind: str | None) -> IndexLine | None:
+def _line(connection: Connection, address: str, kind: str | None) -> IndexLine | None:
     """Return one line of the index."""
-    statement = select(results).where(results.c.key == key).order_by(results.c.kind)
+    statement = select(results).where(results.c.key == address).order_by(results.c.kind)
     if kind is not None:
         statement = statement.where(results.c.kind == kind)
     row = connection.execute(statement).first()
@@ -279,4 +303,5 @@ def _line(connection: Connection, key: str, kind: str | None) -> IndexLine | Non
 
 def _read(row: Row[Any]) -> IndexLine:
     """Return a row as a line."""
-    return IndexLine(row.key, row.kind, row.sha256, row.size, row.file, row.used, row.reindexed)
+    project, key = at_address(row.key)
+    return IndexLine(key, row.kind, row.sha256, row.size, row.file, row.used, row.reindexed, project)

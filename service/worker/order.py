@@ -7,6 +7,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
+from service.project import COMMON
+
 
 class Progress(Protocol):
     """Reports the fraction done of a stage, and of the whole work where its cost was predicted."""
@@ -44,6 +46,8 @@ class WorkOrder:
         Where the files of results are, if not in the data directory.
     dask_scheduler : str, optional
         Address of the scheduler whose workers do the tasks, if the service has one.
+    project : str, optional
+        Whose results the work may read.
     lease_until : float, optional
         Instant on the monotonic clock, which all processes of a machine share, s: unless the worker hears by
         then that its lease was renewed, it ends.
@@ -59,6 +63,7 @@ class WorkOrder:
     results_url: str | None = None
     lease_until: float | None = None
     dask_scheduler: str | None = None
+    project: str = COMMON
 
     def line(self) -> bytes:
         """Return the order as one line of JSON."""

@@ -59,7 +59,7 @@ def ordered_scene(order: WorkOrder, progress: Progress) -> OrderedScene:
 
 def _store(order: WorkOrder) -> ResultStore:
     """Return the store of an order."""
-    return stored_results(order.data_directory, order.database_url, order.results_url)
+    return stored_results(order.data_directory, order.database_url, order.results_url).within(order.project)
 
 
 def _stored_key(order: WorkOrder, mesh: MeshInput) -> str | None:
