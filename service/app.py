@@ -11,7 +11,7 @@ from typing import Any
 from fastapi import FastAPI
 from prometheus_client import CollectorRegistry
 
-from service.access import open_keyring
+from service.access import open_identities
 from service.live.kept_answers import KeptAnswers
 from service.live.pool import live_pool, reading_pool
 from service.management.registry import process_registry
@@ -72,7 +72,7 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
         be used.
     """
     warnings.filterwarnings("ignore", message="implausible")  # said in the fields of the caller
-    keyring = open_keyring(settings)
+    identities = open_identities(settings)
     lock = DirectoryLock(settings.data_directory) if works else None
     if lock is not None:
         lock.acquire()
@@ -99,7 +99,7 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
     install_error_handlers(app)
     install_description(app)
     app.add_middleware(DirectRoutes, router=queries.router, prefix=API_PREFIX)
-    app.add_middleware(Access, keyring=keyring, always=not settings.loopback or bool(keyring))
+    app.add_middleware(Access, identities=identities, always=not settings.loopback or bool(identities))
     app.add_middleware(Guard, body_limit=settings.body_limit, metrics=app.state.metrics)
     jobs_shown = (landing.router, processes_router(offered), jobs.router, job_results_router(offered))
     stored = (databases.router, results.router, figures.router, queries.router, live.router)

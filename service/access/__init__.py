@@ -1,7 +1,23 @@
-"""Access to the service: keys kept as hashes, rates of requests."""
+"""Access to the service: keys kept as hashes, what their holders may do, and how much of it."""
 
-from service.access.key_file import AccessKey, KeyFile
-from service.access.keyring import Keyring, open_keyring
+from service.access.access_key import AccessKey
+from service.access.held import Held
+from service.access.holder import EVERY_SCOPE, MEANINGS, Holder, Scope
+from service.access.identities import Identities, open_identities
+from service.access.key_file import KeyFile
+from service.access.keyring import Keyring
 from service.access.rate_limit import RateLimits
 
-__all__ = ["AccessKey", "KeyFile", "Keyring", "RateLimits", "open_keyring"]
+__all__ = [
+    "EVERY_SCOPE",
+    "MEANINGS",
+    "AccessKey",
+    "Held",
+    "Holder",
+    "Identities",
+    "KeyFile",
+    "Keyring",
+    "RateLimits",
+    "Scope",
+    "open_identities",
+]

@@ -1,6 +1,7 @@
-"""The file of access keys: names, hashes and limits, never the keys themselves.
+"""The file of access keys: names, hashes, rights and limits, never the keys themselves.
 
 A key has 256 random bits: nobody guesses it as one would a password, so that one round of SHA-256 is enough.
+Two keys have the same name while one takes the place of the other.
 """
 
 from __future__ import annotations
@@ -11,49 +12,21 @@ import os
 import re
 import secrets
 import tempfile
-from dataclasses import asdict, dataclass
-from datetime import UTC, datetime
+from collections.abc import Iterable
+from dataclasses import asdict, fields, replace
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from typing import Any
 
+from service.access.access_key import AccessKey, record_of
+from service.access.holder import LEAST, LIMITS, Holder, Scope
+from service.access.lifetime import duration, read, written
 from service.problems import BadInput
+from service.project import COMMON, PROJECT
 
-_PREFIX = "loa_"
+PREFIX = "loa_"
+"""Beginning of every key."""
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
-_LIMITS = ("requests_per_minute", "unfinished_jobs", "highest_priority", "max_cost_s")
-_LEAST = {"highest_priority": -9}
-"""Of limits; of others 1."""
-_FIELDS = {"name", "sha256", "created", *_LIMITS}
-
-
-@dataclass(frozen=True)
-class AccessKey:
-    """The record of a key.
-
-    Attributes
-    ----------
-    name : str
-        Whose it is; stands in the log and beside jobs.
-    sha256 : str
-        Of the key, hexadecimal.
-    created : str
-        RFC 3339, UTC.
-    requests_per_minute : int or None
-        Beyond it requests are answered with 429; None: no limit.
-    unfinished_jobs : int or None
-        Jobs of this key that may wait or run at the same time; None: no limit but the queue's.
-    highest_priority : int or None
-        That jobs of this key may have, -9 to 9; None: any.
-    max_cost_s : int or None
-        CPU seconds that each job of this key may take; None: no limit.
-    """
-
-    name: str
-    sha256: str
-    created: str
-    requests_per_minute: int | None = None
-    unfinished_jobs: int | None = None
-    highest_priority: int | None = None
-    max_cost_s: int | None = None
 
 
 class KeyFile:
@@ -72,7 +45,7 @@ class KeyFile:
         """
         try:
             entries = json.loads(self.path.read_text("utf-8"))["keys"]
-            return tuple(_checked(entry) for entry in entries)
+            return tuple(record_of(entry) for entry in entries)
         except FileNotFoundError:
             return ()
         except OSError as error:
@@ -80,31 +53,65 @@ class KeyFile:
         except (ValueError, KeyError, TypeError):
             raise self._unusable("Write it with: loa keys add NAME") from None
 
-    def add(self, name: str, **limits: int | None) -> str:
+    def add(self, name: str, *, expires: str | None = None, **rights: Any) -> str:
         """Enter a new key and return it: the only time that it is seen.
+
+        Parameters
+        ----------
+        name : str
+        expires : str, optional
+            Duration for which it is good, such as ``90d``.
+        **rights
+            Other fields of `Holder`.
 
         Raises
         ------
         BadInput
-            The name is taken or no name, or a limit is below its least value.
+            The name is taken or no name, or a right is none.
         """
         if _NAME.fullmatch(name) is None:
             bound = "1 to 64 letters, digits, dots, dashes or underscores, the first a letter or a digit"
             raise BadInput.of("name", name, bound, "For example: test-bench-3")
-        for field, limit in limits.items():
-            least = _LEAST.get(field, 1)
-            if limit is not None and limit < least:
-                raise BadInput.of(field, limit, f"at least {least}", "Leave it out for no limit.")
         known = self.read()
         if any(key.name == name for key in known):
-            raise BadInput.of("name", name, "new", f"Take the old key back first: loa keys remove {name}")
-        secret = _PREFIX + secrets.token_urlsafe(32)
-        created = datetime.now(UTC).isoformat(timespec="seconds").replace("+00:00", "Z")
-        self._write((*known, AccessKey(name, digest_of(secret), created, **limits)))
+            advice = f"Renew it with: loa keys rotate {name}; or take it back first: loa keys remove {name}"
+            raise BadInput.of("name", name, "new", advice)
+        holder = Holder(name=name, **_chosen(rights))
+        secret, key = _made(holder, None if expires is None else duration("expires", expires))
+        self._write((*known, key))
+        return secret
+
+    def rotate(self, name: str, *, overlap: str = "0h", expires: str | None = None) -> str:
+        """Enter another key of this name and return it; those there are end after `overlap`.
+
+        Parameters
+        ----------
+        name : str
+        overlap : str
+            Duration for which the old key is good beside the new one; ``0h``: not at all.
+        expires : str, optional
+            Duration for which the new key is good; default: that for which the old one was made.
+
+        Raises
+        ------
+        BadInput
+            There is no key of this name, or a duration is none.
+        """
+        known = self.read()
+        old = [key for key in known if key.name == name]
+        if not old:
+            raise _unknown(name, known)
+        last, instant = old[-1], datetime.now(UTC)
+        life = _life(last) if expires is None else duration("expires", expires)
+        holder = Holder(**{field.name: getattr(last, field.name) for field in fields(Holder)})
+        secret, key = _made(holder, life)
+        rest = timedelta(0) if overlap == "0h" else duration("overlap", overlap)
+        others = (entry for entry in known if entry.name != name)
+        self._write((*others, *_ending(old, instant, rest), key))
         return secret
 
     def remove(self, name: str) -> None:
-        """Take a key back.
+        """Take a key back, and any that it took the place of.
 
         Raises
         ------
@@ -114,8 +121,7 @@ class KeyFile:
         known = self.read()
         left = tuple(key for key in known if key.name != name)
         if len(left) == len(known):
-            names = ", ".join(key.name for key in known) or "none"
-            raise BadInput.of("name", name, f"one of the keys: {names}", "loa keys list shows them.")
+            raise _unknown(name, known)
         self._write(left)
 
     def _write(self, keys: tuple[AccessKey, ...]) -> None:
@@ -143,13 +149,53 @@ def digest_of(secret: str) -> str:
     return hashlib.sha256(secret.encode("utf-8", "surrogateescape")).hexdigest()
 
 
-def _checked(entry: dict[str, object]) -> AccessKey:
-    """Return one entry; raise ValueError or TypeError if it is none."""
-    key = AccessKey(**{name: entry[name] for name in _FIELDS & set(entry)})  # type: ignore[arg-type]
-    if len(bytes.fromhex(key.sha256)) != hashlib.sha256().digest_size or not isinstance(key.name, str):
-        raise ValueError(entry)
-    for field in _LIMITS:
-        limit = getattr(key, field)
-        if limit is not None and (not isinstance(limit, int) or limit < _LEAST.get(field, 1)):
-            raise ValueError(entry)
-    return key
+def _made(holder: Holder, life: timedelta | None) -> tuple[str, AccessKey]:
+    """Return a new key and its record."""
+    secret, instant = PREFIX + secrets.token_urlsafe(32), datetime.now(UTC)
+    expires = None if life is None else written(instant + life)
+    facts = vars(holder) | {"expires": expires}
+    return secret, AccessKey(**facts, sha256=digest_of(secret), created=written(instant))
+
+
+def _ending(keys: Iterable[AccessKey], instant: datetime, rest: timedelta) -> tuple[AccessKey, ...]:
+    """Return keys that end after the time that is left them, or before if they do so anyway."""
+    left = [key for key in keys if rest and not key.expired]
+    end = written(instant + rest)
+    return tuple(key if key.ends_within(rest, instant) else replace(key, expires=end) for key in left)
+
+
+def _life(key: AccessKey) -> timedelta | None:
+    """Return for how long a key was made."""
+    return None if key.expires is None else read(key.expires) - read(key.created)
+
+
+def _unknown(name: str, known: Iterable[AccessKey]) -> BadInput:
+    """Return the error of a name that no key has."""
+    names = ", ".join(dict.fromkeys(key.name for key in known)) or "none"
+    return BadInput.of("name", name, f"one of the keys: {names}", "loa keys list shows them.")
+
+
+def _chosen(rights: dict[str, Any]) -> dict[str, Any]:
+    """Return rights as a holder has them; raise of what is none."""
+    chosen = {name: value for name, value in rights.items() if value is not None}
+    for field in LIMITS:
+        least = LEAST.get(field, 1)
+        if chosen.get(field, least) < least:
+            raise BadInput.of(field, chosen[field], f"at least {least}", "Leave it out for no limit.")
+    project = chosen.get("project", COMMON)
+    if project != COMMON and PROJECT.fullmatch(project) is None:
+        bound = "1 to 63 small letters, digits, dashes or underscores, the first a letter or a digit"
+        raise BadInput.of("project", project, bound, "For example: axle-2")
+    if "scopes" in chosen:
+        chosen["scopes"] = _scopes(chosen["scopes"])
+    return chosen
+
+
+def _scopes(names: Iterable[str]) -> tuple[Scope, ...]:
+    """Return scopes by their names; raises `BadInput`."""
+    names = tuple(names)
+    unknown = sorted(set(names) - set(Scope))
+    if unknown or not names:
+        bound = f"some of {', '.join(Scope)}"
+        raise BadInput.of("scopes", ",".join(unknown), bound, "For example: read,submit,dismiss")
+    return tuple(scope for scope in Scope if scope in names)

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import hmac
+import time
 from threading import Lock
 
 import structlog
 
-from service.access.key_file import AccessKey, KeyFile, digest_of
+from service.access.access_key import AccessKey
+from service.access.key_file import KeyFile, digest_of
+from service.access.lifetime import SOON
 from service.problems import BadInput
-from service.settings import Settings
 
 logger = structlog.get_logger(__name__)
+
+_DAY_S = 86_400.0
 
 _Stamp = tuple[int, int, int] | None
 
@@ -28,6 +32,7 @@ class Keyring:
     def __init__(self, file: KeyFile) -> None:
         self._file = file
         self._lock = Lock()
+        self._warned: dict[str, float] = {}
         self._stamp = self._stamp_now()
         self._keys = file.read()
 
@@ -45,7 +50,16 @@ class Keyring:
         for key in self._current():
             if hmac.compare_digest(digest, key.sha256):
                 holder = key
+        self._warn_of(holder)
         return holder
+
+    def _warn_of(self, key: AccessKey | None) -> None:
+        """Log, once a day, that a key in use ends soon."""
+        if key is None or key.expired or not key.ends_within(SOON):
+            return
+        if time.monotonic() - self._warned.get(key.sha256, -_DAY_S) >= _DAY_S:
+            self._warned[key.sha256] = time.monotonic()
+            logger.warning("key ends soon", key=key.name, expires=key.expires)
 
     def _current(self) -> tuple[AccessKey, ...]:
         """Return the keys as the file has them now."""
@@ -70,22 +84,3 @@ class Keyring:
         except OSError:
             return None
         return status.st_mtime_ns, status.st_size, status.st_ino
-
-
-def open_keyring(settings: Settings) -> Keyring:
-    """Return the keys of a service; refuse an address that others can reach as long as there are none.
-
-    Raises
-    ------
-    BadInput
-        The address is not loopback and there are no keys, or their file cannot be used.
-    """
-    keyring = Keyring(KeyFile(settings.key_file))
-    if not settings.loopback and not keyring:
-        raise BadInput.of(
-            "host",
-            settings.host,
-            "a loopback address such as 127.0.0.1 or ::1, as long as there are no access keys",
-            f"Make one with: loa keys add NAME (they are read from {settings.key_file})",
-        )
-    return keyring

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from threading import Lock
 
-from service.access.key_file import AccessKey
+from service.access.holder import Holder
 
 _MINUTE_S = 60.0
 
@@ -26,15 +26,15 @@ class RateLimits:
         self._lock = Lock()
         self._left: dict[str, tuple[float, float]] = {}
 
-    def wait_s(self, key: AccessKey) -> int:
-        """Take one request out of the bucket of `key`; return 0, or the seconds until there is one."""
+    def wait_s(self, key: Holder) -> int:
+        """Take one request out of the bucket of a holder; return 0, or the seconds until there is one."""
         limit = key.requests_per_minute
         if limit is None:
             return 0
         instant = self._clock()
         with self._lock:
-            left, last = self._left.get(key.sha256, (float(limit), instant))
+            left, last = self._left.get(key.name, (float(limit), instant))
             left = min(limit, left + (instant - last) * limit / _MINUTE_S)
             taken = left >= 1.0
-            self._left[key.sha256] = (left - 1.0 if taken else left, instant)
+            self._left[key.name] = (left - 1.0 if taken else left, instant)
         return 0 if taken else math.ceil((1.0 - left) * _MINUTE_S / limit)

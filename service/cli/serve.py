@@ -11,7 +11,7 @@ from typing import NoReturn
 import uvicorn
 from fastapi import FastAPI
 
-from service.access import open_keyring
+from service.access import open_identities
 from service.app import create_app
 from service.cli.bounded_http import BoundedHttp
 from service.cli.interrupt import leave
@@ -34,7 +34,7 @@ def run_serve(*, works: bool = True, **options: object) -> None:
     settings = load_settings(**options)
     keep_private()
     log_to_standard_error()
-    open_keyring(settings)  # refused before a socket is opened
+    open_identities(settings)  # refused before a socket is opened
     with _listener(settings) as listener:
         app = create_app(settings, works=works)
         for number in (signal.SIGINT, signal.SIGTERM):

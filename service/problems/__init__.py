@@ -5,6 +5,8 @@
     ServiceError
     |- BadInput          the caller's: a list of faults (field, value, bound, suggestion)
     |- Unauthorised      no key, or an unknown one
+    |  `- KeyExpired        one whose time is over
+    |- MissingScope      the key may do other things
     |- NotFound          no such process, job, result
     |- ResultNotReady    the job has not ended
     |- StillRunning      the job did not end in the time it was waited for; it goes on
@@ -18,6 +20,7 @@
     |- UnsupportedMediaType, NotAcceptable   a body, or an answer, of a type that is not known here
     |- QueueFull         the queue is at its limit; try again later
     |- RateExceeded      the caller's key asks more often than it may; try again later
+    |- TooManyHeld       the caller's key holds as many connections or streams as it may
     |- TooManyRequests   the server process is busy with others; try again later
     |- Superseded        a later question of the same caller took its place
     |- NotAnalyzed       nothing is kept to answer from; submit a job first
@@ -40,6 +43,7 @@ from service.problems.busy import (
     QueueFull,
     RateExceeded,
     Superseded,
+    TooManyHeld,
     TooManyRequests,
     TryLater,
 )
@@ -65,7 +69,9 @@ from service.problems.outages import (
 )
 from service.problems.refused import (
     HeadTooLarge,
+    KeyExpired,
     Malformed,
+    MissingScope,
     NoSuchJob,
     NoSuchProcess,
     NotAcceptable,
@@ -92,8 +98,10 @@ __all__ = [
     "HeadTooLarge",
     "JobDismissed",
     "JobFailed",
+    "KeyExpired",
     "LiveUnavailable",
     "Malformed",
+    "MissingScope",
     "NoSuchJob",
     "NoSuchProcess",
     "NotAcceptable",
@@ -108,6 +116,7 @@ __all__ = [
     "StoreUnavailable",
     "Superseded",
     "TooLarge",
+    "TooManyHeld",
     "TooManyRequests",
     "TooSlow",
     "TryLater",

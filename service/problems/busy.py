@@ -37,6 +37,14 @@ class RateExceeded(TryLater):
     retry_after_s = 1
 
 
+class TooManyHeld(TryLater):
+    """The caller's key holds as many connections or event streams as it may."""
+
+    type = "urn:lineofaction:problem:too-many-held"
+    title = "Too much at the same time with this key"
+    retry_after_s = 1
+
+
 class TooManyRequests(TryLater):
     """The server process answers as many requests as it can."""
 

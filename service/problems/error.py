@@ -30,7 +30,7 @@ class ServiceError(Exception):
     type: ClassVar[str] = "urn:lineofaction:problem:unexpected"
     title: ClassVar[str] = "Unexpected failure"
     exit_code: ClassVar[int] = EXIT_UNEXPECTED
-    challenge: ClassVar[str | None] = None
+    challenge: str | None = None
     accept_post: str | None = None
     faults: tuple[Fault, ...] = ()
     retry_after_s: int | None = None

@@ -2,17 +2,51 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import Self
+
 from service.problems.error import EXIT_BAD_INPUT, EXIT_UNREACHABLE, OGC, ServiceError
 
 
 class Unauthorised(ServiceError):
-    """The request carries no key, or one that is not known."""
+    """The request carries no key, or one that is not good (RFC 6750, section 3)."""
 
     status = 401
     type = "urn:lineofaction:problem:unauthorised"
     title = "A key is needed"
     exit_code = EXIT_BAD_INPUT
     challenge = "Bearer"
+
+    @classmethod
+    def of(cls, message: str) -> Self:
+        """Return the error of a key that is not good."""
+        error = cls(message)
+        error.challenge = 'Bearer error="invalid_token"'
+        return error
+
+
+class KeyExpired(Unauthorised):
+    """The request carries a key whose time is over."""
+
+    type = "urn:lineofaction:problem:key-expired"
+    title = "The key has expired"
+
+
+class MissingScope(ServiceError):
+    """The request carries a key that may do other things, not this one."""
+
+    status = 403
+    type = "urn:lineofaction:problem:missing-scope"
+    title = "The key lacks a scope"
+    exit_code = EXIT_BAD_INPUT
+
+    @classmethod
+    def of(cls, name: str, scope: str, scopes: Iterable[str]) -> Self:
+        """Return the error of a key of this name, which has other scopes."""
+        has = ", ".join(scopes) or "none"
+        error = cls(f"This needs the scope {scope}; key {name!r} has {has}. Ask the operator of the service.")
+        error.challenge = f'Bearer error="insufficient_scope", scope="{scope}"'
+        return error
 
 
 class NotFound(ServiceError):

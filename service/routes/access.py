@@ -1,12 +1,15 @@
-"""In front of every route: the caller's key, and how often it may be used."""
+"""In front of every route: who calls, how often and on how many connections; a line of every access."""
 
 from __future__ import annotations
+
+from contextlib import ExitStack
 
 from starlette.types import ASGIApp, Receive, Scope, Send
 from structlog.contextvars import bind_contextvars
 
-from service.access import AccessKey, Keyring, RateLimits
-from service.problems import NotForUs, RateExceeded, Unauthorised
+from service.access import Held, Identities, RateLimits
+from service.problems import KeyExpired, NotForUs, RateExceeded, ServiceError
+from service.routes.audit import Visit
 from service.routes.caching import for_one_caller
 from service.routes.host import meant_for_us
 
@@ -24,44 +27,55 @@ class Access:
     Parameters
     ----------
     app : ASGIApp
-    keyring : Keyring
+    identities : Identities
     always : bool
         Ask for a key even while there is none, so that taking back the last key opens nothing. Otherwise
         keys are requested as soon as there is one.
     """
 
-    def __init__(self, app: ASGIApp, keyring: Keyring, *, always: bool) -> None:
-        self._app, self._keyring, self._always, self._rates = app, keyring, always, RateLimits()
+    def __init__(self, app: ASGIApp, identities: Identities, *, always: bool) -> None:
+        self._app, self._identities, self._always = app, identities, always
+        self._rates, self._connections, self._streams = (
+            RateLimits(),
+            Held("connections"),
+            Held("event streams"),
+        )
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve one request of a known caller."""
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
-        closed = self._always or bool(self._keyring)
+        closed = self._always or bool(self._identities)
         if not closed and not meant_for_us(scope):
             raise NotForUs("A service without access keys answers to localhost and its own address only.")
-        if closed and not _open(scope["path"]):
-            key = self._known(scope)
-            bind_contextvars(caller=key.name)
-            send = for_one_caller(send)
-            scope.setdefault("state", {})["caller"] = key
-            wait_s = self._rates.wait_s(key)
-            if wait_s:
-                raise RateExceeded.after(
-                    wait_s, f"Key {key.name!r} has {key.requests_per_minute} requests per minute."
-                )
-        await self._app(scope, receive, send)
+        scope.setdefault("state", {})["closed"] = closed
+        if not closed or _open(scope["path"]):
+            await self._app(scope, receive, send)
+            return
+        visit = Visit(scope, send)
+        try:
+            await self._serve(scope, receive, visit)
+        except ServiceError as error:
+            visit.refused(error)
+            raise
+        finally:
+            visit.note()
 
-    def _known(self, scope: Scope) -> AccessKey:
-        """Return the caller's key; raise if it carries none, or an unknown one."""
-        presented = _presented(scope)
-        if presented is None:
-            raise Unauthorised("This service asks for an access key, sent as: Authorization: Bearer KEY")
-        key = self._keyring.holder(presented)
-        if key is None:
-            raise Unauthorised("This key is unknown. Ask the operator of the service for one.")
-        return key
+    async def _serve(self, scope: Scope, receive: Receive, visit: Visit) -> None:
+        """Find out who calls, and serve the request within the limits of that caller."""
+        visit.holder = key = await self._identities.holder(_presented(scope))
+        bind_contextvars(caller=key.name)
+        if key.expired:
+            raise KeyExpired.of(f"Key {key.name!r} has expired ({key.expires}). Ask for a new one.")
+        wait_s = self._rates.wait_s(key)
+        if wait_s:
+            text = f"Key {key.name!r} has {key.requests_per_minute} requests per minute."
+            raise RateExceeded.after(wait_s, text)
+        with ExitStack() as held:
+            held.enter_context(self._connections.one(key.name, key.connections))
+            scope["state"] |= {"caller": key, "held": held, "streams": self._streams}
+            await self._app(scope, receive, for_one_caller(visit.send))
 
 
 def _open(path: str) -> bool:

@@ -10,6 +10,7 @@ from pydantic import BaseModel, Field
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import JSONResponse, Response
 
+from service.access import Scope
 from service.convert.toml import toml_text
 from service.live.order import LiveOrder
 from service.page.examples import Example, examples
@@ -17,6 +18,7 @@ from service.problems import LiveUnavailable, QueueFull
 from service.routes.context import Context, Ctx
 from service.routes.media_types import JSON
 from service.routes.refusals import documented
+from service.routes.scopes import ScopedRoute, needs
 from service.schemas import Case
 from service.schemas.model import BoundaryModel
 from service.schemas.offers import ExampleBody
@@ -26,7 +28,7 @@ from service.worker.process import on_demand
 _LONGEST_READ_HERE = 65_536
 """Characters; so many take 0.1 s at most."""
 
-router = APIRouter(tags=["cases"])
+router = APIRouter(tags=["cases"], route_class=ScopedRoute)
 case_json, outline_json = (
     on_demand(f"service.convert.{name}") for name in ("case:case_json", "outline:outline_json")
 )
@@ -57,12 +59,14 @@ class CaseBody(BaseModel):
 
 
 @router.get("/examples", summary="Example cases")
+@needs(Scope.READ)
 def example_cases() -> list[ExampleBody]:
     """List the pairs that the page offers."""
     return [_example(example) for example in examples()]
 
 
 @router.post("/cases/outline", summary="Drawing of the two gears")
+@needs(Scope.READ)
 def case_outline(body: CaseRequest) -> dict[str, Any]:
     """Transverse outlines of both gears in mm, the path of contact, and the figures of the pair."""
     drawing: dict[str, Any] = outline_json(body.inputs.case)
@@ -75,6 +79,7 @@ def case_outline(body: CaseRequest) -> dict[str, Any]:
     response_model=CaseBody,
     responses=documented(QueueFull, LiveUnavailable),
 )
+@needs(Scope.READ)
 async def case_from_toml(body: TomlBody, context: Ctx) -> Response:
     """Read the case in a file's text, with all defaults; files that it names cannot be read here."""
     return await read_toml("service.convert.toml_file:case_of_toml", body, context)
@@ -90,6 +95,7 @@ async def read_toml(entry: str, body: TomlBody, context: Context) -> Response:
 
 
 @router.post("/cases/to-toml", summary="Write a case file")
+@needs(Scope.READ)
 def case_to_toml(body: CaseRequest) -> TomlBody:
     """Write the case with all defaults as a file's text."""
     return TomlBody(toml=toml_text(case_json(body.inputs.case)))

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Annotated
 
 from fastapi import Depends, Request
 from sqlalchemy import Engine
 
-from service.access import AccessKey
+from service.access import Holder
 from service.live.kept_answers import KeptAnswers
 from service.live.pool import LivePool
+from service.project import COMMON
 from service.queue.caller import ANYBODY, Caller
 from service.queue.scheduler import Scheduler
 from service.queue.submissions import Submissions
@@ -26,7 +27,10 @@ from service.worker.remote_work import RemoteWork
 
 @dataclass(frozen=True)
 class Context:
-    """Everything a handler may use."""
+    """Everything a handler may use, as the callers of one project see it.
+
+    Jobs and results are those of `project`: handlers have no way to others.
+    """
 
     settings: Settings
     registry: Registry
@@ -41,6 +45,17 @@ class Context:
     watcher: Watcher[JobEvent]
     databases: OpenDatabases = field(default_factory=OpenDatabases)
     streams: Streams = field(default_factory=Streams)
+    project: str = COMMON
+    _projects: dict[str, Context] = field(default_factory=dict)
+
+    def within(self, project: str) -> Context:
+        """Return the same for the callers of a project."""
+        if project == self.project:
+            return self
+        if project not in self._projects:
+            jobs, store = self.submissions.within(project), self.store.within(project)
+            self._projects[project] = replace(self, submissions=jobs, store=store, project=project)
+        return self._projects[project]
 
     def stop_waiting(self) -> None:
         """End the workers of those who wait for an answer, and the streams of those who wait for an event."""
@@ -54,14 +69,20 @@ class Context:
 
 
 def context_of(request: Request) -> Context:
-    """Return the context of the app that serves `request`."""
+    """Return the context of the app that serves `request`, for the project of its caller."""
     context: Context = request.app.state.context
-    return context
+    key = key_of(request)
+    return context if key is None else context.within(key.project)
+
+
+def key_of(request: Request) -> Holder | None:
+    """Return who sent a request, None on a service without keys; see `service.routes.access`."""
+    return getattr(request.state, "caller", None)
 
 
 def caller_of(request: Request) -> Caller:
-    """Return who sent a request; see `service.routes.access`."""
-    key: AccessKey | None = getattr(request.state, "caller", None)
+    """Return who submits by a request."""
+    key = key_of(request)
     if key is None:
         return ANYBODY
     return Caller(key.name, key.unfinished_jobs, key.highest_priority, key.max_cost_s)

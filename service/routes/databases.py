@@ -4,19 +4,22 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Request
 
+from service.access import Scope
 from service.loading import LOADING
 from service.routes.context import Ctx
 from service.routes.cursor import Cursor, Limit, mark_of, page_links
+from service.routes.scopes import ScopedRoute, needs
 from service.schemas.database_list import DatabaseEntry, DatabaseList
 from service.schemas.result_kinds import RESULTS
 from service.store import IndexLine, Mark, ResultStore
 from service.store.files import WrongContent
 
-router = APIRouter(tags=["results"])
+router = APIRouter(tags=["results"], route_class=ScopedRoute)
 _PATH = "/v1/databases"
 
 
 @router.get("/databases", summary="STE databases")
+@needs(Scope.READ)
 def list_databases(request: Request, context: Ctx, limit: Limit = 20, cursor: Cursor = None) -> DatabaseList:
     """List stored databases with their cases, the newest first."""
     page = context.store.page("database", limit + 1, mark_of(cursor))

@@ -7,15 +7,18 @@ import json
 from fastapi import APIRouter, Request
 from starlette.responses import Response
 
+from service.access import Scope
 from service.page.files import PageFile
 from service.routes.media_types import JSON, OPENAPI, media_type, negotiated
 from service.routes.page import served
+from service.routes.scopes import ScopedRoute, needs
 
-router = APIRouter(include_in_schema=False)
+router = APIRouter(include_in_schema=False, route_class=ScopedRoute)
 _OFFERED = (JSON, media_type(OPENAPI))
 
 
 @router.get("/openapi.json")
+@needs(Scope.READ)
 def description(request: Request) -> Response:
     """Return the description, under the type of OpenAPI to those who prefer that."""
     accepted = negotiated(request.headers.get("accept", "*/*"), _OFFERED)

@@ -6,10 +6,11 @@ from collections.abc import Awaitable, Callable
 from typing import Any
 
 from fastapi import APIRouter
-from fastapi.routing import APIRoute
 from starlette.requests import Request
 from starlette.responses import Response
 from starlette.types import ASGIApp, Receive, Scope, Send
+
+from service.routes.scopes import ScopedRoute
 
 Handler = Callable[[Request], Awaitable[Response]]
 
@@ -24,13 +25,13 @@ def answered_by(handler: Handler) -> Callable[[Callable[..., None]], Callable[..
     return attach
 
 
-class DirectRoute(APIRoute):
+class DirectRoute(ScopedRoute):
     """A route whose endpoint is `answered_by` a coroutine.
 
     For queries that come thousands of times a second: solving dependencies costs more there than the answer.
     """
 
-    def get_route_handler(self) -> Callable[[Request], Any]:
+    def answering(self) -> Callable[[Request], Any]:
         """Return the coroutine itself."""
         handler: Handler = self.endpoint.direct  # type: ignore[attr-defined]
         return handler
@@ -60,7 +61,7 @@ class DirectRoutes:
                 path = scope["path"]
                 match = route.path_regex.match(path.removeprefix(self._prefix))
                 if match is not None and path.startswith(self._prefix):
-                    scope.update(route=route, path_params=match.groupdict())
+                    scope.update(route=route, endpoint=route.endpoint, path_params=match.groupdict())
                     response = await route.get_route_handler()(Request(scope, receive, send))
                     await response(scope, receive, send)
                     return

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from fastapi import APIRouter
 
+from service.access import Scope
 from service.loading import LOADING
+from service.routes.scopes import ScopedRoute, needs
 from service.schemas.offers import EffectBody
 
-router = APIRouter(tags=["effects"])
+router = APIRouter(tags=["effects"], route_class=ScopedRoute)
 
 
 @router.get("/effects", summary="Optional physics")
+@needs(Scope.READ)
 def list_effects() -> list[EffectBody]:
     """All effects; a case switches them in its table [effects]."""
     with LOADING:

@@ -12,6 +12,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response, StreamingResponse
 from starlette.types import Receive, Scope, Send
 
+from service import access
 from service.problems import NoSuchJob, QueueFull
 from service.queue.job import Job
 from service.routes.caching import NO_STORE
@@ -19,6 +20,7 @@ from service.routes.context import Context, Ctx
 from service.routes.jobs import status_info
 from service.routes.refusals import documented
 from service.routes.response_headers import described_headers
+from service.routes.scopes import ScopedRoute, needs
 from service.routes.streams import JobEvent, Streams
 from service.worker.process import Registry
 
@@ -29,7 +31,7 @@ LastEvent = Annotated[
     Header(description="The `id` of the last event that arrived: it is not sent again", max_length=100),
 ]
 
-router = APIRouter(prefix="/jobs", tags=["jobs"])
+router = APIRouter(prefix="/jobs", tags=["jobs"], route_class=ScopedRoute)
 
 
 class TooManyStreams(QueueFull):
@@ -53,6 +55,7 @@ class TooManyStreams(QueueFull):
         **documented(NoSuchJob, TooManyStreams),
     },
 )
+@needs(access.Scope.READ, streams=True)
 async def job_events(job_id: str, context: Ctx, last_event_id: LastEvent = None) -> Response:
     """Send the status now and whenever it changes; the stream ends after the final one.
 

@@ -9,12 +9,14 @@ from fastapi import APIRouter, Query, Request
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
+from service.access import Scope
 from service.live.order import LiveOrder
 from service.problems import DamagedFile, LiveUnavailable, NotFound, QueueFull
 from service.routes.context import Ctx
 from service.routes.refusals import documented
 from service.routes.response_headers import described_headers
 from service.routes.results import HASH, Key, known_result
+from service.routes.scopes import ScopedRoute, needs
 from service.schemas.report import ReportBody
 from service.version import program_tag
 
@@ -22,7 +24,7 @@ FIGURES = "service.report.as_json:stored_figures"
 COMPARISON = "service.comparison.as_json:stored_comparison"
 _VERSION = ("ETag", "Cache-Control")
 
-router = APIRouter(tags=["results"])
+router = APIRouter(tags=["results"], route_class=ScopedRoute)
 
 
 @router.get(
@@ -39,6 +41,7 @@ router = APIRouter(tags=["results"])
         **documented(NotFound, QueueFull, LiveUnavailable, DamagedFile),
     },
 )
+@needs(Scope.READ)
 async def result_figures(
     key: Key,
     request: Request,

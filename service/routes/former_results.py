@@ -5,17 +5,20 @@ from __future__ import annotations
 from fastapi import APIRouter
 from starlette.responses import RedirectResponse
 
+from service.access import Scope
 from service.problems import NotFound
 from service.routes.context import Ctx
 from service.routes.results import Key
+from service.routes.scopes import ScopedRoute, needs
 from service.schemas.result_kinds import RESULT_KINDS, RESULTS, ResultKind
 
-router = APIRouter(include_in_schema=False)
+router = APIRouter(include_in_schema=False, route_class=ScopedRoute)
 
 
 def _redirect(kind: ResultKind, further: str) -> None:
     """Redirect from results of a kind, or their figures; a hash of another kind is not found."""
 
+    @needs(Scope.READ)
     def result(key: Key, context: Ctx) -> RedirectResponse:
         if context.store.find(key, kind.name) is None:
             raise NotFound(f"There is no {kind.name} {key!r}. Submit its case again to compute it.")

@@ -7,12 +7,14 @@ from typing import Any
 from fastapi import APIRouter, Depends, Request, Response
 from starlette.responses import PlainTextResponse
 
+from service.access import Scope
 from service.management.server import METRICS_TYPE
 from service.management.vitals import Vitals
 from service.problems import ServiceError
 from service.routes.caching import NO_STORE
 from service.routes.context import Ctx
 from service.routes.refusals import documented
+from service.routes.scopes import OPEN_TO_ALL, ScopedRoute, needs
 
 
 async def _of_now(response: Response) -> None:
@@ -20,7 +22,7 @@ async def _of_now(response: Response) -> None:
     response.headers["Cache-Control"] = NO_STORE
 
 
-router = APIRouter(tags=["operations"], dependencies=[Depends(_of_now)])
+router = APIRouter(tags=["operations"], dependencies=[Depends(_of_now)], route_class=ScopedRoute)
 
 
 class NotReady(ServiceError):
@@ -33,24 +35,30 @@ class NotReady(ServiceError):
 
 
 @router.get("/health", summary="Liveness")
+@needs(OPEN_TO_ALL)
 async def health() -> dict[str, Any]:
     """Answer that the process serves requests, however many of them wait for the database in threads."""
     return {"status": "ok"}
 
 
 @router.get("/ready", summary="Readiness for jobs", responses=documented(NotReady))
-def ready(context: Ctx) -> dict[str, Any]:
-    """Answer that database and place of results take what is written, and that the scheduler runs."""
+@needs(OPEN_TO_ALL)
+def ready(request: Request, context: Ctx) -> dict[str, Any]:
+    """Answer that database and place of results take what is written, and that the scheduler runs.
+
+    The numbers of computations are left out where keys are needed: this is answered to everybody.
+    """
     outcome = context.writes.outcome()
     if outcome.fault:
         raise NotReady(outcome.fault)
-    counts = context.submissions.counts()
+    counts = {} if request.state.closed else {"computations": context.submissions.counts()}
     if fault := Vitals(context.scheduler, context.writes).fault_of_health():
         raise NotReady(fault)
-    return {"status": "ready", "computations": counts}
+    return {"status": "ready", **counts}
 
 
 @router.get("/metrics", summary="Metrics for Prometheus", response_class=PlainTextResponse)
+@needs(Scope.OPERATE)
 def metrics(request: Request) -> Response:
     """Return the figures in the text exposition format."""
     return Response(request.app.state.metrics.text(), media_type=METRICS_TYPE)

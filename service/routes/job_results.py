@@ -7,6 +7,7 @@ from typing import Annotated, Any, Union
 from fastapi import APIRouter, Header, Query, Request
 from starlette.responses import JSONResponse, Response
 
+from service.access import Scope
 from service.problems import DamagedFile, Fault, JobDismissed, JobFailed, NoSuchJob, NotFound, ResultNotReady
 from service.queue.delivery import Delivery, Transmission, delivery
 from service.queue.delivery import Response as Form
@@ -17,6 +18,7 @@ from service.routes.media_types import JSON, negotiated
 from service.routes.refusals import documented
 from service.routes.response_headers import OF_VERSIONS, described_headers
 from service.routes.results import FILE, OF_RESULT, file_response, known_result
+from service.routes.scopes import ScopedRoute, needs
 from service.schemas.ogc import ResultReference, results_document
 from service.schemas.result_kinds import RESULTS
 from service.worker.process import Registry
@@ -39,7 +41,7 @@ _REFUSED = documented(NoSuchJob, ResultNotReady, NotFound, JobDismissed, JobFail
 
 def job_results_router(registry: Registry) -> APIRouter:
     """Return the route, whose documents are typed by the processes that make them."""
-    router = APIRouter(prefix="/jobs", tags=["jobs"])
+    router = APIRouter(prefix="/jobs", tags=["jobs"], route_class=ScopedRoute)
     answers: dict[int | str, dict[str, Any]] = {
         200: {
             "model": Union[tuple(results_document(p.id, p.output) for p in registry.values())],  # noqa: UP007
@@ -66,6 +68,7 @@ def job_results_router(registry: Registry) -> APIRouter:
     return router
 
 
+@needs(Scope.READ)
 def job_results(
     job_id: str,
     request: Request,

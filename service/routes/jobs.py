@@ -7,25 +7,28 @@ from datetime import UTC, datetime
 
 from fastapi import APIRouter, Request
 
+from service.access import Scope
 from service.problems import NoSuchJob
 from service.queue.differences import Differences
 from service.queue.job import Job
 from service.queue.subject import subject_of
-from service.routes.context import Ctx
+from service.routes.context import Context, Ctx, caller_of
 from service.routes.cursor import Cursor, Limit, mark_of, page_links
 from service.routes.job_query import JobQuery
 from service.routes.refusals import documented
+from service.routes.scopes import ScopedRoute, needs, require
 from service.schemas.label import LabelChange
 from service.schemas.ogc import Differences as ShownDifferences
 from service.schemas.ogc import JobList, JobStatus, Link, StatusInfo
 from service.store import Mark
 from service.worker.process import Registry, on_demand
 
-router = APIRouter(prefix="/jobs", tags=["jobs"])
+router = APIRouter(prefix="/jobs", tags=["jobs"], route_class=ScopedRoute)
 input_warnings = on_demand("service.worker.input_warnings:input_warnings")
 
 
 @router.get("", summary="Jobs")
+@needs(Scope.READ)
 def list_jobs(
     request: Request, context: Ctx, job_filter: JobQuery, limit: Limit = 100, cursor: Cursor = None
 ) -> JobList:
@@ -37,23 +40,40 @@ def list_jobs(
 
 
 @router.get("/{job_id}", summary="Status of a job", responses=documented(NoSuchJob))
+@needs(Scope.READ)
 def job_status(job_id: str, context: Ctx) -> StatusInfo:
     """Status and progress of the job."""
     return status_info(context.submissions.find(job_id), context.registry)
 
 
 @router.patch("/{job_id}", summary="Rename a job", responses=documented(NoSuchJob))
-def relabel_job(job_id: str, change: LabelChange, context: Ctx) -> StatusInfo:
-    """Change title and tags of a job, ended or not; what is left out stays."""
+@needs(Scope.SUBMIT)
+def relabel_job(job_id: str, change: LabelChange, request: Request, context: Ctx) -> StatusInfo:
+    """Change title and tags of a job, ended or not; what is left out stays.
+
+    Jobs that others of the project submitted need the scope operate.
+    """
+    _require_own(job_id, request, context)
     return status_info(context.submissions.relabel(job_id, change.title, change.tags), context.registry)
 
 
 @router.delete("/{job_id}", summary="Dismiss a job", responses=documented(NoSuchJob))
-def dismiss_job(job_id: str, context: Ctx) -> StatusInfo:
-    """Cancel: the work ends unless other jobs share it. A job that has ended stays as it is."""
+@needs(Scope.DISMISS)
+def dismiss_job(job_id: str, request: Request, context: Ctx) -> StatusInfo:
+    """Cancel: the work ends unless other jobs share it. A job that has ended stays as it is.
+
+    Jobs that others of the project submitted need the scope operate.
+    """
+    _require_own(job_id, request, context)
     job = context.submissions.dismiss(job_id)
     context.scheduler.wake()
     return status_info(job, context.registry)
+
+
+def _require_own(job_id: str, request: Request, context: Context) -> None:
+    """Raise unless a job is the caller's own, or the caller may do that with others'."""
+    if context.submissions.find(job_id).caller != caller_of(request).name:
+        require(request, Scope.OPERATE)
 
 
 def status_info(job: Job, registry: Registry) -> StatusInfo:

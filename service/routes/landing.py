@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from fastapi import APIRouter
 
+from service.access import Scope
 from service.routes.media_types import OPENAPI
+from service.routes.scopes import ScopedRoute, needs
 from service.schemas.ogc import CONFORMANCE, Conformance, Landing, Link
 from service.version import solver_version
 
-router = APIRouter(tags=["service"])
+router = APIRouter(tags=["service"], route_class=ScopedRoute)
 
 _OGC = "http://www.opengis.net/def/rel/ogc/1.0/"
 _LINKS = (
@@ -24,6 +26,7 @@ _LINKS = (
 
 @router.get("", summary="Landing page")
 @router.get("/", include_in_schema=False)
+@needs(Scope.READ)
 def landing_page() -> Landing:
     """Return the links of the service."""
     return Landing(
@@ -35,6 +38,7 @@ def landing_page() -> Landing:
 
 
 @router.get("/conformance", summary="Conformance classes of OGC API - Processes")
+@needs(Scope.READ)
 def conformance() -> Conformance:
     """Say which parts of the standard are met."""
     return Conformance(conformsTo=list(CONFORMANCE))

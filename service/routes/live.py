@@ -9,15 +9,18 @@ from fastapi import APIRouter
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
+from service.access import Scope
 from service.live.order import LiveOrder
 from service.problems import DamagedFile, LiveUnavailable, NotAnalyzed, NotFound, QueueFull, Superseded
+from service.project import address_of
 from service.routes.context import Context, Ctx
 from service.routes.refusals import documented
 from service.routes.results import Key
+from service.routes.scopes import ScopedRoute, needs
 from service.schemas.live import LiveInput, PlanRequest
 from service.schemas.live_answer import LiveOutput
 
-router = APIRouter(tags=["live"])
+router = APIRouter(tags=["live"], route_class=ScopedRoute)
 
 STE, PLAN = "service.live.work:live_ste", "service.live.work:live_plan"
 
@@ -31,6 +34,7 @@ STE, PLAN = "service.live.work:live_ste", "service.live.work:live_plan"
         **documented(QueueFull, Superseded, NotAnalyzed, LiveUnavailable, NotFound, DamagedFile),
     },
 )
+@needs(Scope.READ)
 async def live_ste(key: Key, body: LiveInput, context: Ctx) -> Response:
     """Curves of the gears of a database with other flanks, torques, misalignment and center distance.
 
@@ -38,7 +42,8 @@ async def live_ste(key: Key, body: LiveInput, context: Ctx) -> Response:
     """
     stored = await run_in_threadpool(context.store.verified, key, "database")
     question = body.model_dump(mode="json", exclude_none=True)
-    inputs = {"key": key, "file": str(stored.path), "cache": _cache(context), "question": question}
+    place = address_of(context.project, key)
+    inputs = {"key": place, "file": str(stored.path), "cache": _cache(context), "question": question}
     return await _answer(context, LiveOrder(STE, inputs), body.caller)
 
 
@@ -51,6 +56,7 @@ async def live_ste(key: Key, body: LiveInput, context: Ctx) -> Response:
         **documented(QueueFull, Superseded, LiveUnavailable),
     },
 )
+@needs(Scope.READ)
 async def plan(body: PlanRequest, context: Ctx) -> Response:
     """Predicted time by stage, memory and error of every mesh, and the effect ledger; nothing is computed."""
     inputs = body.inputs.model_dump(mode="json")
@@ -60,7 +66,7 @@ async def plan(body: PlanRequest, context: Ctx) -> Response:
 
 async def _answer(context: Context, order: LiveOrder, caller: str | None) -> Response:
     """Ask the live worker and pass its answer on."""
-    name = None if caller is None else f"{order.entry} {caller}"
+    name = None if caller is None else f"{order.entry} {context.project} {caller}"
     body = await asyncio.wrap_future(context.live.ask(order, name))
     return Response(body, media_type="application/json")
 

@@ -44,23 +44,24 @@ class OpenDatabases:
     """The databases queried last, read and verified once; they never change."""
 
     def __init__(self) -> None:
-        self._open: OrderedDict[str, OpenDatabase] = OrderedDict()
+        self._open: OrderedDict[tuple[str, str], OpenDatabase] = OrderedDict()
         self._lock, self._reading = Lock(), Lock()
 
-    def at_hand(self, key: str) -> OpenDatabase | None:
+    def at_hand(self, store: ResultStore, key: str) -> OpenDatabase | None:
         """Return the database `key` if it is open: no file is touched, nobody is waited for."""
+        place = store.project, key
         with self._lock:
-            if key in self._open:
-                self._open.move_to_end(key)
-            return self._open.get(key)
+            if place in self._open:
+                self._open.move_to_end(place)
+            return self._open.get(place)
 
     def get(self, store: ResultStore, key: str) -> OpenDatabase:
         """Return the database `key`, read if it is not open; raises as `ResultStore.verified`."""
-        opened = self.at_hand(key)
+        opened = self.at_hand(store, key)
         if opened is not None:
             return opened
         with self._reading:  # many ask for a new table at once: it is read once
-            return self.at_hand(key) or self._read(store, key)
+            return self.at_hand(store, key) or self._read(store, key)
 
     def _read(self, store: ResultStore, key: str) -> OpenDatabase:
         """Read and verify a database; the one not requested longest is closed."""
@@ -69,7 +70,7 @@ class OpenDatabases:
 
         opened = OpenDatabase(SteDatabase.from_netcdf(store.verified(key, "database").path))
         with self._lock:
-            self._open[key] = opened
+            self._open[store.project, key] = opened
             while len(self._open) > _MOST_OPEN:
                 self._open.popitem(last=False)
         return opened

@@ -8,11 +8,12 @@ from typing import Any
 from fastapi import FastAPI
 from pydantic.json_schema import models_json_schema
 
-from service.routes.access import OPEN_PATHS
+from service.access import MEANINGS
 from service.routes.events import EVENT_STREAM
 from service.routes.media_types import CBOR, JSON
 from service.routes.refusals import describe_refusals
 from service.routes.response_headers import HEADERS, OF_ALL, described_headers
+from service.routes.scopes import KEY_SCHEME
 from service.schemas.answer_examples import answer_example
 from service.schemas.problem import ProblemBody
 from service.schemas.query import QueryInput
@@ -45,7 +46,10 @@ ABOUT: Json = {
 _KEY = {
     "type": "http",
     "scheme": "bearer",
-    "description": "An access key. A service that listens on loopback alone asks for none until it has one.",
+    "description": "An access key. A service that listens on loopback alone asks for none until it has one. "
+    "An operation names the scope that the key needs: "
+    + "; ".join(f"`{scope}`: {meaning}" for scope, meaning in MEANINGS.items())
+    + ".",
 }
 _JOB = {"job_id": "$response.body#/jobID"}
 _LINKS = {
@@ -82,12 +86,9 @@ def _complete(document: Json) -> None:
     components = document["components"]
     _add_models(components["schemas"])
     components["headers"] = dict(HEADERS)
-    components["securitySchemes"] = {"accessKey": _KEY}
-    document["security"] = [{"accessKey": []}, {}]
+    components["securitySchemes"] = {KEY_SCHEME: _KEY}
     describe_refusals(document)
     for path, operation in _operations(document):
-        if path in OPEN_PATHS:
-            operation["security"] = []
         _show(operation.get("requestBody", {}).get("content", {}), request_example(path))
         for response in _answers(operation):
             response["headers"] = described_headers(*OF_ALL) | response.get("headers", {})

@@ -7,8 +7,9 @@ from starlette.responses import Response
 
 from service.page.files import PageFile, page_file
 from service.problems import NotFound
+from service.routes.scopes import OPEN_TO_ALL, ScopedRoute, needs
 
-router = APIRouter(include_in_schema=False)
+router = APIRouter(include_in_schema=False, route_class=ScopedRoute)
 
 _POLICY = "; ".join(
     (
@@ -32,18 +33,21 @@ _HEADERS = {
 
 
 @router.get("/")
+@needs(OPEN_TO_ALL)
 def page(request: Request) -> Response:
     """Return the page."""
     return served(page_file("index.html"), request)
 
 
 @router.get("/docs")
+@needs(OPEN_TO_ALL)
 def docs(request: Request) -> Response:
     """Return the page that shows the description of the API."""
     return served(page_file("docs.html"), request)
 
 
 @router.get("/page/{name}")
+@needs(OPEN_TO_ALL)
 def part(name: str, request: Request) -> Response:
     """Return a style sheet, a module or plotly.js."""
     return served(page_file(name), request)

@@ -11,6 +11,7 @@ import structlog
 from fastapi import APIRouter, Header, Query, Response
 from pydantic import BaseModel, create_model
 
+from service.access import Scope
 from service.live.order import LiveOrder
 from service.problems import LiveUnavailable, NoSuchProcess, QueueFull
 from service.queue.caller import Caller
@@ -27,6 +28,7 @@ from service.routes.cursor import Limit
 from service.routes.jobs import status_info
 from service.routes.refusals import documented
 from service.routes.response_headers import described_headers
+from service.routes.scopes import ScopedRoute, needs
 from service.schemas.execute import execute_model
 from service.schemas.model import BoundaryModel
 from service.schemas.ogc import (
@@ -58,9 +60,10 @@ Prefer = Annotated[str, Header(description="Jobs are always asynchronous (RFC 72
 
 def processes_router(registry: Registry) -> APIRouter:
     """Return the routes, one execution route per process, so that each body has its own schema."""
-    router = APIRouter(prefix="/processes", tags=["processes"])
+    router = APIRouter(prefix="/processes", tags=["processes"], route_class=ScopedRoute)
 
     @router.get("", summary="Processes", responses=documented(NoSuchProcess))
+    @needs(Scope.READ)
     def list_processes(limit: Limit = 100, after: After = "") -> ProcessList:
         """All that can be run."""
         behind = list(registry.values())[_place(registry, after) :]
@@ -72,6 +75,7 @@ def processes_router(registry: Registry) -> APIRouter:
         return ProcessList(processes=[ProcessSummary(**_summary(p)) for p in shown], links=links)
 
     @router.get("/{process_id}", summary="One process", responses=documented(NoSuchProcess))
+    @needs(Scope.READ)
     def describe_process(process_id: str) -> ProcessDescription:
         """Describe a process with the schemas of its inputs and outputs."""
         return _description(registry[process_id])
@@ -96,6 +100,7 @@ def _place(registry: Registry, after: str) -> int:
 def _unknown(registry: Registry) -> Any:
     """Return the handler of executions of processes that do not exist."""
 
+    @needs(Scope.SUBMIT)
     def execute_unknown(process_id: str) -> None:
         registry[process_id]
 
@@ -106,6 +111,7 @@ def _add_execution(router: APIRouter, process: Process) -> None:
     """Add the execution route of one process."""
     body = execute_model(process.id, process.inputs, process.output)
 
+    @needs(Scope.SUBMIT)
     def execute(
         request: Any,
         response: Response,
@@ -148,7 +154,7 @@ def _differences(
     context: Context, process: Process, caller: Caller, inputs: dict[str, Any], stated: BoundaryModel
 ) -> Differences:
     """Return what sets normalized inputs apart from the caller's job before, or else from the defaults."""
-    former = FormerJobs(context.engine).newest(caller, process.id)
+    former = FormerJobs(context.engine, context.project).newest(caller, process.id)
     if former is None:
         return Differences.between({}, stated.model_dump(mode="json", exclude_defaults=True))
     return Differences.between(former[1], inputs, former[0])

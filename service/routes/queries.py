@@ -10,6 +10,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import Response
 
+from service.access import Scope
 from service.convert.force_query import force_answer
 from service.problems import BadInput, DamagedFile, NotAcceptable, NotFound, UnsupportedMediaType
 from service.routes.context import context_of
@@ -17,6 +18,7 @@ from service.routes.direct import DirectRoute, answered_by
 from service.routes.media_types import CBOR, JSON, RAW, media_type, negotiated
 from service.routes.query_encodings import READ, WRITE
 from service.routes.refusals import documented
+from service.routes.scopes import needs
 from service.schemas.query import LIMITS, QueryInput, QueryOutput
 
 KEY_PATTERN = "^[0-9a-f]{64}$"
@@ -60,7 +62,7 @@ async def _answer(request: Request) -> Response:
         raise BadInput.of("columns", named, f"a text of at most {_LONGEST_COLUMNS} characters")
     columns = named.split(",")
     body, context = await request.body(), context_of(request)
-    opened = context.databases.at_hand(key)
+    opened = context.databases.at_hand(context.store, key)
 
     def work() -> bytes:
         """Read, evaluate, write."""
@@ -79,6 +81,7 @@ async def _answer(request: Request) -> Response:
     openapi_extra={"requestBody": {"required": True, "content": _BODIES}},
 )
 @answered_by(_answer)
+@needs(Scope.READ)
 def query_forces(
     key: Annotated[str, Path(pattern=KEY_PATTERN, description="Content hash of the input")],
     columns: Annotated[

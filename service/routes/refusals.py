@@ -11,12 +11,15 @@ from service.problems import (
     DatabaseDamaged,
     DatabaseUnavailable,
     HeadTooLarge,
+    KeyExpired,
     Malformed,
+    MissingScope,
     NotForUs,
     RateExceeded,
     ServiceError,
     StoreUnavailable,
     TooLarge,
+    TooManyHeld,
     TooManyRequests,
     TooSlow,
     Unauthorised,
@@ -42,7 +45,7 @@ _OF_ALL: tuple[type[ServiceError], ...] = (
     TooManyRequests,
     Unexpected,
 )
-_WITH_KEYS = (Unauthorised, RateExceeded)
+_WITH_KEYS = (Unauthorised, KeyExpired, MissingScope, RateExceeded, TooManyHeld)
 _OF_STORES = (DatabaseUnavailable, DatabaseDamaged, StoreUnavailable)
 _OF_BODIES = (TooLarge, UnsupportedMediaType, BadInput)
 _OF_ROUTING: Kinds = {405: {"about:blank": "Method Not Allowed"}}

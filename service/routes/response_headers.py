@@ -11,6 +11,7 @@ OF_ALL = ("X-Request-ID",)
 """Of every answer."""
 OF_STATUS: Mapping[int, tuple[str, ...]] = {
     401: ("WWW-Authenticate",),
+    403: ("WWW-Authenticate",),
     405: ("Allow",),
     415: ("Accept-Post",),
     429: ("Retry-After",),
@@ -24,7 +25,11 @@ HEADERS: dict[str, dict[str, Any]] = {
     name: {"description": text, "schema": schema}
     for name, text, schema in (
         ("X-Request-ID", "Identifier of the request, as the log has it", _TEXT),
-        ("WWW-Authenticate", "Bearer: send the access key in the header Authorization", _TEXT),
+        (
+            "WWW-Authenticate",
+            "Bearer: send the access key in the header Authorization; the scope that it lacks",
+            _TEXT,
+        ),
         ("Allow", "Methods of the path", _TEXT),
         ("Accept-Post", "Types of body that are read", _TEXT),
         ("Retry-After", "Seconds after which to try again; left out: not by itself", {"type": "integer"}),

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Header, Path, Request
 from starlette.responses import FileResponse, JSONResponse, Response
 
+from service.access import Scope
 from service.loading import LOADING
 from service.problems import DamagedFile, NotFound
 from service.registry import NETCDF
@@ -17,6 +18,7 @@ from service.routes.context import Context, Ctx
 from service.routes.media_types import JSON, negotiated
 from service.routes.refusals import documented
 from service.routes.response_headers import OF_VERSIONS, described_headers
+from service.routes.scopes import ScopedRoute, needs
 from service.schemas.ogc import ResultFigures
 from service.schemas.result_kinds import RESULT_KINDS, SUFFIX
 from service.store import StoredResult
@@ -38,7 +40,7 @@ _ANSWERS: dict[int | str, dict[str, Any]] = {
     304: {"description": "Not modified", "headers": described_headers(*OF_RESULT)},
 }
 
-router = APIRouter(tags=["results"])
+router = APIRouter(tags=["results"], route_class=ScopedRoute)
 
 
 @router.get(
@@ -47,6 +49,7 @@ router = APIRouter(tags=["results"])
     response_class=Response,
     responses=_ANSWERS | documented(NotFound, DamagedFile),
 )
+@needs(Scope.READ)
 def get_result(key: Key, request: Request, context: Ctx, accept: Accept = JSON) -> Response:
     """Figures or the file, by Accept; never changes. Its kind is in the header Result-Kind."""
     stored = known_result(context, key)
@@ -69,6 +72,7 @@ def get_result(key: Key, request: Request, context: Ctx, accept: Accept = JSON) 
         **documented(NotFound, DamagedFile),
     },
 )
+@needs(Scope.READ)
 def result_file(key: Key, request: Request, context: Ctx) -> Response:
     """Return the file whatever the request accepts, for browsers and generated clients; never changes."""
     return file_response(known_result(context, key), request)

@@ -8,15 +8,17 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 from starlette.responses import Response
 
+from service.access import Scope
 from service.convert.toml import toml_text
 from service.problems import LiveUnavailable, QueueFull
 from service.routes.cases import TomlBody, explained, read_toml
 from service.routes.context import Ctx
 from service.routes.refusals import documented
+from service.routes.scopes import ScopedRoute, needs
 from service.schemas.model import BoundaryModel
 from service.schemas.scene import SceneInput
 
-router = APIRouter(tags=["scenes"])
+router = APIRouter(tags=["scenes"], route_class=ScopedRoute)
 
 
 class SceneInputs(BoundaryModel):
@@ -47,12 +49,14 @@ class SceneBody(BaseModel):
     response_model=SceneBody,
     responses=documented(QueueFull, LiveUnavailable),
 )
+@needs(Scope.READ)
 async def scene_from_toml(body: SceneToml, context: Ctx) -> Response:
     """Read the scene in a file's text; files that it names cannot be read here."""
     return await read_toml("service.convert.toml_file:scene_of_toml", body, context)
 
 
 @router.post("/scenes/to-toml", summary="Write a scene file")
+@needs(Scope.READ)
 def scene_to_toml(body: SceneRequest) -> SceneToml:
     """Write the scene as a file's text, without defaults."""
     return SceneToml(toml=toml_text(body.inputs.scene.model_dump(mode="json", exclude_unset=True)))

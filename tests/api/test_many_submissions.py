@@ -7,6 +7,7 @@ of 6 cases with every change, 200 of 20 at night.
 from __future__ import annotations
 
 import random
+import re
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -103,7 +104,8 @@ def test_equal_cases_are_computed_once_and_all_are_answered(asked: Asked, cases:
 
     def watch() -> bool:
         time.sleep(0.2)
-        counts = client.get("/ready").json().get("computations", {})
+        states = re.findall(r'loa_computations{state="(.*)"} ([1-9].*)', client.get("/metrics").text)
+        counts = {state: int(float(number)) for state, number in states}
         waiting.append(counts.get("accepted", 0))
         return bool(counts == {"successful": cases})
 

@@ -1,4 +1,4 @@
-"""Verbs of access keys: ``loa keys add``, ``list`` and ``remove``."""
+"""Verbs of access keys: ``loa keys add``, ``rotate``, ``list`` and ``remove``."""
 
 from __future__ import annotations
 
@@ -17,12 +17,20 @@ KeysFile = Annotated[
     Path | None,
     typer.Option("--file", help="File of keys [LOA_KEYS_FILE; keys.json in the data directory]."),
 ]
+Expires = Annotated[
+    str | None, typer.Option(help="Hours, days or weeks for which the key is good: 12h, 90d, 26w.")
+]
 
 
-@verbs.command(epilog="Example: loa keys add test-bench-3 --requests-per-minute 600")
+@verbs.command(epilog="Example: loa keys add test-bench-3 --expires 90d --scopes read,submit")
 @guarded
 def add(
     name: Name,
+    project: Annotated[
+        str | None, typer.Option(help="Project whose jobs and results the key sees; default: the common one.")
+    ] = None,
+    scopes: Annotated[str | None, typer.Option(help="Of read,submit,dismiss,operate; default: all.")] = None,
+    expires: Expires = None,
     requests_per_minute: Annotated[int | None, typer.Option(help="Default: no limit.")] = None,
     unfinished_jobs: Annotated[
         int | None, typer.Option(help="Limit on waiting and running jobs; default: no limit.")
@@ -30,6 +38,12 @@ def add(
     highest_priority: Annotated[int | None, typer.Option(help="Of its jobs, -9 to 9; default: any.")] = None,
     max_cost_s: Annotated[
         int | None, typer.Option("--max-cost", help="CPU seconds of a job; default: no limit.")
+    ] = None,
+    connections: Annotated[
+        int | None, typer.Option(help="Limit on requests answered at the same time; default: no limit.")
+    ] = None,
+    streams: Annotated[
+        int | None, typer.Option(help="Limit on open event streams; default: no limit.")
     ] = None,
     file: KeysFile = None,
     json: AsJson = False,
@@ -39,13 +53,29 @@ def add(
 
     limits = {"requests_per_minute": requests_per_minute, "unfinished_jobs": unfinished_jobs}
     limits |= {"highest_priority": highest_priority, "max_cost_s": max_cost_s}
-    run_add(name, file, as_json=json, **limits)
+    limits |= {"connections": connections, "streams": streams}
+    run_add(name, file, as_json=json, scopes=scopes, expires=expires, project=project, **limits)
+
+
+@verbs.command(epilog="Example: loa keys rotate test-bench-3 --overlap 7d")
+@guarded
+def rotate(
+    name: Name,
+    overlap: Annotated[str, typer.Option(help="For how long the old key is good beside the new one.")] = "0h",
+    expires: Expires = None,
+    file: KeysFile = None,
+    json: AsJson = False,
+) -> None:
+    """Create the next key of a name, with the rights of the old one, which ends after the overlap."""
+    from service.cli.keys import run_rotate  # noqa: PLC0415 (start-up time)
+
+    run_rotate(name, file, overlap, expires, as_json=json)
 
 
 @verbs.command("list")
 @guarded
 def list_keys(file: KeysFile = None, json: AsJson = False) -> None:
-    """Print names and limits of all keys."""
+    """Print names, projects, scopes, ends and limits of all keys."""
     from service.cli.keys import run_list  # noqa: PLC0415 (start-up time)
 
     run_list(file, as_json=json)

@@ -4,17 +4,23 @@ from __future__ import annotations
 
 import json
 import stat
+from datetime import datetime, timedelta
 from pathlib import Path
+from typing import Any
 
 import pytest
+import structlog.testing
+from typer.testing import CliRunner
 
-from service.access import AccessKey, KeyFile, Keyring, RateLimits, open_keyring
+from service.access import AccessKey, KeyFile, Keyring, RateLimits, Scope, open_identities
+from service.cli.commands import app
 from service.problems import BadInput
 from service.settings import Settings
 
 
 def a_key(limit: int | None, name: str = "bench") -> AccessKey:
-    return AccessKey(name, name.encode().hex().ljust(64, "0"), "2026-01-01T00:00:00Z", limit)
+    digest = name.encode().hex().ljust(64, "0")
+    return AccessKey(name=name, sha256=digest, created="2026-01-01T00:00:00Z", requests_per_minute=limit)
 
 
 def test_a_key_opens_and_is_nowhere_on_disk(tmp_path: Path) -> None:
@@ -149,7 +155,140 @@ def test_keys_do_not_use_up_one_another() -> None:
 def test_an_address_that_others_reach_needs_a_key(tmp_path: Path, host: str) -> None:
     settings = Settings(host=host, data_directory=tmp_path)
     with pytest.raises(BadInput, match="loa keys add"):
-        open_keyring(settings)
+        open_identities(settings)
     KeyFile(settings.key_file).add("bench")
-    assert open_keyring(settings)
-    assert not open_keyring(Settings(data_directory=tmp_path / "other"))
+    assert open_identities(settings)
+    assert not open_identities(Settings(data_directory=tmp_path / "other"))
+
+
+def rewritten(file: KeyFile, name: str, **changes: object) -> None:
+    """Change the record of a key, as time would."""
+    content = json.loads(file.path.read_text())
+    for entry in content["keys"]:
+        entry.update(changes if entry["name"] == name else {})
+    file.path.write_text(json.dumps(content))
+
+
+def test_a_key_of_before_there_were_scopes_may_do_what_it_did(tmp_path: Path) -> None:
+    file = KeyFile(tmp_path / "keys.json")
+    secret = file.add("old")
+    entry = json.loads(file.path.read_text())["keys"][0]
+    former = {name: entry[name] for name in ("name", "sha256", "created", "requests_per_minute")}
+    file.path.write_text(json.dumps({"keys": [former | {"of_a_later_program": 1}]}))
+    holder = Keyring(file).holder(secret)
+    assert holder is not None
+    assert (set(holder.scopes), holder.project, holder.expires) == (set(Scope), "", None)
+
+
+@pytest.mark.parametrize(
+    ("rights", "named"),
+    [
+        ({"scopes": ["read", "write"]}, "some of read, submit, dismiss, operate"),
+        ({"scopes": []}, "some of read"),
+        ({"project": "Axle"}, "small letters"),
+        ({"project": "a.b"}, "small letters"),
+        ({"expires": "soon"}, "hours, days or weeks"),
+        ({"expires": "0d"}, "hours, days or weeks"),
+        ({"streams": 0}, "at least 1"),
+        ({"connections": -1}, "at least 1"),
+    ],
+)
+def test_rights_that_are_none_are_refused(tmp_path: Path, rights: dict[str, Any], named: str) -> None:
+    file = KeyFile(tmp_path / "keys.json")
+    with pytest.raises(BadInput, match=named):
+        file.add("bench", **rights)
+    assert file.read() == ()
+
+
+@pytest.mark.parametrize(
+    "spoilt", [{"scopes": ["all"]}, {"project": "../x"}, {"expires": "2026-01-01T00:00:00"}, {"expires": "x"}]
+)
+def test_a_right_that_cannot_be_read_is_not_left_out(tmp_path: Path, spoilt: dict[str, object]) -> None:
+    file = KeyFile(tmp_path / "keys.json")
+    file.add("bench")
+    rewritten(file, "bench", **spoilt)
+    with pytest.raises(BadInput, match="keys_file"):
+        file.read()
+
+
+@pytest.mark.parametrize(("text", "hours"), [("12h", 12), ("90d", 2160), ("2w", 336)])
+def test_a_key_ends_after_the_time_it_was_made_for(tmp_path: Path, text: str, hours: int) -> None:
+    file = KeyFile(tmp_path / "keys.json")
+    file.add("bench", expires=text)
+    (key,) = file.read()
+    end = datetime.fromisoformat(key.created) + timedelta(hours=hours)
+    assert not key.ends_within(timedelta(0), end - timedelta(seconds=1))
+    assert key.ends_within(timedelta(0), end)
+    assert not key.expired
+
+
+def test_rotation_leaves_the_old_key_the_overlap_and_the_new_one_all_rights(tmp_path: Path) -> None:
+    file = KeyFile(tmp_path / "keys.json")
+    old = file.add("bench", project="axle", scopes=["read"], expires="90d", streams=3)
+    new = file.rotate("bench", overlap="7d")
+    keyring = Keyring(file)
+    before, after = keyring.holder(old), keyring.holder(new)
+    assert before is not None and after is not None
+    for key in (before, after):
+        assert (key.name, key.project, key.scopes, key.streams) == ("bench", "axle", (Scope.READ,), 3)
+    assert before.ends_within(timedelta(days=7)) and not before.ends_within(timedelta(days=6, hours=23))
+    assert after.ends_within(timedelta(days=90)) and not after.ends_within(timedelta(days=89, hours=23))
+    file.remove("bench")
+    assert file.read() == ()
+
+
+def test_rotation_without_an_overlap_ends_the_old_key(tmp_path: Path) -> None:
+    file = KeyFile(tmp_path / "keys.json")
+    old = file.add("bench")
+    new = file.rotate("bench")
+    assert Keyring(file).holder(old) is None
+    assert Keyring(file).holder(new) is not None
+    assert [key.expires for key in file.read()] == [None]
+
+
+def test_rotation_makes_no_key_live_longer(tmp_path: Path) -> None:
+    file = KeyFile(tmp_path / "keys.json")
+    file.add("bench", expires="1h")
+    end = file.read()[0].expires
+    file.rotate("bench", overlap="7d", expires="90d")
+    assert file.read()[0].expires == end
+    with pytest.raises(BadInput, match="one of the keys: bench"):
+        file.rotate("other")
+
+
+def test_both_keys_of_a_rotation_share_one_rate(tmp_path: Path) -> None:
+    file, limits = KeyFile(tmp_path / "keys.json"), RateLimits(clock=lambda: 0.0)
+    file.add("bench", requests_per_minute=3)
+    file.rotate("bench", overlap="1d")
+    keys = file.read()
+    assert [limits.wait_s(keys[n % 2]) == 0 for n in range(5)] == [True, True, True, False, False]
+
+
+def test_a_key_that_ends_soon_is_mentioned_once_a_day(tmp_path: Path) -> None:
+    file = KeyFile(tmp_path / "keys.json")
+    soon, later = file.add("soon", expires="6d"), file.add("later", expires="8d")
+    keyring = Keyring(file)
+    with structlog.testing.capture_logs() as lines:
+        for secret in (soon, later, soon):
+            keyring.holder(secret)
+    assert [(line["event"], line["key"]) for line in lines] == [("key ends soon", "soon")]
+
+
+def test_the_verbs_show_rights_and_never_a_hash(tmp_path: Path) -> None:
+    path = tmp_path / "keys.json"
+
+    def verb(*arguments: str) -> str:
+        shown = CliRunner().invoke(app, ["keys", *arguments, "--file", str(path), "--json"])
+        assert shown.exit_code == 0, shown.output
+        return shown.stdout
+
+    made = json.loads(
+        verb("add", "bench", "--scopes", "read, submit", "--project", "axle", "--expires", "1w")
+    )
+    renewed = json.loads(verb("rotate", "bench", "--overlap", "1d"))
+    assert made["key"] != renewed["key"]
+    listed = verb("list")
+    first, second = json.loads(listed)["keys"]
+    assert first["scopes"] == second["scopes"] == ["read", "submit"]
+    assert (first["project"], first["expires"] < second["expires"]) == ("axle", True)
+    assert "sha256" not in listed

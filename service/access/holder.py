@@ -1,0 +1,94 @@
+"""Who sends a request: a name, a project, what the holder may do there, and how much of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+from enum import StrEnum
+
+from service.access.lifetime import read
+from service.project import COMMON
+
+
+class Scope(StrEnum):
+    """Something that a caller may do; none contains another."""
+
+    READ = "read"
+    SUBMIT = "submit"
+    DISMISS = "dismiss"
+    OPERATE = "operate"
+
+
+MEANINGS = {
+    Scope.READ: "see processes, jobs and results of the project, ask for plans and live answers",
+    Scope.SUBMIT: "execute processes, name jobs of one's own",
+    Scope.DISMISS: "dismiss jobs of one's own",
+    Scope.OPERATE: "dismiss and name jobs of others in the project, read the metrics of the service",
+}
+EVERY_SCOPE = tuple(Scope)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Holder:
+    """A known caller.
+
+    Attributes
+    ----------
+    name : str
+        Stands in the log and beside jobs.
+    project : str
+        Whose jobs and results are seen.
+    scopes : tuple of Scope
+    expires : str or None
+        The instant from which the caller is refused, RFC 3339, UTC; None: none.
+    requests_per_minute : int or None
+        Beyond it requests are answered with 429; None: no limit.
+    unfinished_jobs : int or None
+        Jobs that may wait or run at the same time; None: no limit but the queue's.
+    highest_priority : int or None
+        That jobs may have, -9 to 9; None: any.
+    max_cost_s : int or None
+        CPU seconds that each job may take; None: no limit.
+    connections : int or None
+        Connections on which requests are answered at the same time; None: no limit but the server's.
+    streams : int or None
+        Event streams open at the same time; None: no limit but the server's.
+    """
+
+    name: str
+    project: str = COMMON
+    scopes: tuple[Scope, ...] = EVERY_SCOPE
+    expires: str | None = None
+    requests_per_minute: int | None = None
+    unfinished_jobs: int | None = None
+    highest_priority: int | None = None
+    max_cost_s: int | None = None
+    connections: int | None = None
+    streams: int | None = None
+
+    @property
+    def limits(self) -> dict[str, int | None]:
+        """The limits by their names."""
+        return {name: getattr(self, name) for name in LIMITS}
+
+    def ends_within(self, time: timedelta, now: datetime | None = None) -> bool:
+        """Whether the caller's time ends in less than this, or is over."""
+        return self.expires is not None and read(self.expires) <= (now or datetime.now(UTC)) + time
+
+    @property
+    def expired(self) -> bool:
+        """Whether the caller's time is over."""
+        return self.ends_within(timedelta(0))
+
+
+LIMITS = (
+    "requests_per_minute",
+    "unfinished_jobs",
+    "highest_priority",
+    "max_cost_s",
+    "connections",
+    "streams",
+)
+"""Fields of a holder that are limits."""
+LEAST = {"highest_priority": -9}
+"""Of limits; of others 1."""

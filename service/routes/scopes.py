@@ -1,0 +1,78 @@
+"""What each operation needs: said where its route is defined, refused before its body is read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from fastapi import Request
+from fastapi.routing import APIRoute
+from starlette.responses import Response
+
+from service.access import Scope
+from service.problems import MissingScope
+from service.routes.context import key_of
+
+Endpoint = TypeVar("Endpoint", bound=Callable[..., Any])
+KEY_SCHEME = "accessKey"
+"""Name of the scheme in the description."""
+OPEN_TO_ALL = None
+"""In place of a scope: no key is needed; `service.routes.access.OPEN_PATHS` are the paths."""
+
+
+def needs(scope: Scope | None, *, streams: bool = False) -> Callable[[Endpoint], Endpoint]:
+    """Declare the scope that an endpoint needs, and whether it `streams` while its caller listens."""
+
+    def declare(endpoint: Endpoint) -> Endpoint:
+        endpoint.scope, endpoint.streams = scope, streams  # type: ignore[attr-defined]
+        return endpoint
+
+    return declare
+
+
+class ScopedRoute(APIRoute):
+    """A route that callers with its scope reach; there is none whose endpoint declares no scope."""
+
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        security = [] if self.scope is OPEN_TO_ALL else [{KEY_SCHEME: [str(self.scope)]}, {}]
+        self.openapi_extra = {**(self.openapi_extra or {}), "security": security}
+
+    @property
+    def scope(self) -> Scope | None:
+        """What callers need; raises AttributeError if the endpoint does not say."""
+        scope: Scope | None = self.endpoint.scope  # type: ignore[attr-defined]
+        return scope
+
+    def answering(self) -> Callable[[Request], Any]:
+        """Return what answers a request that may be answered."""
+        return super().get_route_handler()
+
+    def get_route_handler(self) -> Callable[[Request], Any]:
+        """Return what answers a request if its caller may ask that."""
+        answer, scope, streams = self.answering(), self.scope, self.endpoint.streams  # type: ignore[attr-defined]
+        if scope is OPEN_TO_ALL:
+            return answer
+
+        async def admitted(request: Request) -> Response:
+            require(request, scope)
+            if streams:
+                hold_stream(request)
+            response: Response = await answer(request)
+            return response
+
+        return admitted
+
+
+def require(request: Request, scope: Scope) -> None:
+    """Raise `MissingScope` unless the caller has a scope; without keys everybody has all."""
+    key = key_of(request)
+    if key is not None and scope not in key.scopes:
+        raise MissingScope.of(key.name, scope, key.scopes)
+
+
+def hold_stream(request: Request) -> None:
+    """Count a stream of the caller until its last byte is sent; raises `TooManyHeld`."""
+    key = key_of(request)
+    if key is not None:
+        request.state.held.enter_context(request.state.streams.one(key.name, key.streams))
