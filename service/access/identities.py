@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from service.access.holder import Holder
-from service.access.key_file import KeyFile
+from service.access.issuer import Issuer
+from service.access.key_file import PREFIX, KeyFile
 from service.access.keyring import Keyring
+from service.access.oidc_settings import load_oidc_settings
+from service.access.tokens import Tokens
 from service.problems import BadInput, Unauthorised
 from service.settings import Settings
 
@@ -15,19 +18,23 @@ class Identities:
     Parameters
     ----------
     keyring : Keyring
+    tokens : Tokens, optional
+        Of an issuer; without it there are keys only.
     """
 
-    def __init__(self, keyring: Keyring) -> None:
-        self._keyring = keyring
+    def __init__(self, keyring: Keyring, tokens: Tokens | None = None) -> None:
+        self._keyring, self._tokens = keyring, tokens
 
     def __bool__(self) -> bool:
         """Whether anybody is known."""
-        return bool(self._keyring)
+        return self._tokens is not None or bool(self._keyring)
 
     async def holder(self, presented: str | None) -> Holder:
-        """Return who presents a key; raise `Unauthorised` of what is none, or unknown."""
+        """Return who presents a key or a token; raises `Unauthorised`, or as `Tokens.holder`."""
         if presented is None:
             raise Unauthorised("This service asks for an access key, sent as: Authorization: Bearer KEY")
+        if self._tokens is not None and not presented.startswith(PREFIX):
+            return await self._tokens.holder(presented)
         key = self._keyring.holder(presented)
         if key is None:
             raise Unauthorised.of("This key is unknown. Ask the operator of the service for one.")
@@ -40,9 +47,12 @@ def open_identities(settings: Settings) -> Identities:
     Raises
     ------
     BadInput
-        The address is not loopback and there are no keys, or their file cannot be used.
+        The address is not loopback and there are neither keys nor an issuer of tokens, or their file or its
+        settings cannot be used.
     """
-    identities = Identities(Keyring(KeyFile(settings.key_file)))
+    oidc = load_oidc_settings()
+    tokens = None if oidc.issuer is None else Tokens(oidc, Issuer(oidc.issuer, oidc.keys_url))
+    identities = Identities(Keyring(KeyFile(settings.key_file)), tokens)
     if not settings.loopback and not identities:
         raise BadInput.of(
             "host",

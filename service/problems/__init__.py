@@ -21,6 +21,7 @@
     |- QueueFull         the queue is at its limit; try again later
     |- RateExceeded      the caller's key asks more often than it may; try again later
     |- TooManyHeld       the caller's key holds as many connections or streams as it may
+    |- IssuerUnavailable the issuer of access tokens does not answer; try again later
     |- TooManyRequests   the server process is busy with others; try again later
     |- Superseded        a later question of the same caller took its place
     |- NotAnalyzed       nothing is kept to answer from; submit a job first
@@ -38,6 +39,7 @@ Each carries the HTTP status, the problem type (RFC 9457) and the exit code of t
 from __future__ import annotations
 
 from service.problems.busy import (
+    IssuerUnavailable,
     LiveUnavailable,
     NotAnalyzed,
     QueueFull,
@@ -96,6 +98,7 @@ __all__ = [
     "DatabaseUnavailable",
     "Fault",
     "HeadTooLarge",
+    "IssuerUnavailable",
     "JobDismissed",
     "JobFailed",
     "KeyExpired",

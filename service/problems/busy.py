@@ -45,6 +45,15 @@ class TooManyHeld(TryLater):
     retry_after_s = 1
 
 
+class IssuerUnavailable(TryLater):
+    """The issuer of access tokens does not answer."""
+
+    status = 503
+    type = "urn:lineofaction:problem:issuer-unavailable"
+    title = "The issuer of tokens does not answer"
+    retry_after_s = 10
+
+
 class TooManyRequests(TryLater):
     """The server process answers as many requests as it can."""
 

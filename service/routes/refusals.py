@@ -11,6 +11,7 @@ from service.problems import (
     DatabaseDamaged,
     DatabaseUnavailable,
     HeadTooLarge,
+    IssuerUnavailable,
     KeyExpired,
     Malformed,
     MissingScope,
@@ -45,7 +46,7 @@ _OF_ALL: tuple[type[ServiceError], ...] = (
     TooManyRequests,
     Unexpected,
 )
-_WITH_KEYS = (Unauthorised, KeyExpired, MissingScope, RateExceeded, TooManyHeld)
+_WITH_KEYS = (Unauthorised, KeyExpired, MissingScope, RateExceeded, TooManyHeld, IssuerUnavailable)
 _OF_STORES = (DatabaseUnavailable, DatabaseDamaged, StoreUnavailable)
 _OF_BODIES = (TooLarge, UnsupportedMediaType, BadInput)
 _OF_ROUTING: Kinds = {405: {"about:blank": "Method Not Allowed"}}

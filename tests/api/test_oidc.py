@@ -1,0 +1,216 @@
+"""Bearer tokens of an issuer: what is let in, what is refused, and when the issuer is asked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from fastapi.testclient import TestClient
+from httpx2 import Response
+from local_issuer import AUDIENCE, LocalIssuer, local_issuer
+from service_fakes import REGISTRY
+
+from service.access import KeyFile, open_identities
+from service.access import issuer as issuer_module
+from service.access.issuer import FRESH_S, PAUSE_S, STALE_S
+from service.app import create_app
+from service.problems import BadInput, IssuerUnavailable, KeyExpired, MissingScope, Unauthorised
+from service.settings import Settings
+
+EXECUTION = "/v1/processes/fake/execution"
+
+
+@pytest.fixture
+def issuer(monkeypatch: pytest.MonkeyPatch) -> Iterator[LocalIssuer]:
+    """An issuer on loopback, which the settings name."""
+    with local_issuer() as found:
+        monkeypatch.setenv("LOA_OIDC_ISSUER", found.url)
+        monkeypatch.setenv("LOA_OIDC_AUDIENCE", AUDIENCE)
+        monkeypatch.setenv("LOA_OIDC_PROJECT_CLAIM", "team")
+        yield found
+
+
+class Clock:
+    """A clock that tests move."""
+
+    def __init__(self) -> None:
+        self.s = 1e6
+
+    def __call__(self) -> float:
+        return self.s
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    """The clock of the issuer's keys."""
+    found = Clock()
+    monkeypatch.setattr(issuer_module.Issuer.__init__, "__defaults__", (None, found))
+    return found
+
+
+@pytest.fixture
+def http(issuer: LocalIssuer, clock: Clock, tmp_path: Path) -> Iterator[TestClient]:
+    """A caller of a service that takes tokens."""
+    settings = Settings(data_directory=tmp_path / "data")
+    with TestClient(create_app(settings, REGISTRY, works=False), raise_server_exceptions=False) as found:
+        yield found
+
+
+def ask(http: TestClient, token: str, path: str = "/v1/jobs") -> Response:
+    return http.get(path, headers={"Authorization": f"Bearer {token}"})
+
+
+def test_claims_are_name_project_and_scopes(http: TestClient, issuer: LocalIssuer) -> None:
+    bearing = {"Authorization": f"Bearer {issuer.token()}"}
+    job = http.post(EXECUTION, json={"inputs": {"wish": {}}}, headers=bearing).headers["location"]
+    assert http.get(job, headers=bearing).status_code == 200
+    assert http.delete(job, headers=bearing).json()["type"] == MissingScope.type, "no loa:dismiss"
+    assert ask(http, issuer.token(team="drum"), job).status_code == 404
+    assert ask(http, issuer.token(scope=["loa:read"]), job).status_code == 200, "a list as well"
+    for scope in ("read submit", "openid", None, 3):
+        assert ask(http, issuer.token(scope=scope), job).status_code == 403, scope
+
+
+BAD: dict[str, Callable[[LocalIssuer], str]] = {
+    "wrong audience": lambda i: i.token(aud="others"),
+    "no audience": lambda i: i.token(aud=None),
+    "wrong issuer": lambda i: i.token(iss="https://login.example"),
+    "no issuer": lambda i: i.token(iss=None),
+    "no end": lambda i: i.token(exp=None),
+    "algorithm none": lambda i: i.unsigned(),
+    "HMAC with the public key": lambda i: i.confused(),
+    "signed by another": lambda i: i.foreign(),
+    "its own key in its head": lambda i: i.pointing(),
+    "an algorithm that is not allowed": lambda i: i.token("RS512"),
+    "an unknown key": lambda i: i.token(kid="key-0"),
+    "not yet": lambda i: i.token(nbf=4_000_000_000),
+    "no name": lambda i: i.token(sub=None),
+    "no project": lambda i: i.token(team=None),
+    "the common project": lambda i: i.token(team=""),
+    "a project that is none": lambda i: i.token(team="../axle"),
+    "changed": lambda i: i.token()[:-6] + "AAAAAA",
+    "no token": lambda i: "a.b.c",
+    "nothing of the kind": lambda i: "\xff",
+}
+
+
+@pytest.mark.parametrize("bad", BAD.values(), ids=BAD)
+def test_what_is_not_good_is_refused(
+    http: TestClient, issuer: LocalIssuer, bad: Callable[[LocalIssuer], str]
+) -> None:
+    assert ask(http, issuer.token()).status_code == 200
+    header = b"Bearer " + bad(issuer).encode("latin-1")
+    answer = http.get("/v1/jobs", headers={"Authorization": header})
+    assert (answer.status_code, answer.json()["type"]) == (401, Unauthorised.type)
+    assert answer.headers["www-authenticate"] == 'Bearer error="invalid_token"'
+    assert "/elsewhere" not in issuer.asked, "an address in a token is not followed"
+
+
+def test_an_expired_token_says_so(http: TestClient, issuer: LocalIssuer) -> None:
+    answer = ask(http, issuer.token(exp=1_700_000_000))
+    assert (answer.status_code, answer.json()["type"]) == (401, KeyExpired.type)
+
+
+def test_keys_are_fetched_once_and_anew_when_they_rotate(
+    http: TestClient, issuer: LocalIssuer, clock: Clock
+) -> None:
+    old = issuer.token()
+    assert [ask(http, old).status_code for _ in range(5)] == [200] * 5
+    assert issuer.asked == ["/.well-known/openid-configuration", "/keys"]
+    issuer.rotate("key-2")
+    assert ask(http, issuer.token()).status_code == 401, "just asked"
+    clock.s += PAUSE_S
+    assert ask(http, issuer.token()).status_code == 200
+    assert ask(http, old).status_code == 401, "no longer published"
+
+
+def test_made_up_keys_do_not_make_us_ask_the_issuer(
+    http: TestClient, issuer: LocalIssuer, clock: Clock
+) -> None:
+    for number in range(20):
+        assert ask(http, issuer.token(kid=f"made-up-{number}")).status_code == 401
+        clock.s += PAUSE_S / 10
+    assert len(issuer.asked) <= 2 * 3
+
+
+def test_an_issuer_that_is_down_holds_nobody_up_for_a_day(
+    http: TestClient, issuer: LocalIssuer, clock: Clock
+) -> None:
+    token = issuer.token()
+    assert ask(http, token).status_code == 200
+    issuer.answers = False
+    clock.s += FRESH_S + 1.0
+    assert ask(http, token).status_code == 200
+    assert ask(http, issuer.token(kid="newer")).json()["type"] == IssuerUnavailable.type
+    clock.s += STALE_S
+    refused = ask(http, token)
+    assert (refused.status_code, refused.json()["type"]) == (503, IssuerUnavailable.type)
+    assert refused.headers["retry-after"]
+    issuer.answers = True
+    clock.s += PAUSE_S
+    assert ask(http, token).status_code == 200
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [("issuer", "https://login.example"), ("jwks_uri", "http://localhost:{port}/keys"), ("jwks_uri", 3)],
+)
+def test_keys_come_from_the_issuer_alone(
+    http: TestClient, issuer: LocalIssuer, field: str, value: object
+) -> None:
+    port = issuer.url.rpartition(":")[2]
+    issuer.changes = {field: value.format(port=port) if isinstance(value, str) else value}
+    assert ask(http, issuer.token()).json()["type"] == IssuerUnavailable.type
+    assert "/keys" not in issuer.asked
+
+
+def test_keys_of_the_file_are_good_beside_tokens(
+    http: TestClient, issuer: LocalIssuer, tmp_path: Path
+) -> None:
+    key = KeyFile(tmp_path / "data" / "keys.json").add("bench", scopes=["operate"])
+    assert ask(http, key, "/metrics").status_code == 200
+    assert ask(http, "loa_guessed").status_code == 401
+    assert http.get("/v1/jobs").status_code == 401
+    assert issuer.asked == []
+
+
+def test_claims_inside_claims(issuer: LocalIssuer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, claim in (
+        ("NAME", "user.mail"),
+        ("PROJECT", "https://x.example/team"),
+        ("SCOPES", "realm.roles"),
+    ):
+        monkeypatch.setenv(f"LOA_OIDC_{name}_CLAIM", claim)
+    monkeypatch.setenv("LOA_OIDC_SCOPE_PREFIX", "")
+    settings = Settings(data_directory=tmp_path)
+    claims = {"user": {"mail": "a@b"}, "https://x.example/team": "axle", "realm": {"roles": ["read"]}}
+    with TestClient(create_app(settings, REGISTRY, works=False)) as http:
+        assert ask(http, issuer.token(**claims)).status_code == 200
+        assert ask(http, issuer.token(**claims | {"user": "a@b"})).status_code == 401
+        assert ask(http, issuer.token(**claims | {"realm": []})).status_code == 403
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("ISSUER", "http://login.example"),
+        ("ISSUER", "https://user:word@login.example"),
+        ("ISSUER", "login.example"),
+        ("KEYS_URL", "ftp://127.0.0.1/keys"),
+        ("ALGORITHMS", "RS256,HS256"),
+        ("ALGORITHMS", "none"),
+        ("ALGORITHMS", ""),
+        ("AUDIENCE", ""),
+    ],
+)
+def test_settings_that_let_others_in_are_refused(
+    issuer: LocalIssuer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, value: str
+) -> None:
+    monkeypatch.setenv(f"LOA_OIDC_{name}", value)
+    with pytest.raises(BadInput, match="oidc_"):
+        open_identities(Settings(data_directory=tmp_path))
+
+
+def test_an_issuer_is_enough_to_be_reached_by_others(issuer: LocalIssuer, tmp_path: Path) -> None:
+    assert open_identities(Settings(host="0.0.0.0", data_directory=tmp_path))
