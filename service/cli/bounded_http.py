@@ -42,6 +42,7 @@ class BoundedHttp(AutoHTTPProtocol):  # type: ignore[misc, valid-type]  # one of
     def connection_made(self, transport: Any) -> None:
         """Make room if there are too many, and wait for the first head."""
         super().connection_made(transport)
+        self.config.app.state.metrics.connected(1)
         if len(self.connections) > MOST_CONNECTIONS and self._idle:
             self._close_longest_idle()
         elif len(self.connections) > MOST_BUSY_CONNECTIONS:
@@ -71,6 +72,7 @@ class BoundedHttp(AutoHTTPProtocol):  # type: ignore[misc, valid-type]  # one of
     def connection_lost(self, exc: Exception | None) -> None:
         """Wait no more."""
         self._head_is_there()
+        self.config.app.state.metrics.connected(-1)
         super().connection_lost(exc)
 
     def send_400_response(self, msg: str) -> None:

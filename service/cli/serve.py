@@ -58,9 +58,7 @@ def http_server(app: FastAPI) -> _Server:
         timeout_keep_alive=_KEPT_S,
         lifespan="on",
     )
-    server = _Server(config, app.state.context)
-    app.state.metrics.count_connections(server.busy, server.idle)
-    return server
+    return _Server(config, app.state.context)
 
 
 class _Server(uvicorn.Server):
@@ -76,14 +74,6 @@ class _Server(uvicorn.Server):
         super().__init__(config)
         self._context, self._loop = context, EventLoop()
         self.vitals = Vitals(context.scheduler, context.writes, self._loop.fault)
-
-    def busy(self) -> int:
-        """Count the connections with a request."""
-        return len(self.server_state.connections) - self.idle()
-
-    def idle(self) -> int:
-        """Count the connections without one."""
-        return len(self.server_state.__dict__.get("idle", ()))
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         """Begin to serve."""

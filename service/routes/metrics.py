@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from typing import Any
 
 from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
 
@@ -18,26 +18,27 @@ class Metrics:
 
     Parameters
     ----------
-    registry : CollectorRegistry
-        With those of its process.
+    process : CollectorRegistry
+        With the metrics of its process.
     """
 
-    def __init__(self, registry: CollectorRegistry) -> None:
-        self._registry = registry
+    def __init__(self, process: CollectorRegistry) -> None:
+        self._process, self._registry = process, CollectorRegistry()
         labels = ["method", "route", "status"]
-        self._requests = Counter("loa_requests", "Requests answered", labels, registry=registry)
+        self._requests = Counter("loa_requests", "Requests answered", labels, registry=self._registry)
         text = "Time to answer, event streams left out"
-        self._seconds = Histogram("loa_request_seconds", text, labels, registry=registry)
+        self._seconds = Histogram("loa_request_seconds", text, labels, registry=self._registry)
         self._problems = Counter(
-            "loa_problems", "Requests answered with a problem", ["problem"], registry=registry
+            "loa_problems", "Requests answered with a problem", ["problem"], registry=self._registry
         )
         for kind in sorted(_kinds(ServiceError)):
             self._problems.labels(kind)  # rates count from 0, not from the first time
-        self._open = Gauge("loa_event_streams", "Open event streams", ["route"], registry=registry)
-        self._events = Counter("loa_events", "Events sent", ["route"], registry=registry)
-        self._connections = Gauge("loa_connections", "Open HTTP connections", ["state"], registry=registry)
+        sums: dict[str, Any] = {"registry": self._registry, "multiprocess_mode": "livesum"}
+        self._open = Gauge("loa_event_streams", "Open event streams", ["route"], **sums)
+        self._events = Counter("loa_events", "Events sent", ["route"], registry=self._registry)
+        self._connections = Gauge("loa_connections", "Open HTTP connections", **sums)
         self._dropped = Counter(
-            "loa_dropped_connections", "Idle connections closed to admit others", registry=registry
+            "loa_dropped_connections", "Idle connections closed to admit others", registry=self._registry
         )
 
     def observe(self, method: str, route: str, status: int, seconds: float | None) -> None:
@@ -59,10 +60,9 @@ class Metrics:
         """Note events of a stream."""
         self._events.labels(route).inc(events)
 
-    def count_connections(self, busy: Callable[[], int], idle: Callable[[], int]) -> None:
-        """Take the functions that count open connections with a request, and those without."""
-        self._connections.labels("busy").set_function(busy)
-        self._connections.labels("idle").set_function(idle)
+    def connected(self, change: int) -> None:
+        """Note a connection that was made (1) or lost (-1)."""
+        self._connections.inc(change)
 
     def dropped(self) -> None:
         """Note an idle connection that made room for another."""
@@ -70,7 +70,7 @@ class Metrics:
 
     def text(self) -> bytes:
         """Return all figures in the text exposition format."""
-        return generate_latest(self._registry)
+        return generate_latest(self._registry) + generate_latest(self._process)
 
 
 def _kinds(problem: type[ServiceError]) -> set[str]:

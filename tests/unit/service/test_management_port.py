@@ -60,6 +60,12 @@ def names(address: str) -> set[str]:
     return {family.name for family in text_string_to_metric_families(answer.text)}
 
 
+def connections(address: str) -> float:
+    """Return how many HTTP connections there are, by the metrics at an address."""
+    lines = httpx2.get(f"{address}/metrics", timeout=PATIENCE_S).text.splitlines()
+    return float(next(line for line in lines if line.startswith("loa_connections ")).split()[1])
+
+
 def status(address: str, path: str) -> int:
     """Return the status of an answer, 0 without one."""
     with suppress(httpx2.TransportError):
@@ -87,6 +93,10 @@ def test_a_server_with_keys_tells_them_without_one(tmp_path: Path) -> None:
         until(lambda: status(address, "/ready") == 200)
         assert status(public, "/metrics") == 401
         assert {"loa_workers_busy", "loa_requests", "loa_connections"} <= names(address)
+        with httpx2.Client() as client:
+            client.get(f"{public}/health")
+            assert connections(address) == 1
+        until(lambda: connections(address) == 0)
         assert status(address, "/v1/jobs") == 404
 
 
