@@ -24,13 +24,14 @@ from typing import Any, Concatenate, Literal, ParamSpec, TypeVar
 
 P = ParamSpec("P")
 T = TypeVar("T")
+F = TypeVar("F", bound=Figures)
 
-def _offered(declared: Callable[Concatenate[Any, P], T]) -> Offered[P, T]: ...
+def _offered(figures: type[F]) -> Callable[[Callable[Concatenate[Any, P], T]], Offered[P, T, F]]: ...
 
 class Processes(Surface):
-    @_offered
+    @_offered(TableFigures)
     def analyze(self, case: CaseLike) -> SteDatabase: ...
-    @_offered
+    @_offered(RunFigures)
     def simulate(self, scene: SceneLike) -> RunResult: ...
 """
 OWN = {
@@ -39,6 +40,7 @@ OWN = {
     "from service.client.portable import CaseLike, SceneLike",
     "from service.client.process import Offered",
     "from service.client.surface import Surface",
+    "from service.schemas.figures import Figures, RunFigures, TableFigures",
 }
 SUBJECTS = {"case": "CaseLike", "scene": "SceneLike", "case or scene": "CaseLike | SceneLike"}
 
@@ -47,6 +49,7 @@ def stub() -> str:
     """Return the types of all processes."""
     methods = "".join(method(study) for study in STUDIES.values())
     kinds = {kind for study in STUDIES.values() for kind in classes(study.run.file.result)}
+    kinds |= {study.answer for study in STUDIES.values()}
     lines = {f"from {kind.__module__} import {kind.__name__} as {alias(kind)}" for kind in kinds}
     imports = "\n".join(sorted(lines | OWN))
     return HEAD.format(imports=imports) + methods
@@ -73,7 +76,7 @@ def method(study: Study) -> str:
         parts += ["*", *(option(name, field) for name, field in study.inputs.model_fields.items())]
     lines = "".join(f"        {part},\n" for part in parts)
     result = written(study.run.file.result, "tuple")
-    return f"    @_offered\n    def {study.package}(\n{lines}    ) -> {result}: ...\n"
+    return f"    @_offered({alias(study.answer)})\n    def {study.package}(\n{lines}    ) -> {result}: ...\n"
 
 
 def option(name: str, field: FieldInfo) -> str:

@@ -20,7 +20,9 @@ _LOADED = """
 import importlib, json, pkgutil, sys
 import service.client
 from service import schemas
+from service.registry import STUDIES
 [getattr(schemas, name) for name in schemas.__all__]  # loaded on first use
+[study.answer for study in STUDIES.values()]
 for module in pkgutil.walk_packages(service.client.__path__, "service.client."):
     importlib.import_module(module.name)
 files = (getattr(module, "__file__", None) for module in list(sys.modules.values()))

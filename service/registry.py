@@ -95,6 +95,11 @@ class Study:
         return self._part(".run", "RUN")
 
     @property
+    def answer(self) -> Any:
+        """Model of its figures, a `service.schemas.figures.Figures`."""
+        return self._part(".answer", "ANSWER")
+
+    @property
     def page(self) -> Any:
         """Its `service.studies.presentation.Presentation`."""
         return self._part(".page", "PAGE")

@@ -123,7 +123,7 @@ class LineOfActionClient(Client, Blocking):
         """Close the connections."""
         self.driver.close()
 
-    def job(self, identifier: str) -> Job[Any]:
+    def job(self, identifier: str) -> Job[Any, Any]:
         """Return a job by its identifier; raises `NotFound`."""
         state = self.status(identifier)
         return Job(self, state, reader_of(state.process))
@@ -147,7 +147,7 @@ class AsyncLineOfActionClient(Client, Awaiting):
         """Close the connections."""
         await self.driver.close()
 
-    async def job(self, identifier: str) -> AsyncJob[Any]:
+    async def job(self, identifier: str) -> AsyncJob[Any, Any]:
         """Return a job by its identifier; raises `NotFound`."""
         state = await self.status(identifier)
         return AsyncJob(self, state, reader_of(state.process))

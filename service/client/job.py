@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar, cast
 
 from service.client.job_calls import JobCalls, pace_of_known, result_of
 from service.client.report import Report
@@ -19,11 +20,14 @@ from service.problems import BadInput, DamagedFile, JobDismissed, JobFailed, Not
 if TYPE_CHECKING:
     import xarray
 
+    from service.schemas.figures import Figures
+
 T = TypeVar("T")
+F = TypeVar("F", bound="Figures")
 Fetched = TypeVar("Fetched")
 
 
-class _JobCalls(Surface, Generic[T]):
+class _JobCalls(Surface, Generic[T, F]):
     """The calls of a job.
 
     Attributes
@@ -103,12 +107,11 @@ class _JobCalls(Surface, Generic[T]):
         return (yield from self._patiently(lambda: ResultCalls.fetch_dataset(self, found.key, found.kind)))
 
     @operation
-    def figures(
-        self, progress: Watch | None = None, *, timeout: float | None = None
-    ) -> Steps[dict[str, Any]]:
-        """Wait for the job and return the JSON document of its result; raises as `wait`."""
+    def figures(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[F]:
+        """Wait for the job and return the figures of its result, units in their names; raises as `wait`."""
         found = yield from _JobCalls.wait(self, progress, timeout=timeout)
-        return (yield from self._patiently(lambda: ResultCalls.fetch_figures(self, found.key, found.kind)))
+        fetch = partial(ResultCalls.fetch_figures, self, found.key, found.kind)
+        return cast("F", (yield from self._patiently(fetch)))
 
     @operation
     def report(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[Report]:
@@ -142,7 +145,7 @@ class _JobCalls(Surface, Generic[T]):
         return f"<{type(self).__name__} {self.id or 'cached'} {self.state}>"
 
 
-class Job(_JobCalls[T], Blocking):
+class Job(_JobCalls[T, F], Blocking):
     """A job whose calls block."""
 
     def __init__(
@@ -152,7 +155,7 @@ class Job(_JobCalls[T], Blocking):
         self.driver = client.driver
 
 
-class AsyncJob(_JobCalls[T], Awaiting):
+class AsyncJob(_JobCalls[T, F], Awaiting):
     """A job whose calls are awaited."""
 
     def __init__(

@@ -6,7 +6,7 @@ import uuid
 from collections.abc import AsyncIterator, Callable, Iterable, Iterator
 from contextlib import aclosing, suppress
 from pathlib import Path
-from typing import Any, Generic, ParamSpec, TypeVar, overload
+from typing import TYPE_CHECKING, Any, Generic, ParamSpec, TypeVar, overload
 
 from service.client.job import AsyncJob, Job
 from service.client.job_calls import JobCalls
@@ -18,8 +18,12 @@ from service.client.surface import Awaiting, Blocking, Surface
 from service.client.waiting import note_continuing, outlasting
 from service.problems import BadInput, ServiceError
 
+if TYPE_CHECKING:
+    from service.schemas.figures import Figures
+
 P = ParamSpec("P")
 T = TypeVar("T")
+F = TypeVar("F", bound="Figures")
 CONCURRENCY = 8
 """Jobs of a `map` that are under way at once."""
 
@@ -94,7 +98,7 @@ class _Mapping:
         )
 
 
-class _Calls(Generic[P, T]):
+class _Calls(Generic[P, T, F]):
     """What both kinds of processes share."""
 
     def __init__(self, client: Any, offer: Offer) -> None:
@@ -103,7 +107,7 @@ class _Calls(Generic[P, T]):
         self.__signature__ = offer.signature
 
 
-class Process(_Calls[P, T]):
+class Process(_Calls[P, T, F]):
     """A process whose calls block."""
 
     _client: Blocking
@@ -117,7 +121,7 @@ class Process(_Calls[P, T]):
         result: T = self._client.driver.run(obtained(self._client, self._offer, inputs))
         return result
 
-    def submit(self, *args: P.args, **kwargs: P.kwargs) -> Job[T]:
+    def submit(self, *args: P.args, **kwargs: P.kwargs) -> Job[T, F]:
         """Enter a job and return it; raises `BadInput`, `QueueFull`, `Unreachable`."""
         inputs = self._offer.inputs(*args, **kwargs)
         steps = JobCalls.submit(self._client, self._offer.name, inputs)
@@ -125,7 +129,7 @@ class Process(_Calls[P, T]):
 
     def map(
         self, subjects: Iterable[Any], *, concurrency: int = CONCURRENCY, **options: Any
-    ) -> Iterator[Job[T]]:
+    ) -> Iterator[Job[T, F]]:
         """Yield the ended job of every subject, in order.
 
         What the cache holds is not asked for again while the service has the version that gave it. A loop
@@ -155,12 +159,12 @@ class Process(_Calls[P, T]):
             mapping.note_continuing(error)
             raise
 
-    def _job(self, state: JobState, result: Result | None = None) -> Job[T]:
+    def _job(self, state: JobState, result: Result | None = None) -> Job[T, F]:
         """Return the job of a state."""
         return Job(self._client, state, self._offer.read, result)
 
 
-class AsyncProcess(_Calls[P, T]):
+class AsyncProcess(_Calls[P, T, F]):
     """A process whose calls are awaited; as `Process`."""
 
     _client: Awaiting
@@ -171,7 +175,7 @@ class AsyncProcess(_Calls[P, T]):
         result: T = await self._client.driver.run(obtained(self._client, self._offer, inputs))
         return result
 
-    async def submit(self, *args: P.args, **kwargs: P.kwargs) -> AsyncJob[T]:
+    async def submit(self, *args: P.args, **kwargs: P.kwargs) -> AsyncJob[T, F]:
         """Enter a job and return it; as of `Process`."""
         inputs = self._offer.inputs(*args, **kwargs)
         steps = JobCalls.submit(self._client, self._offer.name, inputs)
@@ -179,7 +183,7 @@ class AsyncProcess(_Calls[P, T]):
 
     async def map(
         self, subjects: Iterable[Any], *, concurrency: int = CONCURRENCY, **options: Any
-    ) -> AsyncIterator[AsyncJob[T]]:
+    ) -> AsyncIterator[AsyncJob[T, F]]:
         """Yield the ended job of every subject, in order; as of `Process`.
 
         A loop that is left early closes this when it is collected; `contextlib.aclosing` closes it at once.
@@ -197,12 +201,12 @@ class AsyncProcess(_Calls[P, T]):
             mapping.note_continuing(error)
             raise
 
-    def _job(self, state: JobState, result: Result | None = None) -> AsyncJob[T]:
+    def _job(self, state: JobState, result: Result | None = None) -> AsyncJob[T, F]:
         """Return the job of a state."""
         return AsyncJob(self._client, state, self._offer.read, result)
 
 
-class Offered(Generic[P, T]):
+class Offered(Generic[P, T, F]):
     """The attribute of a client that is a process."""
 
     def __init__(self, offer: Offer) -> None:
@@ -210,11 +214,11 @@ class Offered(Generic[P, T]):
         self.__doc__ = offer.description
 
     @overload
-    def __get__(self, client: None, owner: type) -> Offered[P, T]: ...
+    def __get__(self, client: None, owner: type) -> Offered[P, T, F]: ...
     @overload
-    def __get__(self, client: Blocking, owner: type) -> Process[P, T]: ...
+    def __get__(self, client: Blocking, owner: type) -> Process[P, T, F]: ...
     @overload
-    def __get__(self, client: Awaiting, owner: type) -> AsyncProcess[P, T]: ...
+    def __get__(self, client: Awaiting, owner: type) -> AsyncProcess[P, T, F]: ...
     def __get__(self, client: Any, owner: type) -> Any:
         """Return the process of a client."""
         if client is None:

@@ -20,21 +20,35 @@ from fe_contact.ste import SteDatabase
 from service.client.portable import CaseLike, SceneLike
 from service.client.process import Offered
 from service.client.surface import Surface
+from service.schemas.figures import Figures, RunFigures, TableFigures
+from service.studies.ablate.answer import AblationFigures as ServiceAblationFigures
+from service.studies.flank.answer import FlankFigures as ServiceFlankFigures
+from service.studies.frontier.answer import FrontierFigures as ServiceFrontierFigures
+from service.studies.modes.answer import ModesFigures as ServiceModesFigures
+from service.studies.optimize.answer import OptimizationFigures as ServiceOptimizationFigures
+from service.studies.response.answer import ResponseFigures as ServiceResponseFigures
+from service.studies.root_stress.answer import RootStressFigures as ServiceRootStressFigures
 from service.studies.root_stress.run import Roots as ServiceRoots
+from service.studies.scatter.answer import ScatterFigures as ServiceScatterFigures
+from service.studies.sensitivity.answer import SensitivityFigures as ServiceSensitivityFigures
 from service.studies.sensitivity.stored import PairStudy as ServicePairStudy
+from service.studies.steady.answer import SteadyFigures as ServiceSteadyFigures
+from service.studies.study.answer import StudyFigures as ServiceStudyFigures
+from service.studies.sweep.answer import SweepFigures as ServiceSweepFigures
 from service.studies.sweep.run import SweepResult as ServiceSweepResult
 
 P = ParamSpec("P")
 T = TypeVar("T")
+F = TypeVar("F", bound=Figures)
 
-def _offered(declared: Callable[Concatenate[Any, P], T]) -> Offered[P, T]: ...
+def _offered(figures: type[F]) -> Callable[[Callable[Concatenate[Any, P], T]], Offered[P, T, F]]: ...
 
 class Processes(Surface):
-    @_offered
+    @_offered(TableFigures)
     def analyze(self, case: CaseLike) -> SteDatabase: ...
-    @_offered
+    @_offered(RunFigures)
     def simulate(self, scene: SceneLike) -> RunResult: ...
-    @_offered
+    @_offered(ServiceFlankFigures)
     def flank(
         self,
         case: CaseLike,
@@ -44,14 +58,14 @@ class Processes(Surface):
         misalignment_um: float | None = ...,
         center_distance_change_mm: float | None = ...,
     ) -> FeContactLoadDistribution: ...
-    @_offered
+    @_offered(ServiceAblationFigures)
     def ablate(
         self,
         given: CaseLike | SceneLike,
         *,
         only: Sequence[str] | None = ...,
     ) -> FeContactAblation | DynamicsAblation: ...
-    @_offered
+    @_offered(ServiceFrontierFigures)
     def frontier(
         self,
         given: CaseLike | SceneLike,
@@ -60,7 +74,7 @@ class Processes(Surface):
         up_to: Literal["corrected_fine", "3d_draft", "3d_standard", "3d_fine"] = ...,
         full_contact: int | None = ...,
     ) -> FeContactFrontier | DynamicsFrontier: ...
-    @_offered
+    @_offered(ServiceSensitivityFigures)
     def sensitivity(
         self,
         case: CaseLike,
@@ -68,7 +82,7 @@ class Processes(Surface):
         misalignment_um: Sequence[float] = ...,
         center_distance_change_percent: Sequence[float] = ...,
     ) -> tuple[ServicePairStudy, ...]: ...
-    @_offered
+    @_offered(ServiceRootStressFigures)
     def root_stress(
         self,
         case: CaseLike,
@@ -78,13 +92,13 @@ class Processes(Surface):
         misalignment_um: float | None = ...,
         center_distance_change_mm: float | None = ...,
     ) -> ServiceRoots: ...
-    @_offered
+    @_offered(ServiceOptimizationFigures)
     def optimize(
         self,
         case: CaseLike,
         study: Mapping[str, Any],
     ) -> FeContactOptimization: ...
-    @_offered
+    @_offered(ServiceScatterFigures)
     def scatter(
         self,
         case: CaseLike,
@@ -95,7 +109,7 @@ class Processes(Surface):
         samples: int = ...,
         seed: int = ...,
     ) -> FeContactToleranceStudy: ...
-    @_offered
+    @_offered(ServiceSweepFigures)
     def sweep(
         self,
         case: CaseLike,
@@ -103,7 +117,7 @@ class Processes(Surface):
         over: Sequence[str] = ...,
         show: Sequence[Literal["peak_to_peak", "harmonic_1", "harmonic_2", "harmonic_3", "max_pressure", "face_load_factor"]] = ...,
     ) -> ServiceSweepResult: ...
-    @_offered
+    @_offered(ServiceModesFigures)
     def modes(
         self,
         scene: SceneLike,
@@ -112,7 +126,7 @@ class Processes(Surface):
         orders: int = ...,
         highest_frequency_hz: float | None = ...,
     ) -> DynamicsModalAnalysis: ...
-    @_offered
+    @_offered(ServiceResponseFigures)
     def response(
         self,
         scene: SceneLike,
@@ -120,7 +134,7 @@ class Processes(Surface):
         speed_rpm: Sequence[float],
         orders: int = ...,
     ) -> DynamicsForcedResponse: ...
-    @_offered
+    @_offered(ServiceSteadyFigures)
     def steady(
         self,
         scene: SceneLike,
@@ -130,7 +144,7 @@ class Processes(Surface):
         repeat: int = ...,
         settling_periods: int = ...,
     ) -> DynamicsSteadyStates: ...
-    @_offered
+    @_offered(ServiceStudyFigures)
     def study(
         self,
         scene: SceneLike,

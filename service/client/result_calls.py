@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import base64
-import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING, Unpack
 
 from service import schemas
 from service.client.cache import FIGURES
@@ -21,12 +20,13 @@ from service.client.surface import Session, Surface, listing, operation
 from service.problems import DamagedFile, NotFound
 from service.registry import JSON, NETCDF
 from service.schemas.database_list import DatabaseEntry
-from service.schemas.result_kinds import RESULT_KINDS, RESULTS, SUFFIX
+from service.schemas.result_kinds import RESULT_KINDS, RESULTS, SUFFIX, figures_model
 
 if TYPE_CHECKING:
     import xarray
 
     from fe_contact.ste import SteDatabase
+    from service.schemas.figures import Figures
 
 
 class ResultCalls(Surface):
@@ -82,11 +82,10 @@ class ResultCalls(Surface):
         return file
 
     @operation
-    def fetch_figures(self, key: str, kind: str) -> Steps[dict[str, Any]]:
-        """Return the JSON document of a result, as its verb prints it by ``--json``; as `fetch_file`."""
+    def fetch_figures(self, key: str, kind: str) -> Steps[Figures]:
+        """Return the figures of a result, which its verb prints by ``--json``; as `fetch_file`."""
         file, _ = yield from _fetched(self.session, key, (kind,), JSON)
-        figures: dict[str, Any] = json.loads(file.read_bytes())
-        return figures
+        return figures_model(kind).model_validate_json(file.read_bytes())
 
     @operation
     def fetch_result(self, key: str, *kinds: str) -> Steps[tuple[Path, str]]:

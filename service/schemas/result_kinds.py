@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from service.registry import STUDIES
+from service.registry import STUDIES, study_of
+
+if TYPE_CHECKING:
+    from service.schemas.figures import Figures
 
 SUFFIX = ".nc"
 """Ending of their files, which are netCDF."""
@@ -36,3 +40,13 @@ RESULT_KINDS: dict[str, ResultKind] = {
         *(ResultKind(row.kind, row.collection) for row in STUDIES.values()),
     )
 }
+
+
+def figures_model(kind: str) -> type[Figures]:
+    """Return the model of the figures of a kind; those of an unknown one are not declared."""
+    from service.schemas.figures import Figures, RunFigures, TableFigures  # noqa: PLC0415 (start-up time)
+
+    study = study_of(kind)
+    models: dict[str, type[Figures]] = {"database": TableFigures, "run": RunFigures}
+    models |= {} if study is None else {kind: study.answer}
+    return models.get(kind, Figures)

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from declared_figures import check_declared, document
 from fastapi.testclient import TestClient
 
 from dynamics.simulation import simulate
@@ -85,6 +86,13 @@ def test_a_scene_runs_on_the_stored_table(client: LineOfActionClient, case: dict
     run = client.simulate(scene(case))
     force = run.to_xarray()["mesh_force"].to_numpy()
     assert force.mean() == pytest.approx(100.0 / (0.04 * np.cos(np.radians(20.0))), rel=0.02)
+
+
+def test_the_figures_of_a_run_and_of_its_table_are_as_declared(
+    client: LineOfActionClient, case: dict[str, Any]
+) -> None:
+    check_declared("run", document(client.simulate.submit(scene(case)).figures()))
+    check_declared("database", document(client.analyze.submit(case).figures()))
 
 
 def test_a_hash_serves_as_well_as_the_case(client: LineOfActionClient, case: dict[str, Any]) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from declared_figures import document
 from fastapi.testclient import TestClient
 from running_service import REFERENCES
 from study_service import empty_service, figures_alone
@@ -83,7 +84,7 @@ def test_the_optimization_is_that_of_python(served: Served, data: Path) -> None:
     job = client.submit("optimize", {"case": CASE, **STUDY})  # the same question: stored already
     assert job.status == "successful"
     reference = http.get(f"/v1/jobs/{job.id}/results", params=REFERENCES).json()["optimization"]
-    assert http.get(reference["href"]).json() == answer
+    assert http.get(reference["href"]).json() == document(answer)
     assert client.optimize.submit(CASE, STUDY).file().suffix == ".nc"
 
 

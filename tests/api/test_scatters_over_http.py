@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from declared_figures import document
 from fastapi.testclient import TestClient
 from study_service import empty_service, figures_alone
 
@@ -59,7 +60,7 @@ def test_the_pairs_are_those_of_python(served: tuple[LineOfActionClient, TestCli
     again = client.submit("scatter", {"case": CASE, **SAMPLING, "distribution": "normal"})
     assert again.status == "successful"  # the same question with a default written out: stored already
     key = client.result(again.id).key
-    assert http.get(f"/v1/results/{key}").json() == answer
+    assert http.get(f"/v1/results/{key}").json() == document(answer)
 
 
 def test_every_input_is_another_question() -> None:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from declared_figures import check_declared, document, undeclared
 from fastapi.testclient import TestClient
 from running_service import REFERENCES
 from scene_files import scene_file
@@ -21,6 +22,7 @@ from service.client import LineOfActionClient
 from service.problems import BadInput
 from service.registry import JSON, NETCDF
 from service.schemas import read_model
+from service.schemas.figures import Figures
 from service.schemas.scene import SceneInput
 from service.settings import Settings
 from service.store import stored_results
@@ -45,14 +47,16 @@ class Served:
     http: TestClient
     data: Path
 
-    def has_figures_and_file(self, output: str, told: Any, job: str) -> None:
+    def has_figures_and_file(self, output: str, told: Figures, job: str) -> None:
         """Check that what a job left is what was told, in the form that is accepted, with its digest."""
         reference = self.http.get(f"/v1/jobs/{job}/results", params=REFERENCES).json()[output]
         assert reference["type"] == NETCDF
         for accept, kind in ((JSON, JSON), ("*/*", JSON), (NETCDF, NETCDF)):
             answer = self.http.get(reference["href"], headers={"Accept": accept})
             assert answer.headers["content-type"] == kind
-            assert kind == NETCDF or answer.json() == told
+            if kind == JSON:
+                assert answer.json() == document(told)
+                check_declared(output, answer.json())
             digest = base64.b64encode(hashlib.sha256(answer.content).digest()).decode()
             assert answer.headers["content-digest"] == f"sha-256=:{digest}:"
             again = {"If-None-Match": answer.headers["etag"], "Accept": accept}
@@ -115,6 +119,8 @@ def without(names: tuple[str, ...], value: Any) -> Any:
     return [without(names, item) for item in value] if isinstance(value, list) else value
 
 
-def figures_alone(answer: dict[str, Any]) -> dict[str, Any]:
+def figures_alone(figures: Figures) -> dict[str, Any]:
     """Return the figures of a result without what the service adds about its file."""
+    answer = document(figures)
+    assert list(undeclared(figures)) == []
     return {name: value for name, value in answer.items() if name not in ("hash", "sha256", "size")}

@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
+from declared_figures import check_declared
 from spur_case import SPUR
 from typer.testing import CliRunner, Result
 
@@ -44,6 +45,7 @@ def test_the_highest_load_of_the_case_is_the_default(small: Path, tmp_path: Path
     result = loa("flank", small, "-o", tmp_path / "f.nc", "--json")
     assert (result.exit_code, result.stderr) == (0, "")
     answer = json.loads(result.stdout)
+    check_declared("flanks", answer)
     found = LoadDistribution.from_netcdf(tmp_path / "f.nc")
     assert answer["torque_n_m"] == pytest.approx(200.0) == found.scene.torque
     assert answer["largest_pressure_mpa"] == pytest.approx(1e-6 * found.pressure.max())

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from declared_figures import check_declared
 from scene_files import scene_file
 from typer.testing import CliRunner, Result
 
@@ -36,6 +37,7 @@ def test_json_holds_the_modes_of_python_and_nothing_else(scene: Path) -> None:
     result = loa(scene, "--speed-rpm", "0:9000:1500", "--orders", 3, "--json")
     assert (result.exit_code, result.stderr) == (0, "")
     answer = json.loads(result.stdout)
+    check_declared("modes", answer)
     given, _ = scene_of(scene)
     system = assemble(dynamic_scene(given, {"mesh": SteDatabase.from_netcdf(scene.parent / "ste.nc")}))
     here = modal_analysis(system).natural_frequency

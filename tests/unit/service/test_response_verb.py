@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from declared_figures import check_declared
 from scene_files import scene_file
 from typer.testing import CliRunner, Result
 
@@ -30,6 +31,7 @@ def test_json_holds_amplitudes_by_order_and_speed_and_the_peaks(scene: Path) -> 
     result = loa(scene, "--speed-rpm", "100:6000:50", "--orders", 4, "--json")
     assert (result.exit_code, result.stderr) == (0, "")
     answer = json.loads(result.stdout)
+    check_declared("response", answer)
     assert answer["order"] == [1.0, 2.0, 3.0, 4.0]
     mesh = answer["meshes"]["mesh"]
     force = np.array(mesh["mesh_force_n"])

@@ -11,6 +11,7 @@ from pathlib import Path
 import h5netcdf
 import numpy as np
 import pytest
+from declared_figures import check_declared
 from typer.testing import CliRunner, Result
 
 from fe_contact.analysis import RippleCurve, Sensitivity, check_request
@@ -89,6 +90,7 @@ def test_a_study_in_a_folder(small: Path, tmp_path: Path) -> None:
     )  # fmt: skip
     assert (result.exit_code, result.stderr) == (0, "")
     answer = json.loads(result.stdout)
+    check_declared("sensitivity", answer)
     written = [Path(file).name for file in answer.pop("written")]
     assert written == [f"sensitivity.{ending}" for ending in ("nc", "json", "png", "html", "csv")]
     (stored,) = read_studies(tmp_path / "out" / "sensitivity.nc")

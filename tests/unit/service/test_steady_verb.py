@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from declared_figures import check_declared
 from scene_files import scene_file
 from typer.testing import CliRunner, Result
 
@@ -38,6 +39,7 @@ def test_every_kind_of_output_says_the_same(scene: Path, tmp_path: Path) -> None
     answer = loa(scene, "--speed-rpm", "3000,3200", "--settling-periods", 2, "--json")
     printed, found = json.loads(answer.stdout), SteadyStates.from_netcdf(files["nc"])
     written = json.loads(files["json"].read_text())
+    check_declared("steady", written)
     for told in (printed, written):
         told.pop("cpu_seconds")
         assert told.pop("warnings") == []

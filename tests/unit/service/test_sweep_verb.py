@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from declared_figures import check_declared
 from spur_case import SPUR
 from typer.testing import CliRunner
 
@@ -96,6 +97,7 @@ def test_files_and_terminal_say_the_same(file: Path, tmp_path: Path) -> None:
     assert re.match(r"largest peak-to-peak STE: [\d.]+ µm ± [\d.]+ µm at torque", largest)
     assert written == f"written to {target}"
     told = json.loads(output("sweep", file, "--over", OVER, "--json"))
+    check_declared("sweep", told)
     rows = list(csv.DictReader(target.read_text(encoding="utf-8").splitlines()))
     assert len(rows) == len(told["points"]) == 9
     for row, point in zip(rows, told["points"], strict=True):

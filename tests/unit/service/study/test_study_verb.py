@@ -16,6 +16,7 @@ from typing import Any, get_args
 
 import numpy as np
 import pytest
+from declared_figures import check_declared
 from scene_files import scene_file
 from typer.testing import CliRunner, Result
 
@@ -87,6 +88,7 @@ def studied(tmp_path_factory: pytest.TempPathFactory) -> Studied:
 
 def test_figures_are_those_of_loa_simulate(studied: Studied, tmp_path: Path) -> None:
     answer = json.loads(studied.printed)
+    check_declared("study", answer)
     made = Study.from_netcdf(studied.out / "study.nc")
     figures = facts(made)
     assert figures == {name: answer[name] for name in figures}

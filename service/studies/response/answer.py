@@ -1,0 +1,63 @@
+"""Figures of a forced response."""
+
+from __future__ import annotations
+
+from service.schemas.figures import Figures, Json, Part
+
+
+class MeshResponse(Part):
+    """Amplitudes of a mesh by order, then by speed."""
+
+    mean_force_n: float
+    mean_stiffness_n_per_um: float
+    static_transmission_error_um: list[float]
+    dynamic_transmission_error_um: list[list[float]]
+    mesh_force_n: list[list[float]]
+    least_mesh_force_n: list[float]
+    excitation_difference: list[float]
+
+
+class BearingResponse(Part):
+    """Amplitudes of a bearing force by order, then by speed."""
+
+    force_n: list[list[float]]
+
+
+class PeakFigures(Part):
+    """A peak over speed."""
+
+    quantity: str
+    name: str
+    order: float
+    speed_rpm: float
+    frequency_hz: float
+    amplitude_n: float
+    amplification: float
+    natural_frequency_hz: float
+
+
+class Equilibrium(Part):
+    """The loaded equilibrium."""
+
+    status: str
+    residual_n: float
+
+
+class ResponseFigures(Figures):
+    """Amplitudes of meshes and bearings, peaks, and the speeds at which flanks would part."""
+
+    leading_shaft: str
+    speed_rpm: list[float]
+    order: list[float]
+    meshes: dict[str, MeshResponse]
+    bearings: dict[str, BearingResponse]
+    peaks: list[PeakFigures]
+    parting_rpm: list[float]
+    natural_frequency_hz: list[float]
+    residual: float
+    equilibrium: Equilibrium
+    cpu_seconds: dict[str, float]
+    effect_ledger: Json
+
+
+ANSWER = ResponseFigures

@@ -1,0 +1,87 @@
+"""Figures of results as the client has them: typed by kind, whole, and read by name as before."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any, get_type_hints
+
+import httpx2
+import pytest
+from declared_figures import check_declared, document
+from pydantic import ValidationError
+from small_table import small_table
+from stored_jobs import StoredJobs
+
+from service.client import AsyncJob, AsyncLineOfActionClient, Job, LineOfActionClient
+from service.client.surface import Listing, Operation
+from service.convert.answers import metadata_json
+from service.registry import STUDIES
+from service.schemas.figures import Figures, RunFigures, TableFigures
+from service.schemas.result_kinds import RESULT_KINDS, figures_model
+
+OF_FILE = {"hash": "ab" * 32, "sha256": "cd" * 32, "size": 3}
+ABLATION = OF_FILE | {
+    "of": "case",
+    "nominal": {"mean_um": [1.0], "peak_to_peak_um": [2.0], "cpu_seconds": 0.1},
+    "effects": [],
+    "left_out": {},
+    "warnings": [],
+}
+
+
+def test_every_kind_has_a_model_of_its_own() -> None:
+    models = {kind: figures_model(kind) for kind in RESULT_KINDS}
+    assert len(set(models.values())) == len(RESULT_KINDS) == len(STUDIES) + 2
+    assert all(issubclass(model, Figures) and model is not Figures for model in models.values())
+    assert (models["database"], models["run"]) == (TableFigures, RunFigures)
+    assert figures_model("of a later version") is Figures
+
+
+def test_a_table_says_what_is_declared() -> None:
+    check_declared("database", json.loads(json.dumps(metadata_json(small_table()))))
+
+
+def test_members_are_read_as_attributes_and_by_their_names() -> None:
+    figures = figures_model("ablation").model_validate(ABLATION)
+    assert figures.nominal.mean_um == [1.0]  # type: ignore[attr-defined]
+    assert figures["nominal"] == ABLATION["nominal"]
+    for missing in ("nominals", "torque_n_m"):  # of a case alone
+        with pytest.raises(KeyError):
+            figures[missing]
+    with pytest.raises(ValidationError):
+        figures.of = "scene"  # type: ignore[attr-defined]
+
+
+def test_what_a_later_service_adds_is_kept() -> None:
+    later = ABLATION | {"moon": "full"}
+    figures = figures_model("ablation").model_validate(later)
+    assert document(figures) == later and figures["moon"] == "full"
+
+
+def test_no_call_returns_a_bare_dictionary() -> None:
+    """Of all that clients and jobs offer, as annotated."""
+    for surface in (LineOfActionClient, AsyncLineOfActionClient, Job, AsyncJob):
+        for kind in surface.__mro__:
+            for name, member in vars(kind).items():
+                if not name.startswith("_") and isinstance(member, Operation | Listing):
+                    returned = member._steps.__annotations__["return"]
+                    assert "dict" not in returned.lower() and "Mapping" not in returned, (name, returned)
+
+
+def test_a_job_reads_the_figures_of_its_kind(tmp_path: Path) -> None:
+    network = StoredJobs()
+    table: dict[str, Any] = OF_FILE | json.loads(json.dumps(metadata_json(small_table())))
+    gear = {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0}
+    case = {
+        "pair": {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": gear, "wheel": gear},
+        "load": {"torque_n_m": [10.0]},
+    }
+    with LineOfActionClient(
+        "http://127.0.0.1:1", cache_dir=tmp_path, transport=httpx2.MockTransport(network)
+    ) as client:
+        job = client.analyze.submit(case)
+        network._content[job.wait().key] = json.dumps(table).encode()
+        figures = job.figures()
+    assert isinstance(figures, TableFigures) and document(figures) == table
+    assert get_type_hints(TableFigures)["torque_n_m"] == list[float]
