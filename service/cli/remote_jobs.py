@@ -43,12 +43,15 @@ def run_jobs(service: str, wanted: JobSelection, *, as_json: bool) -> None:
     if as_json:
         print_json({"jobs": [asdict(job) for job in jobs]})
         return
-    head = ("job", "process", "state", "%", "left", "created (UTC)")
+    head = ("job", "process", "state", "%", "left", "created (UTC)", "about")
     rows = [
-        (job.id, job.process, job.words, f"{job.progress}", job.time_left, job.created[:19].replace("T", " "))
+        (
+            *(job.id, job.process, job.words, f"{job.progress}", job.time_left),
+            *(job.created[:19].replace("T", " "), job.title or job.subject),
+        )
         for job in jobs
     ]
-    console().print(table(head, rows, words=("job", "process", "state", "created (UTC)")))
+    console().print(table(head, rows, words=("job", "process", "state", "created (UTC)", "about")))
 
 
 def run_dismiss(job: str, service: str, *, as_json: bool) -> None:

@@ -51,7 +51,7 @@ def progress_bars(console: Console | None = None) -> Iterator[Watch]:
 
 
 class _Bars:
-    """The bars of jobs, by identifier."""
+    """The bars of jobs, by identifier; each says process, title and stage."""
 
     def __init__(self, bars: Progress) -> None:
         self._bars = bars
@@ -61,13 +61,16 @@ class _Bars:
 
     def see(self, state: JobState) -> None:
         """Draw the state of a job."""
+        from rich.markup import escape  # noqa: PLC0415 (optional)
+
         if state.id not in self._tasks:
             self._count += 1
             self._tasks[state.id] = self._bars.add_task("", total=100, left="")
         task = self._tasks[state.id]
         number = f"{task + 1}. " if self._count > 1 else ""
         color = _COLORS.get(state.status, "none")
-        words = f"[{color}]{number}{state.process}: {state.words}[/]"
+        name = escape(f"{state.process} {state.title}".rstrip())
+        words = f"[{color}]{number}{name}: {escape(state.words)}[/]"
         self._bars.update(task, completed=state.progress, description=words, left=state.time_left)
         if state.ended and state.id not in self._ended:
             self._end(state.id)

@@ -44,7 +44,10 @@ class Offer:
 
     def inputs(self, *args: Any, **kwargs: Any) -> dict[str, Any]:
         """Return the inputs of a call as JSON; raises TypeError for a call that does not fit, `BadInput`."""
-        bound = self.signature.bind(*args, **kwargs).arguments
+        try:
+            bound = self.signature.bind(*args, **kwargs).arguments
+        except TypeError as error:
+            raise TypeError(f"{self.attribute}{self.signature}: {error}") from None
         subject = self.to_inputs(bound[next(iter(self.signature.parameters))])
         varied = bound.get("study", bound.get("options", {}))
         return subject | {name: _plain(value) for name, value in varied.items()}

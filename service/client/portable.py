@@ -60,7 +60,8 @@ def _table(field: str, source: object) -> dict[str, Any]:
     if isinstance(source, Mapping):
         return dict(source)
     advice = "A file is given as pathlib.Path."
-    raise BadInput.of(field, repr(source)[:80], f"a Path, a dictionary or a model of a {field}", advice)
+    said = source if isinstance(source, str) else repr(source)
+    raise BadInput.of(field, said[:80], f"a Path, a dictionary or a model of a {field}", advice)
 
 
 def case_of_mesh(mesh: MeshInput, field: str, folder: Path) -> schemas.Case | None:

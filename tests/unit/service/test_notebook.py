@@ -62,11 +62,11 @@ def test_a_bar_follows_every_job() -> None:
     with progress_bars(console) as watch:
         for progress in (10, 60, 100):
             for job in ("one", "two"):
-                facts = {"progress": progress, "remaining_s": 100.0 - progress}
+                facts = {"progress": progress, "remaining_s": 100.0 - progress, "title": f"[{job}]"}
                 watch(JobState.from_json(state(job, "running") | facts))
     drawn = console.file.getvalue()  # type: ignore[attr-defined]
-    last = drawn[drawn.rindex("1. analyze: mesh") :]
-    assert last.count("100 %") == 2 and "2. analyze: mesh" in last and last.count("0 s left") == 2
+    last = drawn[drawn.rindex("1. analyze [one]: mesh") :]
+    assert last.count("100 %") == 2 and "2. analyze [two]: mesh" in last and last.count("0 s left") == 2
 
 
 def test_many_jobs_do_not_fill_the_screen() -> None:

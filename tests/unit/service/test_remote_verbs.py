@@ -39,8 +39,8 @@ def listed(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
 
     def jobs(_client: LineOfActionClient, **wanted: Any) -> list[JobState]:
         asked.append(wanted)
-        begun = {"remaining_s": 240.0, "created": "2026-05-06T07:08:09.123456Z"}
-        return [job("1-2", "running", **begun), job("3-4", "successful")]
+        begun = {"remaining_s": 240.0, "created": "2026-05-06T07:08:09.123456Z", "subject": "20/20"}
+        return [job("1-2", "running", **begun), job("3-4", "successful", title="EV", subject="31/41")]
 
     monkeypatch.setattr(LineOfActionClient, "jobs", jobs)
     return asked
@@ -50,8 +50,8 @@ def test_jobs_are_a_line_each_with_the_time_left(listed: list[dict[str, Any]]) -
     shown = loa("jobs", "--process", "analyze", "--status", "running", "--limit", 7)
     head, running, done = (line.split() for line in shown.stdout.splitlines())
     assert head[0] == "job"
-    assert running == ["1-2", "analyze", "mesh", "10", "4", "min", "left", "2026-05-06", "07:08:09"]
-    assert done[:3] == ["3-4", "analyze", "done"]
+    assert running == ["1-2", "analyze", "mesh", "10", "4", "min", "left", "2026-05-06", "07:08:09", "20/20"]
+    assert done[:3] == ["3-4", "analyze", "done"] and done[-1] == "EV"
     assert listed == [{"process": ["analyze"], "status": ["running"], "limit": 7}]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from inspect import signature
+from typing import Any
 
 import pytest
 from click import Context
@@ -56,6 +57,18 @@ def test_the_client_has_a_process_that_says_what_it_takes(study: Study) -> None:
     expected = "study" if study.from_file else "options"
     assert list(signature(process).parameters) == [study.argument, expected]
     assert process.__doc__ == study.description
+
+
+def test_a_call_that_does_not_fit_is_told_what_would() -> None:
+    with LineOfActionClient("http://127.0.0.1:9") as client:
+        calls: Any = client
+        for wrong in (
+            lambda: calls.flank({}, 60.0),
+            calls.flank.submit,
+            lambda: calls.analyze({}, x=1),
+        ):
+            with pytest.raises(TypeError, match=r"^(flank\(case, \*\*options\)|analyze\(case\)): "):
+                wrong()
 
 
 def test_the_client_has_the_processes_of_the_service_and_no_others() -> None:
