@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from bounds import Declared, Kind, above, between, declared, described, required
 from dynamics.checks import declared_fields
 from dynamics.errors import InputError
@@ -49,7 +47,7 @@ class Coupling:
         declared_fields(self)
         for name in ("stiffness", "damping"):
             if getattr(self, name) is not None:
-                check_matrix(name, np.asarray(getattr(self, name), dtype=float), (6,))
+                check_matrix(name, getattr(self, name), (6,))
         if self.first == self.second:
             raise InputError("second", self.second, "another shaft than the first")
         if self.torsional_stiffness == 0.0 and (self.stiffness is None or self.stiffness[5][5] <= 0.0):

@@ -46,9 +46,9 @@ class Housing:
             raise InputError("bushings", self.bushings, "at least one bushing")
         distinct("bushings", self.bushings)
         sizes = tuple(per * len(self.bushings) for per in PER_SEAT)
-        rows = check_matrix("stiffness", np.asarray(self.stiffness, dtype=float), sizes, PRECISION).shape[0]
+        rows = len(check_matrix("stiffness", self.stiffness, sizes, PRECISION))
         if self.damping is not None:
-            check_matrix("damping", np.asarray(self.damping, dtype=float), (rows,), PRECISION)
+            check_matrix("damping", self.damping, (rows,), PRECISION)
 
     @property
     def columns(self) -> tuple[int, ...]:

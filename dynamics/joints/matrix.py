@@ -16,15 +16,15 @@ OPERATIONS = 10.0
 
 
 def check_matrix(
-    field: str, matrix: FloatArray, sizes: tuple[int, ...], precision: float = PRECISION
+    field: str, rows: Matrix | FloatArray, sizes: tuple[int, ...], precision: float = PRECISION
 ) -> FloatArray:
-    """Return `matrix` if it is square of one of `sizes`, symmetric and positive semidefinite.
+    """Return the matrix of `rows` if it is square of one of `sizes`, symmetric and positive semidefinite.
 
     Parameters
     ----------
     field : str
         Name for errors.
-    matrix : array
+    rows : sequence of rows
     sizes : tuple of int
         Allowed numbers of rows.
     precision : float
@@ -37,6 +37,9 @@ def check_matrix(
         Naming `field`.
     """
     allowed = " or ".join(f"{size} by {size}" for size in sizes)
+    if len({len(row) for row in rows}) > 1:
+        raise InputError(field, "with rows of different lengths", f"{allowed} finite numbers")
+    matrix = np.asarray(rows, dtype=float)
     if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1] or matrix.shape[0] not in sizes:
         raise InputError(field, f"shape {matrix.shape}", f"{allowed} finite numbers")
     if not np.all(np.isfinite(matrix)):

@@ -59,7 +59,7 @@ class Seat:
         declared_fields(self)
         for name in ("stiffness", "damping"):
             if getattr(self, name) is not None:
-                _check_matrix(name, np.asarray(getattr(self, name), dtype=float))
+                _check_matrix(name, getattr(self, name))
         if self.preload is not None:
             if len(self.preload) != SEAT:
                 raise InputError("preload", self.preload, "five numbers: x, y, z, tilt_x, tilt_y")
@@ -100,9 +100,9 @@ def _isotropic(radial: float, axial: float) -> FloatArray:
     return np.diag([radial, radial, axial, 0.0, 0.0])
 
 
-def _check_matrix(field: str, matrix: FloatArray) -> None:
+def _check_matrix(field: str, rows: Matrix) -> None:
     """Refuse what is no matrix of a bearing."""
-    check_matrix(field, matrix, (SEAT, SEAT + 1))
+    matrix = check_matrix(field, rows, (SEAT, SEAT + 1))
     if np.any(np.abs(matrix[SEAT:]) > PRECISION * np.max(np.abs(matrix))):
         bound = "zero in the row and column of the rotation about the axis"
         raise InputError(field, matrix[SEAT:].tolist(), bound, "A bearing lets its shaft turn.")

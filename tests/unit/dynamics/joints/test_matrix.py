@@ -101,3 +101,9 @@ def test_a_row_about_the_axis_may_hold_rounding_and_no_more():
     stiffness[5, 5] = 1e-6 * STIFF
     with pytest.raises(InputError, match="rotation about the axis"):
         bearing(stiffness=stiffness)
+
+
+@pytest.mark.parametrize("ragged", [((1.0,), (), (), (), ()), ((1.0,) * 5,) * 4 + ((1.0,) * 4,)])
+def test_rows_of_different_lengths_are_refused(ragged):
+    with pytest.raises(InputError, match="rows of different lengths"):
+        Bushing("b", "s", 0.0, damping=ragged)
