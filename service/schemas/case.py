@@ -6,13 +6,14 @@ from dataclasses import MISSING, replace
 from itertools import pairwise
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, Strict, model_validator
+from pydantic import ConfigDict, Field, Strict, model_validator
 
 from fe_contact.geometry.gear_pair import GearPair
 from service.schemas.declared import as_fields, figures, with_fields
 from service.schemas.gear import SHARED, GearInput
 from service.schemas.gear_body import MaterialInput
 from service.schemas.model import BoundaryModel, refuse
+from service.schemas.rules import at_most_one_of, exactly_one_of, stated
 from service.schemas.wheel import WheelInput
 
 Load = Annotated[float, Field(gt=0.0, le=1e9)]
@@ -54,6 +55,8 @@ class PairInput(_PairFigures):
 
 class LoadInput(BoundaryModel):
     """Loads of the table: torques on the driving gear or normal forces."""
+
+    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of("torque_n_m", "normal_force_n")))
 
     torque_n_m: Loads | None = Field(
         default=None,
@@ -102,6 +105,12 @@ class ErrorsInput(BoundaryModel):
 
 class AccuracyInput(BoundaryModel):
     """The request to the planner: an accuracy, a time or a level; by default tolerance 0.01."""
+
+    model_config = ConfigDict(
+        json_schema_extra=stated(
+            at_most_one_of("level", "tolerance"), at_most_one_of("level", "time_budget_s")
+        )
+    )
 
     tolerance: float | None = Field(
         default=None,

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated, Self
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from service.schemas.case import Case
 from service.schemas.model import BoundaryModel, refuse
+from service.schemas.rules import exactly_one_of, stated
 from service.schemas.scene import SceneInput
 
 Name = Annotated[str, Field(min_length=1, max_length=64)]
@@ -15,6 +16,8 @@ Name = Annotated[str, Field(min_length=1, max_length=64)]
 
 class CaseOrScene(BoundaryModel):
     """A case or a scene, one of both."""
+
+    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of("case", "scene")))
 
     case: Case | None = Field(default=None, description="The case, as in a case file; alternative to a scene")
     scene: SceneInput | None = Field(

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from typing import Annotated, Self
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from service.schemas.model import BoundaryModel, refuse
+from service.schemas.rules import at_most_one_of, stated
 from service.schemas.spelling import Spelling
 
 
 class FlankPoint(BoundaryModel):
     """One load and one alignment; what is left out is taken from the case."""
+
+    model_config = ConfigDict(json_schema_extra=stated(at_most_one_of("torque_n_m", "normal_force_n")))
 
     torque_n_m: Annotated[float | None, Spelling("--torque")] = Field(
         default=None,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, Strict, model_validator
+from pydantic import ConfigDict, Field, Strict, model_validator
 
 from dynamics.parts import KINDS, ON_A_SHAFT
 from dynamics.settings.integration import Integration
@@ -12,6 +12,7 @@ from dynamics.settings.outputs import Outputs
 from service.schemas.case import Case, EffectName, Switch
 from service.schemas.declared import declared_in, with_fields
 from service.schemas.model import BoundaryModel, refuse
+from service.schemas.rules import exactly_one_of, stated
 from service.schemas.scene_bodies import (
     BushingInput,
     CouplingInput,
@@ -45,6 +46,8 @@ class CoastFlankInput(BoundaryModel):
 
 class MeshInput(BoundaryModel):
     """Two gears in mesh and the source of their STE database."""
+
+    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of(*_SOURCES)))
 
     name: Name = Field(description="Name of the mesh", examples=["mesh"])
     driver: Name = Field(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, Strict, model_validator
+from pydantic import ConfigDict, Field, Strict, model_validator
 
 from dynamics.bodies.gear_body import GearBody
 from dynamics.bodies.inertia import Inertia
@@ -14,7 +14,8 @@ from dynamics.joints.coupling import Coupling
 from dynamics.joints.planet_bearing import PlanetBearing
 from service.schemas.declared import declared_in, figures, with_fields
 from service.schemas.model import BoundaryModel, refuse
-from service.schemas.scene_types import Coordinate, MatrixRows, Name, Number, Rows
+from service.schemas.rules import both, given, left_out, stated
+from service.schemas.scene_types import Coordinate, CouplingRows, HousingRows, Name, Number, SeatRows
 
 
 @with_fields(declared_in(Inertia, all_given=True))
@@ -77,8 +78,17 @@ class RollingContactInput(BoundaryModel):
     )
 
 
+_TILTS_OR_NOT = {
+    "if": {"properties": {"direction": {"enum": ["x", "y", "z"]}}},
+    "then": both(given("displacement_um", "force_n"), left_out("tilt_mrad", "moment_n_m")),
+    "else": both(given("tilt_mrad", "moment_n_m"), left_out("displacement_um", "force_n")),
+}
+
+
 class SpringCurveInput(BoundaryModel):
     """A bearing's force by displacement in one direction."""
+
+    model_config = ConfigDict(json_schema_extra=stated(_TILTS_OR_NOT))
 
     direction: Literal["x", "y", "z", "tilt_x", "tilt_y"] = Field(
         description="Direction of displacement and force", examples=["x"]
@@ -136,14 +146,14 @@ class BearingInput(BoundaryModel):
 
     name: Name = Field(description="Name of the bushing", examples=["input left"])
     shaft: Name = Field(description="The shaft it carries", examples=["input"])
-    stiffness_matrix: MatrixRows | None = Field(
+    stiffness_matrix: SeatRows | None = Field(
         default=None,
         min_length=5,
         max_length=6,
         description="Added stiffness: 5 by 5 in x, y, z, tilt_x, tilt_y, or 6 by 6 with 0 for the rotation; "
         "N, m, rad",
     )
-    damping_matrix: MatrixRows | None = Field(
+    damping_matrix: SeatRows | None = Field(
         default=None,
         min_length=5,
         max_length=6,
@@ -205,14 +215,14 @@ class HousingInput(BoundaryModel):
         description="Bushings in the order of the matrix",
         examples=[["a", "b"]],
     )
-    stiffness_matrix: MatrixRows = Field(
+    stiffness_matrix: HousingRows = Field(
         min_length=3,
         max_length=6000,
         description="Stiffness over all seats: per bushing 3 rows x, y, z, or 5 with tilt_x, tilt_y, or 6 "
         "with the rotation; N, m, rad. A scene file may name a CSV or NPZ file by stiffness_file "
         "instead",
     )
-    damping_matrix: MatrixRows | None = Field(
+    damping_matrix: HousingRows | None = Field(
         default=None,
         min_length=3,
         max_length=6000,
@@ -235,13 +245,13 @@ class CouplingInput(BoundaryModel):
     name: Name = Field(description="Name of the coupling", examples=["joint"])
     first: Name = Field(description="One shaft", examples=["output"])
     second: Name = Field(description="The other shaft", examples=["machine"])
-    stiffness_matrix: Rows | None = Field(
+    stiffness_matrix: CouplingRows | None = Field(
         default=None,
         min_length=6,
         max_length=6,
         description="Added stiffness: 6 by 6 in x, y, z, tilt_x, tilt_y, rotation; N, m, rad",
     )
-    damping_matrix: Rows | None = Field(
+    damping_matrix: CouplingRows | None = Field(
         default=None, min_length=6, max_length=6, description="Added damping, likewise; N, m, rad, s"
     )
 

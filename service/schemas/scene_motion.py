@@ -5,12 +5,13 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from dynamics.joints.free_rotation import FreeRotation
 from dynamics.joints.imposed_rotation import ImposedRotation
 from service.schemas.declared import declared_in, with_fields
 from service.schemas.model import BoundaryModel, refuse
+from service.schemas.rules import exactly_one_of, stated
 from service.schemas.scene_types import Coordinate, Course, Name, Numbers, Times
 
 
@@ -23,6 +24,8 @@ def place_of(subject: str) -> Any:
 @with_fields(declared_in(ImposedRotation))
 class DriveInput(BoundaryModel):
     """A shaft whose speed or angle is imposed over time."""
+
+    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of("speed_rpm", "angle_deg")))
 
     name: Name = Field(description="Name of the drive", examples=["motor"])
     shaft: Name = Field(description="The driven shaft", examples=["input"])

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import Annotated, Self
 
-from pydantic import Field, Strict, model_validator
+from pydantic import ConfigDict, Field, Strict, model_validator
 
 from dynamics.bodies.shaft import Shaft
 from dynamics.bodies.timoshenko_beam import BeamSection
 from service.schemas.declared import declared_in, with_fields
 from service.schemas.model import BoundaryModel, refuse
+from service.schemas.rules import exactly_one_of, stated
 from service.schemas.scene_bodies import InertiaInput
 from service.schemas.scene_types import Coordinate, Name
 
@@ -26,6 +27,8 @@ class SectionInput(BoundaryModel):
 @with_fields(declared_in(Shaft))
 class ShaftInput(BoundaryModel):
     """A shaft parallel to the z axis; with sections, or a diameter, it can bend and twist."""
+
+    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of("diameter_mm", "sections", "inertia")))
 
     name: Name = Field(description="Name of the shaft", examples=["input"])
     length_mm: float

@@ -5,14 +5,15 @@ from __future__ import annotations
 from dataclasses import MISSING, replace
 from typing import Any, Self
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from bounds import declarations
 from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.ring_gear import RingGear
 from service.schemas.declared import as_fields, figures, with_fields
-from service.schemas.gear import ToothingInput
+from service.schemas.gear import OVER_LENGTHS, ToothingInput
 from service.schemas.model import refuse
+from service.schemas.rules import both, given, left_out, stated
 
 RING = tuple(figure for figure in figures(RingGear) if figure not in figures(Gear))
 """What is a ring gear's own, or otherwise than an external gear's."""
@@ -21,9 +22,18 @@ _RING_ONLY = tuple(figure for figure in RING if figure.name not in declarations(
 _GEAR_ONLY = tuple(figure for figure in figures(Gear) if figure.name not in declarations(RingGear))
 
 
+_IS_RING = {"required": ["internal"], "properties": {"internal": {"const": True}}}
+_RING_HAS = both(given("rim_diameter_mm"), left_out("bore_diameter_mm", "blank", "seat"))
+_GEAR_HAS = both(given("bore_diameter_mm"), left_out(*(figure.field for figure in _RING_ONLY)))
+
+
 @with_fields(as_fields(replace(figure, default=None) for figure in (*_GEAR_ONLY, *_RING_ONLY)))
 class WheelInput(ToothingInput):
     """The driven gear. What only one kind has is left out by the other."""
+
+    model_config = ConfigDict(
+        json_schema_extra=stated(*OVER_LENGTHS, {"if": _IS_RING, "then": _RING_HAS, "else": _GEAR_HAS})
+    )
 
     internal: bool = Field(
         default=False, description="Whether the wheel is a ring gear around the pinion", examples=[True]

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, Strict, model_validator
+from pydantic import ConfigDict, Field, Strict, model_validator
 
 from service.schemas.model import BoundaryModel, refuse
+from service.schemas.rules import exactly_one_of, stated
 from service.schemas.scene_types import Name
 
 Value = Annotated[float, Field(ge=-1e20, le=1e20)]
@@ -54,6 +55,8 @@ class UniformInput(BoundaryModel):
 
 class FactorInput(BoundaryModel):
     """Something that the scene file declares, and the values it takes; in the unit of its name."""
+
+    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of(*_KINDS)))
 
     path: Path = Field(
         description="Field of the scene as a path KIND.NAME.FIELD; * is every part, [0] an entry of a list",

@@ -1,0 +1,84 @@
+"""What the links of the OpenAPI document promise: from a submission to state, events, results and dismissal.
+
+Schemathesis walks them at random from bodies that start from feasible pairs. Nothing is computed.
+"""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+import schemathesis
+from feasible_bodies import FeasibleBodies
+from hypothesis import HealthCheck, Phase, settings
+from running_service import until
+from typed_events import with_typed_events
+from written_service import Service, written_service
+
+WALKS = max(int(os.environ.get("LOA_GENERATED_BODIES", "0")) // 100, 6)
+STEPS = 8
+FOLLOWED = ("status", "events", "results", "dismiss")
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    """A running service whose work is written."""
+    with written_service(tmp_path_factory.mktemp("links")) as running:
+        yield running
+
+
+def test_every_link_leads_to_what_it_says(service: Service) -> None:
+    schema = schemathesis.openapi.from_dict(with_typed_events(service.description))
+    schema.config.update(base_url=service.url)
+    feasible = FeasibleBodies(service.description, {})
+    walked: Counter[tuple[str, int]] = Counter()
+
+    @schema.hook
+    def before_generate_body(context: Any, strategy: Any) -> Any:
+        bodies = feasible.of(context.operation.path)
+        return strategy if bodies is None else bodies
+
+    linked = schema.include(path_regex="/execution$|^/v1/jobs/")
+
+    class Walk(linked.as_state_machine()):  # type: ignore[misc]
+        """Walks along links; a job ends before the next step."""
+
+        def get_call_kwargs(self, case: schemathesis.Case) -> dict[str, Any]:
+            return {"headers": service.headers, "timeout": 60.0}
+
+        def after_call(self, response: schemathesis.Response, case: schemathesis.Case) -> None:
+            if response.status_code == 201:
+                job = case.operation.schema["/v1/jobs/{job_id}"]["GET"]
+                where = {"job_id": response.json()["jobID"]}
+                until(lambda: self.ended(job.Case(path_parameters=where)))
+
+        def ended(self, status: schemathesis.Case) -> bool:
+            """Whether a job has ended."""
+            return status.call(**self.get_call_kwargs(status)).json()["finished"] is not None
+
+        def step(self, taken: Any) -> Any:
+            output = super().step(taken)
+            if taken.transition is not None and taken.is_applied:
+                link = taken.transition.id.split(" -> ")[1].rpartition(" ")[2]
+                walked[link, output.response.status_code] += 1
+            return output
+
+        def validate_response(self, response: Any, case: Any, **options: Any) -> None:
+            refusals = schemathesis.checks.CHECKS.get_one("positive_data_acceptance")
+            case.validate_response(response, excluded_checks=[refusals])
+
+    Walk.run(
+        settings=settings(
+            max_examples=WALKS,
+            stateful_step_count=STEPS,
+            deadline=None,
+            derandomize=True,
+            database=None,
+            phases=[Phase.generate],
+            suppress_health_check=list(HealthCheck),
+        )
+    )
+    assert all(walked[link, 200] for link in FOLLOWED), walked

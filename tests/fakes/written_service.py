@@ -1,0 +1,59 @@
+"""A service with a key and all processes, whose work is written, not computed (`written_work`)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from served_app import served
+from service_surroundings import FAKES
+
+from service.access import KeyFile
+from service.app import create_app
+from service.settings import Settings
+from service.worker.catalogue import default_registry
+from service.worker.process import Registry
+
+
+@dataclass(frozen=True)
+class Service:
+    """A service with a key.
+
+    Attributes
+    ----------
+    url, key : str
+    description : dict
+        OpenAPI.
+    """
+
+    url: str
+    key: str
+    description: dict[str, Any]
+
+    @property
+    def headers(self) -> dict[str, str]:
+        """The headers of a caller with the key."""
+        return {"Authorization": f"Bearer {self.key}"}
+
+
+@contextmanager
+def written_service(directory: Path) -> Iterator[Service]:
+    """Run the service while the context lasts."""
+    offered = (replace(p, entry=f"written_work:{p.kind}") for p in default_registry().values())
+    with running_service(directory, Registry(*offered)) as service:
+        yield service
+
+
+@contextmanager
+def running_service(directory: Path, registry: Registry) -> Iterator[Service]:
+    """Run a service with a key while the context lasts; its workers find the fakes."""
+    key = KeyFile(directory / "keys.json").add("foreign")
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setenv("PYTHONPATH", FAKES)
+        app = create_app(Settings(data_directory=directory), registry)
+        with served(app) as port:
+            yield Service(f"http://127.0.0.1:{port}", key, app.openapi())
