@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from typing import Any
+from typing import Annotated, Any
 
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
@@ -21,7 +21,9 @@ from service.routes.refusals import documented
 from service.routes.scopes import ScopedRoute, needs
 from service.schemas import Case
 from service.schemas.model import BoundaryModel
+from service.schemas.named import Named
 from service.schemas.offers import ExampleBody
+from service.schemas.outline import OutlineBody
 from service.schemas.reading import validated
 from service.worker.process import on_demand
 
@@ -55,7 +57,7 @@ class TomlBody(BoundaryModel):
 class CaseBody(BaseModel):
     """A case with all defaults."""
 
-    case: dict[str, Any]
+    case: Annotated[dict[str, Any], Named("Case")]
 
 
 @router.get("/examples", summary="Example cases")
@@ -65,12 +67,11 @@ def example_cases() -> list[ExampleBody]:
     return [_example(example) for example in examples()]
 
 
-@router.post("/cases/outline", summary="Drawing of the two gears")
+@router.post("/cases/outline", summary="Drawing of the two gears", response_model=OutlineBody)
 @needs(Scope.READ)
-def case_outline(body: CaseRequest) -> dict[str, Any]:
+def case_outline(body: CaseRequest) -> Response:
     """Transverse outlines of both gears in mm, the path of contact, and the figures of the pair."""
-    drawing: dict[str, Any] = outline_json(body.inputs.case)
-    return drawing
+    return JSONResponse(outline_json(body.inputs.case))
 
 
 @router.post(

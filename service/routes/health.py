@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Literal
 
 from fastapi import APIRouter, Depends, Request, Response
+from pydantic import BaseModel, Field
 from starlette.responses import PlainTextResponse
 
 from service.access import Scope
@@ -34,16 +35,33 @@ class NotReady(ServiceError):
     retry_after_s = 5
 
 
+class Health(BaseModel):
+    """The process serves requests."""
+
+    status: Literal["ok"] = "ok"
+
+
+class Readiness(BaseModel):
+    """The service can work."""
+
+    status: Literal["ready"] = "ready"
+    computations: dict[str, int] | None = Field(
+        None, description="Number of computations by state; left out where keys are needed"
+    )
+
+
 @router.get("/health", summary="Liveness")
 @needs(OPEN_TO_ALL)
-async def health() -> dict[str, Any]:
+async def health() -> Health:
     """Answer that the process serves requests, however many of them wait for the database in threads."""
-    return {"status": "ok"}
+    return Health()
 
 
-@router.get("/ready", summary="Readiness for jobs", responses=documented(NotReady))
+@router.get(
+    "/ready", response_model_exclude_none=True, summary="Readiness for jobs", responses=documented(NotReady)
+)
 @needs(OPEN_TO_ALL)
-def ready(request: Request, context: Ctx) -> dict[str, Any]:
+def ready(request: Request, context: Ctx) -> Readiness:
     """Answer that database and place of results take what is written, and that the scheduler runs.
 
     The numbers of computations are left out where keys are needed: this is answered to everybody.
@@ -51,10 +69,10 @@ def ready(request: Request, context: Ctx) -> dict[str, Any]:
     outcome = context.writes.outcome()
     if outcome.fault:
         raise NotReady(outcome.fault)
-    counts = {} if request.state.closed else {"computations": context.submissions.counts()}
+    counts = None if request.state.closed else context.submissions.counts()
     if fault := Vitals(context.scheduler, context.writes).fault_of_health():
         raise NotReady(fault)
-    return {"status": "ready", **counts}
+    return Readiness(computations=counts)
 
 
 @router.get("/metrics", summary="Metrics for Prometheus", response_class=PlainTextResponse)

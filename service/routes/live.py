@@ -19,6 +19,7 @@ from service.routes.results import Key
 from service.routes.scopes import ScopedRoute, needs
 from service.schemas.live import LiveInput, PlanRequest
 from service.schemas.live_answer import LiveOutput
+from service.schemas.plan import PlanBody
 
 router = APIRouter(tags=["live"], route_class=ScopedRoute)
 
@@ -52,7 +53,7 @@ async def live_ste(key: Key, body: LiveInput, context: Ctx) -> Response:
     summary="Plan and cost of a run",
     response_class=Response,
     responses={
-        200: {"description": "The plan", "content": {"application/json": {"schema": {"type": "object"}}}},
+        200: {"model": PlanBody, "description": "The plan"},
         **documented(QueueFull, Superseded, LiveUnavailable),
     },
 )

@@ -15,9 +15,12 @@ from service.routes.refusals import describe_refusals
 from service.routes.response_headers import HEADERS, OF_ALL, described_headers
 from service.routes.scopes import KEY_SCHEME
 from service.schemas.answer_examples import answer_example
+from service.schemas.named import with_named
 from service.schemas.problem import ProblemBody
 from service.schemas.query import QueryInput
+from service.schemas.report import ReportSection
 from service.schemas.request_examples import request_example
+from service.schemas.warning import InputWarning
 
 Json = dict[str, Any]
 
@@ -62,7 +65,7 @@ _LINKS = {
 
 _REF = "#/components/schemas/{model}"
 _SHOWN = (JSON, CBOR, EVENT_STREAM)
-_BESIDE = (ProblemBody, QueryInput)
+_BESIDE = (ProblemBody, QueryInput, InputWarning, ReportSection)
 """Models that no handler names."""
 
 
@@ -84,6 +87,7 @@ def install_description(app: FastAPI) -> None:
 def _complete(document: Json) -> None:
     """Add what holds for all operations: refusals, headers, links, keys; and an example of every body."""
     components = document["components"]
+    components["schemas"] = with_named(components["schemas"])
     _add_models(components["schemas"])
     components["headers"] = dict(HEADERS)
     components["securitySchemes"] = {KEY_SCHEME: _KEY}

@@ -39,6 +39,7 @@ from service.schemas.ogc import (
     ProcessList,
     ProcessSummary,
     StatusInfo,
+    ValueDescription,
 )
 from service.store import now
 from service.worker.process import Process, Registry
@@ -242,13 +243,15 @@ def _description(process: Process) -> ProcessDescription:
     """Return a process description."""
     schema = process.inputs.model_json_schema()
     inputs = {
-        name: {
-            "title": field.title or name,
-            "description": field.description or name,
-            "schema": {**schema["properties"][name], "$defs": schema.get("$defs", {})},
-        }
+        name: ValueDescription(
+            title=field.title or name,
+            description=field.description or name,
+            schema={**schema["properties"][name], "$defs": schema.get("$defs", {})},
+        )
         for name, field in process.inputs.model_fields.items()
     }
     output = {"type": "string", "contentEncoding": "binary", "contentMediaType": NETCDF}
-    outputs = {process.output: {"title": process.output, "description": process.title, "schema": output}}
+    outputs = {
+        process.output: ValueDescription(title=process.output, description=process.title, schema=output)
+    }
     return ProcessDescription(**_summary(process), inputs=inputs, outputs=outputs)

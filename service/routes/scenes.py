@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
@@ -16,6 +16,7 @@ from service.routes.context import Ctx
 from service.routes.refusals import documented
 from service.routes.scopes import ScopedRoute, needs
 from service.schemas.model import BoundaryModel
+from service.schemas.named import Named
 from service.schemas.scene import SceneInput
 
 router = APIRouter(tags=["scenes"], route_class=ScopedRoute)
@@ -40,7 +41,7 @@ class SceneToml(TomlBody):
 class SceneBody(BaseModel):
     """A scene as it was given, without defaults."""
 
-    scene: dict[str, Any]
+    scene: Annotated[dict[str, Any], Named("SceneInput")]
 
 
 @router.post(

@@ -102,8 +102,70 @@ _REPORT: Json = {
     "lead": "20/20 teeth, module 4 mm",
     "alarms": [],
     "headlines": [{"name": "peak to peak at 100 N m", "value": "2.80 um"}],
-    "sections": [{"title": "Transmission error", "text": "", "figures": [], "tables": []}],
+    "sections": [{"title": "Transmission error", "text": "", "figures": [], "tables": [], "folded": []}],
 }
+_COST = {
+    "stages": {"compliance": 2.1, "contact": 0.4},
+    "cpu_seconds": 2.5,
+    "correction": {"compliance": 1.0, "contact": 1.0},
+    "memory_bytes": 310_000_000,
+    "positions": 64,
+}
+_ERROR = {
+    **{"mesh": 0.004, "slices": 0.0, "model": 0.0, "positions": 0.002, "method": 0.003, "total": 0.006},
+    "mean_m": 6e-8,
+    "peak_to_peak_m": 2e-8,
+}
+_EFFECT: Json = {
+    "name": "tooth_coupling",
+    "on": True,
+    "choice": "auto",
+    "cost": "none: the blocks come with the condensed compliance",
+    "called_for": True,
+    "reason": "contact ratio 1.560: neighboring pairs share the load",
+    "decision": "the scene calls for it",
+    "influence": None,
+    "cost_cpu_seconds": 0.0,
+    "price": "",
+    "checked": "no; toggling it measures it (ablation)",
+    "holds": None,
+}
+_PLAN: Json = {
+    "choice": {
+        "model": "plane strain",
+        "level": "standard",
+        "slices": 1,
+        "met": True,
+        "reason": "the cheapest that meets the tolerance",
+    },
+    "prediction": _COST,
+    "error": _ERROR,
+    "levels": [{"level": "standard", "slices": 1, "cost": _COST, "error": _ERROR}],
+    "conflict": "",
+    "plan": {
+        "model": "plane_strain",
+        "mesh": [{"flank_size": 0.0004, "layers": 12}] * 2,
+        "patch": {"half_width": 0.001, "edge_length": 0.0001, "edge_load": 1e-6},
+        "positions": "adaptive",
+        "load": [2660.0],
+        "support_load": [26.6, 5320.0],
+    },
+    "warnings": [],
+    "effect_ledger": [_EFFECT],
+}
+
+
+def _outline(height_mm: float, turn: float) -> Json:
+    """Return the drawing of a gear above the center of the pinion."""
+    return {
+        "teeth": 20,
+        "tooth_mm": [[-6.2, 34.5], [-2.0, 44.0], [2.0, 44.0], [6.2, 34.5]],
+        "radius_mm": {"tip": 44.0, "root": 35.0, "base": 37.588, "reference": 40.0, "held": 20.0},
+        "angle_deg": 0.0,
+        "centre_mm": [0.0, height_mm],
+        "turn": turn,
+    }
+
 
 ANSWERS: dict[str, Any] = {
     "/v1": {
@@ -143,9 +205,15 @@ ANSWERS: dict[str, Any] = {
         "validity": ["inside", "inside"],
     },
     "/v1/databases/{key}/ste": _LIVE,
-    "/v1/plans": {"model": "plane_strain", "expected_seconds": 4.2, "memory_mb": 310.0},
+    "/v1/plans": _PLAN,
     "/v1/examples": [{"name": "spur", "title": "Spur 20/20", "note": "Seconds.", "case": CASE}],
-    "/v1/cases/outline": {"pinion": {"teeth": 20}, "wheel": {"teeth": 20}},
+    "/v1/cases/outline": {
+        "pinion": _outline(0.0, -1.0),
+        "wheel": _outline(80.0, 1.0),
+        "internal": False,
+        "path_of_contact": {"points_mm": {"A": [-9.4, -3.4], "E": [9.4, 3.4]}, "base_pitch_mm": 11.8},
+        "figures": {"transverse_contact_ratio": 1.56, "working_pressure_angle_deg": 20.0},
+    },
     "/v1/cases/from-toml": {"case": CASE},
     "/v1/cases/to-toml": BODIES["/v1/cases/from-toml"],
     "/v1/scenes/from-toml": BODIES["/v1/scenes/to-toml"]["inputs"],

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
 from pydantic import BaseModel, Field
 
+from service.schemas.named import Named
 from service.schemas.ogc import Link
 
 
@@ -16,7 +17,9 @@ class DatabaseEntry(BaseModel):
     href: str = Field(description="Its path on the service")
     created: str = Field(description="Time of storage, RFC 3339, UTC")
     size: int = Field(ge=0, description="Size of the file in bytes")
-    case: dict[str, Any] | None = Field(description="The case with all defaults; null if the file is damaged")
+    case: Annotated[dict[str, Any], Named("Case")] | None = Field(
+        description="The case with all defaults; null if the file is damaged"
+    )
 
 
 class DatabaseList(BaseModel):

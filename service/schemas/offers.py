@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
 from pydantic import BaseModel
+
+from service.schemas.named import Named
 
 
 class EffectBody(BaseModel):
@@ -24,4 +26,4 @@ class ExampleBody(BaseModel):
     name: str
     title: str
     note: str
-    case: dict[str, Any]
+    case: Annotated[dict[str, Any], Named("Case")]

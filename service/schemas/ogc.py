@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, create_model
+
+from service.schemas.named import Named
 
 JobStatus = Literal["accepted", "running", "successful", "failed", "dismissed"]
 
@@ -82,11 +84,19 @@ class ProcessList(BaseModel):
     links: list[Link]
 
 
+class ValueDescription(BaseModel):
+    """An input or an output of a process."""
+
+    title: str
+    description: str
+    schema_: dict[str, Any] = Field(alias="schema", description="JSON Schema of the value")
+
+
 class ProcessDescription(ProcessSummary):
     """A process with the schemas of its inputs and outputs."""
 
-    inputs: dict[str, Any]
-    outputs: dict[str, Any]
+    inputs: dict[str, ValueDescription]
+    outputs: dict[str, ValueDescription]
 
 
 class Difference(BaseModel):
@@ -134,7 +144,7 @@ class StatusInfo(BaseModel):
     stage: str = Field(description="The stage the job is in")
     stage_progress: int = Field(ge=0, le=100, description="Per cent of the stage")
     attempts: int = Field(ge=0, description="Number of starts of the computation")
-    warnings: list[dict[str, Any]] | None = Field(
+    warnings: list[Annotated[dict[str, Any], Named("InputWarning")]] | None = Field(
         default=None,
         description="Implausible inputs: check, field, value, unit, message; null in lists",
     )

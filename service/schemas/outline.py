@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 from pydantic import BaseModel, Field
 
-Point = tuple[float, float]
+Point = Annotated[tuple[float, ...], Field(min_length=2, max_length=2)]
 
 
 class GearOutline(BaseModel):

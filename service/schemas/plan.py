@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Literal
 
 from pydantic import BaseModel, Field
+
+from service.schemas.ledger import LedgerEntry
+from service.schemas.warning import InputWarning
+
+Recipe = dict[str, bool | int | float | list[int] | None]
+"""Settings of a mesh by name; lengths in m."""
 
 
 class PlannedCost(BaseModel):
@@ -49,6 +55,21 @@ class PlannedLevel(BaseModel):
     error: PlannedError
 
 
+class PlannedRun(BaseModel):
+    """The discretization of the run."""
+
+    model: str
+    mesh: list[Recipe] = Field(description="Meshes of the driving and of the driven gear, lengths in m")
+    finite_width: list[Recipe] | None = Field(
+        default=None, description="Meshes that correct a plane model for the finite width"
+    )
+    slices: int | None = Field(default=None, description="Of the common face width; plane models have none")
+    patch: dict[str, float] = Field(description="Sizes of the load patches in m, and their load")
+    positions: int | Literal["adaptive"] = Field(description="In one base pitch")
+    load: list[float] = Field(description="Normal forces in N")
+    support_load: list[float] = Field(description="Further normal forces in N, for the force extraction")
+
+
 class PlanBody(BaseModel):
     """The plan of an analysis."""
 
@@ -57,6 +78,6 @@ class PlanBody(BaseModel):
     error: PlannedError
     levels: list[PlannedLevel]
     conflict: str = Field(description="Why tolerance and time cannot both be had; empty if they can")
-    plan: dict[str, Any] = Field(description="Meshes, patches, positions and loads")
-    warnings: list[dict[str, Any]]
-    effect_ledger: list[dict[str, Any]] = Field(description="Decision and reason for each effect")
+    plan: PlannedRun = Field(description="Meshes, patches, positions and loads")
+    warnings: list[InputWarning]
+    effect_ledger: list[LedgerEntry] = Field(description="Decision and reason for each effect")

@@ -2,9 +2,47 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
 from pydantic import BaseModel, Field
+
+from service.schemas.named import Named
+
+
+class ReportTable(BaseModel):
+    """A table, its cells as they are read."""
+
+    caption: str
+    head: list[str]
+    rows: list[list[str]]
+
+
+class ReportPlot(BaseModel):
+    """What ``Plotly.newPlot`` takes."""
+
+    data: list[dict[str, Any]] = Field(description="Traces of plotly.js")
+    layout: dict[str, Any] = Field(description="Layout of plotly.js")
+
+
+class ReportFigure(BaseModel):
+    """A plot, with what stands in for it where it cannot be seen."""
+
+    key: str
+    title: str
+    caption: str
+    alternative: str = Field(description="The plot in words")
+    plot: ReportPlot
+    table: ReportTable | None = Field(description="Its numbers; null: none")
+
+
+class ReportSection(BaseModel):
+    """A part with its figures and tables."""
+
+    title: str
+    text: str
+    figures: list[ReportFigure]
+    tables: list[ReportTable]
+    folded: list[ReportTable] = Field(description="Tables that are shown on request")
 
 
 class ReportBody(BaseModel):
@@ -14,6 +52,4 @@ class ReportBody(BaseModel):
     lead: str
     alarms: list[str]
     headlines: list[dict[str, str]]
-    sections: list[dict[str, Any]] = Field(
-        description="title, text, figures (key, title, caption, alternative, plot, table), tables, folded"
-    )
+    sections: list[Annotated[dict[str, Any], Named("ReportSection")]]

@@ -1,0 +1,66 @@
+"""What the description says of answers: all of it by type, but for what others define."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from service.app import create_app
+from service.settings import Settings
+
+OPEN = {
+    "Parameter.value[]": "the standard lets a parameter be anything",
+    "ValueDescription.schema": "a JSON Schema",
+    "ReportPlot.data[]": "a trace of plotly.js",
+    "ReportPlot.layout": "a layout of plotly.js",
+    "ResultFigures": "the figures of a result, by its kind",
+}
+_directory = tempfile.TemporaryDirectory(prefix="loa-typed-")
+DOCUMENT: dict[str, Any] = create_app(Settings(data_directory=Path(_directory.name))).openapi()
+SCHEMAS = DOCUMENT["components"]["schemas"]
+WORDS = {"title", "description", "examples", "default"}
+
+
+def is_open(schema: dict[str, Any]) -> bool:
+    """Whether a schema says nothing of what it allows."""
+    if schema.get("type") != "object":
+        return not set(schema) - WORDS
+    others = schema.get("additionalProperties", not {"properties", "patternProperties"} & set(schema))
+    return others in (True, {})
+
+
+def untyped(schema: dict[str, Any], where: str, met: set[str]) -> Iterator[str]:
+    """Yield the places in a schema at which anything may stand; each named schema is walked once."""
+    name = schema.get("$ref", "").rpartition("/")[2]
+    if name:
+        if name not in met:
+            met.add(name)
+            yield from untyped(SCHEMAS[name], name, met)
+        return
+    if is_open(schema):
+        yield where
+    for kind in ("anyOf", "oneOf", "prefixItems"):
+        for alternative in schema.get(kind, ()):
+            yield from untyped(alternative, where, met)
+    for kind in ("properties", "patternProperties"):
+        for field, inner in schema.get(kind, {}).items():
+            yield from untyped(inner, f"{where}.{field}", met)
+    for kind, mark in (("items", "[]"), ("additionalProperties", "{}")):
+        if isinstance(schema.get(kind), dict):
+            yield from untyped(schema[kind], f"{where}{mark}", met)
+
+
+def test_answers_are_typed_but_for_what_others_define() -> None:
+    met: set[str] = set()
+    places = [
+        place
+        for path, methods in DOCUMENT["paths"].items()
+        for method, operation in methods.items()
+        for status, response in operation["responses"].items()
+        if status.startswith("2")
+        for content in response.get("content", {}).values()
+        for place in untyped(content["schema"], f"{method} {path} {status}", met)
+    ]
+    assert len(met) > 30 and sorted(places) == sorted(OPEN)
