@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import json
+from typing import Any
 
 from fastapi import APIRouter, Request
 from starlette.responses import Response
 
 from service.access import Scope
 from service.page.files import PageFile
-from service.routes.media_types import JSON, OPENAPI, media_type, negotiated
+from service.routes.media_types import JSON, OPENAPI, OPENAPI_30, media_type, negotiated
+from service.routes.openapi30 import in_version_30
 from service.routes.page import served
 from service.routes.scopes import ScopedRoute, needs
 
@@ -22,7 +24,17 @@ _OFFERED = (JSON, media_type(OPENAPI))
 def description(request: Request) -> Response:
     """Return the description, under the type of OpenAPI to those who prefer that."""
     accepted = negotiated(request.headers.get("accept", "*/*"), _OFFERED)
-    content = json.dumps(request.app.openapi(), ensure_ascii=False, allow_nan=False).encode()
-    answer = served(PageFile(content, JSON if accepted == JSON else OPENAPI), request)
+    answer = served(PageFile(_text(request.app.openapi()), JSON if accepted == JSON else OPENAPI), request)
     answer.headers.add_vary_header("Accept")
     return answer
+
+
+@router.get("/openapi-3.0.json")
+def description_30(request: Request) -> Response:
+    """Return the description in OpenAPI 3.0."""
+    return served(PageFile(_text(in_version_30(request.app.openapi())), OPENAPI_30), request)
+
+
+def _text(document: dict[str, Any]) -> bytes:
+    """Return a description as it is sent."""
+    return json.dumps(document, ensure_ascii=False, allow_nan=False).encode()

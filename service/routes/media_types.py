@@ -8,6 +8,7 @@ from functools import lru_cache
 JSON, CBOR, RAW = "application/json", "application/cbor", "application/octet-stream"
 PROBLEM = "application/problem+json"
 OPENAPI = "application/vnd.oai.openapi+json;version=3.1"
+OPENAPI_30 = "application/vnd.oai.openapi+json;version=3.0"
 
 
 def media_type(header: str) -> str:

@@ -11,12 +11,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from openapi_spec_validator import OpenAPIV31SpecValidator
+from openapi_spec_validator import OpenAPIV30SpecValidator, OpenAPIV31SpecValidator
 
 from service import problems
 from service.app import create_app
 from service.problems import ServiceError
 from service.registry import STUDIES
+from service.routes.openapi30 import in_version_30
 from service.routes.response_headers import OF_STATUS
 from service.schemas.ogc import class_name
 from service.settings import Settings
@@ -36,6 +37,15 @@ RULES = {"extends": "spectral:oas", "rules": {"info-contact": "off"}}  # whoever
 
 def test_it_is_openapi() -> None:
     assert [error.message for error in OpenAPIV31SpecValidator(DOCUMENT).iter_errors()] == []
+
+
+def test_it_is_openapi_30_too() -> None:
+    older = in_version_30(DOCUMENT)
+    assert [error.message for error in OpenAPIV30SpecValidator(older).iter_errors()] == []
+    assert set(older["paths"]) == set(DOCUMENT["paths"])
+    assert set(older["components"]["schemas"]) == set(DOCUMENT["components"]["schemas"])
+    tolerance = older["components"]["schemas"]["AccuracyInput"]["properties"]["tolerance"]
+    assert tolerance["nullable"] and tolerance["anyOf"][0]["maximum"] == 0.5
 
 
 def test_operations_are_named_by_words_and_processes_by_their_names() -> None:

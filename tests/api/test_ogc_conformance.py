@@ -1,7 +1,7 @@
 """Requirements of OGC API - Processes 1.0 (OGC 18-062r2) by their identifiers.
 
-Of the classes core, ogc-process-description, json, job-list and dismiss, as far as they concern what is
-offered: asynchronous execution of processes with one output.
+Of the classes core, ogc-process-description, json, oas30, job-list and dismiss, as far as they concern what
+is offered: asynchronous execution of processes with one output.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 from httpx2 import Response
+from openapi_spec_validator import OpenAPIV30SpecValidator
 from running_service import until
 from service_fakes import REGISTRY
 
@@ -46,8 +47,9 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
 
 
 def link(document: dict[str, Any], relation: str) -> str:
-    """Return the one link of a relation."""
-    (found,) = [entry["href"] for entry in document["links"] if entry["rel"] == relation]
+    """Return the first link of a relation: but for descriptions, which have two types, the only one."""
+    found, *others = [entry["href"] for entry in document["links"] if entry["rel"] == relation]
+    assert not others or relation == "service-desc"
     return str(found)
 
 
@@ -79,13 +81,21 @@ def landing_page(client: TestClient) -> None:
 @requirement("/rec/core/api-definition-oas")
 def types_of_the_definition(client: TestClient) -> None:
     """What the links say they lead to is answered to those who accept it."""
-    links = {entry["rel"]: entry for entry in client.get("/v1/").json()["links"]}
-    assert links["service-desc"]["type"] == "application/vnd.oai.openapi+json;version=3.1"
-    for relation in ("service-desc", "service-doc"):
-        answer = client.get(links[relation]["href"], headers={"Accept": links[relation]["type"]})
+    links = [entry for entry in client.get("/v1/").json()["links"] if entry["rel"].startswith("service-")]
+    assert [entry["type"] for entry in links if entry["rel"] == "service-desc"] == [
+        f"application/vnd.oai.openapi+json;version=3.{minor}" for minor in (1, 0)
+    ]
+    for entry in links:
+        answer = client.get(entry["href"], headers={"Accept": entry["type"]})
         assert answer.status_code == 200
-        assert answer.headers["content-type"].startswith(links[relation]["type"])
+        assert answer.headers["content-type"].startswith(entry["type"])
         assert "accept" in answer.headers["vary"].lower()
+
+
+@requirement("/req/oas30/oas-definition-1", "/req/oas30/oas-definition-2")
+def description_of_version_30(client: TestClient) -> None:
+    (href,) = [entry["href"] for entry in client.get("/v1/").json()["links"] if "3.0" in entry["type"]]
+    assert list(OpenAPIV30SpecValidator(client.get(href).json()).iter_errors()) == []
 
 
 @requirement("/req/core/api-definition-op", "/req/core/api-definition-success")
@@ -101,7 +111,7 @@ def api_definition(client: TestClient) -> None:
 @requirement("/req/core/conformance-op", "/req/core/conformance-success")
 def conformance(client: TestClient) -> None:
     classes = client.get("/v1/conformance").json()["conformsTo"]
-    wanted = ("core", "ogc-process-description", "json", "job-list", "dismiss")
+    wanted = ("core", "ogc-process-description", "json", "oas30", "job-list", "dismiss")
     assert set(classes) == {BASE + name for name in wanted}
 
 
