@@ -12,6 +12,7 @@ import json
 import subprocess
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 from types import ModuleType
 from typing import Any
 
@@ -29,6 +30,7 @@ from service.worker.catalogue import default_registry
 
 Json = dict[str, Any]
 
+GENERATOR = Path(sys.prefix) / "generator" / "bin" / "openapi-python-client"
 PACKAGE = "generated_client"
 CONFIG = {
     "content_type_overrides": dict.fromkeys(("application/cbor", NETCDF), "application/octet-stream"),
@@ -46,11 +48,13 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
 @pytest.fixture(scope="module")
 def generated(service: Service, tmp_path_factory: pytest.TempPathFactory) -> Iterator[ModuleType]:
     """The client that is generated from the description; a warning of the generator is an error."""
+    if not GENERATOR.exists():
+        pytest.skip("no openapi-python-client on this machine: scripts/test installs it")
     folder = tmp_path_factory.mktemp("generated")
     (folder / "openapi.json").write_text(json.dumps(service.description))
     (folder / "config.json").write_text(json.dumps(CONFIG))
     arguments = ("--path", "openapi.json", "--config", "config.json", "--output-path", PACKAGE)
-    command = (sys.executable, "-m", "openapi_python_client", "generate", *arguments, "--meta", "none")
+    command = (GENERATOR, "generate", *arguments, "--meta", "none")
     ended = subprocess.run(
         [*command, "--fail-on-warning"], cwd=folder, check=False, capture_output=True, text=True
     )
