@@ -2,11 +2,15 @@
 # The service in a container; compose.yaml has it with PostgreSQL and workers of their own. Without access keys it listens on
 # loopback only, so one container alone runs on the host's network:
 #   docker build -t lineofaction . && docker run --rm --network host -v lineofaction:/data lineofaction
+# BASE may name a digest (docs/docker.md); VERSION and REVISION are what the labels say.
 ARG BASE=python:3.13-slim-trixie
+ARG VERSION=unknown
+ARG REVISION=unknown
 
 # ---- build: a virtual environment from the lock file -------------------------------------------------------------
 FROM ${BASE} AS build
 ENV PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_NO_CACHE_DIR=1 PYTHONDONTWRITEBYTECODE=1
+RUN test "$(uname -m)" = x86_64 || { echo "gmsh and pymetis have no wheels for Linux on $(uname -m): docs/docker.md" >&2; exit 1; }
 RUN python -m venv /opt/lineofaction
 ENV PATH=/opt/lineofaction/bin:$PATH
 WORKDIR /source
@@ -62,12 +66,26 @@ ENV PATH=/opt/lineofaction/bin:$PATH \
     XDG_CACHE_HOME=/data/cache \
     MPLCONFIGDIR=/data/cache/matplotlib \
     OMP_NUM_THREADS=1
+RUN --mount=type=bind,source=scripts/sbom.py,target=/tmp/sbom.py \
+    PYTHONDONTWRITEBYTECODE=1 python /tmp/sbom.py /usr/share/sbom/lineofaction.cdx.json
 USER lineofaction
 WORKDIR /data
 VOLUME /data
-EXPOSE 8321
+EXPOSE 8321 8322
 STOPSIGNAL SIGTERM
 HEALTHCHECK --interval=15s --timeout=4s --start-period=30s --retries=3 \
     CMD ["python", "-c", "import os, urllib.request; urllib.request.urlopen(f\"http://{os.environ['LOA_HOST']}:{os.environ['LOA_PORT']}/health\", timeout=3)"]
 ENTRYPOINT ["tini", "--"]
 CMD ["loa", "serve"]
+
+# Last: what changes with every build.
+ARG BASE
+ARG VERSION
+ARG REVISION
+LABEL org.opencontainers.image.title="lineofaction" \
+    org.opencontainers.image.description="Contact analysis for gear noise over HTTP, and its workers" \
+    org.opencontainers.image.licenses="GPL-3.0-or-later" \
+    org.opencontainers.image.version="${VERSION}" \
+    org.opencontainers.image.revision="${REVISION}" \
+    org.opencontainers.image.base.name="${BASE}" \
+    lineofaction.sbom="/usr/share/sbom/lineofaction.cdx.json"

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import json
 import os
-import secrets
 import subprocess
 import tempfile
 import time
 import uuid
 from pathlib import Path
+from typing import Any
 
 import httpx2
-from containers import STOP_S, assess, await_health, free_port, podman, same_table, the_case, tried
+from containers import STOP_S, assess, await_answer, free_port, podman, same_table, the_case, tried
 
 from service.client import JobState, LineOfActionClient
 from service.problems import Unauthorised
@@ -25,9 +25,11 @@ _TEETH = range(21, 27)
 class Composition:
     """The services of compose.yaml, on volumes of their own that end with it."""
 
-    def __init__(self) -> None:
+    def __init__(self, scratch: Path) -> None:
+        self.secrets = scratch / "secrets"
         self.name, self.port = f"lineofaction-{uuid.uuid4().hex[:8]}", free_port()
-        own = {"LOA_DATABASE_PASSWORD": secrets.token_hex(16), "LOA_PORT": str(self.port), "LOA_LEASE_S": "5"}
+        subprocess.run(["scripts/secrets", str(self.secrets)], check=True)
+        own = {"LOA_SECRETS": str(self.secrets), "LOA_PORT": str(self.port), "LOA_LEASE_S": "5"}
         self._ours = ("--filter", f"label=com.docker.compose.project={self.name}")
         self._environment = {**os.environ, **own, "COMPOSE_PROJECT_NAME": self.name}
 
@@ -58,7 +60,7 @@ class Composition:
         # step by step: podman 4 knows neither conditions of health nor dependencies of dependencies
         self.compose("run", "--rm", "--no-deps", "-T", "schema")
         self.compose("up", "--detach", "--no-deps", "--scale", "work=2", "service", "work")
-        await_health(self.url)
+        await_answer(f"{self.url}/ready")
         return time.monotonic() - begin
 
     def containers(self, service: str) -> list[str]:
@@ -90,15 +92,38 @@ def stopped(run: Composition) -> list[bool]:
     return verdicts
 
 
+def guarded(run: Composition) -> list[bool]:
+    """Assess what holds the containers in: limits, rights, secrets that only files hold, checks of health."""
+    verdicts = []
+    for container in (*run.containers("service"), *run.containers("work")):
+        facts = json.loads(podman("inspect", container))[0]
+        host, password = facts["HostConfig"], (run.secrets / "database_password").read_text()
+        limits = [
+            host["Memory"] > 0,
+            0 < host["PidsLimit"] <= 512,
+            host["NanoCpus"] > 0 or host["CpuQuota"] > 0,
+        ]
+        shown = password in json.dumps(facts)
+        healthy = tried("healthcheck", "run", container).returncode
+        verdicts += [
+            assess(f"limits of memory, processes, CPU of {container}", limits, good=all(limits)),
+            assess("password shown by inspect", shown, good=not shown),
+            assess("exit code of the check of health", healthy, good=healthy == 0),
+        ]
+    return verdicts
+
+
 def live(run: Composition, client: LineOfActionClient, key: str) -> bool:
     """Assess whether the serving container answers live from what a worker condensed."""
     table = client.analyze(the_case()).metadata.content_hash
-    answer = httpx2.post(
-        f"{run.url}/v1/databases/{table}/ste",
-        json={"torque_n_m": [100.0], "pinion": {"profile_crowning_um": 5.0}},
-        headers={"Authorization": f"Bearer {key}"},
-        timeout=60.0,
-    )
+    begin, answer = time.monotonic(), None
+    while answer is None or (answer.status_code == 503 and time.monotonic() - begin < _PATIENCE_S):
+        answer = httpx2.post(  # the first one compiles, and goes on when it is repeated
+            f"{run.url}/v1/databases/{table}/ste",
+            json={"torque_n_m": [100.0], "pinion": {"profile_crowning_um": 5.0}},
+            headers={"Authorization": f"Bearer {key}"},
+            timeout=_PATIENCE_S,
+        )
     found = answer.status_code if answer.status_code == 200 else answer.text[:300]
     return assess("status of a live answer", found, good=answer.status_code == 200)
 
@@ -127,7 +152,7 @@ def _with_teeth(case: Case, teeth: int) -> Case:
     return Case.model_validate(facts)
 
 
-def _states(client: LineOfActionClient, jobs: list[JobState]) -> list[JobState]:
+def _states(client: LineOfActionClient, jobs: list[Any]) -> list[JobState]:
     """Return the jobs as they are now."""
     return [client.status(job.id) for job in jobs]
 
@@ -159,25 +184,25 @@ def verdicts_of(run: Composition, scratch: Path) -> list[bool]:
         verdicts.append(same_table(client, the_case()))
         verdicts.append(live(run, client, key["key"]))
         verdicts += shared(run, client, the_case())
-    verdicts += stopped(run)
+    verdicts += [*guarded(run), *stopped(run)]
     run.compose("stop")
     run.start()
     with LineOfActionClient(run.url, cache_dir=scratch / "second", key=key["key"]) as client:
         again = client.analyze.submit(the_case())
         client.fetch_file(client.result(again.id).key)
-        found = again.status == "successful"
-        verdicts.append(assess("table of before served after a restart", again.message, good=found))
+        found = again.state.status == "successful"
+        verdicts.append(assess("table of before served after a restart", again.state.message, good=found))
     return verdicts
 
 
 def main() -> int:
     """Assess compose.yaml as it stands."""
-    run = Composition()
-    try:
-        with tempfile.TemporaryDirectory() as scratch:
+    with tempfile.TemporaryDirectory() as scratch:
+        run = Composition(Path(scratch))
+        try:
             verdicts = verdicts_of(run, Path(scratch))
-    finally:
-        run.remove()
+        finally:
+            run.remove()
     return 0 if all(verdicts) else 1
 
 

@@ -17,7 +17,7 @@ from service.convert.checks import check_case
 from service.schemas import Case, read_model
 
 CASE = Path("examples/palermo_spur_20_20.toml")
-START_S, STOP_S = 60.0, 5.0
+START_S, READY_S, STOP_S = 60.0, 3.0, 5.0
 _SAME = 1e-9  # of a table computed here: another Python, the same libraries
 
 
@@ -44,15 +44,16 @@ def free_port() -> int:
         return int(probe.getsockname()[1])
 
 
-def await_health(url: str) -> float:
-    """Return the seconds until a service answered; raise TimeoutError if it does not."""
+def await_answer(url: str) -> float:
+    """Return the seconds until a path answered with 200; raise TimeoutError if it does not."""
     begin = time.monotonic()
     while time.monotonic() - begin < START_S:
         try:
-            if httpx2.get(f"{url}/health").status_code == 200:
+            if httpx2.get(url).status_code == 200:
                 return time.monotonic() - begin
         except httpx2.TransportError:
-            time.sleep(0.05)
+            pass
+        time.sleep(0.05)
     raise TimeoutError(f"{url} did not answer within {START_S:g} s")
 
 
