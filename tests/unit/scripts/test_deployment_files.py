@@ -1,0 +1,238 @@
+"""Dockerfile, compose.yaml and the manifests for Kubernetes agree with the program and with each other."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import tomllib
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import kubernetes_validate
+import pytest
+import yaml
+from typer.main import get_command
+
+from service.cli.commands import app
+from service.queue.claims import DEFAULT_LEASE_S
+from service.secret_files import is_secret
+from service.settings import Settings
+
+ROOT = Path(__file__).resolve().parents[3]
+MANIFESTS = ROOT / "deploy" / "kubernetes"
+FIELDS = {name.upper(): field for name, field in Settings.model_fields.items()}
+VARIABLES = {f"LOA_{name}" for name in FIELDS} | {
+    f"LOA_{name}_FILE" for name, field in FIELDS.items() if is_secret(field)
+}
+PARTS = ("serve", "work", "schema")
+
+
+@cache
+def documents(part: str) -> tuple[dict[str, Any], ...]:
+    """Return what kustomize makes of a folder."""
+    if shutil.which("kubectl") is None:
+        pytest.skip("kubectl is not installed")
+    words = ["kubectl", "kustomize", str(MANIFESTS / part)]
+    done = subprocess.run(words, check=True, capture_output=True, text=True)
+    return tuple(yaml.safe_load_all(done.stdout))
+
+
+def of_kind(part: str, kind: str) -> Iterator[dict[str, Any]]:
+    """Yield the documents of a kind."""
+    yield from (one for one in documents(part) if one["kind"] == kind)
+
+
+def pods() -> dict[str, dict[str, Any]]:
+    """Return the pods by their part."""
+    makers = [*of_kind("service", "Deployment"), *of_kind("schema", "Job")]
+    found = {one["metadata"]["name"].rpartition("-")[2]: one["spec"]["template"]["spec"] for one in makers}
+    assert set(found) == set(PARTS)
+    return found
+
+
+def container(part: str) -> dict[str, Any]:
+    """Return the only container of a part."""
+    (only,) = pods()[part]["containers"]
+    return only
+
+
+def compose() -> dict[str, Any]:
+    """Return compose.yaml."""
+    return yaml.safe_load((ROOT / "compose.yaml").read_text())
+
+
+def dockerfile() -> str:
+    """Return the Dockerfile."""
+    return (ROOT / "Dockerfile").read_text()
+
+
+def variables_of(part: str) -> dict[str, str]:
+    """Return what a part's container finds in its environment, secrets apart."""
+    (settings,) = of_kind("service", "ConfigMap")
+    own = {entry["name"]: entry["value"] for entry in container(part).get("env", [])}
+    return {**settings["data"], **own}
+
+
+@pytest.mark.parametrize("part", ["service", "schema"])
+def test_manifests_are_valid(part: str) -> None:
+    for document in documents(part):
+        kubernetes_validate.validate(document, "1.34", strict=True)
+
+
+def test_a_manifest_that_is_not_valid_is_found() -> None:
+    wrong = {**next(of_kind("service", "Deployment"))}
+    wrong["spec"] = {**wrong["spec"], "replica": 2}
+    with pytest.raises(kubernetes_validate.ValidationError):
+        kubernetes_validate.validate(wrong, "1.34", strict=True)
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_every_variable_of_a_pod_is_a_setting(part: str) -> None:
+    assert set(variables_of(part)) <= VARIABLES
+
+
+def test_every_variable_of_compose_and_of_the_image_is_a_setting() -> None:
+    named = {
+        name for service in compose()["services"].values() for name in service.get("environment", {})
+    } | set(re.findall(r"\bLOA_[A-Z_]+(?==)", dockerfile()))
+    assert {name for name in named if name.startswith("LOA_")} <= VARIABLES
+    assert {"LOA_DATABASE_URL_FILE", "LOA_MANAGEMENT_PORT", "LOA_DATA_DIRECTORY"} <= named
+
+
+def test_pods_hold_no_secret_and_mount_those_they_name() -> None:
+    for part, spec in pods().items():
+        assert not any(
+            is_secret(field) and f"LOA_{name}" in variables_of(part) for name, field in FIELDS.items()
+        )
+        mounted = [Path(mount["mountPath"]) for mount in container(part)["volumeMounts"]]
+        for name, value in variables_of(part).items():
+            if name.endswith("_FILE"):
+                assert Path(value).parent in mounted, (part, name)
+        assert {mount["name"] for mount in container(part)["volumeMounts"]} == {
+            volume["name"] for volume in spec["volumes"]
+        }
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_commands_are_verbs_of_the_program(part: str) -> None:
+    for words in (
+        container(part)["args"],
+        compose()["services"][{"serve": "service"}.get(part, part)]["command"],
+    ):
+        program, verb, *rest = words
+        assert program == "loa"
+        command = get_command(app).commands[verb]  # type: ignore[attr-defined]
+        options = {option for parameter in command.params for option in parameter.opts}
+        assert all(word in options or word in getattr(command, "commands", {}) for word in rest)
+
+
+def test_ports_and_paths_agree() -> None:
+    exposed = set(map(int, re.search(r"^EXPOSE (.*)$", dockerfile(), re.MULTILINE)[1].split()))
+    http = int(re.search(r"LOA_PORT=(\d+)", dockerfile())[1])
+    management = int(variables_of("work")["LOA_MANAGEMENT_PORT"])
+    assert http == Settings.model_fields["port"].default
+    assert exposed == {http, management}
+    for part, named in (
+        ("serve", {"http": http, "management": management}),
+        ("work", {"management": management}),
+    ):
+        assert {port["name"]: port["containerPort"] for port in container(part)["ports"]} == named
+    (service,) = of_kind("service", "Service")
+    assert [port["targetPort"] for port in service["spec"]["ports"]] == ["http"]
+    assert f":{http}" in compose()["services"]["service"]["ports"][0]
+    for name in ("service", "work"):
+        parts = compose()["services"][name]
+        assert parts["environment"]["LOA_MANAGEMENT_PORT"] == management
+        assert f"http://127.0.0.1:{management}/health" in parts["healthcheck"]["test"][-1]
+    for part in ("serve", "work"):
+        probes = {
+            name: container(part)[f"{name}Probe"]["httpGet"] for name in ("startup", "liveness", "readiness")
+        }
+        assert {probe["port"] for probe in probes.values()} == {"management"}
+        assert probes["liveness"]["path"] == probes["startup"]["path"] == "/health"
+        assert probes["readiness"]["path"] == "/ready"
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_pods_have_the_least_rights(part: str) -> None:
+    spec, only = pods()[part], container(part)
+    assert spec["automountServiceAccountToken"] is False
+    user = re.search(r"--uid (\d+)", dockerfile())
+    assert user is not None
+    assert (spec["securityContext"]["runAsNonRoot"], spec["securityContext"]["runAsUser"]) == (
+        True,
+        int(user[1]),
+    )
+    assert spec["securityContext"]["seccompProfile"] == {"type": "RuntimeDefault"}
+    assert only["securityContext"] == {
+        "allowPrivilegeEscalation": False,
+        "readOnlyRootFilesystem": True,
+        "capabilities": {"drop": ["ALL"]},
+    }
+    for bound in ("requests", "limits"):
+        assert set(only["resources"][bound]) == {"cpu", "memory"}
+    place = re.search(r"LOA_DATA_DIRECTORY=(\S+)", dockerfile())
+    assert place is not None
+    writable = [mount["mountPath"] for mount in only["volumeMounts"] if not mount.get("readOnly")]
+    assert "/tmp" in writable and any(Path(place[1]).is_relative_to(path) for path in writable)
+
+
+def test_containers_of_compose_are_bounded() -> None:
+    for name, service in compose()["services"].items():
+        assert {"mem_limit", "cpus", "pids_limit"} <= set(service), name
+        assert service["logging"]["options"] == {"max-size": "10m", "max-file": "5"}, name
+        assert service["cap_drop"] == ["ALL"] and service["security_opt"] == ["no-new-privileges:true"], name
+        assert service.get("read_only", False) or name == "database"
+
+
+def test_a_pod_ends_later_than_its_leases() -> None:
+    lease = float(variables_of("work")["LOA_LEASE_S"])
+    assert lease == DEFAULT_LEASE_S < pods()["work"]["terminationGracePeriodSeconds"]
+
+
+def test_a_worker_fails_by_its_own_limit_before_the_container_does() -> None:
+    limit = int(variables_of("work")["LOA_MEMORY_LIMIT_MB"]) * int(variables_of("work")["LOA_WORKERS"])
+    assert container("work")["resources"]["limits"]["memory"] == "4Gi"
+    assert limit + 600 < 4 * 1024  # the scheduler, and the warm process it forks workers from
+
+
+def test_scaling_follows_a_metric_of_the_program() -> None:
+    (scaler,) = of_kind("service", "HorizontalPodAutoscaler")
+    (metric,) = [entry["external"]["metric"]["name"] for entry in scaler["spec"]["metrics"]]
+    assert any(f'"{metric}"' in file.read_text() for file in (ROOT / "service").rglob("*.py"))
+    assert scaler["spec"]["scaleTargetRef"]["name"] in {
+        one["metadata"]["name"] for one in of_kind("service", "Deployment")
+    }
+    work = next(one for one in of_kind("service", "Deployment") if one["metadata"]["name"].endswith("work"))
+    assert "replicas" not in work["spec"]  # two would set it against each other
+
+
+def test_selectors_select_pods() -> None:
+    labels = [one["spec"]["template"]["metadata"]["labels"] for one in of_kind("service", "Deployment")]
+    chosen = [one["spec"]["selector"] for one in of_kind("service", "Service")]
+    chosen += [one["spec"]["selector"]["matchLabels"] for one in of_kind("service", "PodDisruptionBudget")]
+    chosen += [
+        one["spec"]["podSelector"].get("matchLabels", {}) for one in of_kind("service", "NetworkPolicy")
+    ]
+    for wanted in chosen:
+        assert any(wanted.items() <= given.items() for given in labels), wanted
+
+
+def test_the_image_has_every_package() -> None:
+    """What the Dockerfile copies is let through by .dockerignore; no package of the project is missing."""
+    copied = re.findall(r"^COPY (?!--from)(.*) \S+$", dockerfile(), re.MULTILINE)
+    sources = {source for line in copied for source in line.split()}
+    sources |= set(re.findall(r"source=(\S+?),", dockerfile()))
+    allowed = {line[1:] for line in (ROOT / ".dockerignore").read_text().split() if line.startswith("!")}
+    assert sources <= allowed
+    packages = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]["packages"]["find"]
+    assert {name.rstrip("*") for name in packages["include"]} <= sources
+
+
+def test_the_tag_is_the_version() -> None:
+    image = yaml.safe_load((MANIFESTS / "image" / "kustomization.yaml").read_text())["images"][0]
+    assert image["newTag"] == tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
+    assert {container(part)["image"] for part in PARTS} == {f"lineofaction:{image['newTag']}"}
