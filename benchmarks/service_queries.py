@@ -4,21 +4,18 @@ from __future__ import annotations
 
 import http.client
 import json
-import subprocess
-import sys
 import tempfile
-import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from statistics import median, quantiles
+from statistics import median
 
 import numpy as np
 
 from benchmarks.example_pair import PAIR, TORQUES
 from benchmarks.figures import Figure
 from benchmarks.fresh_process import measure
-from benchmarks.service_process import cpu_seconds, idle_memory_mb, memory_mb, running
+from benchmarks.service_process import idle_memory_mb, memory_mb, running
 from service.client import LineOfActionClient
 from service.store import stored_results
 
@@ -26,11 +23,9 @@ KEY = "ab" * 32
 PATH = f"/v1/databases/{KEY}/query"
 RAW, JSON = "application/octet-stream", "application/json"
 POINTS, BATCHES = 10_000, 30
-CALLERS, SECONDS = 8, 4.0
 _TABLE = (
     PAIR + 'analyze(pair, torques={torques}, model="plane_strain").to_netcdf({table!r})\nmeasured = {{}}\n'
 )
-_JOB = "import os\nos.nice(10)\nwhile True:\n    sum(range(100_000))"
 
 
 def figures() -> list[Figure]:
@@ -47,7 +42,6 @@ def figures() -> list[Figure]:
                 client.fetch(KEY)
                 cached = min(_seconds(lambda: client.fetch(KEY)) for _ in range(5))
             batches = [*_batch_figures(address)]
-            single = _single_figures(address, process.pid)
             at_rest = memory_mb(process.pid)
     return [
         Figure("service", "start until it answers", started[0], "s", 3.0),
@@ -57,7 +51,6 @@ def figures() -> list[Figure]:
         Figure("service", "memory after these queries", at_rest, "MB"),
         Figure("service", "cached table through the client", 1e3 * cached, "ms", 20.0),
         *batches,
-        *single,
     ]
 
 
@@ -74,40 +67,6 @@ def _batch_figures(address: str) -> Iterator[Figure]:
         taken = [1e6 * _seconds(ask) / POINTS for _ in range(BATCHES)]
         yield Figure("force queries", f"a point of {POINTS}, {name}, best", min(taken), "us", limit)
         yield Figure("force queries", f"a point of {POINTS}, {name}, median", median(taken), "us")
-    connection.close()
-
-
-def _single_figures(address: str, pid: int) -> list[Figure]:
-    """Time of one-point queries while two processes of a job's priority compute."""
-    jobs = [subprocess.Popen([sys.executable, "-c", _JOB]) for _ in range(2)]
-    try:
-        taken: list[float] = []
-        callers = [threading.Thread(target=_call, args=(address, taken)) for _ in range(CALLERS)]
-        begin, cpu = time.perf_counter(), cpu_seconds(pid)
-        for caller in callers:
-            caller.start()
-        for caller in callers:
-            caller.join()
-        elapsed, cpu = time.perf_counter() - begin, cpu_seconds(pid) - cpu
-    finally:
-        for job in jobs:
-            job.kill()
-            job.wait()
-    subject = f"one-point queries, {CALLERS} callers, two jobs"
-    return [
-        Figure(subject, "time between answers", 1e6 * elapsed / len(taken), "us", 1e6 / 1500.0),
-        Figure(subject, "CPU time of the service for one", 1e6 * cpu / len(taken), "us"),
-        Figure(subject, "latency, median", 1e3 * median(taken), "ms"),
-        Figure(subject, "latency, 99 %", 1e3 * quantiles(taken, n=100)[-1], "ms", 50.0),
-    ]
-
-
-def _call(address: str, taken: list[float]) -> None:
-    """Ask one point after the other for a while."""
-    connection, end = _connection(address), time.perf_counter() + SECONDS
-    body = b'{"position": [0.3], "deflection_um": [5.0]}'
-    while time.perf_counter() < end:
-        taken.append(_seconds(lambda: _ask(connection, body, JSON)))
     connection.close()
 
 

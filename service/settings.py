@@ -43,6 +43,8 @@ class Settings(BaseSettings):
         How long a removed result can be had back.
     workers : int
         Jobs that run at the same time.
+    processes : int
+        Processes that answer requests.
     queue_limit : int
         Computations that may wait; beyond it a submission is answered with 429.
     body_limit : int
@@ -74,6 +76,7 @@ class Settings(BaseSettings):
     retention_days: float | None = Field(None, ge=1.0, le=100_000.0)
     quarantine_days: float = Field(7.0, ge=0.0, le=100_000.0)
     workers: int = Field(1, ge=1, le=256)
+    processes: int = Field(1, ge=1, le=64)
     queue_limit: int = Field(100, ge=1, le=100_000)
     body_limit: int = Field(4_000_000, ge=1_000, le=1_000_000_000)
     deadline_s: float = Field(3600.0, gt=0.0, le=1e6)

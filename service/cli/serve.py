@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import signal
 import socket
+from functools import partial
 from types import FrameType
 from typing import NoReturn
 
@@ -17,6 +18,7 @@ from service.cli.bounded_http import BoundedHttp
 from service.cli.interrupt import leave
 from service.cli.log import log_to_standard_error
 from service.cli.managed import announce_management, managed
+from service.cli.serving_processes import end_with_parent, serve_in_processes
 from service.directories import keep_private
 from service.management.vitals import EventLoop, Vitals
 from service.problems import BadInput
@@ -36,6 +38,11 @@ def run_serve(*, works: bool = True, **options: object) -> None:
     log_to_standard_error()
     open_identities(settings)  # refused before a socket is opened
     with _listener(settings) as listener:
+        if settings.processes > 1:
+            serve_in_processes(
+                settings, works, partial(_serve, settings, listener), partial(_announce, listener)
+            )
+            leave()
         app = create_app(settings, works=works)
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, _stopped)
@@ -44,6 +51,15 @@ def run_serve(*, works: bool = True, **options: object) -> None:
             _announce(listener)
             announce_management(where)
             server.run(sockets=[listener])
+
+
+def _serve(settings: Settings, listener: socket.socket) -> None:
+    """Serve as one of several processes, until stopped or until the one that supervises them is gone."""
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, _stopped)
+    end_with_parent()
+    log_to_standard_error()
+    http_server(create_app(settings, works=False)).run(sockets=[listener])
 
 
 def http_server(app: FastAPI) -> _Server:

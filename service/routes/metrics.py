@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
+from prometheus_client.multiprocess import MultiProcessCollector
 
 from service.problems import ServiceError
 from service.problems.error import last_part
@@ -19,11 +21,16 @@ class Metrics:
     Parameters
     ----------
     process : CollectorRegistry
-        With the metrics of its process.
+        With the metrics of its process. Those of requests are of the process, or, where several serve on one
+        socket, the sums over all of them.
     """
 
     def __init__(self, process: CollectorRegistry) -> None:
         self._process, self._registry = process, CollectorRegistry()
+        self._answered = self._registry
+        if "PROMETHEUS_MULTIPROC_DIR" in os.environ:  # see `service.cli.serving_processes`
+            self._answered = CollectorRegistry()
+            MultiProcessCollector(self._answered)  # type: ignore[no-untyped-call]
         labels = ["method", "route", "status"]
         self._requests = Counter("loa_requests", "Requests answered", labels, registry=self._registry)
         text = "Time to answer, event streams left out"
@@ -70,7 +77,7 @@ class Metrics:
 
     def text(self) -> bytes:
         """Return all figures in the text exposition format."""
-        return generate_latest(self._registry) + generate_latest(self._process)
+        return generate_latest(self._answered) + generate_latest(self._process)
 
 
 def _kinds(problem: type[ServiceError]) -> set[str]:

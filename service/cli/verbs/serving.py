@@ -28,6 +28,9 @@ def serve(
         Path | None, typer.Option(help="Directory of jobs and results [LOA_DATA_DIRECTORY].")
     ] = None,
     workers: Annotated[int | None, typer.Option(help="Jobs at the same time [LOA_WORKERS].")] = None,
+    processes: Annotated[
+        int | None, typer.Option(help="Processes that answer requests [LOA_PROCESSES].")
+    ] = None,
     no_work: Annotated[
         bool, typer.Option("--no-work", help="Serve only; loa work runs the jobs of the same database.")
     ] = False,
@@ -35,7 +38,8 @@ def serve(
     """Serve jobs and results over HTTP on this machine, until stopped."""
     from service.cli.serve import run_serve  # noqa: PLC0415 (start-up time)
 
-    run_serve(host=host, port=port, data_directory=data_directory, workers=workers, works=not no_work)
+    settings = {"host": host, "port": port, "data_directory": data_directory}
+    run_serve(**settings, workers=workers, processes=processes, works=not no_work)
 
 
 @verbs.command(epilog="Example: LOA_DATABASE_URL=postgresql://loa@db/loa loa work --workers 4")

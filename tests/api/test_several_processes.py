@@ -1,0 +1,203 @@
+"""Several serving processes on one socket: one that is killed is replaced, jobs go on, all stop together."""
+
+from __future__ import annotations
+
+import http.client
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import threading
+import time
+import urllib.request
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from running_service import PATIENCE_S, lives, until
+from whole_service import _CASE
+
+from service.cli import serving_processes
+from service.cli.serving_processes import ServingProcesses
+
+ROOT = Path(__file__).parents[2]
+NUMBER, CALLERS = 3, 6
+
+
+@contextmanager
+def serving(folder: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    """Serve with several processes on a free port; gives the supervising process and the address."""
+    command = [sys.executable, "-m", "service.cli", "serve", "--port", "0", "--processes", str(NUMBER)]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])}
+    with (folder / "log").open("w") as log:
+        process = subprocess.Popen(
+            [*command, "--data-directory", str(folder / "data")],
+            env=environment,
+            text=True,
+            stdout=subprocess.PIPE,
+            stderr=log,
+        )
+    assert process.stdout is not None
+    address = process.stdout.readline().rpartition(" ")[2].strip()
+    assert address, (folder / "log").read_text()
+    try:
+        get(address, "/health")
+        yield process, address
+    finally:
+        if process.poll() is None:
+            process.kill()
+        process.communicate()
+
+
+@pytest.fixture
+def server(tmp_path: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    """A service that a test may end."""
+    with serving(tmp_path) as found:
+        yield found
+
+
+def get(address: str, path: str) -> bytes:
+    """Ask once, on a connection of its own."""
+    with urllib.request.urlopen(f"{address}{path}", timeout=PATIENCE_S) as answer:
+        return bytes(answer.read())
+
+
+def children(pid: int) -> list[int]:
+    """Return the children of all threads of a process."""
+    tasks = Path(f"/proc/{pid}/task").iterdir()
+    return [int(child) for task in tasks for child in (task / "children").read_text().split()]
+
+
+def serving_pids(supervisor: int) -> list[int]:
+    """Return the serving processes: children of the process that forks them."""
+    forking = [pid for pid in children(supervisor) if b"forkserver import" in _command(pid)]
+    return [pid for fork in forking for pid in children(fork) if lives(pid)]
+
+
+def _command(pid: int) -> bytes:
+    return Path(f"/proc/{pid}/cmdline").read_bytes()
+
+
+class Caller(threading.Thread):
+    """Asks on a kept connection without a pause; where that breaks it goes on with another."""
+
+    def __init__(self, address: str, ended: threading.Event) -> None:
+        super().__init__()
+        self._address, self._ended = address.removeprefix("http://"), ended
+        self.answers: list[int] = []
+        self.broken = 0
+
+    def run(self) -> None:
+        """Ask until ended."""
+        connection = http.client.HTTPConnection(self._address, timeout=PATIENCE_S)
+        while not self._ended.is_set():
+            try:
+                connection.request("GET", "/v1/jobs?limit=1")
+                answer = connection.getresponse()
+                answer.read()
+                self.answers.append(answer.status)
+            except (OSError, http.client.HTTPException):
+                self.broken += 1
+                connection.close()
+        connection.close()
+
+
+def test_a_killed_process_is_replaced_and_loses_only_what_it_answers(
+    server: tuple[subprocess.Popen[str], str],
+) -> None:
+    process, address = server
+    until(lambda: len(serving_pids(process.pid)) == NUMBER)
+    job = _submitted(address)
+    ended = threading.Event()
+    callers = [Caller(address, ended) for _ in range(CALLERS)]
+    for caller in callers:
+        caller.start()
+    until(lambda: all(len(caller.answers) > 20 for caller in callers))
+    victims = list(serving_pids(process.pid))
+    for victim in victims[:2]:
+        os.kill(victim, signal.SIGKILL)
+    until(lambda: len(set(serving_pids(process.pid)) - set(victims[:2])) == NUMBER)
+    before = [len(caller.answers) for caller in callers]
+    until(lambda: all(len(c.answers) > count + 20 for c, count in zip(callers, before, strict=True)))
+    ended.set()
+    for caller in callers:
+        caller.join()
+    assert all(set(caller.answers) == {200} for caller in callers)
+    assert all(caller.broken <= 2 for caller in callers)  # a request for each process that was killed
+    figures = get(address, "/metrics").decode()
+    counted = re.search(r'loa_requests_total\{[^}]*route="/v1/jobs",status="200"} ([\d.]+)', figures)
+    assert counted is not None
+    answered = sum(len(caller.answers) for caller in callers)
+    assert answered <= float(counted.group(1)) <= answered + 2 * CALLERS
+    until(lambda: _status(address, job)["status"] == "successful")
+    assert _status(address, job)["attempts"] == 1
+
+
+def _submitted(address: str) -> str:
+    """Enter a job; return its path."""
+    body = json.dumps({"inputs": {"case": _CASE}}).encode()
+    request = urllib.request.Request(
+        f"{address}/v1/processes/analyze/execution", body, {"Content-Type": "application/json"}
+    )
+    with urllib.request.urlopen(request, timeout=PATIENCE_S) as answer:
+        return str(answer.headers["Location"])
+
+
+def _status(address: str, job: str) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(get(address, job))
+    return found
+
+
+def test_all_stop_within_five_seconds_of_a_signal(
+    server: tuple[subprocess.Popen[str], str], tmp_path: Path
+) -> None:
+    process, address = server
+    until(lambda: len(serving_pids(process.pid)) == NUMBER)
+    job = _submitted(address)
+    until(lambda: _status(address, job)["status"] == "running")
+    stream = urllib.request.urlopen(f"{address}{job}/events", timeout=PATIENCE_S)
+    family = [*children(process.pid), *serving_pids(process.pid)]
+    begin = time.monotonic()
+    process.send_signal(signal.SIGTERM)
+    assert process.wait(PATIENCE_S) == 0
+    assert time.monotonic() - begin < 5.0
+    stream.read()  # it has ended
+    until(lambda: not any(lives(pid) for pid in family))
+    assert "Traceback" not in (tmp_path / "log").read_text()
+
+
+def test_none_outlives_a_supervisor_that_is_killed(server: tuple[subprocess.Popen[str], str]) -> None:
+    process, _ = server
+    until(lambda: len(serving_pids(process.pid)) == NUMBER)
+    family = [*children(process.pid), *serving_pids(process.pid)]
+    process.kill()
+    process.wait()
+    until(lambda: not any(lives(pid) for pid in family))
+
+
+def test_processes_that_die_at_once_are_not_started_again_and_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock, started = [0.0], list[float]()
+    dead = SimpleNamespace(is_alive=lambda: False, pid=1, exitcode=1)
+
+    def start(_self: ServingProcesses) -> Any:
+        started.append(clock[0])
+        return dead
+
+    monkeypatch.setattr(ServingProcesses, "_started", start)
+    monkeypatch.setattr(serving_processes, "mark_process_dead", lambda *_: None)
+    monkeypatch.setenv("PROMETHEUS_MULTIPROC_DIR", "unused")
+    monkeypatch.setattr(serving_processes.time, "monotonic", lambda: clock[0])
+    processes = ServingProcesses(2, lambda: None)
+    for _ in range(101):
+        processes.replace_dead()
+        clock[0] += 0.2
+    assert (
+        2 * 20.0 / serving_processes.LEAST_LIFE_S
+        <= len(started)
+        <= 2 * (20.0 / serving_processes.LEAST_LIFE_S + 1)
+    )
