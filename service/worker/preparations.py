@@ -19,11 +19,13 @@ from service.worker.scene_inputs import check_scene_inputs
 Json = dict[str, Any]
 
 
-def prepare_analyze(inputs: BoundaryModel, _store: ResultStore) -> Json:
-    """Check that the pair exists; return the case with all defaults."""
+def prepare_analyze(inputs: BoundaryModel, store: ResultStore) -> Json:
+    """Return the case with all defaults; check that it can be computed, unless that was done."""
     assert isinstance(inputs, AnalyzeInputs)
-    check_case(inputs.case)
-    return inputs.model_dump(mode="json")
+    normalized: Json = inputs.model_dump(mode="json")
+    if store.find(name_database(normalized), "database") is None:
+        check_case(inputs.case)
+    return normalized
 
 
 def name_database(inputs: Json) -> str:
