@@ -30,6 +30,7 @@ def description(request: Request) -> Response:
 
 
 @router.get("/openapi-3.0.json")
+@needs(Scope.READ)
 def description_30(request: Request) -> Response:
     """Return the description in OpenAPI 3.0."""
     return served(PageFile(_text(in_version_30(request.app.openapi())), OPENAPI_30), request)
