@@ -7,6 +7,7 @@ import json
 import os
 import re
 import signal
+import socket
 import subprocess
 import sys
 import threading
@@ -30,10 +31,11 @@ NUMBER, CALLERS = 3, 6
 
 
 @contextmanager
-def serving(folder: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
+def serving(folder: Path, **settings: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
     """Serve with several processes on a free port; gives the supervising process and the address."""
     command = [sys.executable, "-m", "service.cli", "serve", "--port", "0", "--processes", str(NUMBER)]
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])}
+    path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
+    environment = {**os.environ, **settings, "PYTHONPATH": path}
     with (folder / "log").open("w") as log:
         process = subprocess.Popen(
             [*command, "--data-directory", str(folder / "data")],
@@ -201,3 +203,26 @@ def test_processes_that_die_at_once_are_not_started_again_and_again(monkeypatch:
         <= len(started)
         <= 2 * (20.0 / serving_processes.LEAST_LIFE_S + 1)
     )
+
+
+def test_one_management_port_tells_of_all_processes_and_of_their_scheduler(tmp_path: Path) -> None:
+    with serving(tmp_path, LOA_MANAGEMENT_PORT="0") as (process, address):
+        assert process.stdout is not None
+        management = process.stdout.readline().rpartition(" ")[2].strip()
+        until(lambda: len(serving_pids(process.pid)) == NUMBER)
+        for _ in range(20):
+            get(address, "/v1/jobs")
+        assert json.loads(get(management, "/health")) == {"status": "ok"}
+        until(lambda: json.loads(get(management, "/ready")) == {"status": "ready"})
+        text = get(management, "/metrics").decode()
+        assert re.search(r'loa_requests_total\{.*route="/v1/jobs",status="200".*\} 20\.0', text)
+        assert "loa_scheduler_up 1.0" in text and "loa_workers_busy 0.0" in text
+        names = [line.split()[2] for line in text.splitlines() if line.startswith("# TYPE")]
+        assert len(set(names)) == len(names)
+        with socket.create_connection(("127.0.0.1", int(address.rpartition(":")[2]))) as connection:
+            connection.sendall(b"GET /health HTTP/1.1\r\nHost: localhost\r\n\r\n")
+            assert connection.recv(100)
+            until(lambda: "loa_connections 1.0" in get(management, "/metrics").decode())
+            for pid in serving_pids(process.pid):
+                os.kill(pid, signal.SIGKILL)
+            until(lambda: "loa_connections 0.0" in get(management, "/metrics").decode())
