@@ -71,7 +71,7 @@ refused: Counter[str] = Counter()
 @right.hook
 def before_generate_body(context: Any, strategy: st.SearchStrategy[Any]) -> st.SearchStrategy[Any]:
     """Start from feasible pairs."""
-    bodies = feasible.of(context.operation.path)
+    bodies = feasible.of(context.operation.path, context.operation.method)
     return strategy if bodies is None else bodies
 
 

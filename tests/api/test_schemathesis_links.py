@@ -38,7 +38,7 @@ def test_every_link_leads_to_what_it_says(service: Service) -> None:
 
     @schema.hook
     def before_generate_body(context: Any, strategy: Any) -> Any:
-        bodies = feasible.of(context.operation.path)
+        bodies = feasible.of(context.operation.path, context.operation.method)
         return strategy if bodies is None else bodies
 
     linked = schema.include(path_regex="/execution$|^/v1/jobs/")

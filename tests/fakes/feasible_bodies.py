@@ -35,12 +35,13 @@ class FeasibleBodies:
         self._fields = Fields(document)
         self._examples = examples
 
-    def of(self, path: str) -> st.SearchStrategy[Json] | None:
-        """Return the bodies of a path; None where a body is more than JSON."""
-        content = self._paths[path]["post"]["requestBody"]["content"]
-        if list(content) != [JSON]:
+    def of(self, path: str, method: str) -> st.SearchStrategy[Json] | None:
+        """Return the bodies of an operation; None where they are more than JSON, or have no example."""
+        content = self._paths[path][method]["requestBody"]["content"]
+        example = self._examples.get(path) or request_example(path)
+        if list(content) != [JSON] or example is None:
             return None
-        example, schema = self._examples.get(path) or request_example(path), content[JSON]["schema"]
+        schema = content[JSON]["schema"]
         bodies = cases().map(lambda case: about(example, case))
         return bodies.flatmap(lambda body: self._fields.varied(body, schema, MOST_CHANGES))
 
