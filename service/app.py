@@ -18,6 +18,7 @@ from service.management.registry import process_registry
 from service.queue.machinery import job_machinery
 from service.queue.watcher import Watcher
 from service.routes import (
+    batches,
     cases,
     databases,
     description,
@@ -44,6 +45,7 @@ from service.routes.middleware import API_PREFIX, Guard
 from service.routes.openapi import ABOUT, install_description
 from service.routes.processes import processes_router
 from service.routes.warm_up import warm_up
+from service.routes.webhooks import deliverer_of
 from service.settings import Settings
 from service.store import DirectoryLock
 from service.store.deployment import Deployment
@@ -103,7 +105,14 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
     app.add_middleware(Guard, body_limit=settings.body_limit, metrics=app.state.metrics)
     jobs_shown = (landing.router, processes_router(offered), jobs.router, job_results_router(offered))
     stored = (databases.router, results.router, figures.router, queries.router, live.router)
-    others = (events.router, cases.router, scenes.router, effects.router, former_results.router)
+    others = (
+        batches.router,
+        events.router,
+        cases.router,
+        scenes.router,
+        effects.router,
+        former_results.router,
+    )
     for router in (*jobs_shown, *stored, *others):
         app.include_router(router, prefix=API_PREFIX)
     for router in (page.router, description.router, health.router):
@@ -125,11 +134,16 @@ def _lifespan(context: Context, lock: DirectoryLock | None) -> Callable[[FastAPI
         if lock is not None:
             lock.acquire()
         context.scheduler.start()
+        deliverer = deliverer_of(context)
+        if deliverer is not None:
+            deliverer.start()
         warm_up()
         try:
             yield
         finally:
             context.stop_waiting()
+            if deliverer is not None:
+                deliverer.stop()
             context.scheduler.stop()
             tracer().flush()
             context.close()

@@ -7,13 +7,23 @@ import re
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated
+from urllib.parse import urlsplit
 
-from pydantic import AfterValidator, Field, SecretStr, ValidationError, field_validator
+from pydantic import (
+    AfterValidator,
+    Field,
+    SecretStr,
+    ValidationError,
+    ValidationInfo,
+    field_validator,
+)
 from pydantic_settings import BaseSettings, PydanticBaseSettingsSource, SettingsConfigDict
 
 from service.directories import absolute, data_home
+from service.origin import Origin
 from service.problems import BadInput, Fault
 from service.secret_files import SecretFiles
+from service.signature import secret_bytes
 
 LEAST_MEMORY_MB = 256
 """What a worker needs to load the program."""
@@ -61,6 +71,10 @@ class Settings(BaseSettings):
         Address of a Dask scheduler whose workers share the work of jobs; None: each is done by one process.
     keys_file : Path or None
         The file of access keys; None: ``keys.json`` in the data directory.
+    webhook_origins : str
+        Origins that may be called about jobs, such as ``https://hooks.example.com``, separated by commas.
+    webhook_secret : str or None
+        With which these calls are signed: ``whsec_`` and 24 to 64 bytes in base64.
     """
 
     model_config = SettingsConfigDict(env_prefix="LOA_", frozen=True, extra="forbid")
@@ -85,6 +99,43 @@ class Settings(BaseSettings):
     attempts: int = Field(2, ge=1, le=10)
     dask_scheduler: str | None = None
     keys_file: Annotated[Path, AfterValidator(absolute)] | None = None
+    webhook_origins: str = ""
+    webhook_secret: SecretStr | None = Field(None, validate_default=True)
+
+    @field_validator("webhook_origins")
+    @classmethod
+    def _listed_origins(cls, text: str) -> str:
+        """Refuse what is no list of origins."""
+        for entry in _entries(text):
+            try:
+                bare = urlsplit(entry).path in ("", "/") and Origin.of(entry) is not None
+            except ValueError:
+                bare = False
+            if not bare:
+                raise ValueError("origins such as https://hooks.example.com, separated by commas")
+        return text
+
+    @field_validator("webhook_secret")
+    @classmethod
+    def _signing(cls, secret: SecretStr | None, info: ValidationInfo) -> SecretStr | None:
+        """Refuse a secret that is none, and origins without a secret."""
+        if secret is None and not info.data.get("webhook_origins"):
+            return None
+        try:
+            secret_bytes("" if secret is None else secret.get_secret_value())
+        except ValueError:
+            raise ValueError("whsec_ and 24 to 64 random bytes in base64, if there are origins") from None
+        return secret
+
+    @property
+    def origins(self) -> frozenset[Origin]:
+        """Origins that may be called about jobs."""
+        return frozenset(map(Origin.of, _entries(self.webhook_origins)))
+
+    @property
+    def webhook_key(self) -> bytes:
+        """The key of the signatures; raises ValueError without a secret."""
+        return secret_bytes("" if self.webhook_secret is None else self.webhook_secret.get_secret_value())
 
     @field_validator("dask_scheduler")
     @classmethod
@@ -127,6 +178,11 @@ class Settings(BaseSettings):
     def key_file(self) -> Path:
         """File of the access keys."""
         return self.keys_file or self.data_directory / "keys.json"
+
+
+def _entries(text: str) -> list[str]:
+    """Return the entries of a list."""
+    return [entry.strip() for entry in text.split(",") if entry.strip()]
 
 
 def load_settings(**options: object) -> Settings:

@@ -1,6 +1,7 @@
 """The Python client: typed, blocking and awaited, light (no mesher, no finite elements, no web framework)."""
 
 from service.client.bars import progress_bars
+from service.client.batch import AsyncBatch, Batch
 from service.client.cache import ResultCache
 from service.client.client import AsyncLineOfActionClient, LineOfActionClient
 from service.client.job import AsyncJob, Job
@@ -10,9 +11,11 @@ from service.client.report import Report
 from service.client.status import JobState, OfflineWarning, Result, Watch
 
 __all__ = [
+    "AsyncBatch",
     "AsyncJob",
     "AsyncLineOfActionClient",
     "AsyncProcess",
+    "Batch",
     "Job",
     "JobState",
     "LineOfActionClient",

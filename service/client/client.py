@@ -13,6 +13,7 @@ import httpx2
 
 from service.client.address import http_options
 from service.client.awaiting import AwaitingDriver
+from service.client.batch import AsyncBatch, Batch
 from service.client.blocking import BlockingDriver
 from service.client.cache import ResultCache
 from service.client.exchange import Exchange
@@ -128,6 +129,11 @@ class LineOfActionClient(Client, Blocking):
         state = self.status(identifier)
         return Job(self, state, reader_of(state.process))
 
+    def batch(self, identifier: str) -> Batch[Any, Any]:
+        """Return a batch by its identifier; raises `NotFound`."""
+        state = self.status(identifier)
+        return Batch(self, state, reader_of(state.process))
+
 
 class AsyncLineOfActionClient(Client, Awaiting):
     """A service whose calls are awaited, in one event loop."""
@@ -151,3 +157,8 @@ class AsyncLineOfActionClient(Client, Awaiting):
         """Return a job by its identifier; raises `NotFound`."""
         state = await self.status(identifier)
         return AsyncJob(self, state, reader_of(state.process))
+
+    async def batch(self, identifier: str) -> AsyncBatch[Any, Any]:
+        """Return a batch by its identifier; raises `NotFound`."""
+        state = await self.status(identifier)
+        return AsyncBatch(self, state, reader_of(state.process))

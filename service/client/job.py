@@ -27,8 +27,8 @@ F = TypeVar("F", bound="Figures")
 Fetched = TypeVar("Fetched")
 
 
-class _JobCalls(Surface, Generic[T, F]):
-    """The calls of a job.
+class Followed(Surface):
+    """What can be done with a job whatever it computes, and with a batch.
 
     Attributes
     ----------
@@ -36,11 +36,7 @@ class _JobCalls(Surface, Generic[T, F]):
         As last seen.
     """
 
-    def __init__(
-        self, client: Surface, state: JobState, read: Callable[[Path], T], result: Result | None = None
-    ) -> None:
-        self.session, self.state = client.session, state
-        self._read, self._result = read, result
+    state: JobState
 
     @property
     def id(self) -> str:
@@ -75,57 +71,6 @@ class _JobCalls(Surface, Generic[T, F]):
         else:
             yield from JobCalls.events(self, self.id)
 
-    @operation
-    def wait(
-        self, progress: Watch | None = None, *, timeout: float | None = None, interval: float = 0.05
-    ) -> Steps[Result]:
-        """Wait for the job; return where its result is; as the client's `wait`."""
-        if self._result is None and self.state.status != "successful":
-            pace = pace_of_known(self.session, timeout, interval)
-            self._result = yield from result_of(self, self.id, self._seen(progress), pace)
-        elif self._result is None:
-            self._result = yield from JobCalls.result(self, self.id)
-        return self._result
-
-    @operation
-    def result(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[T]:
-        """Wait for the job and return its result, as the libraries have it; raises as `wait`."""
-        return self._read((yield from _JobCalls.file(self, progress, timeout=timeout)))
-
-    @operation
-    def file(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[Path]:
-        """Wait for the job and return its netCDF file in the cache; raises as `wait`."""
-        found = yield from _JobCalls.wait(self, progress, timeout=timeout)
-        return (yield from self._patiently(lambda: ResultCalls.fetch_file(self, found.key, found.kind)))
-
-    @operation
-    def dataset(
-        self, progress: Watch | None = None, *, timeout: float | None = None
-    ) -> Steps[xarray.Dataset]:
-        """Wait for the job and return its result as arrays with units and names; raises as `wait`."""
-        found = yield from _JobCalls.wait(self, progress, timeout=timeout)
-        return (yield from self._patiently(lambda: ResultCalls.fetch_dataset(self, found.key, found.kind)))
-
-    @operation
-    def figures(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[F]:
-        """Wait for the job and return the figures of its result, units in their names; raises as `wait`."""
-        found = yield from _JobCalls.wait(self, progress, timeout=timeout)
-        fetch = partial(ResultCalls.fetch_figures, self, found.key, found.kind)
-        return cast("F", (yield from self._patiently(fetch)))
-
-    @operation
-    def report(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[Report]:
-        """Wait for the job and return the report on its result; notebooks show it; raises as `wait`."""
-        found = yield from _JobCalls.wait(self, progress, timeout=timeout)
-        return (yield from self._patiently(lambda: ResultCalls.report(self, found.key)))
-
-    def ending(self) -> Steps[Result | None]:
-        """Wait until the job has ended and its file is cached; None without, and `result` raises why."""
-        with suppress(BadInput, JobFailed, JobDismissed, NotFound, DamagedFile):
-            yield from _JobCalls.file(self)
-            return self._result
-        return None
-
     def _patiently(self, fetch: Callable[[], Steps[Fetched]]) -> Steps[Fetched]:
         """Return what `fetch` returns, through restarts of the service."""
         return outlasting(fetch, self.session.patience)
@@ -145,7 +90,68 @@ class _JobCalls(Surface, Generic[T, F]):
         return f"<{type(self).__name__} {self.id or 'cached'} {self.state}>"
 
 
-class Job(_JobCalls[T, F], Blocking):
+class JobSurface(Followed, Generic[T, F]):
+    """The calls of a job."""
+
+    def __init__(
+        self, client: Surface, state: JobState, read: Callable[[Path], T], result: Result | None = None
+    ) -> None:
+        self.session, self.state = client.session, state
+        self._read, self._result = read, result
+
+    @operation
+    def wait(
+        self, progress: Watch | None = None, *, timeout: float | None = None, interval: float = 0.05
+    ) -> Steps[Result]:
+        """Wait for the job; return where its result is; as the client's `wait`."""
+        if self._result is None and self.state.status != "successful":
+            pace = pace_of_known(self.session, timeout, interval)
+            self._result = yield from result_of(self, self.id, self._seen(progress), pace)
+        elif self._result is None:
+            self._result = yield from JobCalls.result(self, self.id)
+        return self._result
+
+    @operation
+    def result(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[T]:
+        """Wait for the job and return its result, as the libraries have it; raises as `wait`."""
+        return self._read((yield from JobSurface.file(self, progress, timeout=timeout)))
+
+    @operation
+    def file(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[Path]:
+        """Wait for the job and return its netCDF file in the cache; raises as `wait`."""
+        found = yield from JobSurface.wait(self, progress, timeout=timeout)
+        return (yield from self._patiently(lambda: ResultCalls.fetch_file(self, found.key, found.kind)))
+
+    @operation
+    def dataset(
+        self, progress: Watch | None = None, *, timeout: float | None = None
+    ) -> Steps[xarray.Dataset]:
+        """Wait for the job and return its result as arrays with units and names; raises as `wait`."""
+        found = yield from JobSurface.wait(self, progress, timeout=timeout)
+        return (yield from self._patiently(lambda: ResultCalls.fetch_dataset(self, found.key, found.kind)))
+
+    @operation
+    def figures(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[F]:
+        """Wait for the job and return the figures of its result, units in their names; raises as `wait`."""
+        found = yield from JobSurface.wait(self, progress, timeout=timeout)
+        fetch = partial(ResultCalls.fetch_figures, self, found.key, found.kind)
+        return cast("F", (yield from self._patiently(fetch)))
+
+    @operation
+    def report(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[Report]:
+        """Wait for the job and return the report on its result; notebooks show it; raises as `wait`."""
+        found = yield from JobSurface.wait(self, progress, timeout=timeout)
+        return (yield from self._patiently(lambda: ResultCalls.report(self, found.key)))
+
+    def ending(self) -> Steps[Result | None]:
+        """Wait until the job has ended and its file is cached; None without, and `result` raises why."""
+        with suppress(BadInput, JobFailed, JobDismissed, NotFound, DamagedFile):
+            yield from JobSurface.file(self)
+            return self._result
+        return None
+
+
+class Job(JobSurface[T, F], Blocking):
     """A job whose calls block."""
 
     def __init__(
@@ -155,7 +161,7 @@ class Job(_JobCalls[T, F], Blocking):
         self.driver = client.driver
 
 
-class AsyncJob(_JobCalls[T, F], Awaiting):
+class AsyncJob(JobSurface[T, F], Awaiting):
     """A job whose calls are awaited."""
 
     def __init__(

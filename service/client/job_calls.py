@@ -30,8 +30,8 @@ def pace_of_known(session: Session, timeout: float | None = None, interval: floa
     return Pace(interval, _LONGEST_PAUSE_S, longest, session.patience, time.monotonic())
 
 
-def result_of(surface: Surface, job: str, progress: Watch | None, pace: Pace) -> Steps[Result]:
-    """Wait for a job and return where its result is; raises as `JobCalls.wait`."""
+def end_of(surface: Surface, job: str, progress: Watch | None, pace: Pace) -> Steps[JobState]:
+    """Wait until a job has ended, in whatever way; raises `StillRunning`, `Unreachable`."""
     watch = progress or surface.session.progress
 
     def look() -> Steps[JobState]:
@@ -40,7 +40,12 @@ def result_of(surface: Surface, job: str, progress: Watch | None, pace: Pace) ->
             watch(state)
         return state
 
-    yield from ended(job, look, pace)
+    return (yield from ended(job, look, pace))
+
+
+def result_of(surface: Surface, job: str, progress: Watch | None, pace: Pace) -> Steps[Result]:
+    """Wait for a job and return where its result is; raises as `JobCalls.wait`."""
+    yield from end_of(surface, job, progress, pace)
     return (yield from outlasting(lambda: JobCalls.result(surface, job), pace.patience))
 
 
@@ -83,6 +88,33 @@ class JobCalls(Surface):
             raise
 
     @operation
+    def submit_batch(
+        self, process: str, jobs: Sequence[dict[str, Any]], inputs: dict[str, Any] | None = None
+    ) -> Steps[JobState]:
+        """Enter many jobs of a process at once, all or none; return the state of the batch, a job itself.
+
+        Parameters
+        ----------
+        process : str
+        jobs : sequence of dict
+            For each job its inputs, or their differences from what all share, as a JSON merge patch.
+        inputs : dict, optional
+            Inputs that all share.
+
+        Raises
+        ------
+        BadInput
+            With the faults of all jobs, by their index: ``jobs[3].pair.pinion.teeth``.
+        QueueFull, Unreachable, ServiceError
+        """
+        headers = {"Idempotency-Key": str(uuid.uuid4())}
+        body = {**self.session.terms, "process": process, "inputs": inputs or {}, "jobs": list(jobs)}
+        exchange = self.session.exchange
+        return (
+            yield from exchange.read(JobState.from_json, "POST", "/v1/batches", json=body, headers=headers)
+        )
+
+    @operation
     def version(self) -> Steps[str]:
         """Return the version of the service."""
         return (yield from self.session.exchange.read(lambda facts: str(facts["version"]), "GET", "/v1/"))
@@ -116,6 +148,7 @@ class JobCalls(Surface):
         created: str = "../..",
         tags: Sequence[str] = (),
         title: str = "",
+        parent: str | None = None,
         limit: int | None = None,
     ) -> Items[JobState]:
         """Yield the states of jobs, the newest first; pages are fetched as they are needed.
@@ -130,11 +163,14 @@ class JobCalls(Surface):
             Only jobs that have all of these.
         title : str
             Only jobs that have all of these words in their title, in any case.
+        parent : str, optional
+            The batch whose jobs are wanted; default: batches, and jobs that are in none.
         limit : int, optional
             Most jobs to yield; default: all.
         """
         wanted = {"processID": list(process), "status": list(status), "datetime": created}
         wanted |= {"tag": list(tags), "title": title}
+        wanted |= {} if parent is None else {"parent": parent}
         yield from pages(self.session.exchange, "/v1/jobs", "jobs", JobState.from_json, wanted, limit)
 
     @listing

@@ -8,6 +8,7 @@ from contextlib import aclosing, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, ParamSpec, TypeVar, overload
 
+from service.client.batch import AsyncBatch, Batch
 from service.client.job import AsyncJob, Job
 from service.client.job_calls import JobCalls
 from service.client.offers import Offer
@@ -106,6 +107,11 @@ class _Calls(Generic[P, T, F]):
         self.__doc__ = offer.description
         self.__signature__ = offer.signature
 
+    def _entered(self, subjects: Iterable[Any], options: dict[str, Any]) -> Steps[JobState]:
+        """Return the steps that enter a batch."""
+        jobs = [self._offer.inputs(subject, **options) for subject in subjects]
+        return JobCalls.submit_batch(self._client, self._offer.name, jobs)
+
 
 class Process(_Calls[P, T, F]):
     """A process whose calls block."""
@@ -126,6 +132,19 @@ class Process(_Calls[P, T, F]):
         inputs = self._offer.inputs(*args, **kwargs)
         steps = JobCalls.submit(self._client, self._offer.name, inputs)
         return self._job(self._client.driver.run(steps))
+
+    def batch(self, subjects: Iterable[Any], **options: Any) -> Batch[T, F]:
+        """Enter a job for every subject at once, all or none; raises as `submit`, faults by their index.
+
+        Parameters
+        ----------
+        subjects : iterable
+            Cases or scenes, or what the process takes first; at most 200.
+        **options
+            Of the process, the same for all.
+        """
+        state = self._client.driver.run(self._entered(subjects, options))
+        return Batch(self._client, state, self._offer.read)
 
     def map(
         self, subjects: Iterable[Any], *, concurrency: int = CONCURRENCY, **options: Any
@@ -180,6 +199,11 @@ class AsyncProcess(_Calls[P, T, F]):
         inputs = self._offer.inputs(*args, **kwargs)
         steps = JobCalls.submit(self._client, self._offer.name, inputs)
         return self._job(await self._client.driver.run(steps))
+
+    async def batch(self, subjects: Iterable[Any], **options: Any) -> AsyncBatch[T, F]:
+        """Enter a job for every subject at once, all or none; as of `Process`."""
+        state = await self._client.driver.run(self._entered(subjects, options))
+        return AsyncBatch(self._client, state, self._offer.read)
 
     async def map(
         self, subjects: Iterable[Any], *, concurrency: int = CONCURRENCY, **options: Any

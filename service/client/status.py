@@ -34,6 +34,10 @@ class JobState:
         defaults: field, before, value.
     remaining_s : float, optional
         Seconds that a running job still needs, by its pace; None: not known.
+    parent : str
+        The batch that the job is in; empty: none.
+    place, children : int
+        Place in the batch; number of jobs of a batch.
     """
 
     id: str
@@ -53,6 +57,9 @@ class JobState:
     differences: tuple[dict[str, Any], ...] = ()
     priority: int = 0
     remaining_s: float | None = None
+    parent: str = ""
+    place: int = 0
+    children: int = 0
 
     @property
     def ended(self) -> bool:
@@ -99,7 +106,8 @@ class JobState:
         known |= {"priority": facts.get("priority", 0)}
         known |= {"tags": tuple(facts.get("tags") or ())}
         known |= {"differences": tuple((facts.get("differences") or {}).get("first", ()))}
-        known |= {"remaining_s": facts.get("remaining_s")}
+        known |= {"remaining_s": facts.get("remaining_s"), "parent": facts.get("parentID") or ""}
+        known |= {name: facts.get(name, 0) for name in ("place", "children")}
         return cls(facts["jobID"], facts["processID"], **known, warnings=warnings)
 
 

@@ -17,6 +17,7 @@ from packaging.version import InvalidVersion, Version
 from sqlalchemy import ColumnElement, Connection, Engine, Row, delete, select, update
 
 from service.project import COMMON, address_of, at_address
+from service.queue.batches import batch_steps
 from service.queue.durations import end_computations
 from service.queue.tables import computations, jobs
 from service.store import dialect_of, now, reading, retried, writing
@@ -213,6 +214,17 @@ class Claims:
         with writing(self._engine) as connection:
             changed = update(computations).where(_under([claim])).values(updated=now(), **values)
             connection.execute(changed)
+
+    @retried
+    def advance_batches(self) -> None:
+        """Note how far batches are by the states of their jobs; whoever does so first, it is the same."""
+        with reading(self._engine) as connection:
+            steps = batch_steps(connection)
+        if not steps:
+            return
+        with writing(self._engine) as connection:
+            for step in steps:
+                connection.execute(step)
 
     @retried
     def left(self) -> list[Claim]:

@@ -20,6 +20,7 @@ def _newest() -> Select[Any]:
     recent = (
         select(jobs.c.id, jobs.c.created, jobs.c.computation_id)
         .where(jobs.c.caller == bindparam("caller"), jobs.c.project == bindparam("project"))
+        .where(jobs.c.children == 0)
         .order_by(jobs.c.created.desc(), jobs.c.id.desc())
         .limit(_LOOKED_AT)
         .subquery()

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import select
+from sqlalchemy import ColumnElement, case, select
 
 from service.project import at_address
 from service.queue.delivery import Delivery
@@ -22,7 +22,10 @@ _PACE_KNOWN = 0.02
 
 @dataclass(frozen=True)
 class Job:
-    """A job with the state of its computation; times are RFC 3339 in UTC, normalized inputs JSON."""
+    """A job with the state of its computation; times are RFC 3339 in UTC, normalized inputs JSON.
+
+    A batch has so many `children`; each of these has it as `parent` and a `place` in it, from 0.
+    """
 
     id: str
     computation: str
@@ -47,6 +50,9 @@ class Job:
     priority: int
     max_cost_s: float | None
     caller: str
+    parent: str | None = None
+    place: int = 0
+    children: int = 0
 
     @property
     def ended(self) -> bool:
@@ -68,6 +74,11 @@ class Job:
         return max(left - (instant - updated).total_seconds(), 0.0)
 
 
+def job_state() -> ColumnElement[Any]:
+    """Return a job's state: a caller who dismissed sees that, whatever became of the shared work."""
+    return case((jobs.c.dismissed.is_not(None), "dismissed"), else_=computations.c.state)
+
+
 def select_jobs(project: str) -> Any:
     """Select the jobs of a project with their computations: callers find jobs in no other way."""
     return jobs_of_all_projects().where(jobs.c.project == project)
@@ -85,6 +96,9 @@ def jobs_of_all_projects() -> Any:
         jobs.c.tags,
         jobs.c.differences,
         jobs.c.caller,
+        jobs.c.parent,
+        jobs.c.place,
+        jobs.c.children,
         computations,
     ).join(computations, jobs.c.computation_id == computations.c.id)
 
@@ -116,4 +130,7 @@ def job_of(row: Any) -> Job:
         priority=row.priority,
         max_cost_s=row.max_cost_s,
         caller=row.caller,
+        parent=row.parent,
+        place=row.place,
+        children=row.children,
     )

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from typing import Any, Protocol
+from typing import Protocol
 
-from sqlalchemy import ColumnElement, case
+from sqlalchemy import ColumnElement
 
+from service.queue.job import job_state
 from service.queue.label import labeled
 from service.queue.tables import computations, jobs
 
@@ -38,6 +39,8 @@ class JobFilter:
         Of the time it has run; a job that has not begun has none.
     tags, words : tuple[str, ...]
         All of these tags; all of these words in the title, in any case.
+    parent : str or None
+        The batch whose jobs are wanted; None: batches, and jobs of none.
     """
 
     processes: tuple[str, ...] = ()
@@ -48,14 +51,16 @@ class JobFilter:
     longest_s: float | None = None
     tags: tuple[str, ...] = ()
     words: tuple[str, ...] = ()
+    parent: str | None = None
 
     def conditions(self) -> list[ColumnElement[bool]]:
         """Return what the database decides: all but the time run."""
-        conditions = labeled(self.tags, self.words)
+        within = jobs.c.parent.is_(None) if self.parent is None else jobs.c.parent == self.parent
+        conditions = [within, *labeled(self.tags, self.words)]
         if self.processes:
             conditions.append(computations.c.process.in_(self.processes))
         if self.statuses:
-            conditions.append(_status().in_(self.statuses))
+            conditions.append(job_state().in_(self.statuses))
         if self.earliest is not None:
             conditions.append(jobs.c.created >= self.earliest)
         if self.latest is not None:
@@ -80,8 +85,3 @@ class JobFilter:
 
 
 EVERY_JOB = JobFilter()
-
-
-def _status() -> ColumnElement[Any]:
-    """Return a job's status: a caller who dismissed sees that, whatever became of the shared work."""
-    return case((jobs.c.dismissed.is_not(None), "dismissed"), else_=computations.c.state)

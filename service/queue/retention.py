@@ -9,7 +9,7 @@ from pathlib import Path
 
 from sqlalchemy import Engine, delete, exists, func, select
 
-from service.queue.tables import computations, jobs
+from service.queue.tables import computations, jobs, webhooks
 from service.store import reading, retried, writing
 from service.store.deployment import Deployment
 from service.store.maintenance import (
@@ -76,17 +76,20 @@ class Retention:
 
     @retried
     def _forgotten(self, since: str, *, dry_run: bool) -> list[str]:
-        """Return some of the jobs to remove; remove them unless it is a trial."""
+        """Return some of the jobs to remove; remove them unless it is a trial. A batch goes as a whole."""
         ended = computations.c.state.in_(_ENDED) & (computations.c.updated < since)
         unasked = func.coalesce(jobs.c.asked, jobs.c.created) < since
+        batch = jobs.alias()
+        of_no_batch = ~exists().where(batch.c.id == jobs.c.parent)
         old = select(jobs.c.id).join(computations, jobs.c.computation_id == computations.c.id)
         with writing(self._engine, in_turn=True) as connection:
-            chosen = old.where(ended, unasked)
+            chosen = old.where(ended, unasked, of_no_batch)
             names = list(connection.execute(chosen if dry_run else chosen.limit(_AT_ONCE)).scalars())
             if not dry_run:
-                connection.execute(delete(jobs).where(jobs.c.id.in_(names)))
+                connection.execute(delete(jobs).where(jobs.c.id.in_(names) | jobs.c.parent.in_(names)))
                 needed = exists().where(jobs.c.computation_id == computations.c.id)
                 connection.execute(delete(computations).where(ended, ~needed))
+                connection.execute(delete(webhooks).where(~exists().where(jobs.c.id == webhooks.c.job)))
         return names
 
     def _workspaces(self, *, dry_run: bool) -> Iterator[Leftover]:

@@ -160,6 +160,7 @@ class Scheduler:
         self._enforce_dismissals()
         self._enforce_costs()
         self._take_up()
+        self._claims.advance_batches()
         while len(self._running) < self._settings.workers and (claim := self._claims.claim()) is not None:
             self._take(claim)
 

@@ -2,28 +2,39 @@
 
 from __future__ import annotations
 
-import json
 import uuid
 from collections.abc import Sequence
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
-from sqlalchemy import ColumnElement, Connection, Engine, func, insert, select, update
+from sqlalchemy import ColumnElement, Connection, Engine, exists, insert, select, update
 
-from service.problems import BadInput, NoSuchJob, QueueFull
+from service.problems import NoSuchJob
 from service.project import COMMON, address_of
+from service.queue.batch_entry import BatchEntry
+from service.queue.batches import HELD
 from service.queue.caller import ANYBODY, Caller
 from service.queue.cost_limit import extended
 from service.queue.durations import end_computations
+from service.queue.entry import (
+    LIVE,
+    ended_since,
+    enter_computation,
+    identifier_of,
+    refuse_if_busy,
+    refuse_if_full,
+    refuse_unless_same,
+    shared_computation,
+)
 from service.queue.job import ENDED, Job, job_of, select_jobs
 from service.queue.job_filter import EVERY_JOB, JobFilter
 from service.queue.label import Label
 from service.queue.priority import raised
 from service.queue.tables import computations, jobs
 from service.queue.terms import USUAL, Terms
+from service.queue.workload import states_of
 from service.store import BRIEF_MS, Mark, behind, instant, now, optional, reading, retried, writing
 from service.store.results import USE_NOTED_EVERY_S
-from service.tracing.traceparent import TRACEPARENT
 from service.version import solver_version
 
 _LOOKED_AT = 500  # at a time, where durations are requested
@@ -86,9 +97,11 @@ class Submissions:
             New work, and as many computations wait as the limit allows; or the caller has as many
             unfinished jobs as it may.
         """
-        identifier = str(uuid.uuid4() if name is None else self._identifier(caller, process, name))
+        identifier = str(
+            uuid.uuid4() if name is None else identifier_of(self._project, caller, process, name)
+        )
         address = address_of(self._project, key)
-        ended = _ended_since(address, looked or now(), stored)
+        ended = ended_since(address, looked or now(), stored)
         self._submit(identifier, process, address, inputs, stored, ended, caller, terms)
         return self.find(identifier)
 
@@ -110,15 +123,15 @@ class Submissions:
             entered = connection.execute(known.where(jobs.c.id == identifier)).one_or_none()
             if entered is not None:
                 if entered.program == solver_version():  # another program names the same work differently
-                    _refuse_unless_same(entered.key, key)
+                    refuse_unless_same(entered.key, key)
                 return
             if not stored:
-                _refuse_if_busy(connection, caller)
-            computation = _shared(connection, key, ended)
+                refuse_if_busy(connection, caller)
+            computation = shared_computation(connection, key, ended)
             if computation is None:
                 if not stored:
-                    self._refuse_if_full(connection)
-                computation = _enter(connection, process, key, inputs, stored, terms)
+                    refuse_if_full(connection, self._queue_limit)
+                computation = enter_computation(connection, process, key, inputs, stored, terms)
             else:
                 connection.execute(raised(computation, terms.priority))
                 connection.execute(extended(computation, terms.max_cost_s))
@@ -127,11 +140,9 @@ class Submissions:
             row |= {"differences": str(terms.differences), **terms.label.columns()}
             connection.execute(insert(jobs).values(**row))
 
-    def _refuse_if_full(self, connection: Connection) -> None:
-        """Raise if the queue is at its limit."""
-        count = select(func.count()).select_from(computations).where(computations.c.state == "accepted")
-        if connection.execute(count).scalar_one() >= self._queue_limit:
-            raise QueueFull(f"{self._queue_limit} computations wait already. Try again later.")
+    def batches(self, caller: Caller = ANYBODY, terms: Terms = USUAL) -> BatchEntry:
+        """Return what enters batches of a caller, whose label is that of `terms`."""
+        return BatchEntry(self._engine, self._queue_limit, self._project, caller, terms)
 
     @retried
     def find(self, identifier: str) -> Job:
@@ -151,13 +162,21 @@ class Submissions:
         self._note_use(row)
         return job_of(row)
 
+    @retried
+    def children(self, parent: str) -> list[Job]:
+        """Return the jobs of a batch, in order."""
+        statement = self._jobs().where(jobs.c.parent == parent).order_by(jobs.c.place)
+        with reading(self._engine) as connection:
+            return [job_of(row) for row in connection.execute(statement)]
+
     @optional
     def _note_use(self, row: Any) -> None:
-        """Note, once an hour, that an ended job was requested; nobody waits for that."""
+        """Note, once an hour, that an ended job, and its batch, was requested; nobody waits for that."""
         before = instant(datetime.now(UTC) - timedelta(seconds=USE_NOTED_EVERY_S))
         if row.state in ENDED and (row.asked or row.job_created) < before:
             with writing(self._engine, patience_ms=BRIEF_MS) as connection:
-                connection.execute(update(jobs).where(jobs.c.id == row.job_id).values(asked=now()))
+                used = jobs.c.id.in_([row.job_id, row.parent])
+                connection.execute(update(jobs).where(used).values(asked=now()))
 
     def page(self, limit: int, job_filter: JobFilter = EVERY_JOB, after: Mark | None = None) -> list[Job]:
         """Return up to `limit` jobs that are wanted, the newest first, those behind the mark `after`."""
@@ -196,7 +215,7 @@ class Submissions:
             connection.execute(update(jobs).where(jobs.c.id == identifier).values(**label.columns()))
 
     def dismiss(self, identifier: str) -> Job:
-        """Dismiss one caller's job, unless it ended; the work goes on while other jobs share it."""
+        """Dismiss one caller's job, or those of a batch, unless it ended; shared work goes on for others."""
         job = self.find(identifier)
         if not job.ended:
             self._dismiss(identifier)
@@ -204,43 +223,26 @@ class Submissions:
 
     @retried
     def _dismiss(self, identifier: str) -> None:
-        """Dismiss a job, and its computation if no other wants that."""
+        """Dismiss a job with the unended ones of its batch, and the computations that no other wants."""
         with writing(self._engine, in_turn=True) as connection:
-            mine = jobs.c.id == identifier
+            mine = (jobs.c.id == identifier) | (jobs.c.parent == identifier)
             undismissed = jobs.c.dismissed.is_(None)
-            connection.execute(update(jobs).where(mine, undismissed).values(dismissed=now()))
-            owner = select(jobs.c.computation_id).where(mine).scalar_subquery()
-            others = select(jobs.c.id).where(jobs.c.computation_id == owner, jobs.c.dismissed.is_(None))
-            if connection.execute(others.limit(1)).first() is None:
-                _abandon(connection, owner)
+            live = select(computations.c.id).where(computations.c.state.in_(LIVE))
+            goes_on = undismissed & jobs.c.computation_id.in_(live)
+            connection.execute(update(jobs).where(mine, goes_on).values(dismissed=now()))
+            wanted = exists().where(jobs.c.computation_id == computations.c.id, undismissed)
+            owners = select(jobs.c.computation_id).where(mine)
+            _abandon(connection, computations.c.id.in_(owners) & ~wanted)
 
     def _jobs(self) -> Any:
         """Select the jobs of the project."""
         return select_jobs(self._project)
 
-    def _identifier(self, caller: Caller, process: str, name: str) -> uuid.UUID:
-        """Return the identifier of the job that a caller gives a name; another caller's is another."""
-        named = [caller.name, process, name]
-        return uuid.uuid5(_NAMES, json.dumps(named if self._project == COMMON else [self._project, *named]))
-
     @retried
     def counts(self) -> dict[str, int]:
         """Return how many computations of all projects are in each state."""
-        statement = select(computations.c.state, func.count()).group_by(computations.c.state)
         with reading(self._engine) as connection:
-            return {row[0]: row[1] for row in connection.execute(statement)}
-
-
-_NAMES = uuid.UUID("4f5b2a0e-6c0f-4b7e-9a53-0d8f3a1c7e62")
-"""Name space of the identifiers of jobs that their callers name."""
-
-
-def _refuse_unless_same(entered: str, key: str) -> None:
-    """Raise if a name that stands for some work is used for other work."""
-    if entered != key:
-        raise BadInput.of(
-            "Idempotency-Key", None, "the name of one request", "Give a request with other inputs another."
-        )
+            return states_of(connection)
 
 
 def _is_identifier(text: str) -> bool:
@@ -251,60 +253,8 @@ def _is_identifier(text: str) -> bool:
         return False
 
 
-def _refuse_if_busy(connection: Connection, caller: Caller) -> None:
-    """Raise if a caller has as many unfinished jobs as it may."""
-    if caller.unfinished_jobs is None:
-        return
-    mine = (jobs.c.caller == caller.name, jobs.c.dismissed.is_(None))
-    live = computations.c.state.in_(("accepted", "running"))
-    count = select(func.count()).select_from(jobs.join(computations)).where(*mine, live)
-    if connection.execute(count).scalar_one() >= caller.unfinished_jobs:
-        raise QueueFull(
-            f"Key {caller.name!r} has {caller.unfinished_jobs} unfinished jobs, its limit. "
-            "Wait for one of them or dismiss it."
-        )
-
-
-def _ended_since(key: str, looked: str, stored: bool) -> ColumnElement[bool]:
-    """Condition of computations that succeeded and whose result is there: all, or those of late."""
-    succeeded = (computations.c.key == key) & (computations.c.state == "successful")
-    return succeeded if stored else succeeded & (computations.c.finished >= looked)
-
-
-def _shared(connection: Connection, key: str, ended: ColumnElement[bool]) -> str | None:
-    """Return the computation of `key` that waits, runs or has `ended` with a result."""
-    live = (computations.c.key == key) & computations.c.state.in_(("accepted", "running"))
-    statement = select(computations.c.id).where(live | ended)
-    return connection.execute(statement.order_by(computations.c.created.desc()).limit(1)).scalar()
-
-
-def _enter(
-    connection: Connection, process: str, key: str, inputs: dict[str, Any], stored: bool, terms: Terms
-) -> str:
-    """Enter a computation, ended at once if its result is stored."""
-    identifier, instant = str(uuid.uuid4()), now()
-    row: dict[str, Any] = {
-        "id": identifier,
-        "process": process,
-        "key": key,
-        "inputs": json.dumps(inputs),
-        "priority": terms.priority,
-        "max_cost_s": terms.max_cost_s,
-        "state": "successful" if stored else "accepted",
-        "message": "Taken from the store." if stored else "Waits for a worker.",
-        "fraction": 1.0 if stored else 0.0,
-        "created": instant,
-        "updated": instant,
-        "traceparent": TRACEPARENT.get(),
-    }
-    if stored:
-        row |= {"started": instant, "finished": instant}
-    connection.execute(insert(computations).values(**row))
-    return identifier
-
-
-def _abandon(connection: Connection, owner: Any) -> None:
-    """End a computation that nobody wants; the scheduler kills its worker."""
-    live = computations.c.state.in_(("accepted", "running"))
+def _abandon(connection: Connection, unwanted: ColumnElement[bool]) -> None:
+    """End computations that nobody wants; the scheduler kills their workers. A batch ends by its jobs."""
+    live = computations.c.state.in_(LIVE) & (computations.c.lease != HELD)
     values = {"state": "dismissed", "message": "Cancelled."}
-    end_computations(connection, (computations.c.id == owner) & live, values)
+    end_computations(connection, unwanted & live, values)

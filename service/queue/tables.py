@@ -62,6 +62,27 @@ durations = Table(
     Column("attempts", BigInteger, nullable=False),
 )
 
+# Calls about jobs to other services, see `service.webhooks`.
+webhooks = Table(
+    "webhook",
+    metadata,
+    Column("id", String, primary_key=True),
+    Column("job", String, nullable=False),
+    Column("event", String, nullable=False),
+    Column("uri", Text, nullable=False),
+    Column("origin", String, nullable=False),
+    Column("state", String, nullable=False, server_default="waiting"),
+    Column("attempts", Integer, nullable=False, server_default="0"),
+    Column("due", Float, nullable=False, server_default="0"),
+    Column("lease", String, nullable=False, server_default=""),
+    Column("leased_until", Float, nullable=False, server_default="0"),
+    Column("message", Text, nullable=False, server_default=""),
+    Column("updated", String, nullable=False),
+)
+Index("webhook_by_job", webhooks.c.job)
+Index("webhook_by_state", webhooks.c.state, webhooks.c.due)
+Index("webhook_by_lease", webhooks.c.lease)
+
 jobs = Table(
     "job",
     metadata,
@@ -77,7 +98,12 @@ jobs = Table(
     Column("tags", Text, nullable=False, server_default=""),
     Column("differences", Text, nullable=False, server_default=""),
     Column("project", String, nullable=False, default=""),
+    Column("parent", String),
+    Column("place", Integer, nullable=False, server_default="0"),
+    Column("children", Integer, nullable=False, server_default="0"),
+    Column("weight", Float, nullable=False, server_default="0"),
 )
+Index("job_by_parent", jobs.c.parent)
 Index("job_by_caller", jobs.c.caller)
 Index("job_by_caller_and_time", jobs.c.caller, jobs.c.created)
 Index("job_by_computation", jobs.c.computation_id)

@@ -7,6 +7,7 @@ from datetime import UTC, datetime
 
 from sqlalchemy import Connection, Engine, func, select
 
+from service.queue.batches import HELD
 from service.queue.durations import BOUNDS_S, bound_of
 from service.queue.tables import computations, durations
 from service.store import reading, retried
@@ -75,7 +76,7 @@ class WorkloadReader:
         """Return the load now; raises `DatabaseUnavailable`."""
         with reading(self._engine) as connection:
             return Workload(
-                _states(connection),
+                states_of(connection),
                 _queue(connection),
                 _oldest_waiting_s(connection),
                 _durations(connection),
@@ -83,16 +84,19 @@ class WorkloadReader:
             )
 
 
-def _states(connection: Connection) -> dict[str, int]:
-    """Count computations by state."""
+def states_of(connection: Connection) -> dict[str, int]:
+    """Count computations by state; what stands for a batch is none."""
     statement = select(computations.c.state, func.count()).group_by(computations.c.state)
-    return {row[0]: row[1] for row in connection.execute(statement)}
+    all_rows = {row[0]: row[1] for row in connection.execute(statement)}
+    batches = {row[0]: row[1] for row in connection.execute(statement.where(computations.c.lease == HELD))}
+    counts = {state: number - batches.get(state, 0) for state, number in all_rows.items()}
+    return {state: number for state, number in counts.items() if number}
 
 
 def _queue(connection: Connection) -> dict[tuple[str, str], int]:
     """Count computations that wait or run by state and process."""
     facts = (computations.c.state, computations.c.process)
-    live = computations.c.state.in_(("accepted", "running"))
+    live = computations.c.state.in_(("accepted", "running")) & (computations.c.lease != HELD)
     rows = connection.execute(select(*facts, func.count()).where(live).group_by(*facts))
     return {(row[0], row[1]): row[2] for row in rows}
 

@@ -46,6 +46,12 @@ def job_filter(
     title: Annotated[
         Title, Query(description="Jobs with all of these words in their title, in any case")
     ] = "",
+    parent: Annotated[
+        str | None,
+        Query(
+            pattern="^[0-9a-f-]{36}$", description="Jobs of this batch; without it, batches and jobs of none"
+        ),
+    ] = None,
 ) -> JobFilter:
     """Return what the parameters ask for."""
     earliest, latest = _interval(instant)
@@ -58,6 +64,7 @@ def job_filter(
         longest,
         tuple(tag),
         tuple(title.split()),
+        parent=parent,
     )
 
 

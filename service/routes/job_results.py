@@ -8,18 +8,29 @@ from fastapi import APIRouter, Header, Query, Request
 from starlette.responses import JSONResponse, Response
 
 from service.access import Scope
-from service.problems import DamagedFile, Fault, JobDismissed, JobFailed, NoSuchJob, NotFound, ResultNotReady
+from service.problems import (
+    DamagedFile,
+    Fault,
+    JobDismissed,
+    JobFailed,
+    NoSuchJob,
+    NotFound,
+    ResultNotReady,
+    ServiceError,
+)
 from service.queue.delivery import Delivery, Transmission, delivery
 from service.queue.delivery import Response as Form
 from service.queue.job import Job
 from service.registry import NETCDF
-from service.routes.context import Ctx
+from service.routes.context import Context, Ctx
 from service.routes.media_types import JSON, negotiated
 from service.routes.refusals import documented
 from service.routes.response_headers import OF_VERSIONS, described_headers
 from service.routes.results import FILE, OF_RESULT, file_response, known_result
 from service.routes.scopes import ScopedRoute, needs
-from service.schemas.ogc import ResultReference, results_document
+from service.schemas.batch import BatchResult, BatchResults
+from service.schemas.ogc import JobStatus, ResultReference, results_document
+from service.schemas.problem import ProblemBody
 from service.schemas.result_kinds import RESULTS
 from service.worker.process import Registry
 
@@ -42,10 +53,12 @@ _REFUSED = documented(NoSuchJob, ResultNotReady, NotFound, JobDismissed, JobFail
 def job_results_router(registry: Registry) -> APIRouter:
     """Return the route, whose documents are typed by the processes that make them."""
     router = APIRouter(prefix="/jobs", tags=["jobs"], route_class=ScopedRoute)
+    documents = [results_document(process.id, process.output) for process in registry.values()]
     answers: dict[int | str, dict[str, Any]] = {
         200: {
-            "model": Union[tuple(results_document(p.id, p.output) for p in registry.values())],  # noqa: UP007
-            "description": "A document of where the result is by the name of its output, or its file",
+            "model": Union[(*documents, BatchResults)],
+            "description": "A document of where the result is by the name of its output, or its file; of a "
+            "batch what came of each of its jobs, in order",
             "content": {JSON: {}, NETCDF: {"schema": FILE}},
             "headers": described_headers(*OF_RESULT, "Content-Digest", "Content-Location"),
         },
@@ -79,16 +92,21 @@ def job_results(
 ) -> Response:
     """Return the result as the execution requested it, or as this request does; say why there is none."""
     job = context.submissions.find(job_id)
-    _refuse_without_result(job)
+    if job.children:
+        return JSONResponse(batch_results(context, job).model_dump())
+    problem = problem_of(job)
+    if problem is not None:
+        raise problem
     process = context.registry[job.process]
     if response is None and mode is None:
         form = _accepted(job.delivery, request.headers.get("accept", "*/*"))
     else:
         form = delivery(response or job.delivery.response, mode, "transmissionMode")
-    href = f"{RESULTS}/{job.key}"
+    reference = reference_of(job)
     if form.transmission == "reference":
-        return _referenced(form, process.output, href, job.key)
-    return file_response(known_result(context, job.key, process.kind), request, {"Content-Location": href})
+        return _referenced(form, process.output, reference)
+    place = {"Content-Location": reference.href}
+    return file_response(known_result(context, job.key, process.kind), request, place)
 
 
 def _accepted(ordered: Delivery, accept: str) -> Delivery:
@@ -100,20 +118,43 @@ def _accepted(ordered: Delivery, accept: str) -> Delivery:
     return delivery("document" if accepted == JSON else "raw", None, "transmissionMode")
 
 
-def _referenced(form: Delivery, output: str, href: str, key: str) -> Response:
+def _referenced(form: Delivery, output: str, reference: ResultReference) -> Response:
     """Say where the result is."""
     if form.response == "raw":
-        link = f'<{href}>; rel="item"; type="{NETCDF}"; title="{output}"'
+        link = f'<{reference.href}>; rel="item"; type="{NETCDF}"; title="{output}"'
         return Response(status_code=204, headers={"Link": link, "Vary": "Accept"})
-    reference = ResultReference(href=href, type=NETCDF, hash=key)
     return JSONResponse({output: reference.model_dump()}, headers={"Vary": "Accept"})
 
 
-def _refuse_without_result(job: Job) -> None:
-    """Raise what says why a job has no result."""
+def batch_results(context: Context, batch: Job) -> BatchResults:
+    """Return what came of the jobs of a batch, in order."""
+    if not batch.ended:
+        raise ResultNotReady(f"Batch {batch.id} is {batch.status}: {batch.message}")
+    output = context.registry[batch.process].output
+    return BatchResults(jobs=[_in_batch(job, output) for job in context.submissions.children(batch.id)])
+
+
+def _in_batch(job: Job, output: str) -> BatchResult:
+    """Return what came of a job."""
+    problem, results = problem_of(job), {output: reference_of(job)}
+    if problem is None:
+        return BatchResult(jobID=job.id, status="successful", results=results, problem=None)
+    status: JobStatus = job.status  # type: ignore[assignment]  # the table holds no others
+    body = ProblemBody.model_validate(problem.as_json())
+    return BatchResult(jobID=job.id, status=status, results=None, problem=body)
+
+
+def problem_of(job: Job) -> ServiceError | None:
+    """Return what says why a job has no result, None if it has one."""
     if job.status == "failed":
-        raise JobFailed(job.message, [Fault(**fault) for fault in job.faults])
+        return JobFailed(job.message, [Fault(**fault) for fault in job.faults])
     if job.status == "dismissed":
-        raise JobDismissed(f"Job {job.id} was cancelled.")
+        return JobDismissed(f"Job {job.id} was cancelled.")
     if job.status != "successful":
-        raise ResultNotReady(f"Job {job.id} is {job.status}: {job.message}")
+        return ResultNotReady(f"Job {job.id} is {job.status}: {job.message}")
+    return None
+
+
+def reference_of(job: Job) -> ResultReference:
+    """Return where the result of a job is."""
+    return ResultReference(href=f"{RESULTS}/{job.key}", type=NETCDF, hash=job.key)

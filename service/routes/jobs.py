@@ -20,7 +20,9 @@ from service.routes.scopes import ScopedRoute, needs, require
 from service.schemas.label import LabelChange
 from service.schemas.ogc import Differences as ShownDifferences
 from service.schemas.ogc import JobList, JobStatus, Link, StatusInfo
+from service.schemas.subscriber import WebhookState
 from service.store import Mark
+from service.webhooks.calls import Calls
 from service.worker.process import Registry, on_demand
 
 router = APIRouter(prefix="/jobs", tags=["jobs"], route_class=ScopedRoute)
@@ -43,7 +45,9 @@ def list_jobs(
 @needs(Scope.READ)
 def job_status(job_id: str, context: Ctx) -> StatusInfo:
     """Status and progress of the job."""
-    return status_info(context.submissions.find(job_id), context.registry)
+    status = status_info(context.submissions.find(job_id), context.registry)
+    calls = [WebhookState(**asdict(call)) for call in Calls(context.engine).of(job_id)]
+    return status.model_copy(update={"webhooks": calls or None})
 
 
 @router.patch("/{job_id}", summary="Rename a job", responses=documented(NoSuchJob))
@@ -83,7 +87,11 @@ def status_info(job: Job, registry: Registry) -> StatusInfo:
         Link(href=path, rel="self", title="Status"),
         Link(href=f"{path}/events", rel="monitor", type="text/event-stream", title="Changes of the status"),
     ]
-    if job.status == "successful":
+    if job.children:
+        links.append(Link(href=f"/v1/jobs?parent={job.id}", rel="item", title="Jobs of the batch"))
+    if job.parent is not None:
+        links.append(Link(href=f"/v1/jobs/{job.parent}", rel="up", title="Batch"))
+    if job.status == "successful" or (job.children and job.ended):
         relation = "http://www.opengis.net/def/rel/ogc/1.0/results"
         links.append(Link(href=f"{path}/results", rel=relation, title="Results"))
     status: JobStatus = job.status  # type: ignore[assignment]  # the table holds no others
@@ -107,6 +115,9 @@ def status_info(job: Job, registry: Registry) -> StatusInfo:
         stage=job.stage,
         stage_progress=int(100 * job.stage_fraction),
         attempts=job.attempts,
+        parentID=job.parent,
+        place=job.place,
+        children=job.children,
         links=links,
         warnings=list(input_warnings(job.inputs)),
     )

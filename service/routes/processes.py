@@ -29,6 +29,7 @@ from service.routes.jobs import status_info
 from service.routes.refusals import documented
 from service.routes.response_headers import described_headers
 from service.routes.scopes import ScopedRoute, needs
+from service.routes.webhooks import checked_uris, enter_calls
 from service.schemas.execute import execute_model
 from service.schemas.model import BoundaryModel
 from service.schemas.ogc import (
@@ -125,12 +126,14 @@ def _add_execution(router: APIRouter, process: Process) -> None:
         output = getattr(request.outputs, process.output)
         field = f"outputs.{process.output}.transmissionMode"
         form = delivery(request.response, output and output.transmissionMode, field)
+        uris = checked_uris(context.settings, request.subscriber)
         inputs = process.prepare(cast(BoundaryModel, request.inputs), context.store)
         since = _differences(context, process, caller, inputs, request.inputs)
         check_priority(request.priority, caller)
         limit = cost_limit(request.max_cost_s, caller)
         terms = Terms(form, Label.of(request.title, request.tags), since, request.priority, limit)
         status = _submit(context, process, inputs, caller, terms, idempotency_key)
+        enter_calls(context, status.jobID, uris)
         response.headers["Location"] = f"/v1/jobs/{status.jobID}"
         if "respond-async" in [item.partition(";")[0].strip().lower() for item in prefer.split(",")]:
             response.headers["Preference-Applied"] = "respond-async"

@@ -181,6 +181,8 @@ ANSWERS: dict[str, Any] = {
         "inputs": {"case": {"title": "case", "description": "The case", "schema": {"type": "object"}}},
         "outputs": {"database": {"title": "database", "description": "The table", "schema": _OUTPUT}},
     },
+    "/v1/batches": STATUS
+    | {"message": "1 of 2 jobs have ended.", "stage": "jobs", "stage_progress": 50, "children": 2},
     "/v1/jobs": {"jobs": [STATUS], "links": [_LINK]},
     "/v1/jobs/{job_id}": STATUS,
     "/v1/jobs/{job_id}/results": {

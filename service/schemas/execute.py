@@ -11,6 +11,7 @@ from service.registry import JSON, NETCDF
 from service.schemas.label import Tags, Title
 from service.schemas.model import BoundaryModel, refuse
 from service.schemas.ogc import class_name
+from service.schemas.subscriber import Subscriber
 
 _FORMAT = {"mediaType", "encoding", "schema"}
 Priority = Annotated[int, Field(ge=-9, le=9)]
@@ -19,7 +20,7 @@ _LINK = {"href", "rel", "type", "hreflang", "title"}
 
 
 class ExecuteBody(BoundaryModel):
-    """The base of the bodies of all executions: inputs may be qualified values; nobody is called back."""
+    """The base of the bodies of all executions: inputs may be qualified values."""
 
     @model_validator(mode="before")
     @classmethod
@@ -27,9 +28,6 @@ class ExecuteBody(BoundaryModel):
         """Refuse what is not offered, and take values out of their qualification."""
         if not isinstance(body, dict):
             return body
-        if "subscriber" in body:
-            bound = "left out: the service sends no requests to addresses that its callers name"
-            refuse("subscriber", None, bound, "Ask /v1/jobs/{id}, or follow /v1/jobs/{id}/events.")
         inputs = body.get("inputs")
         if not isinstance(inputs, dict):
             return body
@@ -90,6 +88,7 @@ def execute_model(process: str, inputs: type[BoundaryModel], output: str) -> typ
             Field(0, description="Turn of the job: the oldest of the highest is next", examples=[1]),
         ),
         "tags": (Tags, Field([], description="What the job is found by", examples=[["ev-3", "draft"]])),
+        "subscriber": (Subscriber | None, Field(None, description="Who is told about the job")),
     }
     fields["max_cost_s"] = (
         Cost | None,

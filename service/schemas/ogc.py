@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, create_model
 
 from service.schemas.named import Named
+from service.schemas.subscriber import WebhookState
 
 JobStatus = Literal["accepted", "running", "successful", "failed", "dismissed"]
 
@@ -145,9 +146,17 @@ class StatusInfo(BaseModel):
     stage: str = Field(description="The stage the job is in")
     stage_progress: int = Field(ge=0, le=100, description="Per cent of the stage")
     attempts: int = Field(ge=0, description="Number of starts of the computation")
+    parentID: str | None = Field(  # noqa: N815
+        default=None, description="The batch that the job is in; null: none"
+    )
+    place: int = Field(default=0, ge=0, description="Place in the batch, from 0")
+    children: int = Field(default=0, ge=0, description="Number of jobs of a batch; 0: this is none")
     warnings: list[Annotated[dict[str, Any], Named("InputWarning")]] | None = Field(
         default=None,
         description="Implausible inputs: check, field, value, unit, message; null in lists",
+    )
+    webhooks: list[WebhookState] | None = Field(
+        default=None, description="Calls about the job; null in lists and events"
     )
     links: list[Link]
 

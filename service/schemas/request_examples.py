@@ -97,6 +97,14 @@ speed_rpm = [955.0]
 
 BODIES: dict[str, Json] = {
     "/v1/jobs/{job_id}": {"title": "Tip relief 20 um", "tags": ["ev-3", "draft"]},
+    "/v1/batches": {
+        "process": "analyze",
+        "inputs": {"case": CASE},
+        "jobs": [
+            {"case": {"pair": {"pinion": {"tip_relief_um": um, "tip_relief_length_mm": 1.5}}}}
+            for um in (10.0, 20.0)
+        ],
+    },
     "/v1/databases/{key}/query": QUERY,
     "/v1/databases/{key}/ste": {"torque_n_m": [100.0], "pinion": {"tip_relief_um": 10.0}},
     "/v1/plans": {"inputs": {"case": CASE}},

@@ -6,6 +6,7 @@ import os
 import random
 import signal
 import socket
+import threading
 import time
 import uuid
 from collections.abc import Callable, Mapping, Sequence
@@ -56,6 +57,7 @@ class KilledService:
     struck: list[str] = field(default_factory=list)
     span: float = 1.0
     mark: str = field(default_factory=lambda: uuid.uuid4().hex)
+    _turns: threading.Lock = field(default_factory=threading.Lock)
 
     def __enter__(self) -> KilledService:
         self._listener = socket.create_server(("127.0.0.1", 0), backlog=256)
@@ -102,14 +104,23 @@ class KilledService:
 
     def revive(self) -> None:
         """Start what has ended by itself, as a supervisor does."""
-        for part in self.parts:
-            part.revive()
+        with self._turns:
+            for part in self.parts:
+                part.revive()
 
     def submit(self, text: str) -> None:
         """Enter a job."""
         answer = self.request("POST", EXECUTION, json={"inputs": {"wish": {"mode": "slow", "text": text}}})
         assert answer.status_code == 201, answer.text
         self.jobs[answer.json()["jobID"]] = text
+
+    def submit_batch(self, name: str, texts: Sequence[str]) -> str:
+        """Enter a batch under a name, however often it has to be sent; return its identifier."""
+        jobs = [{"wish": {"text": text}} for text in texts]
+        body = {"process": "fake", "inputs": {"wish": {"mode": "slow"}}, "jobs": jobs}
+        answer = self.request("POST", "/v1/batches", json=body, headers={"Idempotency-Key": name})
+        assert answer.status_code == 201, answer.text
+        return str(answer.json()["jobID"])
 
     def measure(self, text: str) -> None:
         """Run a job undisturbed: moments are chosen from somewhat more than its duration."""
@@ -135,13 +146,14 @@ class KilledService:
         else:
             role = kind.removeprefix("stop ")
             part = chance.choice([part for part in self.parts if part.role == role])
-            (self._suspend if kind.startswith("stop ") else self._kill)(part)
+            (self._suspend if kind.startswith("stop ") else self.kill)(part)
 
-    def _kill(self, part: Part) -> None:
+    def kill(self, part: Part) -> None:
         """Kill a part and start it again; its workers end by themselves."""
         left = processes_in(Path(part.environment["LOA_DATA_DIRECTORY"]), WORKER)
-        part.end(signal.SIGKILL)
-        part.start()
+        with self._turns:
+            part.end(signal.SIGKILL)
+            part.start()
         until(lambda: not any(lives(pid) for pid in left))
 
     def _suspend(self, part: Part) -> None:

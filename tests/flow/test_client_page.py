@@ -61,14 +61,15 @@ def test_the_scripts_of_the_page_run_one_after_the_other(capsys: pytest.CaptureF
     for script in scripts:
         exec(compile(script, "docs/client.md", "exec"), names)
         printed.append(capsys.readouterr().out)
-    (table, followed, waited, many, awaited, study, arrays, live, before, lists) = printed[:10]
-    (labeled, bars, shown, run_up) = printed[10:]
+    table, followed, waited, many, batched, awaited, study, arrays, live, before, lists = printed[:11]
+    labeled, bars, shown, run_up = printed[11:]
     assert re.search(r"Estimate\(value=2\.\d+e-06, error=.*unit='m'\)", table)
     assert followed.splitlines()[-1] == "analyze: done"
     assert names["table"].identical(names["ste"])
     assert waited == "" and names["file"].is_file()  # nothing failed
     reliefs, ripples = np.array([list(map(float, line.split())) for line in many.splitlines()]).T
     assert reliefs.tolist() == names["reliefs"]
+    assert batched.splitlines()[-len(reliefs) :] == many.splitlines()
     assert float(awaited) == ripples.min() and len(set(ripples)) == len(reliefs)
     pascals, megapascals, unit = study.split()
     assert float(pascals) == pytest.approx(1e6 * float(megapascals)) and unit == "Pa"

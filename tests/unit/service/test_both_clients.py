@@ -16,7 +16,15 @@ import httpx2
 import pytest
 from stored_jobs import StoredJobs, state
 
-from service.client import AsyncJob, AsyncLineOfActionClient, Job, LineOfActionClient, LiveOptions
+from service.client import (
+    AsyncBatch,
+    AsyncJob,
+    AsyncLineOfActionClient,
+    Batch,
+    Job,
+    LineOfActionClient,
+    LiveOptions,
+)
 from service.client.events import EventReader
 from service.problems import BadInput, JobFailed, NotFound, Unreachable
 from service.schemas.live import LiveInput
@@ -45,12 +53,13 @@ def public(surface: type) -> dict[str, str]:
     return {
         name: str(inspect.signature(call)) if callable(call) else type(call).__name__
         for name, call in calls.items()
-        if name not in ("driver", "session", "close", "job")  # of the driver
+        if name not in ("driver", "session", "close", "job", "batch")  # of the driver
     }
 
 
 @pytest.mark.parametrize(
-    ("blocking", "awaited"), [(LineOfActionClient, AsyncLineOfActionClient), (Job, AsyncJob)]
+    ("blocking", "awaited"),
+    [(LineOfActionClient, AsyncLineOfActionClient), (Job, AsyncJob), (Batch, AsyncBatch)],
 )
 def test_both_have_one_surface(blocking: type, awaited: type) -> None:
     assert public(blocking) == public(awaited)

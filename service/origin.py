@@ -1,0 +1,53 @@
+"""Origins of addresses on the network (RFC 6454): scheme, host and port."""
+
+from __future__ import annotations
+
+import ipaddress
+from dataclasses import dataclass
+from typing import Self
+from urllib.parse import urlsplit
+
+_PORTS = {"http": 80, "https": 443}
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Scheme, host in lower case, and port."""
+
+    scheme: str
+    host: str
+    port: int
+
+    @classmethod
+    def of(cls, uri: str) -> Self:
+        """Return the origin of an address.
+
+        Raises
+        ------
+        ValueError
+            It is not http or https, names nobody, or holds a user, a fragment or odd characters.
+        """
+        parts = urlsplit(uri)
+        plain = uri.isascii() and uri.isprintable() and " " not in uri and "\\" not in uri
+        if (
+            parts.scheme not in _PORTS
+            or not parts.hostname
+            or "@" in parts.netloc
+            or parts.fragment
+            or not plain
+        ):
+            raise ValueError(uri)
+        return cls(parts.scheme, parts.hostname, _PORTS[parts.scheme] if parts.port is None else parts.port)
+
+    @property
+    def is_address(self) -> bool:
+        """Whether the host is written as an address, not as a name."""
+        try:
+            ipaddress.ip_address(self.host)
+        except ValueError:
+            return False
+        return True
+
+    def __str__(self) -> str:
+        host = f"[{self.host}]" if ":" in self.host else self.host
+        return f"{self.scheme}://{host}:{self.port}"

@@ -1,0 +1,136 @@
+"""Batches: one request, many jobs of one process, all entered or none."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from typing import Any
+
+import structlog
+from fastapi import APIRouter, Response
+
+from service.access import Scope
+from service.problems import BadInput, Fault, QueueFull
+from service.queue.batch_entry import BatchCase
+from service.queue.cost_limit import cost_limit
+from service.queue.label import Label
+from service.queue.priority import check_priority
+from service.queue.terms import Terms
+from service.routes.context import Context, Ctx, From
+from service.routes.jobs import status_info
+from service.routes.processes import IdempotencyKey
+from service.routes.refusals import documented
+from service.routes.response_headers import described_headers
+from service.routes.scopes import ScopedRoute, needs
+from service.routes.webhooks import checked_uris, enter_calls
+from service.schemas.batch import BatchRequest
+from service.schemas.few_faults import MOST_FAULTS
+from service.schemas.ogc import StatusInfo
+from service.schemas.reading import validated
+from service.store import now
+from service.worker.process import Process, on_demand
+
+Json = dict[str, Any]
+_PREDICTING_S = 1.0
+"""CPU time for the predicted costs of one batch: 6 ms a case in the plane, 0.1 s over the face."""
+logger = structlog.get_logger(__name__)
+router = APIRouter(prefix="/batches", tags=["jobs"], route_class=ScopedRoute)
+predicted_seconds = on_demand("service.worker.predicted_cost:predicted_seconds")
+
+
+@router.post(
+    "",
+    summary="Submit a batch",
+    status_code=201,
+    responses=documented(QueueFull)
+    | {201: {"description": "The batch, a job like others", "headers": described_headers("Location")}},
+)
+@needs(Scope.SUBMIT)
+def submit_batch(
+    request: BatchRequest,
+    response: Response,
+    context: Ctx,
+    caller: From,
+    idempotency_key: IdempotencyKey = None,
+) -> StatusInfo:
+    """Check the inputs of all jobs and enter them with the batch they are in, all or none.
+
+    The batch is a job: its status, events and dismissal are those of all jobs in it.
+    """
+    if request.process not in context.registry:
+        raise BadInput.of("process", request.process, f"one of {', '.join(context.registry)}")
+    process = context.registry[request.process]
+    check_priority(request.priority, caller)
+    terms = Terms(
+        label=Label.of(request.title, request.tags),
+        priority=request.priority,
+        max_cost_s=cost_limit(request.max_cost_s, caller),
+    )
+    uris = checked_uris(context.settings, request.subscriber)
+    looked = now()
+    cases = _cases(context, process, _checked_inputs(context, process, request))
+    entry = context.submissions.batches(caller, terms)
+    identifier = entry.submit(process.id, cases, looked, idempotency_key)
+    enter_calls(context, identifier, uris)
+    logger.info("batch entered", job=identifier, process=process.id, jobs=len(cases))
+    context.scheduler.wake()
+    response.headers["Location"] = f"/v1/jobs/{identifier}"
+    return status_info(context.submissions.find(identifier), context.registry)
+
+
+submit_batch.body_model = BatchRequest  # type: ignore[attr-defined]
+
+
+def _checked_inputs(context: Context, process: Process, request: BatchRequest) -> list[Json]:
+    """Return the normalized inputs of all jobs; raises `BadInput` with the faults of all, by their index."""
+    inputs, faults = [], []
+    for index in range(len(request.jobs)):
+        try:
+            model = validated(process.inputs, request.inputs_of(index))
+            inputs.append(process.prepare(model, context.store))
+        except BadInput as error:
+            faults.append(_of_job(index, error))
+    if faults:
+        raise BadInput(_few(faults))
+    return inputs
+
+
+def _of_job(index: int, error: BadInput) -> list[Fault]:
+    """Return the faults of one job, named as in its case or scene file."""
+    faults = []
+    for fault in error.faults:
+        name = fault.field.removeprefix("case.").removeprefix("scene.")
+        faults.append(Fault(f"jobs[{index}].{name}", fault.value, fault.bound, fault.suggestion))
+    return faults
+
+
+def _few(faults: Sequence[Sequence[Fault]]) -> list[Fault]:
+    """Return all faults, or of each job the first if there are too many."""
+    if sum(map(len, faults)) > MOST_FAULTS:
+        return [of_job[0] for of_job in faults]
+    return [fault for of_job in faults for fault in of_job]
+
+
+def _cases(context: Context, process: Process, inputs: Sequence[Json]) -> list[BatchCase]:
+    """Return the jobs of a batch: which results are there, and what the others cost beside each other."""
+    keys = [process.key(one) for one in inputs]
+    stored = {key: context.store.find(key, process.kind) is not None for key in set(keys)}
+    new = {key: one for key, one in zip(keys, inputs, strict=True) if not stored[key]}
+    costs = _costs(new)
+    known = [cost for cost in costs.values() if cost is not None]
+    usual = sum(known) / len(known) if known else 1.0
+    return [
+        BatchCase(key, one, stored[key], costs.get(key) or usual)
+        for key, one in zip(keys, inputs, strict=True)
+    ]
+
+
+def _costs(inputs: dict[str, Json]) -> dict[str, float | None]:
+    """Predict what jobs cost, as many as there is time for: the others cost as much as these do."""
+    costs: dict[str, float | None] = {}
+    end = time.thread_time() + _PREDICTING_S
+    for key, one in inputs.items():
+        costs[key] = predicted_seconds(one)
+        if time.thread_time() > end:
+            break
+    return costs

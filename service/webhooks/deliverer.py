@@ -1,0 +1,120 @@
+"""Threads that make the calls that are due, beside whatever else a process does."""
+
+from __future__ import annotations
+
+import json
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import structlog
+
+from service.origin import Origin
+from service.problems import ServiceError
+from service.signature import signed_headers
+from service.webhooks.calls import Call, Calls
+from service.webhooks.sending import NotCalled, send
+
+THREADS, LOOK_S = 4, 2.0
+"""They look in turns: a call that is due is seen after half a second in the mean."""
+_STOPPING_S = 1.0
+_GONE = 410
+logger = structlog.get_logger(__name__)
+
+
+@dataclass(frozen=True)
+class Outbox:
+    """What calls are made of.
+
+    Attributes
+    ----------
+    calls : Calls
+    origins : frozenset of Origin
+        Who may be called.
+    key : bytes
+        Of the signatures.
+    compose : callable
+        Identifier of a job and the event to the body, JSON.
+    """
+
+    calls: Calls
+    origins: frozenset[Origin]
+    key: bytes
+    compose: Callable[[str, str], Any]
+
+    def make_one(self) -> bool:
+        """Make a call that is due; False: there is none."""
+        call = self.calls.claim()
+        if call is None:
+            return False
+        self._make(call)
+        return True
+
+    def _make(self, call: Call) -> None:
+        """Make a call and note what came of it."""
+        facts = {"job": call.job, "call": call.event, "attempt": call.attempts}
+        try:
+            status = self._sent(call)
+        except NotCalled as error:
+            logger.warning("webhook not delivered", **facts, reason=str(error))
+            self.calls.fail(call, f"{error}.")
+            return
+        except Exception:
+            logger.exception("webhook not delivered", **facts)
+            self.calls.fail(call, "an unexpected failure; the log has the details.")
+            return
+        if 200 <= status < 300:
+            logger.info("webhook delivered", **facts, status=status)
+            self.calls.deliver(call, f"answered {status}.")
+        else:
+            logger.warning("webhook refused", **facts, status=status)
+            text = "redirects are not followed" if 300 <= status < 400 else "not taken"
+            self.calls.fail(call, f"answered {status}, {text}.", final=status == _GONE)
+
+    def _sent(self, call: Call) -> int:
+        """Send a call; return the status of its answer."""
+        if Origin.of(call.uri) not in self.origins:
+            raise NotCalled("the origin is not listed any more")
+        body = json.dumps(self.compose(call.job, call.event), allow_nan=False).encode()
+        headers = signed_headers(self.key, call.id, int(time.time()), body)
+        return send(call.uri, body, {"Content-Type": "application/json", **headers})
+
+
+class Deliverer:
+    """Makes calls until it is stopped; what it was about to make then is made by another after its lease."""
+
+    def __init__(self, outbox: Outbox) -> None:
+        self._outbox = outbox
+        self._stopping = threading.Event()
+        self._threads: list[threading.Thread] = []
+
+    def start(self) -> None:
+        """Begin."""
+        self._stopping.clear()
+        self._threads = [
+            threading.Thread(target=self._loop, args=(n * LOOK_S / THREADS,), name="webhooks", daemon=True)
+            for n in range(THREADS)
+        ]
+        for thread in self._threads:
+            thread.start()
+
+    def stop(self) -> None:
+        """End soon."""
+        self._stopping.set()
+        end = time.monotonic() + _STOPPING_S
+        for thread in self._threads:
+            thread.join(max(end - time.monotonic(), 0.0))
+
+    def _loop(self, pause: float) -> None:
+        """Until stopped: make what is due, and wait."""
+        while not self._stopping.wait(pause):
+            pause = LOOK_S
+            try:
+                while not self._stopping.is_set() and self._outbox.make_one():
+                    pass
+            except ServiceError as error:
+                logger.warning("webhooks wait", error=str(error))
+            except Exception:
+                logger.exception("webhooks failed")

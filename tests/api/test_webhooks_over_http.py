@@ -1,0 +1,188 @@
+"""Webhooks: who is called, what is told, in which order, how often; and who is never called."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+from killed_service import KilledService
+from running_service import until
+from service_fakes import REGISTRY
+from webhook_receiver import SECRET, Receiver, receiver
+
+from service.app import create_app
+from service.settings import Settings
+from service.webhooks import calls, deliverer, sending
+
+EXECUTION = "/v1/processes/fake/execution"
+
+
+@pytest.fixture(autouse=True)
+def quickly(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let pauses and patience be short."""
+    monkeypatch.setattr(calls, "FIRST_PAUSE_S", 0.05)
+    monkeypatch.setattr(calls, "MOST_ATTEMPTS", 3)
+    monkeypatch.setattr(deliverer, "LOOK_S", 0.1)
+    monkeypatch.setattr(sending, "WHOLE_S", 1.0)
+
+
+@pytest.fixture
+def listener() -> Iterator[Receiver]:
+    """A receiver on loopback."""
+    with receiver() as found:
+        yield found
+
+
+@pytest.fixture
+def http(tmp_path: Path, listener: Receiver) -> Iterator[TestClient]:
+    """A running app that may call the receiver by its address, and by a name."""
+    origins = f"{listener.origin}, http://localhost:{listener.server_port}"
+    settings = Settings(data_directory=tmp_path, webhook_origins=origins, webhook_secret=SECRET)
+    with TestClient(create_app(settings, REGISTRY)) as found:
+        yield found
+
+
+def submitted(http: TestClient, wish: dict[str, Any], **subscriber: str) -> str:
+    """Submit a job; return its address."""
+    body = {"inputs": {"wish": wish}, "subscriber": {f"{name}Uri": uri for name, uri in subscriber.items()}}
+    answer = http.post(EXECUTION, json=body)
+    assert answer.status_code == 201, answer.text
+    location: str = answer.headers["location"]
+    return location
+
+
+def settled(http: TestClient, location: str) -> dict[str, tuple[str, int, str]]:
+    """Wait until no call about a job waits; return state, attempts and message by event."""
+    found: dict[str, tuple[str, int, str]] = {}
+
+    def over() -> bool:
+        entries = http.get(location).json()["webhooks"]
+        found.update({e["event"]: (e["state"], e["attempts"], e["message"]) for e in entries})
+        return all(state != "waiting" for state, _, _ in found.values())
+
+    until(over)
+    return found
+
+
+def test_calls_are_made_in_order_and_signed(http: TestClient, listener: Receiver) -> None:
+    uris = {name: f"{listener.origin}/{name}?x=1" for name in ("inProgress", "success", "failed")}
+    location = submitted(http, {"mode": "hang"}, **uris)
+    until(lambda: len(listener.requests) == 1)
+    http.delete(location)
+    ends = settled(http, location)
+    assert ends["inProgress"] == ends["failed"] == ("delivered", 1, "answered 204.")
+    assert ends["success"] == ("skipped", 0, "")
+    assert listener.paths() == ["/inProgress?x=1", "/failed?x=1"]
+    assert all(request.signed for request in listener.requests)
+    assert len({request.headers["webhook-id"] for request in listener.requests}) == 2
+    progress = listener.requests[0].json
+    assert (progress["jobID"], progress["status"]) == (location.rpartition("/")[2], "running")
+
+
+def test_a_success_is_told_as_the_document_of_the_results(http: TestClient, listener: Receiver) -> None:
+    location = submitted(http, {"text": "told"}, success=f"{listener.origin}/success")
+    assert settled(http, location)["success"][0] == "delivered"
+    (success,) = listener.requests
+    assert success.signed and success.headers["content-type"] == "application/json"
+    assert success.headers["webhook-id"] == f"{location.rpartition('/')[2]}_success"
+    assert abs(int(success.headers["webhook-timestamp"]) - time.time()) < 100
+    assert success.json == http.get(f"{location}/results", params={"response": "document"}).json()
+
+
+def test_a_failure_and_a_dismissal_are_told_as_problems(http: TestClient, listener: Receiver) -> None:
+    failed = submitted(http, {"mode": "mesh"}, failed=f"{listener.origin}/a", success=f"{listener.origin}/b")
+    assert settled(http, failed)["failed"][0] == "delivered"
+    dismissed = submitted(http, {"mode": "hang"}, failed=f"{listener.origin}/c")
+    http.delete(dismissed)
+    assert settled(http, dismissed)["failed"][0] == "delivered"
+    assert [request.json["status"] for request in listener.requests] == [500, 410]
+    assert "negative Jacobian" in listener.requests[0].json["detail"]
+
+
+def test_a_batch_is_told_as_a_whole(http: TestClient, listener: Receiver) -> None:
+    jobs = [{"wish": {"text": text}} for text in "ab"]
+    uri = {"successUri": f"{listener.origin}/batch"}
+    answer = http.post("/v1/batches", json={"process": "fake", "jobs": jobs, "subscriber": uri})
+    assert settled(http, answer.headers["location"])["success"][0] == "delivered"
+    (request,) = listener.requests
+    assert [entry["status"] for entry in request.json["jobs"]] == ["successful"] * 2
+
+
+def test_what_is_not_taken_is_sent_again_under_the_same_identifier(
+    http: TestClient, listener: Receiver
+) -> None:
+    listener.refusals = 2
+    taken = submitted(http, {"text": "a"}, success=f"{listener.origin}/refuse")
+    assert settled(http, taken)["success"] == ("delivered", 3, "answered 204.")
+    assert len({request.headers["webhook-id"] for request in listener.requests}) == 1
+    assert all(request.signed for request in listener.requests) and len(listener.requests) == 3
+    listener.refusals = 100
+    never = submitted(http, {"text": "b"}, success=f"{listener.origin}/refuse")
+    assert settled(http, never)["success"] == ("given up", 3, "answered 503, not taken.")
+    gone = submitted(http, {"text": "c"}, success=f"{listener.origin}/gone")
+    assert settled(http, gone)["success"] == ("given up", 1, "answered 410, not taken.")
+
+
+@pytest.mark.parametrize("path", ["/hang", "/drip"])
+def test_a_receiver_that_takes_too_long_is_left(http: TestClient, listener: Receiver, path: str) -> None:
+    location = submitted(http, {"text": "a"}, success=f"{listener.origin}{path}")
+    state, attempts, message = settled(http, location)["success"]
+    assert (state, attempts) == ("given up", 3) and message.startswith("no answer")
+    assert http.get(location).json()["status"] == "successful"
+
+
+def test_redirects_are_not_followed(http: TestClient, listener: Receiver) -> None:
+    location = submitted(http, {"text": "a"}, success=f"{listener.origin}/redirect")
+    assert settled(http, location)["success"] == ("given up", 3, "answered 302, redirects are not followed.")
+    assert set(listener.paths()) == {"/redirect"}
+
+
+def test_a_name_of_this_machine_is_not_called(http: TestClient, listener: Receiver) -> None:
+    location = submitted(http, {"text": "a"}, success=f"http://localhost:{listener.server_port}/name")
+    state, attempts, message = settled(http, location)["success"]
+    assert (state, attempts) == ("given up", 3) and "no public address" in message
+    assert listener.requests == []
+
+
+@pytest.mark.parametrize(
+    "uri",
+    [
+        "http://127.0.0.1:1/",
+        "https://hooks.example.com/",
+        "ftp://127.0.0.1/",
+        "http://user@{host}/",
+        "http://{host}/#part",
+        "http://{host}/a b",
+        "http://{host}\\@evil.example/",
+        "http://{host}/\r\nX: y",
+        "nothing",
+        "",
+    ],
+)
+def test_what_is_not_listed_is_refused_by_name(http: TestClient, listener: Receiver, uri: str) -> None:
+    text = uri.replace("{host}", listener.origin.removeprefix("http://"))
+    body = {"inputs": {"wish": {}}, "subscriber": {"successUri": text}}
+    answer = http.post(EXECUTION, json=body)
+    assert (answer.status_code, answer.json()["errors"][0]["field"]) == (422, "subscriber.successUri")
+    assert http.get("/v1/jobs").json()["jobs"] == [] and listener.requests == []
+
+
+def test_a_call_that_a_killed_service_was_making_is_made_again(tmp_path: Path, listener: Receiver) -> None:
+    """kill -9 while the receiver holds the request: its lease ends, and it is sent again."""
+    settings = {"LOA_WEBHOOK_ORIGINS": listener.origin, "LOA_WEBHOOK_SECRET": SECRET}
+    with KilledService(tmp_path, settings, ["all"]) as service:
+        body = {"inputs": {"wish": {"text": "a"}}, "subscriber": {"successUri": f"{listener.origin}/hang"}}
+        location = service.request("POST", EXECUTION, json=body).headers["location"]
+        until(lambda: len(listener.requests) == 1)
+        service.kill(service.parts[0])
+        listener.released.set()
+        until(lambda: len(listener.requests) == 2)
+        first, again = listener.requests
+        assert first.headers["webhook-id"] == again.headers["webhook-id"] and again.signed
+        until(lambda: service.request("GET", location).json()["webhooks"][0]["state"] == "delivered")
+        assert service.request("GET", location).json()["webhooks"][0]["attempts"] == 2
+        assert service.stop() == [0]

@@ -1,0 +1,189 @@
+"""Calls about jobs: claims on each database, addresses that may be called, settings, signatures."""
+
+from __future__ import annotations
+
+import base64
+import socket
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import pytest
+from running_service import Bench, bench
+from service_fakes import REGISTRY
+
+from service.origin import Origin
+from service.problems import BadInput
+from service.settings import Settings, load_settings
+from service.signature import secret_bytes, signed_headers
+from service.webhooks import calls, sending
+from service.webhooks.calls import Calls
+
+SECRET = "whsec_" + base64.b64encode(bytes(32)).decode()
+
+
+@pytest.fixture
+def machine(tmp_path: Path, database_url: str | None) -> Iterator[Bench]:
+    """The table without a running scheduler, on each database."""
+    found = bench(tmp_path, REGISTRY, database_url=database_url)
+    yield found
+    found.close()
+
+
+def succeeded(machine: Bench, text: str) -> str:
+    """Return a job that was successful."""
+    job = machine.submit(text=text)
+    claim = machine.claims.claim()
+    assert claim is not None
+    machine.claims.succeed(claim)
+    return job.id
+
+
+def test_a_call_is_claimed_once_and_an_origin_has_one_at_a_time(machine: Bench) -> None:
+    made = Calls(machine.engine)
+    jobs = [succeeded(machine, str(n)) for n in range(4)]
+    for n, job in enumerate(jobs):
+        for _ in range(2):  # a request that is sent again
+            made.enter(job, {"success": f"https://host{n % 2}.example/"})
+    with ThreadPoolExecutor(8) as pool:
+        claims = [claim for claim in pool.map(lambda _: made.claim(), range(16)) if claim is not None]
+    assert sorted(claim.uri for claim in claims) == ["https://host0.example/", "https://host1.example/"]
+    made.deliver(claims[0], "taken")
+    following = made.claim()
+    assert following is not None and following.uri == claims[0].uri and following.job != claims[0].job
+    assert made.claim() is None
+
+
+def test_a_call_whose_maker_died_is_made_again_and_late_news_of_it_are_ignored(
+    machine: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(calls, "LEASE_S", -1.0)  # over at once
+    made, job = Calls(machine.engine), succeeded(machine, "a")
+    made.enter(job, {"success": "https://host.example/"})
+    first, again = made.claim(), made.claim()
+    assert first is not None and again is not None
+    assert (first.id, first.attempts, again.attempts) == (again.id, 1, 2)
+    made.deliver(first, "late")
+    assert [(call.state, call.message) for call in made.of(job)] == [("waiting", "")]
+    made.deliver(again, "taken")
+    assert [(call.state, call.message) for call in made.of(job)] == [("delivered", "taken")]
+    assert made.claim() is None
+
+
+def test_calls_wait_for_the_state_of_their_job_and_for_each_other(machine: Bench) -> None:
+    made, job = Calls(machine.engine), machine.submit(text="a")
+    uris = dict.fromkeys(("inProgress", "success", "failed"), "https://host.example/")
+    made.enter(job.id, uris)
+    assert made.claim() is None
+    claim = machine.claims.claim()
+    assert claim is not None
+    progress = made.claim()
+    assert progress is not None and progress.event == "inProgress"
+    machine.claims.succeed(claim)
+    assert made.claim() is None  # until the first one is settled
+    made.deliver(progress, "taken")
+    success = made.claim()
+    assert success is not None and success.event == "success"
+    made.deliver(success, "taken")
+    assert made.claim() is None
+    assert {call.event: call.state for call in made.of(job.id)} == {
+        "inProgress": "delivered",
+        "success": "delivered",
+        "failed": "skipped",
+    }
+
+
+def test_pauses_grow_and_end(machine: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    made, job = Calls(machine.engine), succeeded(machine, "a")
+    made.enter(job, {"success": "https://host.example/"})
+    call = made.claim()
+    assert call is not None
+    made.fail(call, "away")
+    assert made.claim() is None  # for five seconds
+    assert made.of(job)[0].state == "waiting"
+    monkeypatch.setattr(calls, "FIRST_PAUSE_S", 0.0)
+    made, job = Calls(machine.engine), succeeded(machine, "b")
+    made.enter(job, {"success": "https://other.example/"})
+    attempts = 0
+    while (call := made.claim()) is not None:
+        made.fail(call, "away")
+        attempts += 1
+    assert attempts == calls.MOST_ATTEMPTS and made.of(job)[0].state == "given up"
+
+
+PRIVATE = [
+    *("127.0.0.1", "127.8.9.1", "0.0.0.0", "10.0.0.1", "172.16.0.1", "192.168.1.1", "169.254.169.254"),
+    *("100.64.0.1", "224.0.0.1", "255.255.255.255", "198.18.0.1", "192.0.2.1", "::1", "::", "fe80::1"),
+    *("fe80::1%eth0", "fc00::1", "::ffff:127.0.0.1", "::ffff:10.0.0.1", "2002:7f00:1::", "64:ff9b::7f00:1"),
+    *("ff02::1", "2001:db8::1"),
+]
+
+
+@pytest.mark.parametrize("address", PRIVATE)
+def test_no_name_leads_to_a_private_address(monkeypatch: pytest.MonkeyPatch, address: str) -> None:
+    assert not sending.is_public(address)
+    entry = (socket.AF_INET, socket.SOCK_STREAM, 0, "", (address, 80))
+    monkeypatch.setattr(socket, "getaddrinfo", lambda *_args, **_more: [entry])
+    with pytest.raises(sending.NotCalled, match="no public address"):
+        sending.send("http://hooks.example.com/", b"", {})
+
+
+@pytest.mark.parametrize("address", ["93.184.216.34", "2606:2800:220:1::1", "::ffff:93.184.216.34"])
+def test_public_addresses_are_called(address: str) -> None:
+    assert sending.is_public(address)
+
+
+def test_the_address_that_was_looked_at_is_the_one_connected_to(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A name that resolves to another address the next time is not asked a next time."""
+    answers = iter(["93.184.216.34", "127.0.0.1"])
+    connected: list[Any] = []
+
+    def resolved(*_args: object, **_more: object) -> list[Any]:
+        return [(socket.AF_INET, socket.SOCK_STREAM, 0, "", (next(answers), 80))]
+
+    class Recorded(socket.socket):
+        def connect(self, address: Any) -> None:
+            connected.append(address)
+            raise ConnectionRefusedError
+
+    monkeypatch.setattr(socket, "getaddrinfo", resolved)
+    monkeypatch.setattr(socket, "socket", Recorded)
+    with pytest.raises(sending.NotCalled, match="ConnectionRefusedError"):
+        sending.send("http://hooks.example.com/", b"", {})
+    assert connected == [("93.184.216.34", 80)]
+    assert next(answers) == "127.0.0.1"
+
+
+@pytest.mark.parametrize(
+    ("options", "field"),
+    [
+        ({"webhook_origins": "https://hooks.example.com"}, "webhook_secret"),
+        ({"webhook_origins": "https://hooks.example.com", "webhook_secret": "short"}, "webhook_secret"),
+        ({"webhook_secret": "whsec_AAAA"}, "webhook_secret"),
+        ({"webhook_origins": "hooks.example.com", "webhook_secret": SECRET}, "webhook_origins"),
+        ({"webhook_origins": "https://a.example/path", "webhook_secret": SECRET}, "webhook_origins"),
+        ({"webhook_origins": "https://a.example:x", "webhook_secret": SECRET}, "webhook_origins"),
+    ],
+)
+def test_settings_that_cannot_be_used_are_refused(options: dict[str, str], field: str) -> None:
+    with pytest.raises(BadInput) as caught:
+        load_settings(**options)
+    assert [fault.field for fault in caught.value.faults] == [field]
+    assert SECRET not in str(caught.value)
+
+
+def test_origins_are_those_of_the_settings() -> None:
+    settings = Settings(
+        webhook_origins="https://Hooks.example.com, http://[::1]:8080/", webhook_secret=SECRET
+    )
+    assert settings.origins == {Origin("https", "hooks.example.com", 443), Origin("http", "::1", 8080)}
+    assert settings.webhook_key == bytes(32)
+    assert Settings().origins == frozenset()
+
+
+def test_the_signature_is_that_of_the_standard() -> None:
+    """The example of Standard Webhooks' own libraries."""
+    key = secret_bytes("whsec_MfKQ9r8GKYqrTwjUPD8ILPZIo2LaLaSw")
+    headers = signed_headers(key, "msg_p5jXN8AQM9LWM0D4loKWxJek", 1614265330, b'{"test": 2432232314}')
+    assert headers["webhook-signature"] == "v1,g0hM9SsE+OTPJTGt/tmIKtSyZlE3uFJELVlNIOLJ1OE="
