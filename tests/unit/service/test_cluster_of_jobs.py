@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
 from pathlib import Path
 from tempfile import mkdtemp
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -38,6 +39,7 @@ STUDY = {
     "search": {"method": "nelder_mead", "starts": 2, "evaluations": 8, "positions": 16},
 }
 DEVIATIONS = {"misalignment_um": [0.0], "center_distance_change_percent": [0.0, 0.1]}
+NOTHING_STORED = SimpleNamespace(find=lambda *_: None)
 
 
 @pytest.fixture(autouse=True)
@@ -57,7 +59,7 @@ def done(
 ) -> Path:
     """Do the work of a process as its worker would; return the file it made."""
     given = process.inputs.model_validate_json(json.dumps(inputs))
-    prepared = process.prepare(given, None)  # type: ignore[arg-type]  # needs no store
+    prepared = process.prepare(given, NOTHING_STORED)  # type: ignore[arg-type]
     workspace = workspace or Path(mkdtemp(dir=data))
     order = WorkOrder(process.entry, prepared, "0" * 64, workspace, data, dask_scheduler=scheduler)
     module, _, name = process.entry.partition(":")
