@@ -1,0 +1,18 @@
+"""Rolling bearings by their internal geometry: balls in grooves, rollers in laminae."""
+
+import host.analysis  # noqa: F401 (says what to install)
+from dynamics.rolling_bearings.ball_bearing import BallBearing
+from dynamics.rolling_bearings.elliptic_contact import EllipticContact
+from dynamics.rolling_bearings.loaded_bearing import LoadedBearing, Reaction
+from dynamics.rolling_bearings.rating_life import RatingLife, rating_life
+from dynamics.rolling_bearings.roller_bearing import RollerBearing
+
+__all__ = [
+    "BallBearing",
+    "EllipticContact",
+    "LoadedBearing",
+    "RatingLife",
+    "Reaction",
+    "RollerBearing",
+    "rating_life",
+]

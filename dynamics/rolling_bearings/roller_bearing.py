@@ -1,0 +1,85 @@
+"""Cylindrical and tapered roller bearings by their internal geometry, in laminae."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from bounds import Choice, Declared, Kind, above, between, declared, described, integers, required
+from dynamics.forces.roller_elements import RollerElements
+from dynamics.rolling_bearings.roller_profile import (
+    CROWNED,
+    LOGARITHMIC,
+    PROFILES,
+    crowned_drop,
+    lamina_places,
+    lamina_stiffness,
+    logarithmic_drop,
+)
+from dynamics.rolling_bearings.row import ANGLE, CLEARANCE, COUNT, DIAMETER, PITCH, Row
+from dynamics.types import FloatArray
+
+LENGTH = Declared(Kind.LENGTH, "m", above(0.0, "m"), "Effective length of a roller", 0.0136)
+PROFILE = Declared(Kind.CHOICE, "", Choice(PROFILES), "Profile of a roller", LOGARITHMIC)
+CROWN = Declared(
+    Kind.AMOUNT,
+    "m",
+    between(0.0, 1e-3),
+    "Drop of a crowned profile at the ends of the roller, at each contact",
+    1e-5,
+)
+LAMINAE = Declared(Kind.COUNT, "", integers(1, 1000), "Laminae of a roller; ISO/TS 16281: at least 30", 30)
+
+
+@described
+@dataclass(frozen=True)
+class RollerBearing(Row):
+    """A single row of steel rollers, each cut into laminae.
+
+    A contact angle of 0 is a cylindrical roller bearing, which carries no axial force: state its ribs as a
+    spring curve in z. The rib of a tapered one carries what the raceways leave over and yields nothing.
+    Rollers have no mass, and lie halfway between raceways that tilt against each other. The bearing's center
+    is the plane of the rollers' middles.
+    """
+
+    count: int = required(COUNT)
+    diameter: float = required(DIAMETER)
+    length: float = required(LENGTH)
+    pitch_diameter: float = required(PITCH)
+    contact_angle: float = declared(0.0, ANGLE)
+    clearance: float = declared(0.0, CLEARANCE)
+    profile: str = declared(LOGARITHMIC, PROFILE)
+    crown: float = declared(0.0, CROWN)
+    laminae: int = declared(30, LAMINAE)
+
+    def __post_init__(self) -> None:
+        self.check_row()
+
+    @property
+    def play(self) -> float:
+        """Return the approach along the normal at which the middle of a roller just touches, m."""
+        tapered = self.contact_angle != 0.0
+        return self.clearance * (abs(math.sin(self.contact_angle)) if tapered else 0.5)
+
+    def drop(self, place: FloatArray) -> FloatArray:
+        """Return how far the profile lies below the middle at `place` along the roller, m; one contact."""
+        if self.profile == LOGARITHMIC:
+            return logarithmic_drop(place, self.diameter, self.length, self.contact_angle != 0.0)
+        return crowned_drop(place, self.crown if self.profile == CROWNED else 0.0, self.length)
+
+    def elements(self, copies: int = 1) -> RollerElements:
+        """Return the rollers for compiled functions; each as `copies` rollers that share its stiffness."""
+        place = lamina_places(self.length, self.laminae)
+        return RollerElements(
+            rollers=np.array([self.count * copies]),
+            stiffness=np.array([lamina_stiffness(self.length, self.laminae) / copies]),
+            cosine=np.array([math.cos(self.contact_angle)]),
+            sine=np.array([math.sin(self.contact_angle)]),
+            radius=np.array([self.pitch_diameter / 2.0]),
+            play=np.array([self.play]),
+            first=np.array([0, self.laminae]),
+            place=place,
+            drop=2.0 * self.drop(place),
+        )

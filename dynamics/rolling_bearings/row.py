@@ -1,0 +1,63 @@
+"""What rows of balls and of rollers have in common."""
+
+from __future__ import annotations
+
+import math
+
+from bounds import Declared, Kind, above, between, integers
+from dynamics.checks import declared_fields
+from dynamics.errors import InputError
+
+COUNT = Declared(Kind.COUNT, "", integers(3, 500), "Number of rolling elements", 8)
+DIAMETER = Declared(Kind.LENGTH, "m", above(0.0, "m"), "Diameter of a rolling element", 0.008)
+PITCH = Declared(Kind.LENGTH, "m", above(0.0, "m"), "Diameter of the circle of their centers", 0.039)
+ANGLE = Declared(
+    Kind.ANGLE,
+    "rad",
+    between(-1.5, 1.5),
+    "Free contact angle; positive: the bearing holds a shaft that is pushed along z, negative: against z",
+    0.7,
+)
+CLEARANCE = Declared(
+    Kind.LENGTH,
+    "m",
+    between(-0.01, 0.01),
+    "Play: across the axis between both extremes where the contact angle is 0, otherwise along the axis to "
+    "contact; negative: preload",
+    1e-5,
+)
+
+
+class Row:
+    """A row of equal elements, evenly spaced by a cage."""
+
+    count: int
+    diameter: float
+    pitch_diameter: float
+    contact_angle: float
+    clearance: float
+
+    @property
+    def slenderness(self) -> float:
+        """Return gamma: element diameter times the cosine of the contact angle, over the pitch diameter."""
+        return self.diameter * math.cos(self.contact_angle) / self.pitch_diameter
+
+    @property
+    def cage_ratio(self) -> float:
+        """Return the speed of the cage over that of the inner ring, the outer at rest and nothing slips."""
+        return (1.0 - self.slenderness) / 2.0
+
+    def check_row(self) -> None:
+        """Refuse what is no row.
+
+        Raises
+        ------
+        InputError
+            A field out of its bounds, or more elements than their circle holds.
+        """
+        declared_fields(self)
+        least = self.diameter / math.sin(math.pi / self.count)
+        if self.pitch_diameter <= least:
+            bound = above(least, "m", "where the elements touch each other")
+            suggestion = "Check number and diameter of the elements."
+            raise InputError("pitch_diameter", self.pitch_diameter, bound, suggestion)
