@@ -2,6 +2,7 @@
 
 import host.analysis  # noqa: F401 (says what to install)
 from dynamics.rolling_bearings.ball_bearing import BallBearing
+from dynamics.rolling_bearings.catalog import from_catalog
 from dynamics.rolling_bearings.elliptic_contact import EllipticContact
 from dynamics.rolling_bearings.loaded_bearing import LoadedBearing, Reaction
 from dynamics.rolling_bearings.rating_life import RatingLife, rating_life
@@ -14,5 +15,6 @@ __all__ = [
     "RatingLife",
     "Reaction",
     "RollerBearing",
+    "from_catalog",
     "rating_life",
 ]
