@@ -7,6 +7,7 @@ from dynamics.rolling_bearings.elliptic_contact import EllipticContact
 from dynamics.rolling_bearings.loaded_bearing import LoadedBearing, Reaction
 from dynamics.rolling_bearings.rating_life import RatingLife, rating_life
 from dynamics.rolling_bearings.roller_bearing import RollerBearing
+from dynamics.rolling_bearings.tangent_bushing import tangent_bushing
 
 __all__ = [
     "BallBearing",
@@ -17,4 +18,5 @@ __all__ = [
     "RollerBearing",
     "from_catalog",
     "rating_life",
+    "tangent_bushing",
 ]

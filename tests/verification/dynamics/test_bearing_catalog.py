@@ -41,6 +41,14 @@ def test_estimates_are_within_their_band(name, record_figure):
     assert worst < BAND["displacement"]
 
 
+@pytest.mark.parametrize(("name", "cage"), [("SKF 6205", 0.39828), ("SKF 6203", 0.3817)])
+def test_the_cage_turns_as_published(name, cage):
+    # Case Western Reserve University, Bearing Data Center: defect frequencies, cage train
+    count, diameter, pitch = PUBLISHED[name][1]
+    bearing = BallBearing(count, 1e-3 * diameter, 1e-3 * pitch)
+    assert bearing.cage_ratio == pytest.approx(cage, rel=2e-4)
+
+
 @pytest.mark.parametrize(
     ("field", "line"),
     [
