@@ -74,7 +74,7 @@ class BallBearing(Row):
     @cached_property
     def element_stiffness(self) -> float:
         """Return c of load = c approach^1.5 of a ball between both grooves, N/m^1.5."""
-        compliance = sum(contact.stiffness ** (-2.0 / 3.0) for contact in self.contacts())
+        compliance = sum(contact.spring_constant ** (-2.0 / 3.0) for contact in self.contacts())
         return float(compliance**-1.5)
 
     @property

@@ -62,7 +62,7 @@ class EllipticContact:
         return math.exp(float(brentq(missed, math.log(LEAST_RATIO), 1e-12, xtol=1e-15)))
 
     @property
-    def stiffness(self) -> float:
+    def spring_constant(self) -> float:
         """Return c of load = c approach^1.5, N/m^1.5."""
         return float((1.0 / self.approach(1.0)) ** 1.5)
 

@@ -36,7 +36,7 @@ class Reaction:
     slope : float
         Derivative of the energy in the angle of the cage, J/rad.
     load : (Z, L) array
-        Normal loads of the elements, N.
+        Normal loads of the elements, N; with copies (Z copies, L): that of a whole element in each place.
     """
 
     force: FloatArray
@@ -58,7 +58,7 @@ class LoadedBearing:
     """
 
     def __init__(self, bearing: BallBearing | RollerBearing, copies: int = 1) -> None:
-        self.bearing = bearing
+        self.bearing, self.copies = bearing, copies
         self._seat = make_seat(bearing.count * copies, bearing.laminae)
         self._at = by_address(self._seat)
         self._elements = by_address(bearing.elements(copies))
@@ -78,7 +78,7 @@ class LoadedBearing:
         seat = self._seat
         seat.displacement[:] = displacement
         energy, slope = self._law(self._elements, 0, angle, self._at)
-        return Reaction(seat.force.copy(), seat.tangent.copy(), energy, slope, seat.load.copy())
+        return Reaction(seat.force.copy(), seat.tangent.copy(), energy, slope, self.copies * seat.load)
 
     def displacement(
         self, load: ArrayLike, angle: float = 0.0, start: ArrayLike = (0.0, 0.0, 0.0, 0.0, 0.0)
