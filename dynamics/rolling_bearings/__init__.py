@@ -3,6 +3,7 @@
 import host.analysis  # noqa: F401 (says what to install)
 from dynamics.rolling_bearings.ball_bearing import BallBearing
 from dynamics.rolling_bearings.catalog import from_catalog
+from dynamics.rolling_bearings.element_passing import ElementPassing, element_passing
 from dynamics.rolling_bearings.elliptic_contact import EllipticContact
 from dynamics.rolling_bearings.loaded_bearing import LoadedBearing, Reaction
 from dynamics.rolling_bearings.rating_life import RatingLife, rating_life
@@ -11,11 +12,13 @@ from dynamics.rolling_bearings.tangent_bushing import tangent_bushing
 
 __all__ = [
     "BallBearing",
+    "ElementPassing",
     "EllipticContact",
     "LoadedBearing",
     "RatingLife",
     "Reaction",
     "RollerBearing",
+    "element_passing",
     "from_catalog",
     "rating_life",
     "tangent_bushing",
