@@ -1,0 +1,39 @@
+"""REXS, the exchange format of gear-unit tools: read, checked, upgraded, in SI, written."""
+
+from __future__ import annotations
+
+from service.rexs.external import external_file, external_files
+from service.rexs.files import parsed, read_rexs, serialized
+from service.rexs.model import (
+    Attribute,
+    Component,
+    Document,
+    LoadCase,
+    LoadSpectrum,
+    Model,
+    Reference,
+    Relation,
+)
+from service.rexs.units import si_value
+from service.rexs.upgrade import NEWEST, VERSIONS, Change, upgrade
+
+__all__ = [
+    "NEWEST",
+    "VERSIONS",
+    "Attribute",
+    "Change",
+    "Component",
+    "Document",
+    "LoadCase",
+    "LoadSpectrum",
+    "Model",
+    "Reference",
+    "Relation",
+    "external_file",
+    "external_files",
+    "parsed",
+    "read_rexs",
+    "serialized",
+    "si_value",
+    "upgrade",
+]

@@ -1,0 +1,149 @@
+"""A REXS model as its file says it: names, values, units and order of REXS (FVA, versions 1.0 to 2.0.0)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+Scalar = float | int | bool | str
+Array = tuple[Scalar, ...]
+Value = Scalar | Array | tuple[Array, ...] | None
+"""A scalar, an array, a matrix by rows (an array of arrays), or None where the file gives no value."""
+
+Extra = tuple[tuple[str, str], ...]
+"""Fields of an element that REXS does not define, in their order; they are kept."""
+
+
+@dataclass(frozen=True)
+class Attribute:
+    """A value of a component.
+
+    Attributes
+    ----------
+    id : str
+        Name in REXS, e.g. ``"normal_module"``; own ones begin with ``custom_``.
+    kind : str
+        Type of the value as the JSON form writes it: ``floating_point``, ``integer``, ``boolean``, ``enum``,
+        ``string``, ``reference_component``, ``file_reference``; with ``_array`` or ``_matrix``;
+        ``array_of_integer_arrays``.
+    value : Value
+        In `unit`; None where the file gives none, or a blank text.
+    unit : str or None
+        As written; None where the file says none.
+    code : str or None
+        ``float32``, ``float64`` or ``int32`` of an array that the file codes in base64.
+    origin : str or None
+        Where the value comes from (since 1.5), e.g. ``"calculated"``.
+    """
+
+    id: str
+    kind: str
+    value: Value
+    unit: str | None = None
+    code: str | None = None
+    origin: str | None = None
+    extra: Extra = ()
+
+
+@dataclass(frozen=True)
+class Component:
+    """A part of the gear unit, or what a load case sets of it."""
+
+    id: int
+    type: str
+    attributes: tuple[Attribute, ...] = ()
+    name: str | None = None
+    extra: Extra = ()
+
+    def attribute(self, name: str) -> Attribute | None:
+        """Return the first attribute of a name, None if there is none."""
+        return next((attribute for attribute in self.attributes if attribute.id == name), None)
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A component in a relation, by its role there."""
+
+    id: int
+    role: str
+    hint: str | None = None
+    extra: Extra = ()
+
+
+@dataclass(frozen=True)
+class Relation:
+    """How components belong together; `order` counts parts of an ordered assembly from 1."""
+
+    id: int
+    type: str
+    refs: tuple[Reference, ...]
+    order: int | None = None
+    extra: Extra = ()
+
+    def of_role(self, role: str) -> int | None:
+        """Return the id of the component in a role, None if no component has it."""
+        return next((ref.id for ref in self.refs if ref.role == role), None)
+
+
+@dataclass(frozen=True)
+class LoadCase:
+    """What the components are set to in a load case."""
+
+    id: int
+    components: tuple[Component, ...] = ()
+    extra: Extra = ()
+
+
+@dataclass(frozen=True)
+class LoadSpectrum:
+    """Load cases, and results over all of them (`accumulation`)."""
+
+    id: int
+    cases: tuple[LoadCase, ...]
+    accumulation: tuple[Component, ...] | None = None
+    extra: Extra = ()
+
+
+@dataclass(frozen=True)
+class Model:
+    """A gear unit.
+
+    Attributes
+    ----------
+    version : str
+        Of REXS, as written: ``"1.4"``, ``"2.0.0"``.
+    application, application_version, date : str
+        The writing program and the time of writing.
+    """
+
+    version: str
+    application: str
+    application_version: str
+    date: str
+    relations: tuple[Relation, ...] = ()
+    components: tuple[Component, ...] = ()
+    spectra: tuple[LoadSpectrum, ...] = ()
+    language: str | None = None
+    extra: Extra = ()
+
+    def component(self, number: int) -> Component | None:
+        """Return the component of an id, None if there is none."""
+        return next((component for component in self.components if component.id == number), None)
+
+    def all_components(self) -> Iterator[tuple[str, Component]]:
+        """Yield the components with their place in the file, those of load cases too."""
+        yield from ((f"component {component.id}", component) for component in self.components)
+        for spectrum in self.spectra:
+            for case in spectrum.cases:
+                place = f"load spectrum {spectrum.id}, load case {case.id}"
+                yield from ((f"{place}, component {part.id}", part) for part in case.components)
+            place = f"load spectrum {spectrum.id}, accumulation"
+            yield from ((f"{place}, component {part.id}", part) for part in spectrum.accumulation or ())
+
+
+@dataclass(frozen=True)
+class Document:
+    """A model and the files that lie beside it in its archive, by their names."""
+
+    model: Model
+    files: Mapping[str, bytes] = field(default_factory=dict)

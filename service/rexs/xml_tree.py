@@ -1,0 +1,85 @@
+"""The elements of an XML text; document types, entities and depth are refused while it is read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NoReturn
+from xml.parsers import expat
+
+from service.rexs.refusal import MOST_DEPTH, MOST_ENTRIES, refused
+
+
+@dataclass(slots=True)
+class Element:
+    """An element: its fields, its elements, and its text between them."""
+
+    name: str
+    line: int
+    fields: dict[str, str]
+    parts: list[Element] = field(default_factory=list)
+    words: list[str] = field(default_factory=list)
+
+    @property
+    def text(self) -> str:
+        """All text directly inside."""
+        return "".join(self.words)
+
+
+def element_of(data: bytes) -> Element:
+    """Return the root of an XML text in any encoding that expat knows.
+
+    Raises
+    ------
+    BadInput
+        It is not well-formed, declares a document type or an entity, or is too deep or too large.
+    """
+    builder = _Builder()
+    try:
+        builder.parser.Parse(data, True)
+    except expat.ExpatError as error:
+        words = expat.errors.messages.get(error.code, "unknown")
+        raise refused(f"line {error.lineno}", words, "well-formed XML") from None
+    except (LookupError, ValueError) as error:
+        raise refused("encoding", str(error), "one that XML readers know, as UTF-8") from None
+    return builder.root.parts[0]
+
+
+class _Builder:
+    """Builds the elements from expat's events."""
+
+    def __init__(self) -> None:
+        self.root = Element("", 0, {})
+        self.parser = expat.ParserCreate()
+        self.parser.buffer_text = True
+        self.parser.StartElementHandler = self._start
+        self.parser.EndElementHandler = self._end
+        self.parser.CharacterDataHandler = self._characters
+        self.parser.StartDoctypeDeclHandler = self._document_type
+        self._open = [self.root]
+        self._count = 0
+
+    def _start(self, name: str, fields: dict[str, str]) -> None:
+        line = self.parser.CurrentLineNumber
+        self._count += 1
+        if self._count > MOST_ENTRIES:
+            raise refused(
+                f"line {line}", f"more than {MOST_ENTRIES} elements", "smaller", "Code arrays in base64."
+            )
+        if len(self._open) > MOST_DEPTH:
+            raise refused(
+                f"line {line}", f"elements nested {len(self._open)} deep", f"at most {MOST_DEPTH} deep"
+            )
+        element = Element(name, line, fields)
+        self._open[-1].parts.append(element)
+        self._open.append(element)
+
+    def _end(self, name: str) -> None:
+        del name
+        self._open.pop()
+
+    def _characters(self, text: str) -> None:
+        self._open[-1].words.append(text)
+
+    def _document_type(self, name: str, *rest: object) -> NoReturn:
+        del rest
+        raise refused("document type", name, "left out: REXS has none, and entities are not read")

@@ -1,0 +1,89 @@
+"""REXS files: every form gives the model back, the same bytes at every time; files they name stay inside."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from small_rexs import small_document, small_model
+
+from service.problems import BadInput
+from service.rexs import Document, external_file, external_files, parsed, read_rexs, serialized
+
+FORMS = ("a.rexs", "a.rexsj", "a.rexsz", "a.rexs.zip")
+FORMS_IN_TURN = ("a.rexs", "a.rexsj", "a.rexsz", "a.rexs")
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_every_form_gives_the_model_back(name: str) -> None:
+    model = small_model()
+    assert parsed(serialized(Document(model), name)).model == model
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_the_same_model_is_the_same_bytes(name: str) -> None:
+    assert serialized(Document(small_model()), name) == serialized(Document(small_model()), name)
+
+
+def test_the_forms_in_turn_give_the_model_back() -> None:
+    document = Document(small_model())
+    for name in FORMS_IN_TURN:
+        document = parsed(serialized(document, name))
+    assert document == Document(small_model())
+
+
+def test_the_form_is_known_by_the_content_not_the_name(tmp_path: Path) -> None:
+    path = tmp_path / "model.txt"
+    for name in FORMS:
+        path.write_bytes(b"" if name.endswith(("z", "p")) else b"\xef\xbb\xbf")
+        with path.open("ab") as stream:
+            stream.write(serialized(Document(small_model()), name))
+        assert read_rexs(path).model == small_model()
+
+
+def test_an_archive_keeps_the_files_beside_the_model() -> None:
+    document = small_document()
+    assert parsed(serialized(document, "a.rexsz")) == document
+    with pytest.raises(BadInput, match="archive"):
+        serialized(document, "a.rexs")
+
+
+def test_json_holds_one_spectrum() -> None:
+    model = small_model()
+    two = replace(model, spectra=(*model.spectra, replace(model.spectra[0], id=2)))
+    assert parsed(serialized(Document(two), "a.rexs")).model == two
+    with pytest.raises(BadInput, match="2 spectra"):
+        serialized(Document(two), "a.rexsj")
+
+
+def test_a_load_case_of_json_has_the_types_of_the_components() -> None:
+    text = serialized(Document(small_model()), "a.rexsj").decode()
+    head, mark, cases = text.partition('"load_spectrum"')
+    shorter = head + mark + cases.replace('"type": "shaft",', "", 1)
+    assert shorter != text
+    assert parsed(shorter.encode()).model == small_model()
+
+
+def test_named_files_come_from_the_archive_or_the_folder(tmp_path: Path) -> None:
+    document = small_document()
+    [(place, name)] = external_files(document.model)
+    assert external_file(document, name, place) == b"1 2 3"
+    loose = Document(document.model)
+    (tmp_path / "inner" / "matrices").mkdir(parents=True)
+    (tmp_path / "inner" / "matrices" / "housing.txt").write_bytes(b"4")
+    assert external_file(loose, name, place, tmp_path / "inner") == b"4"
+    with pytest.raises(BadInput, match="in the archive or folder"):
+        external_file(loose, name, place)
+
+
+@pytest.mark.parametrize(
+    "name", ["../secret", "/etc/passwd", "C:\\secret", "a\\..\\..\\secret", "", "link", "nul\0"]
+)
+def test_a_named_file_outside_is_refused(name: str, tmp_path: Path) -> None:
+    (tmp_path / "secret").write_bytes(b"secret")
+    folder = tmp_path / "inner"
+    folder.mkdir()
+    (folder / "link").symlink_to(tmp_path / "secret")
+    with pytest.raises(BadInput, match="in the archive or folder"):
+        external_file(Document(small_model()), name, "component 1, data_source", folder)

@@ -1,0 +1,74 @@
+"""Damaged and hostile REXS files: one clear error in bounded time, nothing read outside the file."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import pytest
+from hostile_rexs import JSON, XML, ZIP, damaged_files, hostile_files
+
+from service.problems import BadInput
+from service.rexs import Document, parsed, serialized
+
+HOSTILE = {name: (data, words) for name, data, words in hostile_files()}
+MOST_SECONDS = 10.0  # the largest takes 2.5 s on a loaded machine
+
+_touched: list[str] = []
+_watching: list[bool] = []
+
+
+def _note(event: str, details: tuple[object, ...]) -> None:
+    """Note what is opened or connected to while a file is read."""
+    if _watching and (event == "open" or event.startswith(("socket.", "os.listdir", "subprocess."))):
+        _touched.append(f"{event} {details[:1]}")
+
+
+@pytest.fixture(scope="module")
+def watched() -> Callable[[], object]:
+    """Return a context in which nothing may be opened."""
+    for data in (XML, JSON, ZIP):
+        parsed(data)
+    sys.addaudithook(_note)
+
+    @contextmanager
+    def watch() -> Iterator[None]:
+        _touched.clear()
+        _watching.append(True)
+        try:
+            yield
+        finally:
+            _watching.clear()
+        assert not _touched
+
+    return watch
+
+
+def test_there_are_200_files() -> None:
+    assert len(HOSTILE) + len(list(damaged_files())) >= 200
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_a_hostile_file_is_refused_with_one_error(name: str, watched: Callable[[], Iterator[None]]) -> None:
+    data, words = HOSTILE[name]
+    start = time.process_time()
+    with watched(), pytest.raises(BadInput, match=words) as caught:  # type: ignore[attr-defined]
+        parsed(data)
+    assert time.process_time() - start < MOST_SECONDS
+    assert len(str(caught.value)) < 2_000 and "Traceback" not in str(caught.value)
+
+
+def test_a_damaged_file_is_a_model_or_one_error(watched: Callable[[], Iterator[None]]) -> None:
+    refusals = 0
+    for _, data in damaged_files():
+        with watched():  # type: ignore[attr-defined]
+            try:
+                document = parsed(data)
+            except BadInput:
+                refusals += 1
+            else:
+                again = parsed(serialized(Document(document.model, document.files), "a.rexsz"))
+                assert again.model == document.model
+    assert refusals > 105

@@ -1,0 +1,164 @@
+"""Tables, example files and written files against the schemas and changelogs that REXS publishes."""
+
+from __future__ import annotations
+
+import json
+import re
+import time
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+import jsonschema
+import pytest
+from lxml import etree
+from rexs_reference import (
+    SCHEMAS,
+    STEPS,
+    attributes_of,
+    entry_kind,
+    examples,
+    kinds_to_list,
+    names_at,
+    needs_reference,
+    other_changes,
+    parsed_schema,
+    reference,
+    step_of,
+)
+from small_rexs import small_document, small_model
+
+from service.rexs import Document, parsed, read_rexs, serialized, upgrade
+from service.rexs.kinds import KINDS, kind_of
+from service.rexs.units import UNITS
+
+pytestmark = needs_reference
+PACKAGE = Path(__file__).parents[3] / "service" / "rexs"
+COUNTS = {
+    "FVA-Industriegetriebe_2_stufig_1-6.rexs": 49,
+    "FVA-Industriegetriebe_2stufig_1-4.rexs": 49,
+    "FVA_Planetary_stage_-_Minus_gearing_1.1.rexs": 97,
+    "FVA_Planetary_stage_-_Minus_gearing_1.1.rexsj": 97,
+    "FVA_Planetary_stage_-_Minus_gearing_1.1.rexsz": 97,
+    "SEW_3-stage_cylindrical_gearbox_1.0.rexs": 86,
+}
+FORMS_IN_TURN = ("a.rexs", "a.rexsj", "a.rexsz", "a.rexs")
+
+
+@pytest.mark.parametrize(("old", "new"), STEPS)
+def test_a_step_says_what_the_changelog_says(old: str, new: str) -> None:
+    stored = tomllib.loads((PACKAGE / "steps" / f"{old}_to_{new}.toml").read_text("utf-8"))
+    assert stored == step_of(old, new)
+    assert not other_changes(old, new)
+
+
+@pytest.mark.parametrize("version", SCHEMAS)
+def test_the_changelogs_lead_from_the_first_schema_to_each(version: str) -> None:
+    listed = parsed_schema(version).iterfind("attributes/attribute")
+    assert names_at(version) == {entry.get("numericId"): entry.get("attributeId") for entry in listed}
+
+
+@pytest.mark.parametrize("version", SCHEMAS)
+def test_the_kind_of_every_attribute_follows_from_its_text(version: str) -> None:
+    examples_of = {
+        "floating_point": ["1.5"],
+        "boolean": ["true"],
+        "string": ["word"],
+        "date_time": ["2024-01-01"],
+    }
+    wrong = []
+    for name, (kind, _, values) in attributes_of(version).items():
+        entry = entry_kind(kind)
+        texts = values or examples_of.get(
+            entry, ["7"] if entry in ("integer", "reference_component") else ["word"]
+        )
+        wrong += [(name, kind, text) for text in texts if kind_of(name, [text]) != entry]
+    known = {
+        ("bevel_cone_orientation", "integer"),
+        ("cyclic_overloading_type_fkm_2012", "integer"),
+    }  # an enum since
+    assert {(name, kind) for name, kind, _ in wrong} <= known
+
+
+def test_the_kinds_are_those_of_the_schemas() -> None:
+    stored = tomllib.loads((PACKAGE / "kinds.toml").read_text("utf-8"))
+    assert {kind: set(names) for kind, names in stored.items()} == kinds_to_list()
+    assert set(stored) <= set(KINDS)
+
+
+def test_the_units_are_those_of_the_schemas() -> None:
+    named = {
+        unit.get("name") for version in SCHEMAS for unit in parsed_schema(version).iterfind("units/unit")
+    }
+    assert set(UNITS) - {""} == named
+
+
+def test_every_example_is_tried() -> None:
+    assert [path.name for path in examples()] == sorted(COUNTS)
+
+
+@pytest.mark.parametrize("path", examples(), ids=lambda path: path.name)
+def test_an_example_is_read_whole_within_a_second(path: Path) -> None:
+    start = time.process_time()
+    document = read_rexs(path)
+    upgraded, _ = upgrade(document.model)
+    assert time.process_time() - start < 1.0
+    assert len(document.model.components) == len(upgraded.components) == COUNTS[path.name]
+    assert sum(len(part.attributes) for _, part in document.model.all_components()) == _attributes_in(path)
+
+
+@pytest.mark.parametrize("path", examples(), ids=lambda path: path.name)
+def test_an_example_goes_through_all_forms(path: Path) -> None:
+    original = document = read_rexs(path)
+    for name in FORMS_IN_TURN:
+        document = parsed(serialized(document, name))
+        assert document == original
+
+
+@pytest.mark.parametrize("path", examples(), ids=lambda path: path.name)
+def test_an_upgraded_example_has_names_of_the_newest_version(path: Path) -> None:
+    read = read_rexs(path).model
+    model, changes = upgrade(read)
+    newest, own = set(names_at("2.0.0").values()), set(names_at(read.version).values())
+    kept = {(change.place, change.item) for change in changes if change.kept}
+    gone = {place for place, item in kept for part in model.components if item == part.type}
+    left = {
+        (place, attribute.id)
+        for place, part in model.all_components()
+        for attribute in part.attributes
+        if attribute.id in own - newest and place not in gone
+    }
+    assert left <= kept
+
+
+@pytest.mark.parametrize("path", examples(), ids=lambda path: path.name)
+def test_what_is_written_of_an_example_is_valid(path: Path) -> None:
+    document = read_rexs(path)
+    _validate(document)
+    _validate(Document(upgrade(document.model)[0]))
+
+
+def test_what_is_written_of_every_form_is_valid() -> None:
+    _validate(Document(small_model()))
+    assert small_document().files
+
+
+def _validate(document: Document) -> None:
+    """Validate both forms against the published schemas, as they are but for the three numbers of 2.0.0."""
+    schema = etree.XMLSchema(etree.parse(reference("schema/rexs-file.xsd")))
+    schema.assertValid(etree.fromstring(serialized(document, "a.rexs")))
+    two_numbers = re.sub(r"^2\.0\.0$", "2.0", document.model.version)
+    text = serialized(Document(replace(document.model, version=two_numbers)), "a.rexsj")
+    rules = json.loads(reference("schema/rexs-file.json").read_text("utf-8"))
+    jsonschema.Draft7Validator(rules).validate(json.loads(text))
+
+
+def _attributes_in(path: Path) -> int:
+    """Return how many attributes a file has, counted without reading it as a model."""
+    if path.suffix == ".rexsj":
+        return sum(
+            len(part["attributes"]) for part in json.loads(path.read_text("utf-8"))["model"]["components"]
+        )
+    if path.suffix == ".rexsz":
+        path = path.with_suffix(".rexs")
+    return path.read_bytes().count(b"<attribute ")
