@@ -14,6 +14,7 @@ from service.rexs.model import (
     Reference,
     Relation,
 )
+from service.rexs.quantities import quantities, quantity
 from service.rexs.units import si_value
 from service.rexs.upgrade import NEWEST, VERSIONS, Change, upgrade
 
@@ -32,6 +33,8 @@ __all__ = [
     "external_file",
     "external_files",
     "parsed",
+    "quantities",
+    "quantity",
     "read_rexs",
     "serialized",
     "si_value",

@@ -93,6 +93,14 @@ def test_the_units_are_those_of_the_schemas() -> None:
     assert set(UNITS) - {""} == named
 
 
+def test_the_quantities_are_those_of_the_newest_schema() -> None:
+    known = attributes_of("2.0.0")
+    table = tomllib.loads((PACKAGE / "quantities.toml").read_text("utf-8"))
+    for unit, names in table.items():
+        assert {known[name][1] for name in names} == {unit}
+        assert all(entry_kind(known[name][0]) == "floating_point" for name in names)
+
+
 def test_every_example_is_tried() -> None:
     assert [path.name for path in examples()] == sorted(COUNTS)
 

@@ -1,0 +1,61 @@
+"""Values of REXS components in SI: mixed units read the same, doubt is refused by component and attribute."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from service.problems import BadInput
+from service.rexs import Attribute, Component, quantities, quantity
+from service.rexs.model import Value
+
+
+def gear(name: str, value: Value, unit: str | None, *others: Attribute) -> Component:
+    return Component(4, "cylindrical_gear", (Attribute(name, "floating_point", value, unit), *others))
+
+
+@pytest.mark.parametrize(("value", "unit"), [(20.0, "mm"), (20_000.0, "mum"), (20, "mm")])
+def test_units_of_a_length_may_be_mixed(value: float, unit: str) -> None:
+    assert quantity(gear("face_width", value, unit), "face_width", "component 4") == pytest.approx(
+        0.02, rel=1e-15
+    )
+
+
+def test_both_spellings_of_a_degree_are_one() -> None:
+    name = "helix_angle_reference_diameter"
+    values = [quantity(gear(name, -21.0, unit), name, "component 4") for unit in ("°", "deg")]
+    assert values == [math.radians(-21.0)] * 2
+
+
+def test_what_the_file_does_not_give_is_none() -> None:
+    assert quantity(gear("face_width", None, "mm"), "face_width", "component 4") is None
+    assert quantity(gear("face_width", 1.0, "mm"), "tip_diameter", "component 4") is None
+    assert quantities(gear("face_width", 1.0, "mm"), "support_vector", "component 4") is None
+
+
+def test_an_array_is_in_si() -> None:
+    part = gear("support_vector", (1.0, 0.0, -2.0), "mm")
+    assert quantities(part, "support_vector", "component 4") == (1e-3, 0.0, -2e-3)
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "words"),
+    [(20.0, "N", "unit"), (20.0, None, "unit"), ("wide", "mm", "a number"), (True, "mm", "a number")],
+)
+def test_doubt_is_refused_by_name(value: Value, unit: str | None, words: str) -> None:
+    with pytest.raises(BadInput, match=f"component 4, face_width.*{words}"):
+        quantity(gear("face_width", value, unit), "face_width", "component 4")
+
+
+def test_a_value_given_twice_is_refused() -> None:
+    part = gear("face_width", 20.0, "mm", Attribute("face_width", "floating_point", 21.0, "mm"))
+    with pytest.raises(BadInput, match="given once"):
+        quantity(part, "face_width", "component 4")
+
+
+def test_an_array_is_no_number_and_a_number_no_array() -> None:
+    with pytest.raises(BadInput, match="a number"):
+        quantity(gear("face_width", (1.0,), "mm"), "face_width", "component 4")
+    with pytest.raises(BadInput, match="an array"):
+        quantities(gear("support_vector", 1.0, "mm"), "support_vector", "component 4")
