@@ -19,8 +19,8 @@ _ROOT = str(Path(__file__).resolve().parents[2])
 
 
 def child_environment() -> dict[str, str]:
-    """Environment of the child: one thread, and the code we run ourselves, installed or not."""
-    path = os.pathsep.join(part for part in (_ROOT, os.environ.get("PYTHONPATH", "")) if part)
+    """Environment of the child: one thread, and the modules found where we find them, installed or not."""
+    path = os.pathsep.join(part for part in (os.environ.get("PYTHONPATH", ""), _ROOT) if part)
     return {**os.environ, **_ONE_THREAD, "PYTHONPATH": path}
 
 

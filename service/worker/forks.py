@@ -98,6 +98,7 @@ class _Server:
                     pass_fds=(theirs.fileno(),),
                     start_new_session=True,
                     env=child_environment(),
+                    cwd=log.parent,  # where no other program's modules are found first
                 )
             except OSError:
                 self._channel.close()

@@ -27,13 +27,13 @@ from service.schemas.answer_examples import HASH
 from service.schemas.request_examples import BODIES, INPUTS, QUERY
 from service.settings import Settings
 
+QUERIES, RENAMED = "/v1/databases/{key}/query", "/v1/jobs/{job_id}"
 LIVE = {"/v1/plans": {}, "/v1/databases/{key}/ste": {"torque_n_m": [0.5], "pinion": {"tip_relief_um": 3.0}}}
 TARGETS: dict[str, Any] = {
     f"/v1/processes/{name}/execution": {"inputs": given} for name, given in INPUTS.items()
 }
 TARGETS |= {path: body for path, body in BODIES.items() if path not in LIVE}
 LIVE_TARGETS = {path: BODIES[path] | changed for path, changed in LIVE.items()}
-QUERIES = "/v1/databases/{key}/query"
 ODD: tuple[Any, ...] = (
     *(None, True, False, 0, 1, -1, 2, 3, 1e-300, 1e308, -1e308, 2**53, 10**30, -0.0, 0.1, 1e6),
     *(float("nan"), float("inf"), "", "on", "auto", "\x00", "\ud800", "x" * 300, "../../etc/passwd"),
@@ -160,8 +160,11 @@ def statuses_of(count: int, target: Target, targets: dict[str, Any]) -> Counter[
     for number in range(count):
         path, body = chance.choice([*targets.items(), (QUERIES, QUERY)])
         content, kind = encoded(chance, path, body)
-        answer = target.http.post(
-            path.replace("{key}", target.key), content=content, headers={"Content-Type": kind}
+        answer = target.http.request(
+            "PATCH" if path == RENAMED else "POST",
+            path.replace("{key}", target.key),
+            content=content,
+            headers={"Content-Type": kind},
         )
         statuses[answer.status_code] += 1
         told = f"body {number} to {path}: {content!r} -> {answer.text[:500]}"

@@ -12,6 +12,7 @@ from fastapi.testclient import TestClient
 from service_fakes import REGISTRY
 
 from service.app import create_app
+from service.schemas.request_examples import BODIES
 from service.settings import Settings
 
 _directory = tempfile.TemporaryDirectory(prefix="loa-problems-")
@@ -85,15 +86,16 @@ def test_a_wrong_body_is_a_problem_that_is_documented(client: TestClient, path: 
 @pytest.mark.parametrize("path", [path for _, path in ROUTES if "{" in path])
 def test_what_does_not_exist_is_a_problem(client: TestClient, path: str) -> None:
     for method in [method for method, known in ROUTES if known == path and method != "POST"]:
-        is_problem(client.request(method, named(path)), 404)
+        body = {"json": BODIES[path]} if method == "PATCH" else {}
+        is_problem(client.request(method, named(path), **body), 404)
         odd = named(path, dict.fromkeys(NAMES, "%00%2e%2e%ff"))
-        is_problem(client.request(method, odd), 404, 422)
+        is_problem(client.request(method, odd, **body), 404, 422)
 
 
 @pytest.mark.parametrize("path", sorted({path for _, path in ROUTES}))
 def test_a_method_that_is_none_is_a_problem_and_says_which_are(client: TestClient, path: str) -> None:
     known = {method for method, other in ROUTES if other == path}
-    answer = client.request("PATCH", named(path))
+    answer = client.request("PUT", named(path))
     is_problem(answer, 405)
     assert known <= {method.strip() for method in answer.headers["allow"].split(",")}
 

@@ -11,6 +11,7 @@ from service.app import create_app
 from service.settings import Settings
 
 OPEN = {
+    "FaultBody.value": "what the caller wrote",
     "Parameter.value[]": "the standard lets a parameter be anything",
     "ValueDescription.schema": "a JSON Schema",
     "ReportPlot.data[]": "a trace of plotly.js",

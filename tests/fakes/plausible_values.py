@@ -82,7 +82,7 @@ class Fields:
         """Return values like an example; lists of numbers are scaled, so that they stay in order."""
         schema = self.resolved(schema)
         if isinstance(example, dict):
-            fields, others = schema.get("properties", {}), schema.get("additionalProperties", {})
+            fields, others = schema.get("properties", {}), _schema_of_others(schema)
             return st.fixed_dictionaries(
                 {name: self.near(value, fields.get(name, others)) for name, value in example.items()}
             )
@@ -93,11 +93,8 @@ class Fields:
             return st.tuples(*(self.near(value, items) for value in example)).map(list)
         if _is_number(schema):
             return _FACTORS.map(lambda factor: _within(factor * example, schema))
-        return (
-            st.just(example)
-            if schema.get("type") == "string" and "enum" not in schema
-            else self.anywhere(schema)
-        )
+        as_it_is = "type" not in schema or (schema["type"] == "string" and "enum" not in schema)
+        return st.just(example) if as_it_is else self.anywhere(schema)
 
     def anywhere(self, schema: Json) -> st.SearchStrategy[Any]:
         """Return all values that the bounds allow; texts and tables have few."""
@@ -114,6 +111,12 @@ class Fields:
             least = schema.get("minItems", 0)
             return st.lists(self.value(schema["items"]), min_size=least, max_size=least + 1)
         return st.booleans() if schema.get("type") == "boolean" else st.just(schema.get("default", "name"))
+
+
+def _schema_of_others(schema: Json) -> Json:
+    """Return the schema of the fields that an object does not name; empty: it allows anything."""
+    others = schema.get("additionalProperties", {})
+    return others if isinstance(others, dict) else {}
 
 
 _FACTORS = st.sampled_from([1.0]) | st.floats(0.5, 2.0)

@@ -55,7 +55,7 @@ def _as_a_user(
 
 def test_the_scripts_of_the_page_run_one_after_the_other(capsys: pytest.CaptureFixture[str]) -> None:
     scripts = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
-    assert len(scripts) == 14  # the first one, and the recipes
+    assert len(scripts) == 15  # the first one, and the recipes
     names: dict[str, Any] = {}
     printed = []
     for script in scripts:

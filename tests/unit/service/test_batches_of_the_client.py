@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
+from awaited import outcome
 from served_app import served
 from service_fakes import REGISTRY
 
@@ -54,7 +54,7 @@ def test_both_clients_get_the_jobs_of_a_batch_in_order(address: str, tmp_path: P
             texts = [(await job.file()).read_text() for job in ends[:2]]
             return texts, [job.state.status for job in ends], batch.state.children
 
-    assert blocking() == asyncio.run(awaited()) == (["b", "a"], ["successful", "successful", "failed"], 3)
+    assert blocking() == outcome(awaited()) == (["b", "a"], ["successful", "successful", "failed"], 3)
 
 
 def test_the_results_of_a_batch_are_a_list(address: str, tmp_path: Path) -> None:

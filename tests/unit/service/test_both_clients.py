@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import inspect
 import json
 import time
@@ -14,6 +13,7 @@ from typing import Any
 
 import httpx2
 import pytest
+from awaited import outcome
 from stored_jobs import StoredJobs, state
 
 from service.client import (
@@ -101,7 +101,7 @@ def test_both_answer_alike(tmp_path: Path) -> None:
             file = await job.file()
             return [file.read_text(), job.state.status, await job.wait(), await client.status(job.id)]
 
-    assert blocking() == asyncio.run(awaited())
+    assert blocking() == outcome(awaited())
 
 
 @pytest.mark.parametrize("concurrency", [1, 3, 8])
@@ -124,7 +124,7 @@ def test_a_map_keeps_the_order_and_the_bound(tmp_path: Path, concurrency: int) -
     one, other = StoredJobs(), StoredJobs()
     expected = [f"analyze-{number}" for number in teeth]
     assert blocking(one) == expected
-    assert asyncio.run(awaited(other)) == expected
+    assert outcome(awaited(other)) == expected
     assert (one.most_running, other.most_running) == (concurrency, concurrency)
 
 

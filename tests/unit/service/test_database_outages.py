@@ -20,7 +20,7 @@ from sqlalchemy import Connection, event, false
 from service.app import create_app
 from service.problems import BadInput, DatabaseUnavailable
 from service.queue.caller import ANYBODY
-from service.queue.delivery import AS_IT_IS
+from service.queue.terms import USUAL
 from service.settings import Settings, load_settings
 from service.store import open_database
 from service.store.database import database_engine
@@ -71,7 +71,7 @@ def test_an_answer_to_a_commit_that_is_lost_enters_no_job_twice(machine: Bench) 
     """The transaction was committed; the connection broke before the answer came: the step runs again."""
     submit = machine.submissions._submit.__wrapped__  # type: ignore[attr-defined]
     identifier = "7a8a9f0e-26f4-4f55-9e0b-3a3e3a3f3a3f"
-    arguments = (identifier, "fake", "ab" * 32, {"wish": {}}, False, false(), ANYBODY, AS_IT_IS)
+    arguments = (identifier, "fake", "ab" * 32, {"wish": {}}, False, false(), ANYBODY, USUAL)
     for _ in range(2):
         submit(machine.submissions, *arguments)
     assert len(machine.submissions.page(10)) == 1

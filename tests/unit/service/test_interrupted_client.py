@@ -16,6 +16,7 @@ from typing import Any
 
 import httpx2
 import pytest
+from awaited import outcome
 from stored_jobs import StoredJobs, state
 
 from service.client import AsyncLineOfActionClient, LineOfActionClient
@@ -158,7 +159,7 @@ def test_an_awaited_loop_left_early_dismisses_what_is_under_way(tmp_path: Path) 
                     break
             assert network.dismissed == network.running == UNDER_WAY
 
-    asyncio.run(left())
+    outcome(left())
 
 
 def noted(error: BaseException) -> set[str]:
@@ -211,7 +212,7 @@ def test_what_is_cancelled_says_which_jobs_continue(tmp_path: Path) -> None:
                 errors.append(caught.value)
             return errors[0], errors[1]
 
-    of_map, of_wait = asyncio.run(cancelled())
+    of_map, of_wait = outcome(cancelled())
     assert noted(of_map) == UNDER_WAY and noted(of_wait) == {"analyze-99"} and not network.dismissed
 
 

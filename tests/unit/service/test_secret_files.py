@@ -13,6 +13,7 @@ from service.settings import Settings, load_settings
 
 SECRETS = [name for name, field in Settings.model_fields.items() if is_secret(field)]
 URL = "postgresql://loa:geheim@database/loa"
+_VALID = {"database_url": "sqlite:////srv/loa.sqlite3", "webhook_secret": "whsec_" + 32 * "A"}
 
 
 @pytest.fixture
@@ -26,9 +27,9 @@ def file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.mark.parametrize("name", SECRETS)
 def test_every_secret_may_be_in_a_file(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "secret").write_text("sqlite:////srv/loa.sqlite3\n", encoding="utf-8")
+    (tmp_path / "secret").write_text(_VALID[name] + "\n", encoding="utf-8")
     monkeypatch.setenv(f"LOA_{name.upper()}_FILE", str(tmp_path / "secret"))
-    assert getattr(load_settings(), name).get_secret_value() == "sqlite:////srv/loa.sqlite3"
+    assert getattr(load_settings(), name).get_secret_value() == _VALID[name]
 
 
 def test_the_database_is_among_the_secrets() -> None:
