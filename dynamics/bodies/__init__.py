@@ -2,6 +2,7 @@
 
 from dynamics.bodies.angle_law import AngleLaw
 from dynamics.bodies.beam_families import Disc, PointOfApplication
+from dynamics.bodies.beam_section import BeamSection
 from dynamics.bodies.craig_bampton import ReducedBody, craig_bampton
 from dynamics.bodies.elastic_shaft import ElasticShaft, elastic_shaft
 from dynamics.bodies.gear_body import GearBody
@@ -9,7 +10,7 @@ from dynamics.bodies.inertia import Inertia, hollow_cylinder
 from dynamics.bodies.shaft import Shaft
 from dynamics.bodies.speed_curve import SpeedCurve
 from dynamics.bodies.time_law import TimeLaw
-from dynamics.bodies.timoshenko_beam import BeamSection, TimoshenkoBeam, timoshenko_beam
+from dynamics.bodies.timoshenko_beam import TimoshenkoBeam, timoshenko_beam
 
 __all__ = [
     "AngleLaw",

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.bodies.beam_section import BeamSection
 from dynamics.bodies.elastic_modes import free_frequencies, worst_error
 from dynamics.bodies.inertia import Inertia
-from dynamics.bodies.timoshenko_beam import PER_NODE, BeamSection, TimoshenkoBeam, timoshenko_beam
+from dynamics.bodies.timoshenko_beam import PER_NODE, TimoshenkoBeam, timoshenko_beam
 from dynamics.types import FloatArray, IntArray
 
 MESH_ERROR = 1e-3

@@ -9,8 +9,9 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from dynamics.bodies.beam_families import Disc, Family, PointOfApplication, families, fine_beam
+from dynamics.bodies.beam_section import BeamSection
 from dynamics.bodies.elastic_modes import ElasticModes, elastic_modes
-from dynamics.bodies.timoshenko_beam import PER_NODE, BeamSection
+from dynamics.bodies.timoshenko_beam import PER_NODE
 from dynamics.types import BoolArray, FloatArray
 
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from itertools import accumulate
 
 from bounds import Declared, Kind, Quantity, Text, between, declared, described, required, up_to
-from dynamics.bodies.inertia import Inertia, hollow_cylinder
+from dynamics.bodies.beam_section import BeamSection
+from dynamics.bodies.inertia import Inertia
 from dynamics.bodies.shaft_position import SAME_POSITION
-from dynamics.bodies.timoshenko_beam import BeamSection
 from dynamics.checks import declared_fields, finite
 from dynamics.errors import InputError
 
@@ -61,12 +61,10 @@ class Shaft:
             raise InputError("inertia", self.inertia.mass, "left out where sections are given")
 
     @property
-    def cylinders(self) -> tuple[tuple[Inertia, float], ...]:
+    def bodies(self) -> tuple[tuple[Inertia, float], ...]:
         """Parts of the bare shaft: inertia about its own center, and its position from the left end, m."""
         if not self.sections:
             return ((self.inertia, self.length / 2.0),)
         ends = [0.0, *accumulate(section.length for section in self.sections)]
-        return tuple(
-            (hollow_cylinder(s.outer_diameter, s.length, s.bore_diameter, s.density), start + s.length / 2.0)
-            for s, start in zip(self.sections, ends, strict=False)
-        )
+        parts = (section.body for section in self.sections)
+        return tuple((inertia, start + z) for (inertia, z), start in zip(parts, ends, strict=False))

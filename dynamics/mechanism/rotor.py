@@ -118,7 +118,7 @@ class Rotor:
 def build_rotor(scene: Scene, shaft: Shaft) -> Rotor:
     """Gather what belongs to `shaft`."""
     gears = [gear for gear in scene.gears if gear.shaft == shaft.name]
-    parts = [*shaft.cylinders, *((gear.inertia, gear.position) for gear in gears)]
+    parts = [*shaft.bodies, *((gear.inertia, gear.position) for gear in gears)]
     mass = sum(part.mass for part, _ in parts)
     along = sum(part.mass * center for part, center in parts) / mass if mass > 0.0 else shaft.length / 2.0
     transverse = sum(part.transverse + part.mass * (center - along) ** 2 for part, center in parts)

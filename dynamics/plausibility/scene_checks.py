@@ -116,7 +116,7 @@ def _bodies(mechanism: Mechanism) -> Iterator[Finding]:
 def _shaft(path: str, shaft: Shaft) -> Iterator[Finding]:
     """Check a shaft's shape, material and inertia."""
     if shaft.sections:
-        widest = max(section.outer_diameter for section in shaft.sections)
+        widest = max(max(section.outer_diameters) for section in shaft.sections)
         reason = f"{shaft.length / widest:.3g} diameters long"
         yield from assessed(
             "shaft_slenderness", f"{path}.length", shaft.length, "m", scale=widest, reason=reason

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from bounds import Declared
+from dynamics.bodies.beam_section import BeamSection
 from dynamics.bodies.gear_body import GearBody
 from dynamics.bodies.inertia import Inertia
 from dynamics.bodies.shaft import Shaft as TurningShaft
-from dynamics.bodies.timoshenko_beam import BeamSection
 from dynamics.joints.bushing import Bushing
 from dynamics.joints.coupling import Coupling
 from dynamics.joints.free_rotation import FreeRotation

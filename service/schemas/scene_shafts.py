@@ -6,8 +6,8 @@ from typing import Annotated, Self
 
 from pydantic import ConfigDict, Field, Strict, model_validator
 
+from dynamics.bodies.beam_section import BeamSection
 from dynamics.bodies.shaft import Shaft
-from dynamics.bodies.timoshenko_beam import BeamSection
 from service.schemas.declared import declared_in, with_fields
 from service.schemas.model import BoundaryModel, refuse
 from service.schemas.rules import exactly_one_of, stated
@@ -19,7 +19,7 @@ LENGTHS_AGREE = 1e-6  # relative
 
 @with_fields(declared_in(BeamSection))
 class SectionInput(BoundaryModel):
-    """A cylindrical piece of a shaft."""
+    """A cylindrical or conical piece of a shaft."""
 
     length_mm: float
 

@@ -55,6 +55,14 @@ def test_sections_are_in_si_and_torques_act_at_their_places() -> None:
     assert fast.shafts[0].sections[1].youngs_modulus == pytest.approx(110e9)
 
 
+def test_a_section_may_be_a_cone() -> None:
+    ends = {"end_outer_diameter_mm": 40.0, "end_bore_diameter_mm": 8.0}
+    found = scene(lambda t: t["shafts"][0]["sections"][0].update(ends)).shafts[0]
+    assert found.sections[0].outer_diameters == pytest.approx((0.032, 0.04))
+    assert found.sections[0].bore_diameters == pytest.approx((0.0, 0.008))
+    assert found.sections[1].outer_diameters == pytest.approx((0.045, 0.045))
+
+
 def test_a_diameter_is_one_section_of_steel() -> None:
     paper = scene(lambda t: t.pop("effects"), PAPER)
     (section,) = paper.shafts[0].sections
@@ -93,6 +101,10 @@ def test_a_table_that_has_the_bending_of_its_shafts_leaves_them_rigid() -> None:
         (
             lambda t: t["shafts"][0]["sections"][0].update(bore_diameter_mm=32.0),
             "shafts[0].sections[0].bore_diameter_mm",
+        ),
+        (
+            lambda t: t["shafts"][0]["sections"][0].update(end_bore_diameter_mm=33.0),
+            "shafts[0].sections[0].end_bore_diameter_mm",
         ),
         (lambda t: t["shafts"][0].update(damping_ratio=-1.0), "shafts[0].damping_ratio"),
     ],
