@@ -3,6 +3,7 @@
 KINDS = (
     "shafts",
     "gears",
+    "discs",
     "bushings",
     "planet_bearings",
     "couplings",
@@ -15,5 +16,14 @@ KINDS = (
 )
 """Kinds whose parts have a name."""
 
-ON_A_SHAFT = ("gears", "bushings", "planet_bearings", "drives", "free_rotations", "loads", "speed_torques")
+ON_A_SHAFT = (
+    "gears",
+    "discs",
+    "bushings",
+    "planet_bearings",
+    "drives",
+    "free_rotations",
+    "loads",
+    "speed_torques",
+)
 """Kinds whose parts name the shaft that they are on."""

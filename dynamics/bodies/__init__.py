@@ -4,6 +4,7 @@ from dynamics.bodies.angle_law import AngleLaw
 from dynamics.bodies.beam_families import Disc, PointOfApplication
 from dynamics.bodies.beam_section import BeamSection
 from dynamics.bodies.craig_bampton import ReducedBody, craig_bampton
+from dynamics.bodies.disc_body import DiscBody
 from dynamics.bodies.elastic_shaft import ElasticShaft, elastic_shaft
 from dynamics.bodies.gear_body import GearBody
 from dynamics.bodies.inertia import Inertia, hollow_cylinder
@@ -16,6 +17,7 @@ __all__ = [
     "AngleLaw",
     "BeamSection",
     "Disc",
+    "DiscBody",
     "ElasticShaft",
     "GearBody",
     "Inertia",

@@ -21,7 +21,7 @@ from dynamics.types import FloatArray
 
 PLANAR = ("x", "y", "rotation")
 REBUILT = (
-    *("shafts", "gears", "meshes", "drives", "bushings", "loads"),
+    *("shafts", "gears", "discs", "meshes", "drives", "bushings", "loads"),
     *("duration", "effects", "outputs", "integration", "on_violation"),
 )
 SOLVERS = ("GeneralizedAlpha", "TrapezoidalIndex2", "RK44", "DOPRI5")

@@ -8,7 +8,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TypeVar
 
-from dynamics.bodies import GearBody, Shaft
+from dynamics.bodies import DiscBody, GearBody, Shaft
 from dynamics.checks import integer, one_of
 from dynamics.errors import InputError
 from dynamics.forces import GearMesh, RollingContact, SpringCurve
@@ -20,7 +20,7 @@ from dynamics.scene.scene import Scene
 TOOTH_FIT = 1e-6  # of a tooth: how well a planet's angle must let its teeth fit all central gears
 
 Turn = Fraction | float
-Part = TypeVar("Part", GearBody, PlanetBearing)
+Part = TypeVar("Part", GearBody, DiscBody, PlanetBearing)
 BearingLaw = TypeVar("BearingLaw", RollingContact, SpringCurve)
 
 
@@ -39,7 +39,7 @@ def with_planets(
         With one planet.
     shaft : str
         Its shaft; it stays where it is. The others are called ``"<name> 2"``, ``"<name> 3"`` and so on, and
-        likewise their gears, bearings with their laws, and meshes.
+        likewise their gears, discs, bearings with their laws, and meshes.
     number : int
         Number of planets in all.
     angles : sequence of floats, optional
@@ -68,6 +68,7 @@ def with_planets(
         scene,
         shafts=(*scene.shafts, *(_turned(planet, carrier.origin, turns[i], i) for i in range(1, number))),
         gears=_with_copies(scene.gears, shaft, number),
+        discs=_with_copies(scene.discs, shaft, number),
         planet_bearings=_on_pins(_with_copies(scene.planet_bearings, shaft, number), shaft, pin_errors),
         meshes=(*scene.meshes, *_mesh_copies(scene, shaft, number, offsets)),
         rolling_contacts=_on_copies(scene.rolling_contacts, copied),

@@ -41,9 +41,7 @@ def elastic_of(mechanism: Mechanism, index: int) -> ElasticShaft:
     scene, rotor = mechanism.scene, mechanism.rotors[index]
     shaft = rotor.shaft
     drive = next((d for d in scene.drives if d.shaft == shaft.name and d.rigid), None)
-    discs = tuple(
-        Disc(rotor.on_shaft(gear.position), gear.inertia) for gear in scene.gears if gear.shaft == shaft.name
-    )
+    discs = tuple(Disc(rotor.on_shaft(body.position), body.inertia) for body in scene.mounted(shaft.name))
     return elastic_shaft(
         shaft.sections,
         discs,
@@ -116,7 +114,7 @@ def _positions(scene: Scene, rotor: Rotor) -> list[tuple[str, float]]:
     """Names and positions of what must lie on the shaft; torsional couplings act at its nearer end."""
     name = rotor.shaft.name
     torques: list[OnShaft] = [*scene.drives, *scene.loads, *scene.speed_torques]
-    parts: list[OnShaft] = [*scene.gears, *scene.bushings, *torques]
+    parts: list[OnShaft] = [*scene.gears, *scene.discs, *scene.bushings, *torques]
     return [(part.name, part.position) for part in parts if part.shaft == name]
 
 

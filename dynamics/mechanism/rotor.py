@@ -1,4 +1,4 @@
-"""A rotor: a shaft with the gears on it and the bushings under it, one body, rigid or elastic."""
+"""A rotor: a shaft with the gears and discs on it and the bushings under it, one body, rigid or elastic."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Rotor:
     ----------
     shaft : Shaft
     inertia : Inertia
-        Of shaft and gears about their common center of mass.
+        Of shaft, gears and discs about their common center of mass.
     center : (3,) array
         That center in the fixed frame, m: the point whose displacements are the freedoms.
     bushings : tuple of Bushing
@@ -117,8 +117,7 @@ class Rotor:
 
 def build_rotor(scene: Scene, shaft: Shaft) -> Rotor:
     """Gather what belongs to `shaft`."""
-    gears = [gear for gear in scene.gears if gear.shaft == shaft.name]
-    parts = [*shaft.bodies, *((gear.inertia, gear.position) for gear in gears)]
+    parts = [*shaft.bodies, *((body.inertia, body.position) for body in scene.mounted(shaft.name))]
     mass = sum(part.mass for part, _ in parts)
     along = sum(part.mass * center for part, center in parts) / mass if mass > 0.0 else shaft.length / 2.0
     transverse = sum(part.transverse + part.mass * (center - along) ** 2 for part, center in parts)

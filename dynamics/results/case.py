@@ -19,6 +19,7 @@ def resolved_case(system: System) -> Json:
     case = {
         "shafts": [asdict(shaft) for shaft in scene.shafts],
         "gears": [asdict(gear) for gear in scene.gears],
+        "discs": [asdict(disc) for disc in scene.discs],
         "bushings": [asdict(part) for rotor in system.rotors for part in rotor.bushings],
         "planet_bearings": [asdict(part) for rotor in system.rotors for part in rotor.planet_bearings],
         "meshes": [_mesh(system, index) for index in range(len(scene.meshes))],

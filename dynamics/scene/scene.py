@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from bounds import at_most
-from dynamics.bodies import AngleLaw, GearBody, Shaft, TimeLaw
+from dynamics.bodies import AngleLaw, DiscBody, GearBody, Shaft, TimeLaw
 from dynamics.checks import distinct, not_negative, one_of, positive, within
 from dynamics.errors import InputError
 from dynamics.forces import GearMesh, LoadTorque, RollingContact, SpeedTorque, SpringCurve
@@ -48,7 +48,7 @@ class Scene:
     Attributes
     ----------
     shafts, gears, bushings, planet_bearings, couplings, meshes, drives, free_rotations, loads : tuples
-    speed_torques, housings : tuples
+    speed_torques, housings, discs : tuples
         Parts, each with a name unique among its kind. Drives and free rotations together set the kinematic
         motion of all shafts: one for each independent speed of the gearing.
     rolling_contacts, spring_curves : tuples
@@ -84,6 +84,7 @@ class Scene:
     housings: tuple[Housing, ...] = ()
     rolling_contacts: tuple[RollingContact, ...] = ()
     spring_curves: tuple[SpringCurve, ...] = ()
+    discs: tuple[DiscBody, ...] = ()
     effects: Mapping[str, str] = field(default_factory=dict)
     outputs: Outputs = field(default_factory=Outputs)
     integration: Integration = field(default_factory=Integration)
@@ -106,7 +107,7 @@ class Scene:
         for kind in ON_A_SHAFT:
             for index, part in enumerate(getattr(self, kind)):
                 one_of(f"{kind}[{index}].shaft", part.shaft, shafts)
-        for kind in ("gears", "bushings", "planet_bearings"):
+        for kind in ("gears", "discs", "bushings", "planet_bearings"):
             check_positions(self.shafts, kind, getattr(self, kind))
         for index, mesh in enumerate(self.meshes):
             one_of(f"meshes[{index}].driver", mesh.driver, gears)
@@ -144,6 +145,11 @@ class Scene:
     def gear(self, name: str) -> GearBody:
         """Return the gear called `name`."""
         return next(gear for gear in self.gears if gear.name == name)
+
+    def mounted(self, shaft: str) -> tuple[GearBody | DiscBody, ...]:
+        """Return the rigid bodies on the shaft called `shaft`: gears, then discs."""
+        bodies: tuple[GearBody | DiscBody, ...] = (*self.gears, *self.discs)
+        return tuple(body for body in bodies if body.shaft == shaft)
 
     def frame_index(self, shaft: int) -> int | None:
         """Return the index of the carrier in whose frame the shaft `shaft` is described, or None."""

@@ -29,7 +29,7 @@ from service.convert.bearings import (
 from service.convert.case import boundary_errors
 from service.convert.declared import declared_part, in_si
 from service.convert.errors import named
-from service.convert.shafts import has_bent_shafts, shaft_of
+from service.convert.shafts import disc_of, has_bent_shafts, shaft_of
 from service.convert.topology import Teeth, check_center_distances, teeth_of
 from service.schemas.scene import CoastFlankInput, MeshInput, SceneInput
 from service.schemas.scene_bodies import (
@@ -125,6 +125,7 @@ def _assembled(scene: SceneInput, facts: Mapping[str, PairFacts], meshes: tuple[
         return Scene(
             shafts=tuple(shaft_of(i, shaft) for i, shaft in enumerate(scene.shafts)),
             gears=gears,
+            discs=tuple(disc_of(i, disc) for i, disc in enumerate(scene.discs)),
             bushings=tuple(bushing_of(i, bushing) for i, bushing in enumerate(scene.bushings)),
             meshes=meshes,
             drives=tuple(_drive(i, drive) for i, drive in enumerate(scene.drives)),

@@ -1,13 +1,15 @@
-"""Shafts of a scene file in the terms of dynamics."""
+"""Shafts of a scene file, and the discs on them, in the terms of dynamics."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
-from dynamics.bodies import BeamSection, Inertia, Shaft
+from dynamics.bodies import BeamSection, DiscBody, Inertia, Shaft, hollow_cylinder
 from fe_contact.ste import SteDatabase
 from service.convert.declared import declared_part, in_si
 from service.convert.errors import named
+from service.schemas.scene_discs import DiscInput
 from service.schemas.scene_shafts import ShaftInput
 from service.units import MM
 
@@ -39,6 +41,20 @@ def _sections(index: int, shaft: ShaftInput) -> tuple[BeamSection, ...]:
             length = part.length_mm * (shaft.length_mm / together) * MM
             sections.append(BeamSection(**in_si(BeamSection, part) | {"length": length}))
     return tuple(sections)
+
+
+def disc_of(index: int, disc: DiscInput) -> DiscBody:
+    """Return a disc."""
+    field = f"discs[{index}]"
+    with named(field):
+        inertia = declared_part(Inertia, disc.inertia, "inertia") or Inertia()
+        placed = DiscBody(disc.name, disc.shaft, inertia=inertia, **in_si(DiscBody, disc))
+    if disc.cylinder is None:
+        return placed
+    size = disc.cylinder
+    with named(f"{field}.cylinder"):
+        steel = hollow_cylinder(size.outer_diameter_mm * MM, size.width_mm * MM, size.bore_diameter_mm * MM)
+        return replace(placed, inertia=steel)
 
 
 def has_bent_shafts(database: SteDatabase) -> bool:

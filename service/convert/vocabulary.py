@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from bounds import Declared
 from dynamics.bodies.beam_section import BeamSection
+from dynamics.bodies.disc_body import DiscBody
 from dynamics.bodies.gear_body import GearBody
 from dynamics.bodies.inertia import Inertia
 from dynamics.bodies.shaft import Shaft as TurningShaft
@@ -51,7 +52,7 @@ def _with_parts(parts: Mapping[str, Declared]) -> Iterator[type]:
 
 _ANYWHERE = (
     *(FlankModification, Material, Shaft, *(Gear, RingGear, *_with_parts(parts_of(Gear)))),
-    *(GearBody, Inertia, TurningShaft, BeamSection),
+    *(GearBody, DiscBody, Inertia, TurningShaft, BeamSection),
     Outputs,
     *(Bushing, PlanetBearing, Coupling, FreeRotation),
 )

@@ -21,6 +21,7 @@ from service.schemas.scene_bodies import (
     PlanetBearingInput,
     PlanetsInput,
 )
+from service.schemas.scene_discs import DiscInput
 from service.schemas.scene_motion import DriveInput, FreeRotationInput, LoadTorqueInput, SpeedTorqueInput
 from service.schemas.scene_shafts import ShaftInput
 from service.schemas.scene_types import Name
@@ -171,6 +172,7 @@ class SceneInput(BoundaryModel):
     gears: Annotated[tuple[GearBodyInput, ...], Strict(False)] = Field(
         min_length=2, max_length=1000, description="Gears on the shafts: a table [[gears]] for each"
     )
+    discs: Annotated[tuple[DiscInput, ...], Strict(False)] = Field(default=(), max_length=1000)
     bushings: Annotated[tuple[BushingInput, ...], Strict(False)] = Field(default=(), max_length=1000)
     meshes: Annotated[tuple[MeshInput, ...], Strict(False)] = Field(
         min_length=1, max_length=1000, description="Gear pairs in mesh: a table [[meshes]] for each"

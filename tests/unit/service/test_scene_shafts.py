@@ -13,7 +13,7 @@ import pytest
 from small_table import small_table
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import Inertia
+from dynamics.bodies import Inertia, hollow_cylinder
 from dynamics.scene import Scene
 from fe_contact import STEEL
 from service.convert.scene import dynamic_scene
@@ -81,6 +81,29 @@ def test_an_inertia_alone_is_a_rigid_shaft() -> None:
     assert on(found) == {"input": False, "output": True}
 
 
+def test_discs_have_an_inertia_or_are_of_steel() -> None:
+    flywheel = {"name": "flywheel", "shaft": "input", "position_mm": 10.0}
+    given = {"mass_kg": 2.0, "polar_kg_m2": 4e-3, "transverse_kg_m2": 2e-3}
+    steel = {"outer_diameter_mm": 100.0, "width_mm": 20.0, "bore_diameter_mm": 40.0}
+    found = scene(
+        lambda t: t.update(
+            discs=[{**flywheel, "inertia": given}, {**flywheel, "name": "half", "cylinder": steel}]
+        )
+    )
+    first, second = found.discs
+    assert (first.position, first.inertia) == (0.01, Inertia(2.0, 4e-3, 2e-3))
+    assert second.inertia == hollow_cylinder(0.1, 0.02, 0.04)
+    masses = [assemble(s).rotors[0].inertia.mass for s in (found, scene())]
+    assert masses[0] - masses[1] == pytest.approx(2.0 + second.inertia.mass, rel=1e-12)
+
+
+def disc(**fields: Any) -> Change:
+    """Return a change that adds a disc."""
+    steel = {"outer_diameter_mm": 100.0, "width_mm": 20.0}
+    full = {"name": "disc", "shaft": "input", "position_mm": 10.0, "cylinder": steel}
+    return lambda table: table.update(discs=[{**full, **fields}])
+
+
 def test_a_table_that_has_the_bending_of_its_shafts_leaves_them_rigid() -> None:
     table = small_table()
     ledger = [{"name": "shaft_deflection", "on": True}]
@@ -105,6 +128,13 @@ def test_a_table_that_has_the_bending_of_its_shafts_leaves_them_rigid() -> None:
         (
             lambda t: t["shafts"][0]["sections"][0].update(end_bore_diameter_mm=33.0),
             "shafts[0].sections[0].end_bore_diameter_mm",
+        ),
+        (disc(shaft="none"), "discs[0].shaft"),
+        (disc(position_mm=1000.0), "discs[0].position_mm"),
+        (disc(inertia={"mass_kg": 1.0, "polar_kg_m2": 1.0, "transverse_kg_m2": 1.0}), "discs[0].inertia"),
+        (
+            disc(cylinder={"outer_diameter_mm": 10.0, "width_mm": 5.0, "bore_diameter_mm": 10.0}),
+            "discs[0].cylinder.bore_diameter_mm",
         ),
         (lambda t: t["shafts"][0].update(damping_ratio=-1.0), "shafts[0].damping_ratio"),
     ],

@@ -18,7 +18,7 @@ from geared_scenes import gear_pair_scene, spring_table, with_gear
 from scipy.linalg import eigh
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import BeamSection, Inertia, Shaft, TimeLaw, timoshenko_beam
+from dynamics.bodies import BeamSection, DiscBody, Inertia, Shaft, TimeLaw, timoshenko_beam
 from dynamics.integrators import static_equilibrium
 from dynamics.joints import Bushing, Coupling, FreeRotation
 from dynamics.linearize import linearize, natural_modes, whirl_modes
@@ -135,13 +135,10 @@ def beam_scene(section, stiffness, disc=None, location=0.0, bearings=(0.0, 0.5),
         Bushing(f"beam.{k}", "beam", z, stiffness, radial_damping=0.0) for k, z in enumerate(bearings)
     )
     joint = Coupling("joint", "input", "beam", 1e-3, position=0.4)
-    gears = scene.gears
-    if disc is not None:
-        gears = (*gears, replace(gears[0], name="disc", shaft="beam", position=location, inertia=disc))
     return replace(
         scene,
         shafts=(*scene.shafts, beam),
-        gears=gears,
+        discs=() if disc is None else (DiscBody("disc", "beam", location, disc),),
         bushings=(*scene.bushings, *ends),
         couplings=(joint,),
         **changes,

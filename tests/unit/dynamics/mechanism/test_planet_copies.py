@@ -10,6 +10,7 @@ import pytest
 from planetary_scenes import driven_scene, planetary_scene, published_set
 
 from dynamics.assembly.assemble import assemble
+from dynamics.bodies import DiscBody, Inertia
 from dynamics.errors import InputError
 from dynamics.mechanism import with_planets
 from dynamics.scene import ring_phase
@@ -43,6 +44,19 @@ def test_copies_have_the_phases_and_positions_of_the_set(driver, sense):
     for mesh in whole.meshes:
         twin = next(m for m in copied.meshes if placed(copied, m) == placed(whole, mesh))
         assert (twin.position_offset - mesh.position_offset) % 1.0 == pytest.approx(0.0, abs=1e-9)
+
+
+def test_discs_of_a_planet_are_on_all_planets():
+    first = only_first(driven_scene(published_set(3)))
+    disc = DiscBody("disc", "planet 1", 0.01, Inertia(0.5, 1e-3, 1e-3))
+    bare, copied = (with_planets(replace(first, discs=d), "planet 1", 3) for d in ((), (disc,)))
+    assert [part.shaft for part in copied.discs] == ["planet 1", "planet 1 2", "planet 1 3"]
+    added = [b.inertia.mass - a.inertia.mass for a, b in zip(*map(rotors, (bare, copied)), strict=True)]
+    np.testing.assert_allclose(sorted(added), [0.0] * (len(added) - 3) + [0.5] * 3, atol=1e-12)
+
+
+def rotors(scene):
+    return assemble(scene).rotors
 
 
 def placed(scene, mesh):
