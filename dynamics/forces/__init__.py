@@ -8,6 +8,7 @@ from dynamics.forces.mesh_table import MeshTable
 from dynamics.forces.rolling_contact import RollingContact
 from dynamics.forces.speed_torque import SpeedTorque
 from dynamics.forces.spring_curve import SpringCurve
+from dynamics.forces.stiffness_table import PeriodicCurve, stiffness_table
 from dynamics.forces.straight_table import straight_table
 
 __all__ = [
@@ -15,8 +16,10 @@ __all__ = [
     "GearMesh",
     "LoadTorque",
     "MeshTable",
+    "PeriodicCurve",
     "RollingContact",
     "SpeedTorque",
     "SpringCurve",
+    "stiffness_table",
     "straight_table",
 ]

@@ -56,9 +56,9 @@ class _Tables:
 
 def _checked(scene: SceneInput, tables: _Tables, folder: Path) -> TabledScene:
     """Check the scene before anything is computed for it, then gather its tables."""
-    facts = {mesh.name: _facts(i, mesh, folder, tables) for i, mesh in enumerate(scene.meshes)}
+    facts = {mesh.name: _facts(i, mesh, folder, tables) for i, mesh in scene.with_database}
     warn(scene_warnings(scene, check_scene(scene, facts)))
-    databases = {mesh.name: tables.of(i, mesh) for i, mesh in enumerate(scene.meshes)}
+    databases = {mesh.name: tables.of(i, mesh) for i, mesh in scene.with_database}
     built = dynamic_scene(scene, databases)
     warn(scene_warnings(scene, built, {name: table.metadata.warnings for name, table in databases.items()}))
     return TabledScene(_written_out(scene, folder), databases, built)

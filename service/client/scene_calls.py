@@ -48,7 +48,8 @@ class SceneCalls(Surface):
     def scene(self, scene: SceneLike) -> Steps[Scene]:
         """Return a scene in SI on tables of the service, for a local run by `dynamics.simulation.simulate`.
 
-        Its meshes take their tables by ``case``, ``case_file``, ``database_hash`` or ``database_file``; those
+        Its meshes take their tables by ``case``, ``case_file``, ``database_hash`` or ``database_file``,
+        unless they state their ``stiffness``; those
         of cases are as from `analyze`, those of files are read here.
 
         Raises
@@ -59,7 +60,7 @@ class SceneCalls(Surface):
         """
         inputs, folder = scene_of(scene)
         source, tables = MeshTables(folder, ServiceTables(self)), {}
-        for index, mesh in enumerate(inputs.meshes):
+        for index, mesh in inputs.with_database:
             tables[mesh.name] = yield from source.of(index, mesh)
         with libraries():
             from service.convert.scene import dynamic_scene  # noqa: PLC0415 (keeps the import of the client light)

@@ -27,6 +27,7 @@ from service.convert.bearings import (
     spring_curves_of,
 )
 from service.convert.case import boundary_errors
+from service.convert.closed_form import closed_forms
 from service.convert.declared import declared_part, in_si
 from service.convert.errors import named
 from service.convert.shafts import disc_of, has_bent_shafts, shaft_of
@@ -69,7 +70,7 @@ def dynamic_scene(scene: SceneInput, databases: Mapping[str, SteDatabase]) -> Sc
     ----------
     scene : SceneInput
     databases : mapping of str to SteDatabase
-        By name of the mesh.
+        By name of the mesh; of all meshes that do not state their stiffness.
 
     Raises
     ------
@@ -80,7 +81,7 @@ def dynamic_scene(scene: SceneInput, databases: Mapping[str, SteDatabase]) -> Sc
     """
     facts = {name: database.facts for name, database in databases.items()}
     with boundary_errors():
-        tables = {name: database.force_table() for name, database in databases.items()}
+        tables: dict[str, MeshTable] = {name: table.force_table() for name, table in databases.items()}
     moving = _moving(scene, facts, tables)
     bent = {name for name, database in databases.items() if has_bent_shafts(database)}
     meshes = tuple(replace(mesh, bent_shafts=mesh.name in bent) for mesh in moving.meshes)
@@ -99,7 +100,13 @@ def check_scene(scene: SceneInput, facts: Mapping[str, PairFacts]) -> Scene:
 
 
 def _moving(scene: SceneInput, facts: Mapping[str, PairFacts], tables: Mapping[str, MeshTable]) -> Scene:
-    """Return the scene with all its planets, its parts checked one by one, together, and in motion."""
+    """Return the scene with all its planets, its parts checked one by one, together, and in motion.
+
+    Facts and tables are those of the meshes with a database.
+    """
+    closed = closed_forms(scene)
+    facts = {**facts, **{name: pair for name, (pair, _) in closed.items()}}
+    tables = {**tables, **{name: table for name, (_, table) in closed.items()}}
     meshes = tuple(
         _mesh(i, mesh, tables[mesh.name], facts[mesh.name].base_pitch) for i, mesh in enumerate(scene.meshes)
     )

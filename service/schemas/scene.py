@@ -24,9 +24,10 @@ from service.schemas.scene_bodies import (
 from service.schemas.scene_discs import DiscInput
 from service.schemas.scene_motion import DriveInput, FreeRotationInput, LoadTorqueInput, SpeedTorqueInput
 from service.schemas.scene_shafts import ShaftInput
+from service.schemas.scene_stiffness import StiffnessMeshInput
 from service.schemas.scene_types import Name
 
-_SOURCES = ("case", "case_file", "database_file", "database_hash")
+_SOURCES = ("case", "case_file", "database_file", "database_hash", "stiffness")
 
 
 class CoastFlankInput(BoundaryModel):
@@ -46,7 +47,7 @@ class CoastFlankInput(BoundaryModel):
 
 
 class MeshInput(BoundaryModel):
-    """Two gears in mesh and the source of their STE database."""
+    """Two gears in mesh and the source of their force: an STE database or a closed form."""
 
     model_config = ConfigDict(json_schema_extra=stated(exactly_one_of(*_SOURCES)))
 
@@ -74,6 +75,9 @@ class MeshInput(BoundaryModel):
     )
     database_hash: Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")] | None = Field(
         default=None, description="Content hash of a database of the service", examples=["0" * 64]
+    )
+    stiffness: StiffnessMeshInput | None = Field(
+        default=None, description="The mesh in closed form: stiffness and transmission error by the position"
     )
     technique: Literal["constant_torque", "variable_torque"] = Field(
         default="variable_torque", description="Technique of the mesh force", examples=["variable_torque"]
@@ -199,6 +203,11 @@ class SceneInput(BoundaryModel):
     effects: dict[EffectName, Switch] = Field(
         default={}, description="Switches of optional physics; left out = auto"
     )
+
+    @property
+    def with_database(self) -> list[tuple[int, MeshInput]]:
+        """The meshes that take their force from an STE database, with their numbers."""
+        return [(index, mesh) for index, mesh in enumerate(self.meshes) if mesh.stiffness is None]
 
     @model_validator(mode="before")
     @classmethod

@@ -54,7 +54,7 @@ def _of_scene(scene: SceneInput) -> list[Json]:
         if mesh.case is not None
         for warning in case_warnings(mesh.case)
     ]
-    if len(cases) < len(scene.meshes):
+    if len(cases) < len(scene.with_database):
         return warnings
     moving = check_scene(scene, {name: facts_of(gear_pair(case)) for name, case in cases.items()})
     return [*warnings, *scene_warnings(scene, moving)]

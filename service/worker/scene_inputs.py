@@ -19,9 +19,7 @@ def check_scene_inputs(scene: SceneInput, store: ResultStore) -> None:
     BadInput
         It cannot be or cannot move, names a file of the caller, or a database that is not stored.
     """
-    check_scene(
-        scene, {mesh.name: _facts(f"meshes[{i}]", mesh, store) for i, mesh in enumerate(scene.meshes)}
-    )
+    check_scene(scene, {mesh.name: _facts(f"meshes[{i}]", mesh, store) for i, mesh in scene.with_database})
 
 
 def _facts(field: str, mesh: MeshInput, store: ResultStore) -> PairFacts:

@@ -47,9 +47,9 @@ def ordered_scene(order: WorkOrder, progress: Progress) -> OrderedScene:
     inputs = SceneInput.model_validate_json(json.dumps(order.inputs["scene"]))
     products: list[Product] = []
     databases: dict[str, SteDatabase] = {}
-    costs = {mesh.name: float(_stored_key(order, mesh) is None) for mesh in inputs.meshes}
+    costs = {mesh.name: float(_stored_key(order, mesh) is None) for _, mesh in inputs.with_database}
     tables = by_cost(partial(progress, "analysis"), costs)
-    for index, mesh in enumerate(inputs.meshes):
+    for index, mesh in inputs.with_database:
         databases[mesh.name] = _table(order, index, mesh, products, partial(tables, mesh.name))
     scene = dynamic_scene(inputs, databases)
     warnings = {name: database.metadata.warnings for name, database in databases.items()}

@@ -28,7 +28,7 @@ def example(file: Path):
     """The scene of a file on tables of its cases, from coarse meshes and all positions."""
     given, folder = scene_of(file)
     tables = {}
-    for index, mesh in enumerate(given.meshes):
+    for index, mesh in given.with_database:
         case = case_of_mesh(mesh, f"meshes[{index}]", folder)
         assert case is not None
         options = replace(analysis_options(case).at_level("draft"), receipt="minimal")
