@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bounds import Declared, Kind, below, between, declared, described, required, up_to
-from dynamics.bodies.inertia import Inertia
+from dynamics.bodies.inertia import Inertia, hollow_cylinder
 from dynamics.bodies.steel import STEEL_DENSITY, STEEL_POISSON_RATIO, STEEL_YOUNGS_MODULUS
 from dynamics.checks import declared_fields
 from dynamics.errors import InputError
@@ -127,6 +127,9 @@ class BeamSection:
     @property
     def body(self) -> tuple[Inertia, float]:
         """Inertia about its center of mass, and how far that is from the left end, m."""
+        if self.end_outer_diameter is None and self.end_bore_diameter is None:
+            whole = hollow_cylinder(self.outer_diameter, self.length, self.bore_diameter, self.density)
+            return whole, 0.5 * self.length
         share, weight = 0.5 * (1.0 + _EXACT[0]), 0.5 * self.length * self.density * _EXACT[1]
         cut, z = self.cross_section(share), share * self.length
         mass = float(weight @ cut.area)

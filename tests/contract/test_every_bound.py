@@ -81,6 +81,7 @@ DEPEND_ON_OTHERS = (
         "center_distance_mm",
         "face_width_mm",
         "bore_diameter_mm",
+        "end_bore_diameter_mm",
         "tip_diameter_mm",
         "root_radius_coefficient",
     ),
