@@ -126,7 +126,8 @@ class SystemArrays(NamedTuple):
     sparse : SparseMatrices
         M, C, K, G and `turn` by their entries: who changes them takes `with_matrices`.
     constant : (n,) array
-        External force that never changes: of pins off their nominal position, of preloaded bearings.
+        External force that never changes: of pins off their nominal position, of preloaded bearings, of
+        gravity.
     inertial : (k, n) array
         External force per angular acceleration of each law: minus inertia times kinematic vector.
     total_inertia : (k, k) array

@@ -20,6 +20,7 @@ from dynamics.mechanism.connections import elastic_matrices, linear_matrices
 from dynamics.mechanism.freedoms import FREEDOMS, ROTATION, Freedoms
 from dynamics.mechanism.kinematics import Kinematics, mesh_shafts
 from dynamics.mechanism.rotor import Rotor
+from dynamics.mechanism.weight import weight
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
@@ -30,6 +31,7 @@ def system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) 
     scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
     vectors = mechanism.vectors
     stiffness, damping, constant = linear_matrices(joined, freedoms)
+    constant = constant + freedoms.keep(weight(scene, rotors))
     own_stiffness, own_damping = elastic_matrices(rotors, freedoms)
     stiffness, damping = stiffness + own_stiffness, damping + own_damping
     for _, drive, row in drive_springs(scene, kinematics, rotors, freedoms):

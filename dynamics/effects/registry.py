@@ -32,7 +32,6 @@ EFFECTS: tuple[Effect, ...] = (
 )
 
 LEFT_OUT: dict[str, str] = {
-    "gravity": "weights are small against mesh forces",
     "friction of bearings": "bearings turn without loss",
     "point of application along the path of contact": "the mesh force acts at the operating pitch point",
     "flexible members of planetary sets": "sun, ring, carrier and planets are rigid on their shafts",

@@ -125,7 +125,7 @@ def _check(system: System) -> float:
         if (bushing.stiffness, bushing.damping, bushing.preload) != plain:
             raise InputError("bushings", bushing.name, "isotropic, without preload")
     for part in fields(scene):
-        if part.name not in REBUILT and getattr(scene, part.name):
+        if part.name not in REBUILT and getattr(scene, part.name) != part.default:
             raise InputError(part.name, len(getattr(scene, part.name)), "left out")
     for index, load in enumerate(scene.loads):
         _constant_value(f"loads[{index}].torque", load.torque)

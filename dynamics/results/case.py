@@ -37,6 +37,7 @@ def resolved_case(system: System) -> Json:
         "loads": [asdict(load) for load in scene.loads],
         "flexible_shafts": flexible_shafts(system.rotors),
         "duration": scene.duration,
+        "gravity": list(scene.gravity),
         "effects": dict(scene.effects),
         "tolerance": scene.tolerance,
         "outputs": {**asdict(scene.outputs), "sample_rate": system.sampling.rate},

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from dynamics.bodies import Shaft
-from dynamics.checks import one_of
+from dynamics.checks import finite, one_of
 from dynamics.errors import InputError
 from dynamics.joints import Bushing, Coupling, PlanetBearing
 from dynamics.scene.housing_check import alike_across
@@ -41,6 +41,15 @@ def check_frames(
             raise InputError(
                 f"bushings[{index}].shaft", shaft.name, bound, "Planets rest on planet bearings."
             )
+
+
+def check_gravity(shafts: tuple[Shaft, ...], gravity: tuple[float, float, float]) -> None:
+    """Gravity turns against rotating frames, unless it lies along the axis."""
+    for axis, value in zip("xyz", gravity, strict=True):
+        finite(f"gravity.{axis}", value)
+    if any(gravity[:2]) and any(shaft.frame is not None for shaft in shafts):
+        bound = "zero in x and y where shafts are described in a carrier's frame, which turns against it"
+        raise InputError("gravity", gravity, bound)
 
 
 def check_couplings(shafts: tuple[Shaft, ...], couplings: tuple[Coupling, ...]) -> None:

@@ -14,7 +14,7 @@ from dynamics.forces import GearMesh, LoadTorque, RollingContact, SpeedTorque, S
 from dynamics.joints import Bushing, Coupling, FreeRotation, Housing, ImposedRotation, PlanetBearing
 from dynamics.parts import KINDS, ON_A_SHAFT
 from dynamics.scene.bearing_check import check_bearing_laws
-from dynamics.scene.frame_check import check_couplings, check_frames
+from dynamics.scene.frame_check import check_couplings, check_frames, check_gravity
 from dynamics.scene.housing_check import check_housings
 from dynamics.scene.position_check import check_positions
 from dynamics.settings import Integration, Outputs
@@ -55,6 +55,8 @@ class Scene:
         Nonlinear laws of bearings; each names its bushing or planet bearing.
     duration : float
         s.
+    gravity : tuple of three floats
+        Its acceleration in the fixed frame, m/s^2. Across the axis only without rotating frames.
     effects : mapping of str to str
         Effect name to ``"auto"``, ``"on"`` or ``"off"``; effects that are not named are ``"auto"``.
     outputs : Outputs
@@ -85,6 +87,7 @@ class Scene:
     rolling_contacts: tuple[RollingContact, ...] = ()
     spring_curves: tuple[SpringCurve, ...] = ()
     discs: tuple[DiscBody, ...] = ()
+    gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
     effects: Mapping[str, str] = field(default_factory=dict)
     outputs: Outputs = field(default_factory=Outputs)
     integration: Integration = field(default_factory=Integration)
@@ -117,6 +120,7 @@ class Scene:
                 one_of(f"couplings[{index}].{side}", getattr(coupling, side), shafts)
         self._check_references()
         check_frames(self.shafts, self.bushings, self.planet_bearings)
+        check_gravity(self.shafts, self.gravity)
         check_couplings(self.shafts, self.couplings)
         check_housings(self.shafts, self.bushings, self.housings)
         rotating = {shaft.name for shaft in self.shafts if shaft.frame is not None}

@@ -123,6 +123,7 @@ def _assembled(scene: SceneInput, facts: Mapping[str, PairFacts], meshes: tuple[
     """Return the scene with its parts checked one by one and together."""
     teeth = teeth_of(scene, facts)
     check_center_distances(scene, facts)
+    x, y, z = scene.gravity_m_per_s2
     gears = tuple(_gear(i, gear, teeth[gear.name]) for i, gear in enumerate(scene.gears))
     with named("outputs"):
         outputs = Outputs(**in_si(Outputs, scene.outputs))
@@ -145,6 +146,7 @@ def _assembled(scene: SceneInput, facts: Mapping[str, PairFacts], meshes: tuple[
             spring_curves=tuple(spring_curves_of(scene)),
             loads=tuple(_load(i, load) for i, load in enumerate(scene.loads)),
             duration=scene.run.duration_s,
+            gravity=(x, y, z),
             effects=dict(scene.effects),
             outputs=outputs,
             integration=integration,

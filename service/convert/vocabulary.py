@@ -76,6 +76,7 @@ _LAST = _fields_of(*_ANYWHERE) | {
     "reference_diameter": "reference_diameter_mm",
     # scene
     "duration": "duration_s",
+    "gravity": "gravity_m_per_s2",
     "base_radius": "base_radius_mm",
     "damping": "damping_n_s_per_m",
     "nominal_force": "nominal_force_n",

@@ -25,7 +25,7 @@ from service.schemas.scene_discs import DiscInput
 from service.schemas.scene_motion import DriveInput, FreeRotationInput, LoadTorqueInput, SpeedTorqueInput
 from service.schemas.scene_shafts import ShaftInput
 from service.schemas.scene_stiffness import StiffnessMeshInput
-from service.schemas.scene_types import Name
+from service.schemas.scene_types import Acceleration, Name
 
 _SOURCES = ("case", "case_file", "database_file", "database_hash", "stiffness")
 
@@ -170,6 +170,13 @@ class SceneInput(BoundaryModel):
     """A geared system and the run to make with it."""
 
     run: RunInput = Field(description="The run", examples=[{"duration_s": 5.0}])
+    gravity_m_per_s2: Annotated[tuple[Acceleration, ...], Strict(False)] = Field(
+        default=(0.0, 0.0, 0.0),
+        min_length=3,
+        max_length=3,
+        description="Acceleration of gravity in x, y, z in m/s^2",
+        examples=[[0.0, -9.81, 0.0]],
+    )
     shafts: Annotated[tuple[ShaftInput, ...], Strict(False)] = Field(
         min_length=1, max_length=1000, description="Shafts: a table [[shafts]] for each"
     )

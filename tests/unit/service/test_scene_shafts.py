@@ -71,6 +71,11 @@ def test_a_diameter_is_one_section_of_steel() -> None:
     assert on(scene(example=PAPER)) == {"input": False, "output": False}
 
 
+def test_gravity_is_zero_unless_stated() -> None:
+    assert scene().gravity == (0.0, 0.0, 0.0)
+    assert scene(lambda t: t.update(gravity_m_per_s2=[0.0, -9.81, 0.0])).gravity == (0.0, -9.81, 0.0)
+
+
 def test_an_inertia_alone_is_a_rigid_shaft() -> None:
     def change(table: dict[str, Any]) -> None:
         del table["shafts"][0]["sections"]

@@ -184,6 +184,20 @@ def test_the_critical_speed_of_a_jeffcott_rotor():
     assert critical == pytest.approx(math.sqrt(at_standstill), rel=0.01)
 
 
+def test_a_heavy_disc_sags_as_the_closed_form_says():
+    """m g (L^3/(48 E I) + L/(4 kappa G A) + 1/(2 k)) at mid-length between two bearings."""
+    section, disc = BeamSection(0.5, 0.03, density=1.0), Inertia(6.0, 0.03, 0.016)
+    flexibility = 0.5**3 / (48.0 * bending_stiffness(section)) + 0.125 / shear_stiffness(section) + 0.5 / 1e8
+    at = {}
+    for g in (0.0, 9.81):
+        system = assemble(beam_scene(section, 1e8, disc, 0.25, gravity=(0.0, -g, 0.0)))
+        start = static_equilibrium(system)
+        at[g] = section_motion(system, "beam", 0.25, start.displacement)
+    sagged = at[9.81] - at[0.0]
+    assert sagged[1] == pytest.approx(-disc.mass * 9.81 * flexibility, rel=1e-4)
+    np.testing.assert_allclose(sagged[[0, 3, 5]], 0.0, atol=1e-6 * abs(sagged[1]))
+
+
 def test_an_overhung_disc_whirls_as_its_flexibility_says():
     """M p'' - i w G p' + D^-1 p = 0 with the closed-form flexibilities D of the shaft's end."""
     section, disc = BeamSection(0.5, 0.03, density=1.0), Inertia(6.0, 0.08, 0.045)
