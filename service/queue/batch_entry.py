@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import uuid
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 from sqlalchemy import Connection, Engine, insert, select
@@ -16,6 +17,7 @@ from service.queue.batches import FOR_EVER, HELD, batch_steps
 from service.queue.caller import ANYBODY, Caller
 from service.queue.cost_limit import extended
 from service.queue.delivery import AS_IT_IS
+from service.queue.differences import NOT_COMPARED, Differences
 from service.queue.entry import (
     ended_since,
     enter_computation,
@@ -144,12 +146,12 @@ class BatchEntry:
     ) -> None:
         """Enter the batch and its jobs; the first of equal ones bears their cost."""
         common = {"created": now(), "caller": self._caller.name, "delivery": str(AS_IT_IS)}
-        common |= {"project": self._project, **NO_LABEL.columns()}
+        common |= {"project": self._project, "differences": str(NOT_COMPARED), **NO_LABEL.columns()}
         rows = [
             _entered_batch(connection, identifier, process, len(cases)) | common | self._terms.label.columns()
         ]
-        counted: set[str] = set()
-        for place, case in enumerate(cases):
+        names, counted = [str(uuid.uuid4()) for _ in cases], set[str]()
+        for place, (case, apart) in enumerate(zip(cases, _differences(cases, names), strict=True)):
             computation = shared[case.key]
             if computation is None:
                 computation = enter_computation(
@@ -161,8 +163,8 @@ class BatchEntry:
                 connection.execute(extended(computation, self._terms.max_cost_s))
             weight = 0.0 if case.stored or case.key in counted else case.cost
             counted.add(case.key)
-            row = {"id": str(uuid.uuid4()), "computation_id": computation, "parent": identifier}
-            rows.append(row | {"place": place, "children": 0, "weight": weight} | common)
+            row = {"id": names[place], "computation_id": computation, "parent": identifier, "place": place}
+            rows.append(common | row | {"children": 0, "weight": weight, "differences": str(apart)})
         connection.execute(insert(jobs), rows)
 
 
@@ -175,6 +177,13 @@ def _entered_batch(connection: Connection, identifier: str, process: str, childr
     connection.execute(insert(computations).values(**row, leased_until=FOR_EVER))
     job = {"id": identifier, "computation_id": computation, "parent": None, "place": 0}
     return job | {"children": children, "weight": 0.0}
+
+
+def _differences(cases: Sequence[BatchCase], names: Sequence[str]) -> Iterator[Differences]:
+    """Yield what sets each job of a batch apart from the one before it."""
+    yield NOT_COMPARED
+    for (before, case), name in zip(pairwise(cases), names, strict=False):
+        yield Differences.between(before.inputs, case.inputs, name)
 
 
 def _shared(connection: Connection, case: BatchCase, looked: str) -> str | None:

@@ -73,6 +73,18 @@ def test_a_batch_is_a_job_whose_results_are_those_of_its_jobs_in_order(http: Tes
     assert [job["jobID"] for job in children(http, batch["jobID"])] == [r["jobID"] for r in results]
     assert [job["place"] for job in children(http, batch["jobID"])] == [0, 1, 2]
     assert {job["parentID"] for job in children(http, batch["jobID"])} == {batch["jobID"]}
+
+
+def test_each_job_of_a_batch_is_set_apart_from_the_one_before_it(http: TestClient) -> None:
+    batch = submitted(http, {"text": "a"}, {"text": "b"}, {"text": "b"}).json()
+    first, second, third = children(http, batch["jobID"])
+    assert first["differences"]["number"] == 0
+    assert second["differences"] == {
+        "since": first["jobID"],
+        "number": 1,
+        "first": [{"field": "wish.text", "before": "a", "value": "b"}],
+    }
+    assert (third["differences"]["since"], third["differences"]["number"]) == (second["jobID"], 0)
     assert [job["jobID"] for job in http.get("/v1/jobs").json()["jobs"]] == [batch["jobID"]]
 
 
