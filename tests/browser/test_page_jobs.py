@@ -39,6 +39,28 @@ def test_a_job_is_cancelled_from_the_list(visit: Visit, address: str) -> None:
     assert first.get_by_role("button", name=re.compile("^(Cancel|Open|Compare)")).count() == 0
 
 
+def test_the_jobs_of_a_batch_are_shown_beneath_it(visit: Visit, address: str) -> None:
+    page = visit.page
+    loads = [{"torque_n_m": [torque]} for torque in (0.5, 0.75)]
+    with LineOfActionClient(address) as client:
+        batch = client.with_terms(title="Two loads").analyze.batch([CASE | {"load": load} for load in loads])
+        batch.wait()
+    page.reload()
+    row = page.get_by_role("row").filter(has_text="Two loads")
+    expect(row).to_contain_text("analyze, 2 jobs")
+    assert row.get_by_role("button", name=re.compile("^(Open|Compare)")).count() == 0
+    row.get_by_role("button", name=re.compile("^Show jobs")).press("Enter")
+    inner = page.locator("#jobs-rows tr.inner")
+    expect(inner).to_have_count(2)
+    expect(inner.nth(1)).to_contain_text("load.torque_n_m 0.5 → 0.75")
+    assert not (told := found_inaccessible(page)), json.dumps(told, indent=1)
+    inner.nth(1).get_by_role("button", name=re.compile("^Open analyze")).press("Enter")
+    expect(page).to_have_url(re.compile("#database="))
+    row.get_by_role("button", name=re.compile("^Hide jobs")).press("Enter")
+    expect(inner).to_have_count(0)
+    assert visit.complaints == []
+
+
 def test_a_result_opens_again_in_another_window(visit: Visit, browser: Browser, address: str) -> None:
     page = visit.page
     page.get_by_role("button", name="Find the modes").press("Enter")

@@ -19,6 +19,7 @@ export class Jobs {
     this.compare = compare;
     this.first = null; // job that another one is to be compared with
     this.shown = AT_ONCE;
+    this.unfolded = new Set(); // batches whose jobs are shown
     this.line = byId("jobs-line");
     document.addEventListener("jobs-changed", () => this.refresh());
     this.search = byId("jobs-search");
@@ -35,8 +36,9 @@ export class Jobs {
     for (;;) {
       try {
         const { jobs } = await get(`/v1/jobs?limit=${this.shown + 1}&${search(this.search.value)}`);
+        const rows = await Promise.all(jobs.slice(0, this.shown).map((job) => this.withThoseIn(job)));
         if (turn !== this.turn) return;
-        this.show(jobs);
+        this.show(rows.flat(), jobs.length > this.shown);
         if (jobs.every(({ status }) => ENDED.has(status))) return;
       } catch (problem) {
         if (!(problem instanceof Problem)) throw problem;
@@ -48,16 +50,29 @@ export class Jobs {
     }
   }
 
-  show(jobs) {
+  /** A job, and behind an unfolded batch those in it. */
+  async withThoseIn(job) {
+    if (!this.unfolded.has(job.jobID)) return [job];
+    const { jobs } = await get(`/v1/jobs?parent=${job.jobID}&limit=${job.children}`);
+    return [job, ...[...jobs].sort((one, other) => one.place - other.place)];
+  }
+
+  fold(job) {
+    if (!this.unfolded.delete(job.jobID)) this.unfolded.add(job.jobID);
+    this.known = null;
+    return this.refresh();
+  }
+
+  show(jobs, more) {
     byId("jobs-none").hidden = jobs.length > 0;
     byId("jobs-none").textContent = this.search.value ? "No such jobs." : "No jobs yet.";
     byId("jobs-table").hidden = !jobs.length;
-    byId("jobs-more").hidden = jobs.length <= this.shown;
+    byId("jobs-more").hidden = !more;
     const known = JSON.stringify(jobs);
     if (known === this.known) return;
     this.known = known;
     const focus = document.activeElement?.dataset?.job;
-    byId("jobs-rows").replaceChildren(...jobs.slice(0, this.shown).map((job) => this.row(job)));
+    byId("jobs-rows").replaceChildren(...jobs.map((job) => this.row(job)));
     if (focus) document.querySelector(`[data-job="${focus}"]`)?.focus();
   }
 
@@ -72,12 +87,20 @@ export class Jobs {
       successful: () => button("Open", () => this.open(job)),
       failed: () => button("Why", () => this.open(job)),
     };
-    const both = () => (job.status === "successful" && COMPARED.has(job.processID) ? button("Compare", () => this.choose(job)) : "");
-    const action = ENDED.has(job.status) ? actions[job.status]?.() : button("Cancel", () => this.cancel(job));
-    const rename = button("Rename", () => this.rename(job));
+    const compared = job.status === "successful" && COMPARED.has(job.processID) && !job.children;
+    const fold = () => button(this.unfolded.has(job.jobID) ? "Hide jobs" : "Show jobs", () => this.fold(job));
+    const cancel = () => button("Cancel", () => this.cancel(job));
+    const buttons = [
+      job.children ? fold() : "",
+      ENDED.has(job.status) ? (!job.children && actions[job.status]?.()) || "" : cancel(),
+      compared ? button("Compare", () => this.choose(job)) : "",
+      button("Rename", () => this.rename(job)),
+    ];
+    const what = job.children ? `${job.processID}, ${job.children} jobs` : job.processID;
     const cells = [state(job), when, spent(job)].map((text) => make("td", {}, text));
     return make(
-      "tr", {}, make("th", { scope: "row" }, job.processID), make("td", {}, action ?? "", " ", both(), " ", rename), label(job), ...cells,
+      "tr", { class: job.parentID ? "inner" : "" },
+      make("th", { scope: "row" }, what), make("td", {}, ...buttons.flatMap((each) => [each, " "])), label(job), ...cells,
     );
   }
 
