@@ -26,6 +26,8 @@ from service.worker.fork_server import MESSAGE_BYTES, READY
 
 logger = structlog.get_logger(__name__)
 
+_FORK_SERVER = (sys.executable, "-P", "-m", "service.worker.fork_server")
+"""Without the folder in which the service was started: its modules may be another program's."""
 MOST_FORKS = 500
 """Children of one warm process; then a new one takes its place."""
 _PATIENCE_S = 10.0
@@ -91,14 +93,13 @@ class _Server:
         with theirs, log.open("wb") as stream:
             try:
                 self._process = subprocess.Popen(
-                    [sys.executable, "-m", "service.worker.fork_server", str(theirs.fileno()), *modules],
+                    [*_FORK_SERVER, str(theirs.fileno()), *modules],
                     stdin=subprocess.DEVNULL,
                     stdout=stream,
                     stderr=stream,
                     pass_fds=(theirs.fileno(),),
                     start_new_session=True,
                     env=child_environment(),
-                    cwd=log.parent,  # where no other program's modules are found first
                 )
             except OSError:
                 self._channel.close()

@@ -36,14 +36,16 @@ function heard(now) {
 
 async function asked(path, options = {}) {
   let response;
+  const key = keyHeader();
   try {
-    response = await fetch(path, { ...options, headers: { ...options.headers, ...keyHeader() } });
+    response = await fetch(path, { ...options, headers: { ...options.headers, ...key } });
   } catch {
     if (!options.signal?.aborted) heard(false);
     throw new Problem({ title: "No answer", detail: "The service does not answer. Is it still running?", status: 0 });
   }
   heard(true);
   if (response.status !== 401) return response;
+  if (key.Authorization !== keyHeader().Authorization) return asked(path, options); // another key was given meanwhile
   const refused = await response.clone().json().catch(() => ({ detail: "" }));
   return (await askForKey(refused.detail)) ? asked(path, options) : response;
 }

@@ -33,7 +33,7 @@ def models() -> list[type[BaseModel]]:
 def test_every_field_of_case_and_scene_is_documented() -> None:
     documented = set(re.findall(r"[`.]([a-z][a-z0-9_]+)`", page("case-file.md")))
     tables = {"pair", "pinion", "wheel", "load", "errors", "accuracy", "effects", "run", "shafts", "gears"}
-    tables |= {"bushings", "meshes", "drives", "loads", "outputs", "integration"}
+    tables |= {"discs", "bushings", "meshes", "drives", "loads", "outputs", "integration"}
     tables |= {"free_rotations", "housings", "planets", "planet_bearings", "couplings", "speed_torques"}
     fields = {name for model in models() for name in model.model_fields} - tables
     assert fields - documented == set()
