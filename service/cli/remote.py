@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 import re
 import shutil
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -36,16 +36,7 @@ class ProcessRequest:
 
     process: str | None = None
     inputs: str | None = None
-    title: str = ""
-    tags: tuple[str, ...] = ()
-    priority: int = 0
-    max_cost_s: float | None = None
-
-    @property
-    def terms(self) -> dict[str, Any]:
-        """Return the terms of the job as the client takes them."""
-        names = ("title", "tags", "priority", "max_cost_s")
-        return {name: getattr(self, name) for name in names}
+    terms: Mapping[str, Any] = field(default_factory=dict)
 
 
 def run_submit(

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from service.cli.guard import guarded
+from service.cli.signature import grouped
 from service.cli.verbs.options import AsJson
 
 verbs = typer.Typer(help="Access keys of a service.", no_args_is_help=True)
@@ -22,39 +24,45 @@ Expires = Annotated[
 ]
 
 
+@dataclass(frozen=True)
+class KeyLimits:
+    """The limits of a key; None: none."""
+
+    requests_per_minute: Annotated[int | None, typer.Option(help="Default: no limit.")] = None
+    unfinished_jobs: Annotated[
+        int | None, typer.Option(help="Limit on waiting and running jobs; default: no limit.")
+    ] = None
+    highest_priority: Annotated[int | None, typer.Option(help="Of its jobs, -9 to 9; default: any.")] = None
+    max_cost_s: Annotated[
+        int | None, typer.Option("--max-cost", help="CPU seconds of a job; default: no limit.")
+    ] = None
+    connections: Annotated[
+        int | None, typer.Option(help="Limit on requests answered at the same time; default: no limit.")
+    ] = None
+    streams: Annotated[int | None, typer.Option(help="Limit on open event streams; default: no limit.")] = (
+        None
+    )
+
+
 @verbs.command(epilog="Example: loa keys add test-bench-3 --expires 90d --scopes read,submit")
 @guarded
+@grouped
 def add(
+    *,
     name: Name,
     project: Annotated[
         str | None, typer.Option(help="Project whose jobs and results the key sees; default: the common one.")
     ] = None,
     scopes: Annotated[str | None, typer.Option(help="Of read,submit,dismiss,operate; default: all.")] = None,
     expires: Expires = None,
-    requests_per_minute: Annotated[int | None, typer.Option(help="Default: no limit.")] = None,
-    unfinished_jobs: Annotated[
-        int | None, typer.Option(help="Limit on waiting and running jobs; default: no limit.")
-    ] = None,
-    highest_priority: Annotated[int | None, typer.Option(help="Of its jobs, -9 to 9; default: any.")] = None,
-    max_cost_s: Annotated[
-        int | None, typer.Option("--max-cost", help="CPU seconds of a job; default: no limit.")
-    ] = None,
-    connections: Annotated[
-        int | None, typer.Option(help="Limit on requests answered at the same time; default: no limit.")
-    ] = None,
-    streams: Annotated[
-        int | None, typer.Option(help="Limit on open event streams; default: no limit.")
-    ] = None,
+    limits: KeyLimits,
     file: KeysFile = None,
     json: AsJson = False,
 ) -> None:
     """Create a key, print it once, and store its hash."""
     from service.cli.keys import run_add  # noqa: PLC0415 (start-up time)
 
-    limits = {"requests_per_minute": requests_per_minute, "unfinished_jobs": unfinished_jobs}
-    limits |= {"highest_priority": highest_priority, "max_cost_s": max_cost_s}
-    limits |= {"connections": connections, "streams": streams}
-    run_add(name, file, as_json=json, scopes=scopes, expires=expires, project=project, **limits)
+    run_add(name, file, as_json=json, scopes=scopes, expires=expires, project=project, **asdict(limits))
 
 
 @verbs.command(epilog="Example: loa keys rotate test-bench-3 --overlap 7d")

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from service.cli.guard import computing, guarded
+from service.cli.signature import grouped
 from service.cli.verbs.options import DEFAULT_SERVICE, AsJson, Service
 from service.cli.verbs.overrides import file_argument, overridable
 from service.input_file import InputFile
@@ -56,10 +58,30 @@ def work(
     run_work(data_directory=data_directory, workers=workers)
 
 
+@dataclass(frozen=True)
+class TermOptions:
+    """The terms of a job."""
+
+    title: Annotated[str, typer.Option(help="Name of the job in lists.")] = ""
+    tag: Annotated[list[str] | None, typer.Option(help="Tag of the job; may be repeated.")] = None
+    priority: Annotated[int, typer.Option(help="-9 to 9; the highest is next.")] = 0
+    max_cost_s: Annotated[
+        float | None, typer.Option("--max-cost", help="CPU seconds that the job may take; default: no limit.")
+    ] = None
+
+    @property
+    def as_sent(self) -> dict[str, Any]:
+        """Return them as the client takes them."""
+        limits = {"priority": self.priority, "max_cost_s": self.max_cost_s}
+        return {"title": self.title, "tags": tuple(self.tag or ()), **limits}
+
+
 @verbs.command(epilog="Example: loa submit examples/palermo_spur_20_20.toml --wait -o ste.nc")
 @computing
 @overridable("file", "case or scene")
+@grouped
 def submit(
+    *,
     file: Annotated[InputFile, file_argument("Case or scene file", "FILE")],
     service: Service = DEFAULT_SERVICE,
     wait: Annotated[bool, typer.Option("--wait", help="Wait for the result.")] = False,
@@ -76,18 +98,13 @@ def submit(
     inputs: Annotated[
         str | None, typer.Option(help="Further inputs of that process, as a JSON object.")
     ] = None,
-    title: Annotated[str, typer.Option(help="Name of the job in lists.")] = "",
-    tag: Annotated[list[str] | None, typer.Option(help="Tag of the job; may be repeated.")] = None,
-    priority: Annotated[int, typer.Option(help="-9 to 9; the highest is next.")] = 0,
-    max_cost_s: Annotated[
-        float | None, typer.Option("--max-cost", help="CPU seconds that the job may take; default: no limit.")
-    ] = None,
+    terms: TermOptions,
     json: AsJson = False,
 ) -> None:
     """Submit a case or a scene to a service."""
     from service.cli.remote import ProcessRequest, run_submit  # noqa: PLC0415 (start-up time)
 
-    request = ProcessRequest(process, inputs, title, tuple(tag or ()), priority, max_cost_s)
+    request = ProcessRequest(process, inputs, terms.as_sent)
     run_submit(file, service, request, wait=wait, output=output, as_json=json)
 
 

@@ -52,28 +52,28 @@ def claimed(machine: Bench) -> Claim:
 
 
 def test_every_follower_is_told_every_state_in_order(machine: Bench, watcher: Watcher[Job]) -> None:
-    job, told = machine.submit(text="a"), [list[Job | None]() for _ in range(5)]
+    job, received = machine.submit(text="a"), [list[Job | None]() for _ in range(5)]
     with ExitStack() as following:
-        for each in told:
+        for each in received:
             following.enter_context(watcher.following(job, each.append))
         claim = claimed(machine)
-        until(lambda: all(each for each in told))
+        until(lambda: all(each for each in received))
         for fraction in (0.2, 0.4):
             machine.claims.progress(claim, "first", fraction, fraction)
-            until(lambda fraction=fraction: all(_fraction(each) == fraction for each in told))
+            until(lambda fraction=fraction: all(_fraction(each) == fraction for each in received))
         machine.claims.succeed(claim)
-        until(lambda: all(_status(each) == "successful" for each in told))
-    for each in told:
+        until(lambda: all(_status(each) == "successful" for each in received))
+    for each in received:
         states = [(state.status, state.fraction) for state in each if state is not None]
         assert states == [("running", 0.0), ("running", 0.2), ("running", 0.4), ("successful", 1.0)]
 
 
-def _fraction(told: list[Job | None]) -> float:
-    return told[-1].fraction if told and told[-1] is not None else -1.0
+def _fraction(received: list[Job | None]) -> float:
+    return received[-1].fraction if received and received[-1] is not None else -1.0
 
 
-def _status(told: list[Job | None]) -> str:
-    return told[-1].status if told and told[-1] is not None else ""
+def _status(received: list[Job | None]) -> str:
+    return received[-1].status if received and received[-1] is not None else ""
 
 
 def test_a_state_that_was_reached_before_anybody_followed_is_told(
@@ -81,18 +81,18 @@ def test_a_state_that_was_reached_before_anybody_followed_is_told(
 ) -> None:
     job = machine.submit(text="a")
     machine.claims.succeed(claimed(machine))
-    told: list[Job | None] = []
-    with watcher.following(job, told.append):
-        until(lambda: _status(told) == "successful")
+    received: list[Job | None] = []
+    with watcher.following(job, received.append):
+        until(lambda: _status(received) == "successful")
 
 
 def test_a_dismissal_is_told_to_those_of_that_job_alone(machine: Bench, watcher: Watcher[Job]) -> None:
     mine, other = machine.submit(text="same"), machine.submit(text="same")
-    told: list[Job | None] = []
+    received: list[Job | None] = []
     spared: list[Job | None] = []
-    with watcher.following(mine, told.append), watcher.following(other, spared.append):
+    with watcher.following(mine, received.append), watcher.following(other, spared.append):
         machine.submissions.dismiss(mine.id)
-        until(lambda: _status(told) == "dismissed")
+        until(lambda: _status(received) == "dismissed")
         claimed(machine)
         until(lambda: _status(spared) == "running")
     assert [_status([state]) for state in spared] == ["running"]
@@ -101,13 +101,13 @@ def test_a_dismissal_is_told_to_those_of_that_job_alone(machine: Bench, watcher:
 def test_two_hundred_followers_cost_the_questions_of_one(machine: Bench, watcher: Watcher[Job]) -> None:
     pair, claims = [machine.submit(text=text) for text in "ab"], [claimed(machine) for _ in range(2)]
     heard = threading.Semaphore(0)
-    told: list[Job | None] = []
+    received: list[Job | None] = []
     asked: list[str] = []
     with ExitStack() as following:
         for number in range(200):
             following.enter_context(watcher.following(pair[number % 2], lambda _: heard.release()))
-        following.enter_context(watcher.following(pair[0], told.append))
-        until(lambda: _status(told) == "running")  # everything before is told by now
+        following.enter_context(watcher.following(pair[0], received.append))
+        until(lambda: _status(received) == "running")  # everything before is received by now
         event.listen(watcher._engine, "before_cursor_execute", lambda *words: asked.append(words[2]))
         while heard.acquire(blocking=False):
             pass
@@ -129,20 +129,20 @@ def test_what_is_not_heard_is_seen(
     monkeypatch.setattr(
         watching, "dialect_of", lambda _: type("None", (), {"commits": lambda self, _: deaf()})()
     )
-    job, told = machine.submit(text="a"), list[Job | None]()
-    with watcher.following(job, told.append):
+    job, received = machine.submit(text="a"), list[Job | None]()
+    with watcher.following(job, received.append):
         claimed(machine)
-        until(lambda: _status(told) == "running")
+        until(lambda: _status(received) == "running")
         machine.submissions.dismiss(job.id)
-        until(lambda: _status(told) == "dismissed")
+        until(lambda: _status(received) == "dismissed")
 
 
 def test_a_job_that_is_removed_ends_its_streams(machine: Bench, watcher: Watcher[Job]) -> None:
-    job, told = machine.submit(text="a"), list[Job | None]()
-    with watcher.following(job, told.append):
+    job, received = machine.submit(text="a"), list[Job | None]()
+    with watcher.following(job, received.append):
         with writing(machine.engine) as connection:
             connection.execute(delete(jobs).where(jobs.c.id == job.id))
-        until(lambda: told[-1:] == [None])  # it may have been seen before it was removed
+        until(lambda: received[-1:] == [None])  # it may have been seen before it was removed
 
 
 def test_without_followers_there_is_no_thread(machine: Bench, watcher: Watcher[Job]) -> None:
@@ -154,10 +154,10 @@ def test_without_followers_there_is_no_thread(machine: Bench, watcher: Watcher[J
 
 
 def test_a_stop_tells_all_who_follow(machine: Bench, watcher: Watcher[Job]) -> None:
-    told: list[Job | None] = []
-    with watcher.following(machine.submit(text="a"), told.append):
+    received: list[Job | None] = []
+    with watcher.following(machine.submit(text="a"), received.append):
         watcher.stop()
-        assert told == [None]
+        assert received == [None]
 
 
 def test_lost_connections_lose_no_state(
@@ -167,17 +167,17 @@ def test_lost_connections_lose_no_state(
     url = postgres.emptied_database()
     machine = bench(tmp_path, REGISTRY, database_url=url)
     engine = database_engine(url)
-    watcher, told = Watcher(engine, lambda job: job), list[Job | None]()
+    watcher, received = Watcher(engine, lambda job: job), list[Job | None]()
     try:
-        with watcher.following(machine.submit(text="a"), told.append):
+        with watcher.following(machine.submit(text="a"), received.append):
             claim = claimed(machine)
-            until(lambda: _status(told) == "running")
+            until(lambda: _status(received) == "running")
             assert postgres.end_connections(url) > 0
             machine.claims.progress(claim, "first", 0.5, 0.5)
-            until(lambda: _fraction(told) == 0.5)
+            until(lambda: _fraction(received) == 0.5)
             postgres.fall_and_rise(0.2)
             machine.claims.succeed(claim)
-            until(lambda: _status(told) == "successful")
+            until(lambda: _status(received) == "successful")
     finally:
         watcher.stop()
         engine.dispose()
