@@ -1,0 +1,96 @@
+"""The account of an import: every value of a file has one line."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from service.from_rexs.gear_unit import GearUnit
+from service.rexs import Attribute, Component, LoadCase, LoadSpectrum, Model, Reference, Relation
+
+MODULE = Attribute("normal_module", "floating_point", 4.5, "mm")
+HELIX = Attribute("helix_angle_reference_diameter", "floating_point", 21.0, "deg")
+COLOR = Attribute("custom_color", "string", "red")
+
+
+def unit() -> GearUnit:
+    """Return a shaft with a gear and two sections, and a load case."""
+    parts = (
+        Component(1, "shaft", name="input"),
+        Component(2, "cylindrical_gear", (MODULE, HELIX, COLOR)),
+        Component(3, "shaft_section"),
+        Component(4, "shaft_section"),
+    )
+
+    def owned(number: int, kind: str, part: int, order: int | None = None) -> Relation:
+        return Relation(number, kind, (Reference(1, "assembly"), Reference(part, "part")), order)
+
+    relations = (
+        owned(1, "assembly", 2),
+        owned(2, "ordered_assembly", 4, order=2),
+        owned(3, "ordered_assembly", 3, order=1),
+    )
+    case = LoadCase(
+        1, (Component(1, "shaft", (Attribute("rotational_speed", "floating_point", 60.0, "1 / min"),)),)
+    )
+    return GearUnit(Model("2.0.0", "test", "1", "2026-01-01", relations, parts, (LoadSpectrum(1, (case,)),)))
+
+
+def fates(gears: GearUnit) -> dict[tuple[str, str], str]:
+    """Return the fates by place and item."""
+    return {(line.place, line.item): line.fate for line in gears.account.lines()}
+
+
+def test_each_component_and_attribute_has_exactly_one_line() -> None:
+    gears = unit()
+    lines = [(line.place, line.item) for line in gears.account.lines()]
+    expected = [
+        (place, item)
+        for place, part in gears.model.all_components()
+        for item in ("", *(attribute.id for attribute in part.attributes))
+    ]
+    assert lines == expected
+
+
+def test_what_is_read_is_taken_and_what_is_not_is_ignored() -> None:
+    gears = unit()
+    gear = gears.part(2)
+    assert gear.number("normal_module", "normal_module_mm") == pytest.approx(4.5e-3, rel=1e-15)
+    assert gear.number("face_width", "face_width_mm") is None
+    said = fates(gears)
+    assert said["component 2", "normal_module"] == "taken"
+    assert said["component 2", "custom_color"] == "ignored"
+    assert said["component 2", ""] == "taken"
+    assert said["component 3", ""] == "ignored"
+    assert ("component 2", "face_width") not in said
+
+
+def test_the_last_word_counts_and_a_value_that_lacks_can_be_said() -> None:
+    gears = unit()
+    gear = gears.part(2)
+    gear.number("helix_angle_reference_diameter", "helix_angle_deg")
+    gear.say("helix_angle_reference_diameter", "refused", "outside the bounds")
+    gear.say("addendum_modification_coefficient", "derived", "from the center distance")
+    said = fates(gears)
+    assert said["component 2", "helix_angle_reference_diameter"] == "refused"
+    assert said["component 2", "addendum_modification_coefficient"] == "derived"
+
+
+def test_parts_come_in_the_order_of_an_ordered_assembly() -> None:
+    gears = unit()
+    shaft = gears.part(1)
+    assert [part.id for part in gears.children(shaft, "shaft_section")] == [3, 4]
+    assert {part.id for part in gears.children(shaft)} == {2, 3, 4}
+    owner = gears.owner(gears.part(4), "shaft")
+    assert owner is not None
+    assert owner.id == 1
+
+
+def test_load_cases_have_lines_of_their_own() -> None:
+    gears = unit()
+    ((shaft,),) = gears.load_cases()
+    assert shaft.number("rotational_speed", "speed_rpm") == pytest.approx(2.0 * math.pi, rel=1e-15)
+    place = "load spectrum 1, load case 1, component 1"
+    assert fates(gears)[place, "rotational_speed"] == "taken"
+    assert fates(gears)["component 1", ""] == "ignored"
