@@ -1,6 +1,6 @@
 /* The FMI 2.0 co-simulation interface of a gear mesh. The element has no states of its own: its outputs follow
    from its inputs at once, so that reading them after setting inputs needs no step. */
-#include "fmi2Functions.h"
+#include "fmi2.h"
 
 #include <math.h>
 #include <stdarg.h>

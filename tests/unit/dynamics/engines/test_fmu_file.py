@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import zipfile
 from dataclasses import replace
+from pathlib import Path
 from xml.etree import ElementTree
 
 import fmu_instance
@@ -64,6 +65,44 @@ def test_it_can_be_rebuilt_from_its_own_sources(element, tmp_path):
     subprocess.run(command, cwd=sources, check=True)
     shipped = tmp_path / "unpacked" / "binaries" / folder / f"gear_mesh{ending}"
     assert (sources / f"m{ending}").read_bytes() == shipped.read_bytes()
+
+
+LAYOUT = """
+#include <stdio.h>
+#define N(name) printf(#name " %d\\n", (int)(name))
+#define S(type) printf(#type " %zu\\n", sizeof(type))
+#define O(field) printf(#field " %zu\\n", offsetof(fmi2CallbackFunctions, field))
+int main(void) {
+    N(fmi2True), N(fmi2False);
+    N(fmi2OK), N(fmi2Warning), N(fmi2Discard), N(fmi2Error), N(fmi2Fatal), N(fmi2Pending);
+    N(fmi2ModelExchange), N(fmi2CoSimulation);
+    N(fmi2DoStepStatus), N(fmi2PendingStatus), N(fmi2LastSuccessfulTime), N(fmi2Terminated);
+    S(fmi2Component), S(fmi2ValueReference), S(fmi2Real), S(fmi2Integer), S(fmi2Boolean), S(fmi2Byte);
+    S(fmi2CallbackFunctions), O(logger), O(allocateMemory), O(freeMemory);
+    O(stepFinished), O(componentEnvironment);
+    puts(fmi2TypesPlatform), puts(fmi2Version);
+}
+"""
+
+
+def test_its_interface_is_that_of_the_standards_header(element, tmp_path):
+    """Signatures: the unit compiles against the header that FMPy ships. Layout: sizes and values agree."""
+    standard = Path(fmpy.__file__).parent / "c-code"
+    with zipfile.ZipFile(export_fmu(element, tmp_path / "m.fmu", binary=False)) as archive:
+        archive.extractall(tmp_path)
+    sources = tmp_path / "sources"
+    (tmp_path / "layout.c").write_text(LAYOUT)
+    found = []
+    for headers in (
+        ["-DFMI2_H", f"-I{standard}", "-include", "fmi2Functions.h"],
+        [f"-I{sources}", "-include", "fmi2.h"],
+    ):
+        strict = [*find_compiler(), "-std=c99", "-Wall", "-Werror", *headers]
+        subprocess.run([*strict, "-fsyntax-only", "fmi2_slave.c"], cwd=sources, check=True)
+        subprocess.run([*strict, "-o", "layout", "layout.c"], cwd=tmp_path, check=True)
+        found.append(subprocess.run([tmp_path / "layout"], capture_output=True, check=True).stdout)
+    assert found[0] == found[1]
+    assert len(found[0].splitlines()) == 28
 
 
 def test_a_state_can_be_kept_and_taken_up_again(element, tmp_path):
