@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.assembly.frame_couplings import stiffness_across
-from dynamics.forces.element_laws import Law
+from dynamics.errors import SolveError
+from dynamics.forces.by_address import by_address
+from dynamics.forces.compiled import compiled
+from dynamics.forces.element_laws import Elements, potential
+from dynamics.forces.law import OF_BEARINGS
+from dynamics.forces.local_state import LocalState
 from dynamics.joints import Bushing, PlanetBearing
 from dynamics.joints.matrix import Matrix, congruent
 from dynamics.joints.seat import SEAT, seat_matrix
@@ -19,58 +25,107 @@ from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray, IntArray
 
 ITERATIONS = 200
-SETTLED = 1e-13  # of the largest displacement
+SETTLED = 1e-12  # of the largest force
+SOFTEST = 1e-9  # of the largest stiffness: least damping of a step
+UNRESISTED = 1e-13  # of the largest stiffness: below it nothing resists a motion
 
 
-def rest_on_bearings(arrays: SystemArrays, matrix: FloatArray, force: FloatArray) -> FloatArray:
+@dataclass(frozen=True)
+class Rest:
+    """Where bodies rest on bearings under known forces.
+
+    Attributes
+    ----------
+    settled : bool
+        Whether the forces balance.
+    displacement : (n,) array
+        Deviations from the kinematic motion, m and rad.
+    residual : float
+        What is left of the forces, N.
+    """
+
+    settled: bool
+    displacement: FloatArray
+    residual: float
+
+
+def rest_on_bearings(arrays: SystemArrays, matrix: FloatArray, force: FloatArray) -> Rest:
     """Return q (n,) with matrix q + bearing forces = force, `matrix` (n, n) that of all but the bearings.
 
-    Rolling contacts count as springs of the secant that their force so far has, which is right at once where
-    statics alone fixes the forces; curves as their tangents. Motions that nothing resists stay zero.
+    Damped Newton steps reduce energy less work of the forces, which has one lowest place: no law of a bearing
+    softens. Motions that no bearing resists, wherever it is, stay zero.
     """
-    rows = bearing_rows(arrays)
-    gradient = arrays.direction[rows]
-    stiffness, offset = arrays.elements.stiffness[rows], np.zeros(rows.size)
-    q = np.zeros(force.size)
+    ways = _resisted(arrays, matrix)
+    largest = float(np.max(np.abs(ways.T @ matrix @ ways), initial=1.0))
+    q, damping = np.zeros(force.size), max(largest, float(np.max(arrays.elements.stiffness, initial=0.0)))
+    now = _on_bearings(arrays, matrix, q)
     for _ in range(ITERATIONS):
-        left = matrix + gradient.T @ (stiffness[:, None] * gradient)
-        solution = np.asarray(np.linalg.lstsq(left, force - offset @ gradient, rcond=1e-13)[0])
-        if np.max(np.abs(solution - q), initial=0.0) <= SETTLED * np.max(np.abs(solution), initial=0.0):
-            return solution
-        q = solution
-        stiffness, offset = _springs(arrays, q, rows, stiffness * (gradient @ q) + offset)
-    return q
+        missing = ways.T @ (force - now.force)
+        residual = float(np.max(np.abs(missing), initial=0.0))
+        scale = max(float(np.max(np.abs(ways.T @ force), initial=0.0)), now.largest)
+        if residual <= SETTLED * scale:
+            return Rest(True, q, residual)
+        stiffness = ways.T @ now.stiffness @ ways
+        floor = SOFTEST * float(np.max(np.abs(stiffness)))
+        damping = max(damping, floor)
+        step = ways @ np.linalg.solve(stiffness + damping * np.eye(missing.size), missing)
+        then = _on_bearings(arrays, matrix, q + step)
+        gained = float(force @ step) - (then.energy - now.energy)
+        closer = np.max(np.abs(ways.T @ (force - then.force))) < residual
+        if gained > 0.0 or closer:
+            q, now, damping = q + step, then, damping / 10.0
+        else:
+            damping *= 4.0
+    return Rest(False, q, residual)
 
 
 def bearing_rows(arrays: SystemArrays) -> IntArray:
     """Return the rows of bearings that are not linear."""
-    bearing = np.isin(arrays.elements.law, (Law.ROLLING_CONTACT, Law.SPRING_CURVE))
+    bearing = np.isin(arrays.elements.law, OF_BEARINGS)
     return np.flatnonzero(np.repeat(bearing, np.diff(arrays.elements.first)))
 
 
-def _springs(
-    arrays: SystemArrays, q: FloatArray, rows: IntArray, force: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Stiffnesses and forces at no displacement of the bearings' rows, which now carry `force`."""
-    elements, laws = arrays.elements, arrays.elements.laws
-    local = local_state(arrays, 0.0, q, np.zeros(q.size))
-    on_row = np.zeros(elements.offset.size)
-    on_row[rows] = force
-    stiffness, offset = np.zeros(elements.offset.size), np.zeros(elements.offset.size)
-    for e, law in enumerate(elements.law):
-        first, end = elements.first[e], elements.first[e + 1]
-        if law == Law.ROLLING_CONTACT:
-            entry = elements.entry[e]
-            carried = float(np.linalg.norm(on_row[first:end]))
-            press = (carried / laws.rolling_contact.stiffness[entry]) ** (
-                1.0 / laws.rolling_contact.exponent[entry]
-            )
-            way = laws.rolling_contact.clearance[entry] + press
-            stiffness[first:end] = carried / way if way > 0.0 else 0.0
-        elif law == Law.SPRING_CURVE:
-            stiffness[first] = local.tangent[first, 0]
-            offset[first] = local.force[first] - local.tangent[first, 0] * local.coordinate[first]
-    return stiffness[rows], offset[rows]
+class _Answer(NamedTuple):
+    """Force (n,) and stiffness (n, n) of all springs, the energy in them, the largest force of a bearing."""
+
+    force: FloatArray
+    stiffness: FloatArray
+    energy: float
+    largest: float
+
+
+def _resisted(arrays: SystemArrays, matrix: FloatArray) -> FloatArray:
+    """Return the motions (n, m) that springs or bearings resist, orthonormal in meters."""
+    gradient = arrays.direction[bearing_rows(arrays)]
+    typical = arrays.elements.stiffness[bearing_rows(arrays)]
+    held = matrix + gradient.T @ (typical[:, None] * gradient)
+    value, vector = np.linalg.eigh(held / np.outer(arrays.scale, arrays.scale))
+    return np.asarray(vector[:, value > UNRESISTED * value[-1]] / arrays.scale[:, None])
+
+
+def _on_bearings(arrays: SystemArrays, matrix: FloatArray, q: FloatArray) -> _Answer:
+    """Return what springs and bearings answer to `q`."""
+    elements = arrays.elements
+    local, force, stiffness = local_state(arrays, 0.0, q, np.zeros(q.size)), matrix @ q, matrix.copy()
+    largest = float(np.max(np.abs(force / arrays.scale), initial=0.0))
+    bearings = np.flatnonzero(np.isin(elements.law, OF_BEARINGS))
+    for e in bearings:
+        rows = slice(elements.first[e], elements.first[e + 1])
+        gradient = arrays.direction[rows]
+        force = force + gradient.T @ local.force[rows]
+        stiffness += gradient.T @ local.tangent[rows, : gradient.shape[0]] @ gradient
+        largest = max(largest, float(np.max(np.abs(local.force[rows]))))
+    stored = _stored(by_address(elements), by_address(local), bearings)
+    return _Answer(force, stiffness, 0.5 * float(q @ matrix @ q) + stored, largest)
+
+
+@compiled
+def _stored(elements: Elements, local: LocalState, chosen: IntArray) -> float:
+    """Return the energy that the elements `chosen` store, J."""
+    energy = 0.0
+    for e in chosen:
+        energy += potential(elements, local, e)[0]
+    return energy
 
 
 def linear_scene(
@@ -85,10 +140,18 @@ def linear_scene(
     They have the tangent stiffness and damping, and by their preload the force, of where the bodies rest on
     the bearings under the forces `push` (n,) of the meshes and the loads at t = 0. `bearings` are the last
     elements with the names of their bearings, `supports` these with their dampings filled in.
+
+    Raises
+    ------
+    SolveError
+        If they do not rest.
     """
     torque = np.array([float(load.torque(0.0)) for load in scene.loads])
     matrix = arrays.stiffness + stiffness_across(arrays, 0.0)
-    q = rest_on_bearings(arrays, matrix, arrays.constant + torque @ arrays.load.direction + push)
+    rest = rest_on_bearings(arrays, matrix, arrays.constant + torque @ arrays.load.direction + push)
+    if not rest.settled:
+        raise SolveError(f"the shafts do not rest on their bearings: {rest.residual:.3g} N are left")
+    q = rest.displacement
     local, linear = local_state(arrays, 0.0, q, np.zeros(q.size)), dict(supports)
     first = arrays.elements.first[arrays.elements.law.size - len(bearings) :]
     for start, (name, at) in zip(first, bearings, strict=False):
@@ -101,13 +164,14 @@ def linear_scene(
             local.coordinate[rows],
         )
         linear[name] = with_tangent(linear[name], at, *state)
-    parts = [linear[part.name] for part in (*scene.bushings, *scene.planet_bearings)]
+    parts = [linear[part.name] for part in (*scene.ground_bearings, *scene.planet_bearings)]
     return replace(
         scene,
         bushings=tuple(part for part in parts if isinstance(part, Bushing)),
         planet_bearings=tuple(part for part in parts if isinstance(part, PlanetBearing)),
         rolling_contacts=(),
         spring_curves=(),
+        rolling_bearings=(),
     )
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from dynamics.arrays.elements import Element
-from dynamics.forces.element_laws import Law
+from dynamics.forces.law import Law
 from dynamics.mechanism.flank_gradients import approach
 from dynamics.mechanism.flanks import Flanks
 from dynamics.mechanism.line_of_action import LineOfAction, line_of_action

@@ -21,7 +21,14 @@ def force_elements(model: Model) -> tuple[tuple[Element, ...], ElementLaws]:
     in_space, spatial = spatial_elements(model, plain)
     by_speed, speed = speed_elements(scene, rotors, kinematics)
     in_frames, rotating_frame = rotating_frame_elements(model)
-    on_bearings, contact, curve = bearing_elements(scene, rotors, mechanism.bearings, mechanism.bearing_load)
+    on_bearings, bearing_laws = bearing_elements(scene, rotors, mechanism.bearings, mechanism.bearing_duty)
     across, frame = frame_coupling_elements(scene, rotors, tilt_lever(scene))
-    laws = ElementLaws(flanks.law, speed, contact, curve, spatial, rotating_frame, frame)
+    laws = ElementLaws(
+        flank=flanks.law,
+        speed_torque=speed,
+        spatial_flank=spatial,
+        rotating_frame=rotating_frame,
+        frame_coupling=frame,
+        **bearing_laws,
+    )
     return (*in_space, *by_speed, *in_frames, *across, *on_bearings), laws

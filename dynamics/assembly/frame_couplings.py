@@ -10,8 +10,8 @@ import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.arrays.elements import Element
-from dynamics.forces.element_laws import Law
 from dynamics.forces.frame_coupling import FrameCouplingLaws
+from dynamics.forces.law import Law
 from dynamics.joints.seat import SEAT
 from dynamics.mechanism.columns import section_rows
 from dynamics.mechanism.coupling_rows import ACROSS, full_matrix

@@ -9,7 +9,7 @@ import numpy as np
 from dynamics.arrays.elements import Element
 from dynamics.assembly.model import Model
 from dynamics.effects.frame_term import FrameTerm, frame_laws, frame_lever
-from dynamics.forces.element_laws import Law
+from dynamics.forces.law import Law
 from dynamics.forces.rotating_frame import RotatingFrameLaws
 from dynamics.mechanism.freedoms import ROTATION, Freedoms
 from dynamics.mechanism.mechanism import Mechanism

@@ -10,8 +10,8 @@ import numpy as np
 from dynamics.arrays.elements import Element
 from dynamics.assembly.model import Model
 from dynamics.effects.flank_terms import CENTER_DISTANCE, MISALIGNMENT, SLIDING, FlankInSpace, FlankTerms
-from dynamics.forces.element_laws import Law
 from dynamics.forces.grid_tables import pack_grids
+from dynamics.forces.law import Law
 from dynamics.forces.spatial_flank import SpatialFlankLaws
 from dynamics.mechanism.flank_gradients import middle_from_driver
 from dynamics.types import BoolArray, FloatArray, IntArray

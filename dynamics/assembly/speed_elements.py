@@ -8,7 +8,7 @@ import numpy as np
 
 from dynamics.arrays.elements import Element
 from dynamics.errors import InputError
-from dynamics.forces.element_laws import Law
+from dynamics.forces.law import Law
 from dynamics.forces.speed_torque import SpeedTorqueLaws, pack_speed_torques
 from dynamics.mechanism.columns import column_count, turn_row
 from dynamics.mechanism.kinematics import Kinematics

@@ -5,15 +5,14 @@ from __future__ import annotations
 from dynamics.effects.effect import RotorEffect, Verdict
 from dynamics.effects.loaded_rotors import LoadedRotor
 from dynamics.mechanism.additions import BEARING_LAWS
-from dynamics.mechanism.bearing_elements import nonlinear_influences
 
 
 class BearingClearance(RotorEffect):
-    """One force element per rolling contact and per curve."""
+    """One force element per rolling contact, curve and rolling bearing."""
 
     name = "bearing_clearance"
     adds = (BEARING_LAWS,)
-    cost = "one force element of one or two rows per law"
+    cost = "one force element of one, two or five rows per law"
     linear = False
 
     def called_for(self, rotor: LoadedRotor) -> Verdict:
@@ -22,8 +21,9 @@ class BearingClearance(RotorEffect):
         Its influence is the most that the tangent of a law misses of the displacement under the load.
         """
         mechanism = rotor.mechanism
-        missed = nonlinear_influences(mechanism.scene, mechanism.bearing_load)
-        own = [influence for shaft, influence in missed if shaft == rotor.rotor.shaft.name]
+        duties, own_supports = mechanism.bearing_duty, {part.name for part in rotor.rotor.supports}
+        laws = [law for law in mechanism.scene.bearing_laws if law.bushing in own_supports]
+        own = [law.missed(duties[law.bushing]) for law in laws]
         if not own:
             return Verdict(False, False, "no bearing with clearance or a nonlinear law", 0.0)
         reason = "bearings with clearance or nonlinear laws; off: their tangents at the load"

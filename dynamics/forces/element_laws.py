@@ -7,11 +7,11 @@ function), a member of `Law`, a field of `ElementLaws`, a branch in `evaluate` a
 
 from __future__ import annotations
 
-from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
 
+from dynamics.forces.ball_elements import BallElements, balls, balls_energy
 from dynamics.forces.by_address import by_address
 from dynamics.forces.compiled import inner
 from dynamics.forces.flank_force import FlankLaws, flank_force
@@ -20,7 +20,9 @@ from dynamics.forces.frame_coupling import (
     frame_coupling,
     frame_coupling_energy,
 )
+from dynamics.forces.law import Law
 from dynamics.forces.local_state import LocalState
+from dynamics.forces.roller_elements import RollerElements, rollers, rollers_energy
 from dynamics.forces.rolling_contact import (
     RollingContactLaws,
     rolling_contact,
@@ -33,23 +35,11 @@ from dynamics.forces.spring_curve import SpringCurveLaws, spring_curve, spring_c
 from dynamics.forces.table_energy import table_energy
 from dynamics.types import FloatArray, IntArray
 
-
-class Law(IntEnum):
-    """Kinds of force laws."""
-
-    FLANK = 0  # p = 1: a flank in contact, from its table
-    SPEED_TORQUE = 1  # p = 1: a torque that depends on a shaft's speed
-    ROLLING_CONTACT = 2  # p = 2: a rolling bearing's radial force
-    SPRING_CURVE = 3  # p = 1: a bearing's force by displacement in one direction
-    SPATIAL_FLANK = 4  # p = 1 to 5: a flank that feels misalignment, center distance, friction
-    ROTATING_FRAME = 5  # p = 2 or 3: gyroscopic moments, Coriolis and centripetal terms
-    FRAME_COUPLING = 6  # p = 4 or 8: a coupling of shafts in frames that turn against each other
-
-
 FLANK, SPEED_TORQUE = int(Law.FLANK), int(Law.SPEED_TORQUE)
 ROLLING_CONTACT, SPRING_CURVE = int(Law.ROLLING_CONTACT), int(Law.SPRING_CURVE)
 SPATIAL_FLANK = int(Law.SPATIAL_FLANK)
 ROTATING_FRAME, FRAME_COUPLING = int(Law.ROTATING_FRAME), int(Law.FRAME_COUPLING)
+BALLS, ROLLERS = int(Law.BALLS), int(Law.ROLLERS)
 
 
 class ElementLaws(NamedTuple):
@@ -62,6 +52,8 @@ class ElementLaws(NamedTuple):
     spatial_flank: SpatialFlankLaws
     rotating_frame: RotatingFrameLaws
     frame_coupling: FrameCouplingLaws
+    balls: BallElements
+    rollers: RollerElements
 
 
 class Elements(NamedTuple):
@@ -128,6 +120,8 @@ ROUTINES = {
     Law.SPATIAL_FLANK: (spatial_flank, spatial_energy),
     Law.ROTATING_FRAME: (rotating_frame, rotating_frame_energy),
     Law.FRAME_COUPLING: (frame_coupling, frame_coupling_energy),
+    Law.BALLS: (balls, balls_energy),
+    Law.ROLLERS: (rollers, rollers_energy),
 }
 """What a kind of law is compiled from, when a scene first has it; flanks are compiled into every loop."""
 
@@ -168,6 +162,10 @@ def evaluate(elements: Elements, local: LocalState, e: int) -> None:
         rotating_frame(laws.rotating_frame, entry, local, row, e)
     elif kind == FRAME_COUPLING:
         frame_coupling(laws.frame_coupling, entry, local, row, elements.mesh[e])
+    elif kind == BALLS:
+        balls(laws.balls, entry, local, row, elements.mesh[e])
+    elif kind == ROLLERS:
+        rollers(laws.rollers, entry, local, row, elements.mesh[e])
 
 
 @inner
@@ -190,6 +188,10 @@ def potential(elements: Elements, local: LocalState, e: int) -> tuple[float, flo
         energy = rotating_frame_energy(laws.rotating_frame, entry, local, row, e)
     elif kind == FRAME_COUPLING:
         energy, slope = frame_coupling_energy(laws.frame_coupling, entry, local, row, elements.mesh[e])
+    elif kind == BALLS:
+        energy, slope = balls_energy(laws.balls, entry, local, row, elements.mesh[e])
+    elif kind == ROLLERS:
+        energy, slope = rollers_energy(laws.rollers, entry, local, row, elements.mesh[e])
     return energy, slope
 
 
@@ -209,8 +211,9 @@ def power_along_axes(elements: Elements, local: LocalState, e: int) -> float:
 
 @inner
 def power_by_frames(elements: Elements, local: LocalState, e: int) -> float:
-    """Return what the rotation of frames against each other stores in a coupling across them, W."""
-    if elements.law[e] != FRAME_COUPLING:
+    """Return what the rotation of frames, and of cages, stores in what it turns, W."""
+    kind = elements.law[e]
+    if elements.mesh[e] < 0 or kind not in (FRAME_COUPLING, BALLS, ROLLERS):
         return 0.0
     return potential(elements, local, e)[1] * float(local.pace[elements.mesh[e]])
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from dynamics.types import FloatArray, IntArray
 
 
@@ -47,3 +49,22 @@ class LocalState(NamedTuple):
     tangent: FloatArray
     viscous: FloatArray
     hint: IntArray
+
+
+def alone(rows: int) -> LocalState:
+    """Allocate for one law of that many rows, and one position."""
+    return LocalState(
+        np.zeros(1),
+        np.zeros(1),
+        np.zeros(0),
+        np.zeros((1, 0)),
+        np.zeros(rows),
+        np.zeros(rows),
+        np.zeros(rows),
+        np.zeros((1, 2)),
+        np.zeros(rows),
+        np.zeros(rows),
+        np.zeros((rows, rows)),
+        np.zeros((rows, rows)),
+        np.zeros(1, dtype=np.int64),
+    )

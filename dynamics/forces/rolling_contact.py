@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from dynamics.checks import not_negative, positive, within
+from dynamics.forces.bearing_law import BearingDuty
+from dynamics.forces.law import Law
 from dynamics.forces.local_state import LocalState
 from dynamics.forces.routine import routine
 from dynamics.types import FloatArray
@@ -60,6 +62,8 @@ class RollingContact:
         if self.damping is not None:
             not_negative("damping", self.damping)
 
+    law: ClassVar[Law] = Law.ROLLING_CONTACT
+
     def displacement(self, force: float) -> float:
         """Return how far the shaft moves along a static `force` (N, > 0), m."""
         return self.clearance + float((force / self.stiffness) ** (1.0 / self.exponent))
@@ -72,6 +76,19 @@ class RollingContact:
     def typical_load(self, load: float) -> float:
         """Return `load` (N), or the force at one micrometer of compression if that is larger."""
         return float(max(load, self.stiffness * LEAST_PRESS**self.exponent))
+
+    def rows(self, duty: BearingDuty) -> FloatArray:
+        """Return the displacements x and y, (2, 5)."""
+        return np.eye(2, 5)
+
+    def typical(self, duty: BearingDuty) -> FloatArray:
+        """Return the stiffness of the rows at the typical load, (2,), N/m."""
+        return np.full(2, self.tangent(self.typical_load(duty.load)))
+
+    def missed(self, duty: BearingDuty) -> float:
+        """Return what its tangent misses of the displacement under the typical load, m."""
+        load = self.typical_load(duty.load)
+        return self.displacement(load) - load / self.tangent(load)
 
 
 class RollingContactLaws(NamedTuple):
@@ -92,16 +109,15 @@ class RollingContactLaws(NamedTuple):
     reach: FloatArray
 
 
-def pack_rolling_contacts(
-    parts: Sequence[RollingContact], loads: Sequence[float], masses: Sequence[float]
-) -> RollingContactLaws:
-    """Lay out `parts`, whose bearings typically carry `loads` (N) and `masses` (kg)."""
-    typical = [part.typical_load(load) for part, load in zip(parts, loads, strict=True)]
+def pack_rolling_contacts(laws: Sequence[tuple[RollingContact, BearingDuty]]) -> RollingContactLaws:
+    """Lay out laws, each with the duty of its bearing."""
+    parts = [part for part, _ in laws]
+    typical = [part.typical_load(duty.load) for part, duty in laws]
     damping = [
-        2.0 * part.damping_ratio * math.sqrt(part.tangent(load) * mass)
+        2.0 * part.damping_ratio * math.sqrt(part.tangent(load) * duty.mass)
         if part.damping is None
         else part.damping
-        for part, load, mass in zip(parts, typical, masses, strict=True)
+        for (part, duty), load in zip(laws, typical, strict=True)
     ]
     fields = ([getattr(part, name) for part in parts] for name in ("stiffness", "exponent", "clearance"))
     reach = [REACH_SHARE * load for load in typical]

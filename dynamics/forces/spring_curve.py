@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from dynamics.checks import finite, increasing, one_of
 from dynamics.errors import InputError
+from dynamics.forces.bearing_law import BearingDuty
 from dynamics.forces.compiled import inner
+from dynamics.forces.law import Law
 from dynamics.forces.local_state import LocalState
 from dynamics.forces.routine import routine
 from dynamics.types import FloatArray, IntArray
@@ -55,10 +57,33 @@ class SpringCurve:
             finite(f"force[{index}]", value)
         increasing("force", self.force, "A bearing whose force falls with displacement is unstable.")
 
+    law: ClassVar[Law] = Law.SPRING_CURVE
+
     @property
     def slope(self) -> float:
         """Mean stiffness over the table, N/m or N m/rad."""
         return (self.force[-1] - self.force[0]) / (self.displacement[-1] - self.displacement[0])
+
+    def lever(self, duty: BearingDuty) -> float:
+        """Return coordinate over displacement: 1, or the radius in m for tilts."""
+        return duty.lever if self.direction.startswith("tilt") else 1.0
+
+    def rows(self, duty: BearingDuty) -> FloatArray:
+        """Return the displacement of its direction, (1, 5)."""
+        return self.lever(duty) * np.eye(5)[[DIRECTIONS.index(self.direction)]]
+
+    def typical(self, duty: BearingDuty) -> FloatArray:
+        """Return its mean stiffness, (1,), N/m."""
+        return np.array([self.slope / self.lever(duty) ** 2])
+
+    def missed(self, duty: BearingDuty) -> float:
+        """Return how far the table is off a straight line through its value at 0, m; of a tilt 0."""
+        if self.direction.startswith("tilt"):
+            return 0.0
+        ways, forces = np.array(self.displacement), np.array(self.force)
+        straight = np.interp(0.0, ways, forces) + self.slope * ways
+        off = float(np.max(np.abs(forces - straight))) / self.slope
+        return min(off, float(np.max(np.abs(ways[[0, -1]]))))
 
     def pieces(self) -> tuple[FloatArray, FloatArray]:
         """Return the starts of the cubics (S,) and their ascending coefficients (S, 4).
@@ -97,11 +122,11 @@ class SpringCurveLaws(NamedTuple):
     lever: FloatArray
 
 
-def pack_spring_curves(parts: Sequence[SpringCurve], lever: float) -> SpringCurveLaws:
-    """Lay out `parts`; `lever` (m) makes lengths of tilts."""
-    pieces = [part.pieces() for part in parts]
+def pack_spring_curves(laws: Sequence[tuple[SpringCurve, BearingDuty]]) -> SpringCurveLaws:
+    """Lay out laws, each with the duty of its bearing."""
+    pieces = [part.pieces() for part, _ in laws]
     energies = [_energies(start, coefficient) for start, coefficient in pieces]
-    levers = [lever if part.direction.startswith("tilt") else 1.0 for part in parts]
+    levers = [part.lever(duty) for part, duty in laws]
     return SpringCurveLaws(
         np.cumsum([0, *(start.size for start, _ in pieces)], dtype=np.int64),
         np.concatenate([np.empty(0), *(start for start, _ in pieces)]),

@@ -10,7 +10,7 @@ from dynamics.arrays.arrays import SystemArrays
 from dynamics.assembly.assemble import System
 from dynamics.assembly.bearing_rest import bearing_rows, rest_on_bearings
 from dynamics.assembly.frame_couplings import stiffness_across
-from dynamics.forces.element_laws import Law
+from dynamics.forces.law import Law
 from dynamics.forces.table_lookup import table_deflection
 from dynamics.motion.force_balance import ForceBalance, force_balance
 from dynamics.motion.observation import local_state, observe_laws
@@ -158,7 +158,7 @@ def _on_springs(
     pushed = external + (secant * (touching - offset)) @ rows
     q = _solve(arrays, matrix, pushed, np.zeros(n))
     if bearing_rows(arrays).size:
-        q = rest_on_bearings(arrays, matrix, pushed)
+        q = rest_on_bearings(arrays, matrix, pushed).displacement
     return q, secant * (rows @ q + offset - touching)
 
 

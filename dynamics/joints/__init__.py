@@ -7,6 +7,7 @@ from dynamics.joints.free_rotation import FreeRotation
 from dynamics.joints.housing import Housing, read_housing
 from dynamics.joints.imposed_rotation import ImposedRotation
 from dynamics.joints.planet_bearing import PlanetBearing
+from dynamics.joints.rolling_bearing import RollingBearing
 
 __all__ = [
     "BearingStiffness",
@@ -16,5 +17,6 @@ __all__ = [
     "Housing",
     "ImposedRotation",
     "PlanetBearing",
+    "RollingBearing",
     "read_housing",
 ]

@@ -9,10 +9,12 @@ import numpy as np
 
 from bounds import above
 from dynamics.errors import InputError
+from dynamics.forces.bearing_law import BearingDuty
 from dynamics.mechanism.additions import COAST_FLANKS, Additions
 from dynamics.mechanism.base_pitches import Corrections, with_common_base_pitches
 from dynamics.mechanism.bearing_elements import (
     BearingElement,
+    bearing_duties,
     bearing_loads,
     bearing_locations,
     supports_by_name,
@@ -44,8 +46,8 @@ class Mechanism:
         One per mesh.
     nominal_force : (m,) array
         Transverse, N.
-    bearing_load : dict of str to float
-        What each bearing typically carries, N.
+    bearing_duty : dict of str to BearingDuty
+        What is expected of each bearing.
     bearings : tuple of BearingElement
         Where the laws of bearings act that are not linear.
     corrected : dict
@@ -59,7 +61,7 @@ class Mechanism:
     rotors: tuple[Rotor, ...]
     lines: tuple[LineOfAction, ...]
     nominal_force: FloatArray
-    bearing_load: dict[str, float]
+    bearing_duty: dict[str, BearingDuty]
     bearings: tuple[BearingElement, ...]
     corrected: Corrections
     additions: Additions
@@ -105,22 +107,22 @@ def gather_mechanism(scene: Scene, additions: Additions) -> Mechanism:
     lines = tuple(line_of_action(scene, index, sense) for index, sense in enumerate(kinematics.mesh_sense))
     coasts = COAST_FLANKS in additions.possible
     forces = nominal_forces(scene, kinematics, rotational_inertia(rotors), coasts=coasts)
-    loads = bearing_loads(scene, rotors, forces)
-    bearings, rotors = _with_bearings(scene, rotors, loads)
+    duties = bearing_duties(scene, rotors, bearing_loads(scene, rotors, forces))
+    bearings, rotors = _with_bearings(scene, rotors, duties)
     rotors = with_couplings(scene, rotors)
     _check_rotation(rotors, kinematics)
-    return Mechanism(scene, kinematics, rotors, lines, forces, loads, bearings, corrected, additions)
+    return Mechanism(scene, kinematics, rotors, lines, forces, duties, bearings, corrected, additions)
 
 
 def _with_bearings(
-    scene: Scene, rotors: tuple[Rotor, ...], loads: dict[str, float]
+    scene: Scene, rotors: tuple[Rotor, ...], duties: dict[str, BearingDuty]
 ) -> tuple[tuple[BearingElement, ...], tuple[Rotor, ...]]:
     """Return where laws of bearings act, and the rotors with their typical stiffness."""
     names = gather_supports(rotors, frozenset()).name
-    bearings = bearing_locations(scene, rotors, names, loads)
+    bearings = bearing_locations(scene, rotors, names, duties)
     known, stiffened = supports_by_name(rotors), list(rotors)
     for at in bearings:
-        index, support = known[names[at.support]]
+        index, support = known[at.name]
         rotor = stiffened[index]
         stiffened[index] = replace(rotor, curved=(*rotor.curved, (at.seat, rotor.lever(support))))
     return bearings, tuple(stiffened)

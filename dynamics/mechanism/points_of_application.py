@@ -45,7 +45,7 @@ def elastic_of(mechanism: Mechanism, index: int) -> ElasticShaft:
     return elastic_shaft(
         shaft.sections,
         discs,
-        _points_of_application(scene, rotor, _bends(mechanism, rotor), _stretches(mechanism, rotor)),
+        _points_of_application(mechanism, rotor, _bends(mechanism, rotor), _stretches(mechanism, rotor)),
         _highest(mechanism),
         shaft.damping_ratio,
         None if drive is None else rotor.on_shaft(drive.position),
@@ -76,18 +76,20 @@ def _stretches(mechanism: Mechanism, rotor: Rotor) -> bool:
 
 
 def _points_of_application(
-    scene: Scene, rotor: Rotor, bends: bool, stretches: bool
+    mechanism: Mechanism, rotor: Rotor, bends: bool, stretches: bool
 ) -> tuple[PointOfApplication, ...]:
     """Return where gears, bearings, couplings and torques act."""
-    name = rotor.shaft.name
-    tilting = {*seated(scene), *(c.bushing for c in scene.spring_curves if c.direction.startswith("tilt"))}
+    scene, name = mechanism.scene, rotor.shaft.name
+    laws = mechanism.bearings
+    tilting = seated(scene) | {at.name for at in laws if at.tilts}
+    holding = {at.name for at in laws if at.holds_axis}
     points = [
         PointOfApplication(rotor.on_shaft(gear.position), bends, bends, stretches, True)
         for gear in scene.gears
         if gear.shaft == name
     ]
     for bushing in rotor.bushings:
-        along = stretches and (bushing.axial_stiffness > 0.0 or bushing.full)
+        along = stretches and (bushing.axial_stiffness > 0.0 or bushing.full or bushing.name in holding)
         tilts = bends and bushing.name in tilting
         points.append(PointOfApplication(rotor.on_shaft(bushing.position), bends, tilts, along))
     for position, full in _couplings(scene, rotor):
@@ -114,7 +116,7 @@ def _positions(scene: Scene, rotor: Rotor) -> list[tuple[str, float]]:
     """Names and positions of what must lie on the shaft; torsional couplings act at its nearer end."""
     name = rotor.shaft.name
     torques: list[OnShaft] = [*scene.drives, *scene.loads, *scene.speed_torques]
-    parts: list[OnShaft] = [*scene.gears, *scene.discs, *scene.bushings, *torques]
+    parts: list[OnShaft] = [*scene.gears, *scene.discs, *scene.ground_bearings, *torques]
     return [(part.name, part.position) for part in parts if part.shaft == name]
 
 

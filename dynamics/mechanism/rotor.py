@@ -123,7 +123,7 @@ def build_rotor(scene: Scene, shaft: Shaft) -> Rotor:
     transverse = sum(part.transverse + part.mass * (center - along) ** 2 for part, center in parts)
     inertia = Inertia(mass, sum(part.polar for part, _ in parts), transverse)
     center = np.array(shaft.origin, dtype=float) + np.array([0.0, 0.0, along])
-    bushings = [bushing for bushing in scene.bushings if bushing.shaft == shaft.name]
+    bushings = [bushing for bushing in scene.ground_bearings if bushing.shaft == shaft.name]
     bearings = [bearing for bearing in scene.planet_bearings if bearing.shaft == shaft.name]
     supports = max(len(bushings) + len(bearings), 1)
     share, tilting = mass / supports, transverse / supports

@@ -61,7 +61,7 @@ class Seats:
 def seated(scene: Scene) -> frozenset[str]:
     """Return the names of the bearings that are more than three springs to rigid ground or pin."""
     housed = {name for housing in scene.housings for name in housing.bushings}
-    full = {part.name for part in (*scene.bushings, *scene.planet_bearings) if part.full}
+    full = {part.name for part in (*scene.ground_bearings, *scene.planet_bearings) if part.full}
     return frozenset(housed | full)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from dynamics.assembly.assemble import System
 from dynamics.errors import InputError
-from dynamics.forces.element_laws import Law
+from dynamics.forces.law import Law
 from dynamics.linearize.common_period import CommonPeriod
 from dynamics.types import FloatArray, IntArray
 

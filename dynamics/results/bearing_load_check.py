@@ -17,7 +17,7 @@ class BearingLoadChecks:
 
     def __init__(self, system: System) -> None:
         scene = system.scene
-        laws = {law.bushing for law in scene.rolling_contacts} | {c.bushing for c in scene.spring_curves}
+        laws = {law.bushing for law in scene.bearing_laws}
         self._effect = system.ledger.effect_adding(BEARING_LAWS)
         off = scene.effects.get(self._effect) == "off"
         self._name = system.supports.name

@@ -28,6 +28,7 @@ def resolved_case(system: System) -> Json:
         "housings": [asdict(housing) for housing in scene.housings],
         "rolling_contacts": [asdict(part) for part in scene.rolling_contacts],
         "spring_curves": [asdict(part) for part in scene.spring_curves],
+        "rolling_bearings": [asdict(part) for part in scene.rolling_bearings],
         "couplings": [asdict(coupling) for coupling in scene.couplings],
         "free_rotations": [asdict(rotation) for rotation in scene.free_rotations],
         "speed_ratios": {

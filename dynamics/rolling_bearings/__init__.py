@@ -1,13 +1,11 @@
 """Rolling bearings by their internal geometry: balls in grooves, rollers in laminae."""
 
 import host.analysis  # noqa: F401 (says what to install)
-from dynamics.rolling_bearings.ball_bearing import BallBearing
+from dynamics.bearing_rows import BallBearing, EllipticContact, RollerBearing
 from dynamics.rolling_bearings.catalog import from_catalog
 from dynamics.rolling_bearings.element_passing import ElementPassing, element_passing
-from dynamics.rolling_bearings.elliptic_contact import EllipticContact
 from dynamics.rolling_bearings.loaded_bearing import LoadedBearing, Reaction
 from dynamics.rolling_bearings.rating_life import RatingLife, rating_life
-from dynamics.rolling_bearings.roller_bearing import RollerBearing
 from dynamics.rolling_bearings.tangent_bushing import tangent_bushing
 
 __all__ = [

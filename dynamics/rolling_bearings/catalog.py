@@ -18,9 +18,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from bounds import above, between
+from dynamics.bearing_rows import BallBearing
 from dynamics.checks import positive
 from dynamics.errors import InputError
-from dynamics.rolling_bearings.ball_bearing import BallBearing
 
 SLENDERNESS = (0.0, 0.09, 0.1, 0.11, 0.12, 0.15, 0.2, 0.25, 0.3)
 RATING = (14.7e6, 16.5e6, 16.4e6, 16.1e6, 15.9e6, 15.2e6, 14.0e6, 12.8e6, 11.6e6)  # Pa; straight between

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dynamics.rolling_bearings.ball_bearing import BallBearing
+from dynamics.bearing_rows import BallBearing, RollerBearing
 from dynamics.rolling_bearings.loaded_bearing import LoadedBearing
-from dynamics.rolling_bearings.roller_bearing import RollerBearing
 from dynamics.types import FloatArray
 
 ANGLES = 32

@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from dynamics.bearing_rows import BallBearing, RollerBearing
 from dynamics.errors import SolveError
-from dynamics.forces.ball_elements import ball_elements
-from dynamics.forces.bearing_seat import make_seat
+from dynamics.forces.ball_elements import ball_reaction, balls, balls_energy, pack_balls
 from dynamics.forces.by_address import by_address
-from dynamics.forces.roller_elements import roller_elements
-from dynamics.rolling_bearings.ball_bearing import BallBearing
-from dynamics.rolling_bearings.roller_bearing import RollerBearing
+from dynamics.forces.local_state import alone
+from dynamics.forces.roller_elements import (
+    pack_rollers,
+    roller_reaction,
+    rollers,
+    rollers_energy,
+)
+from dynamics.forces.row_placement import RowPlacement
+from dynamics.joints.seat import SEAT
 from dynamics.types import FloatArray
 
 TOLERANCE = 1e-12  # of the load
@@ -31,6 +38,8 @@ class Reaction:
         Of the inner ring on the outer, N, N m.
     tangent : (5, 5) array
         Its derivative in the displacement, symmetric.
+    viscous : (5, 5) array
+        Its derivative in the rate of displacement if the damping of an element is its load times 1 s/m.
     energy : float
         Stored in the contacts, J.
     slope : float
@@ -41,6 +50,7 @@ class Reaction:
 
     force: FloatArray
     tangent: FloatArray
+    viscous: FloatArray
     energy: float
     slope: float
     load: FloatArray
@@ -59,11 +69,19 @@ class LoadedBearing:
 
     def __init__(self, bearing: BallBearing | RollerBearing, copies: int = 1) -> None:
         self.bearing, self.copies = bearing, copies
-        self._seat = make_seat(bearing.count * copies, bearing.laminae)
-        self._at = by_address(self._seat)
-        self._elements = by_address(bearing.elements(copies))
-        balls = isinstance(bearing, BallBearing)
-        self._law: Callable[..., tuple[float, float]] = ball_elements if balls else roller_elements
+        self._local = by_address(alone(SEAT))
+        self._load = np.zeros((bearing.count * copies, bearing.laminae))
+        place = RowPlacement(copies, damping=1.0)
+        if isinstance(bearing, BallBearing):
+            self._laws: Any = by_address(pack_balls([(bearing, place)]))
+            self._react: Any = ball_reaction
+            routines = balls, balls_energy
+        else:
+            self._laws = by_address(pack_rollers([(bearing, place)]))
+            self._react = roller_reaction
+            routines = rollers, rollers_energy
+        for routine in routines:
+            routine.prepare(self._laws, self._local)
 
     def evaluate(self, displacement: ArrayLike, angle: float = 0.0) -> Reaction:
         """Return the answer to `displacement` (5,) of the inner ring against the outer.
@@ -75,10 +93,12 @@ class LoadedBearing:
         angle : float
             Of the first element from x towards y, rad.
         """
-        seat = self._seat
-        seat.displacement[:] = displacement
-        energy, slope = self._law(self._elements, 0, angle, self._at)
-        return Reaction(seat.force.copy(), seat.tangent.copy(), energy, slope, self.copies * seat.load)
+        local = self._local
+        local.coordinate[:], local.position[0] = displacement, angle / (2.0 * math.pi)
+        energy, slope = self._react(self._laws, local, self._load)
+        matrices = local.tangent.copy(), local.viscous.copy()
+        whole = self.copies * self._load
+        return Reaction(local.force.copy(), *matrices, energy, slope / (2.0 * math.pi), whole)
 
     def displacement(
         self, load: ArrayLike, angle: float = 0.0, start: ArrayLike = (0.0, 0.0, 0.0, 0.0, 0.0)

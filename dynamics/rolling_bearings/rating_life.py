@@ -16,9 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.bearing_rows import BallBearing, RollerBearing
 from dynamics.checks import positive
-from dynamics.rolling_bearings.ball_bearing import BallBearing
-from dynamics.rolling_bearings.roller_bearing import RollerBearing
 from dynamics.types import FloatArray
 
 BALL_RINGS, ROLLER_RINGS = (0.407, 0.389), (0.378, 0.364)  # inner, outer: of radial bearings

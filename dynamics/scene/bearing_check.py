@@ -5,37 +5,47 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from dynamics.checks import distinct, one_of
-from dynamics.errors import InputError
+from dynamics.errors import InputError, SolveError
 from dynamics.forces import RollingContact, SpringCurve
-from dynamics.joints import Bushing, PlanetBearing
+from dynamics.joints import RollingBearing
+from dynamics.rolling_bearings.row_law import row_law
 
 
 def check_bearing_laws(
-    bearings: Sequence[Bushing | PlanetBearing],
+    bearings: Sequence[str],
     contacts: Sequence[RollingContact],
     curves: Sequence[SpringCurve],
+    rolling: Sequence[RollingBearing],
     housed: frozenset[str],
     rotating: frozenset[str],
 ) -> None:
-    """Every law has its own direction of a bearing that exists, on rigid ground or on a pin.
+    """Every law has its own direction of one of `bearings`, on rigid ground or on a pin.
 
-    `housed` names the bushings in a housing, `rotating` those of shafts described in a rotating frame.
+    `housed` names the bearings in a housing, `rotating` those of shafts described in a rotating frame.
     """
-    names = [bearing.name for bearing in bearings]
-    laws: list[tuple[str, Sequence[RollingContact | SpringCurve]]] = [
-        ("rolling_contacts", contacts),
-        ("spring_curves", curves),
+    fields = [
+        *((f"rolling_contacts[{index}].bushing", part.bushing) for index, part in enumerate(contacts)),
+        *((f"spring_curves[{index}].bushing", part.bushing) for index, part in enumerate(curves)),
     ]
-    for kind, parts in laws:
-        for index, part in enumerate(parts):
-            field = f"{kind}[{index}].bushing"
-            one_of(field, part.bushing, names)
-            if part.bushing in housed:
-                bound = "a bushing outside of housings, which are condensed with linear bushings"
-                raise InputError(field, part.bushing, bound, "Take it out of the housing.")
+    for field, name in fields:
+        one_of(field, name, bearings)
+    for field, name in (*fields, *((f"rolling_bearings[{i}].name", p.name) for i, p in enumerate(rolling))):
+        if name in housed:
+            bound = "a bushing outside of housings, which are condensed with linear bushings"
+            raise InputError(field, name, bound, "Take it out of the housing.")
     distinct("rolling_contacts", [part.bushing for part in contacts])
     distinct("spring_curves", [f"{part.bushing}.{part.direction}" for part in curves])
     for index, curve in enumerate(curves):
         if curve.bushing in rotating and curve.direction != "z":
             bound = '"z" on a shaft described in a carrier\'s frame, which turns against the bushing'
             raise InputError(f"spring_curves[{index}].direction", curve.direction, bound)
+    for index, bearing in enumerate(rolling):
+        _check_preload(f"rolling_bearings[{index}].axial_preload", bearing)
+
+
+def _check_preload(field: str, bearing: RollingBearing) -> None:
+    """Refuse an axial preload that no displacement of the rings makes."""
+    try:
+        row_law(bearing).shift  # noqa: B018 (computed and kept)
+    except SolveError as error:
+        raise InputError(field, bearing.axial_preload, "a force that the row carries", "Lower it.") from error

@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
 from dynamics.bodies import Shaft
 from dynamics.checks import finite, one_of
 from dynamics.errors import InputError
-from dynamics.joints import Bushing, Coupling, PlanetBearing
+from dynamics.joints import Bushing, Coupling, PlanetBearing, RollingBearing
 from dynamics.scene.housing_check import alike_across
 
 AXIS_AGREEMENT = 1e-9  # of a shaft's length: shafts nearer than this share an axis
 
 
-def check_frames(
-    shafts: tuple[Shaft, ...], bushings: tuple[Bushing, ...], planet_bearings: tuple[PlanetBearing, ...]
-) -> None:
-    """Frames are those of carriers, pins turn with the planet's own carrier, planets have no bushings."""
+def check_frames(shafts: tuple[Shaft, ...], planet_bearings: tuple[PlanetBearing, ...]) -> None:
+    """Frames are those of carriers, pins turn with the planet's own carrier."""
     by_name = {shaft.name: shaft for shaft in shafts}
     for index, shaft in enumerate(shafts):
         if shaft.frame is None:
@@ -34,13 +33,16 @@ def check_frames(
         )
         if bearing.carrier == bearing.shaft:
             raise InputError(field, bearing.carrier, "another shaft than the planet's")
-    for index, bushing in enumerate(bushings):
-        shaft = by_name[bushing.shaft]
+
+
+def check_on_axis(shafts: tuple[Shaft, ...], kind: str, bearings: Sequence[Bushing | RollingBearing]) -> None:
+    """Planets have no bearings to the ground; `kind` is what a scene calls these."""
+    by_name = {shaft.name: shaft for shaft in shafts}
+    for index, bearing in enumerate(bearings):
+        shaft = by_name[bearing.shaft]
         if shaft.frame is not None and not on_axis(shaft, by_name[shaft.frame]):
             bound = "a shaft on the carrier's axis"
-            raise InputError(
-                f"bushings[{index}].shaft", shaft.name, bound, "Planets rest on planet bearings."
-            )
+            raise InputError(f"{kind}[{index}].shaft", shaft.name, bound, "Planets rest on planet bearings.")
 
 
 def check_gravity(shafts: tuple[Shaft, ...], gravity: tuple[float, float, float]) -> None:

@@ -11,10 +11,20 @@ from dynamics.bodies import AngleLaw, DiscBody, GearBody, Shaft, TimeLaw
 from dynamics.checks import distinct, not_negative, one_of, positive, within
 from dynamics.errors import InputError
 from dynamics.forces import GearMesh, LoadTorque, RollingContact, SpeedTorque, SpringCurve
-from dynamics.joints import Bushing, Coupling, FreeRotation, Housing, ImposedRotation, PlanetBearing
+from dynamics.forces.bearing_law import BearingLaw
+from dynamics.joints import (
+    Bushing,
+    Coupling,
+    FreeRotation,
+    Housing,
+    ImposedRotation,
+    PlanetBearing,
+    RollingBearing,
+)
 from dynamics.parts import KINDS, ON_A_SHAFT
+from dynamics.rolling_bearings.row_law import row_law
 from dynamics.scene.bearing_check import check_bearing_laws
-from dynamics.scene.frame_check import check_couplings, check_frames, check_gravity
+from dynamics.scene.frame_check import check_couplings, check_frames, check_gravity, check_on_axis
 from dynamics.scene.housing_check import check_housings
 from dynamics.scene.position_check import check_positions
 from dynamics.settings import Integration, Outputs
@@ -48,7 +58,7 @@ class Scene:
     Attributes
     ----------
     shafts, gears, bushings, planet_bearings, couplings, meshes, drives, free_rotations, loads : tuples
-    speed_torques, housings, discs : tuples
+    speed_torques, housings, discs, rolling_bearings : tuples
         Parts, each with a name unique among its kind. Drives and free rotations together set the kinematic
         motion of all shafts: one for each independent speed of the gearing.
     rolling_contacts, spring_curves : tuples
@@ -87,6 +97,7 @@ class Scene:
     rolling_contacts: tuple[RollingContact, ...] = ()
     spring_curves: tuple[SpringCurve, ...] = ()
     discs: tuple[DiscBody, ...] = ()
+    rolling_bearings: tuple[RollingBearing, ...] = ()
     gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
     effects: Mapping[str, str] = field(default_factory=dict)
     outputs: Outputs = field(default_factory=Outputs)
@@ -106,11 +117,11 @@ class Scene:
         for kind in KINDS:
             distinct(kind, [part.name for part in getattr(self, kind)])
         shafts, gears = _names(self.shafts), _names(self.gears)
-        distinct("planet_bearings", _names((*self.bushings, *self.planet_bearings)))
+        distinct("planet_bearings", _names((*self.ground_bearings, *self.planet_bearings)))
         for kind in ON_A_SHAFT:
             for index, part in enumerate(getattr(self, kind)):
                 one_of(f"{kind}[{index}].shaft", part.shaft, shafts)
-        for kind in ("gears", "discs", "bushings", "planet_bearings"):
+        for kind in ("gears", "discs", "bushings", "rolling_bearings", "planet_bearings"):
             check_positions(self.shafts, kind, getattr(self, kind))
         for index, mesh in enumerate(self.meshes):
             one_of(f"meshes[{index}].driver", mesh.driver, gears)
@@ -119,15 +130,18 @@ class Scene:
             for side in ("first", "second"):
                 one_of(f"couplings[{index}].{side}", getattr(coupling, side), shafts)
         self._check_references()
-        check_frames(self.shafts, self.bushings, self.planet_bearings)
+        check_frames(self.shafts, self.planet_bearings)
+        for kind in ("bushings", "rolling_bearings"):
+            check_on_axis(self.shafts, kind, getattr(self, kind))
         check_gravity(self.shafts, self.gravity)
         check_couplings(self.shafts, self.couplings)
-        check_housings(self.shafts, self.bushings, self.housings)
+        check_housings(self.shafts, self.ground_bearings, self.housings)
         rotating = {shaft.name for shaft in self.shafts if shaft.frame is not None}
         check_bearing_laws(
-            (*self.bushings, *self.planet_bearings),
+            [bearing.name for bearing in (*self.bushings, *self.planet_bearings)],
             self.rolling_contacts,
             self.spring_curves,
+            self.rolling_bearings,
             frozenset(name for housing in self.housings for name in housing.bushings),
             frozenset(bushing.name for bushing in self.bushings if bushing.shaft in rotating),
         )
@@ -145,6 +159,16 @@ class Scene:
     def references(self) -> tuple[Reference, ...]:
         """The laws of the kinematic motion: the drives, then the free rotations."""
         return (*self.drives, *self.free_rotations)
+
+    @property
+    def ground_bearings(self) -> tuple[Bushing, ...]:
+        """All bearings between shafts and the ground: bushings, and those that rolling bearings act at."""
+        return (*self.bushings, *(bearing.support for bearing in self.rolling_bearings))
+
+    @property
+    def bearing_laws(self) -> tuple[BearingLaw, ...]:
+        """All that bearings do which is not linear."""
+        return (*self.rolling_contacts, *self.spring_curves, *map(row_law, self.rolling_bearings))
 
     def gear(self, name: str) -> GearBody:
         """Return the gear called `name`."""

@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from dynamics.forces.ball_elements import pack_balls
+from dynamics.forces.row_placement import RowPlacement
 from dynamics.rolling_bearings import (
     BallBearing,
     EllipticContact,
@@ -200,7 +202,7 @@ def test_the_mirrored_bearing_answers_with_the_mirrored_force(kind):
 
 def test_force_and_moment_are_those_of_the_balls_on_the_ring():
     loaded, d = LoadedBearing(ANGULAR), np.array(PLACE["angular"])
-    at, laws = loaded.evaluate(d, ANGLE), ANGULAR.elements()
+    at, laws = loaded.evaluate(d, ANGLE), pack_balls([(ANGULAR, RowPlacement())])
     arm_radius, arm_axial, radial, axial = (
         float(laws[index][0])
         for index in map(laws._fields.index, ("arm_radius", "arm_axial", "radial", "axial"))

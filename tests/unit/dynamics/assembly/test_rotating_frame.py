@@ -12,7 +12,7 @@ from planetary_scenes import driven_scene, published_set
 
 from dynamics.assembly.assemble import assemble
 from dynamics.bodies import Inertia, Shaft, TimeLaw
-from dynamics.forces.element_laws import Law
+from dynamics.forces.law import Law
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.joints import Bushing, Coupling, FreeRotation
 from dynamics.linearize import whirl_modes

@@ -15,7 +15,7 @@ from dynamics.bodies import SpeedCurve
 from dynamics.forces import SpeedTorque, element_laws
 from dynamics.forces.by_address import by_address, by_value
 from dynamics.forces.compiled import compiled
-from dynamics.forces.element_laws import Law
+from dynamics.forces.law import Law
 from dynamics.forces.routine import routine
 
 

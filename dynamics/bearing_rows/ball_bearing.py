@@ -6,14 +6,11 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-
 from bounds import Declared, Kind, above, between, declared, described, required
+from dynamics.bearing_rows.elliptic_contact import EllipticContact
+from dynamics.bearing_rows.row import ANGLE, CLEARANCE, COUNT, DIAMETER, PITCH, Row
 from dynamics.bodies.steel import STEEL_POISSON_RATIO, STEEL_YOUNGS_MODULUS
 from dynamics.errors import InputError
-from dynamics.forces.ball_elements import BallElements
-from dynamics.rolling_bearings.elliptic_contact import EllipticContact
-from dynamics.rolling_bearings.row import ANGLE, CLEARANCE, COUNT, DIAMETER, PITCH, Row
 
 GROOVE = Declared(Kind.RATIO, "", between(0.501, 1.0), "Groove radius over ball diameter", 0.52)
 MODULUS = Declared(Kind.STIFFNESS, "Pa", between(1e9, 1e12), "Young's modulus of rings and balls", 206e9)
@@ -81,16 +78,3 @@ class BallBearing(Row):
     def laminae(self) -> int:
         """Return the number of parts of an element: a ball is whole."""
         return 1
-
-    def elements(self, copies: int = 1) -> BallElements:
-        """Return the balls for compiled functions; each as `copies` balls that share its stiffness."""
-        angle, reach = self.free_contact_angle, self.groove_distance
-        offset = (self.inner_groove - 0.5) * self.diameter
-        radial, axial, height = reach - self.clearance / 2.0, 0.0, 0.0  # in the middle of the clearance
-        if self.contact_angle != 0.0:
-            toward = math.copysign(1.0, angle)
-            radial, axial = reach * math.cos(angle), reach * math.sin(angle) - toward * self.clearance
-            height = offset * math.sin(angle)
-        arm = self.pitch_diameter / 2.0 + offset * math.cos(angle), height
-        values = (self.element_stiffness / copies, reach, radial, axial, *arm)
-        return BallElements(np.array([self.count * copies]), *(np.array([value]) for value in values))

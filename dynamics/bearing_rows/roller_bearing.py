@@ -5,20 +5,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from bounds import Choice, Declared, Kind, above, between, declared, described, integers, required
-from dynamics.forces.roller_elements import RollerElements
-from dynamics.rolling_bearings.roller_profile import (
+from dynamics.bearing_rows.roller_profile import (
     CROWNED,
     LOGARITHMIC,
     PROFILES,
     crowned_drop,
-    lamina_places,
     lamina_stiffness,
     logarithmic_drop,
 )
-from dynamics.rolling_bearings.row import ANGLE, CLEARANCE, COUNT, DIAMETER, PITCH, Row
+from dynamics.bearing_rows.row import ANGLE, CLEARANCE, COUNT, DIAMETER, PITCH, Row
 from dynamics.types import FloatArray
 
 LENGTH = Declared(Kind.LENGTH, "m", above(0.0, "m"), "Effective length of a roller", 0.0136)
@@ -63,23 +59,13 @@ class RollerBearing(Row):
         tapered = self.contact_angle != 0.0
         return self.clearance * (abs(math.sin(self.contact_angle)) if tapered else 0.5)
 
+    @property
+    def element_stiffness(self) -> float:
+        """Return c of load = c approach^(10/9) of a straight roller between both raceways, N/m^(10/9)."""
+        return self.laminae * lamina_stiffness(self.length, self.laminae)
+
     def drop(self, place: FloatArray) -> FloatArray:
         """Return how far the profile lies below the middle at `place` along the roller, m; one contact."""
         if self.profile == LOGARITHMIC:
             return logarithmic_drop(place, self.diameter, self.length, self.contact_angle != 0.0)
         return crowned_drop(place, self.crown if self.profile == CROWNED else 0.0, self.length)
-
-    def elements(self, copies: int = 1) -> RollerElements:
-        """Return the rollers for compiled functions; each as `copies` rollers that share its stiffness."""
-        place = lamina_places(self.length, self.laminae)
-        return RollerElements(
-            rollers=np.array([self.count * copies]),
-            stiffness=np.array([lamina_stiffness(self.length, self.laminae) / copies]),
-            cosine=np.array([math.cos(self.contact_angle)]),
-            sine=np.array([math.sin(self.contact_angle)]),
-            radius=np.array([self.pitch_diameter / 2.0]),
-            play=np.array([self.play]),
-            first=np.array([0, self.laminae]),
-            place=place,
-            drop=2.0 * self.drop(place),
-        )

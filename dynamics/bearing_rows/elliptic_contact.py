@@ -17,9 +17,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from scipy.optimize import brentq
-from scipy.special import elliprd, elliprf
-
 from dynamics.checks import positive
 
 LEAST_RATIO = 1e-12  # of the axes: radii that differ by 23 orders of magnitude
@@ -48,6 +45,9 @@ class EllipticContact:
     @property
     def axis_ratio(self) -> float:
         """Return b/a, from 0 to 1."""
+        from scipy.optimize import brentq  # noqa: PLC0415 (start-up time)
+        from scipy.special import elliprd  # noqa: PLC0415 (start-up time)
+
         ratio = self.small_radius / self.large_radius
         if ratio > 1.0:
             return EllipticContact(self.large_radius, self.small_radius, self.modulus).axis_ratio
@@ -68,12 +68,16 @@ class EllipticContact:
 
     def axes(self, load: float) -> tuple[float, float]:
         """Return the half-axes a >= b of the ellipse under `load` (N), m."""
+        from scipy.special import elliprd  # noqa: PLC0415 (start-up time)
+
         q, radius = self.axis_ratio, min(self.small_radius, self.large_radius)
         a = (load * radius * float(elliprd(0.0, 1.0, q * q)) / (math.pi * self.modulus)) ** (1.0 / 3.0)
         return a, q * a
 
     def approach(self, load: float) -> float:
         """Return how far the bodies approach under `load` (N, > 0), m."""
+        from scipy.special import elliprf  # noqa: PLC0415 (start-up time)
+
         a, b = self.axes(load)
         return 1.5 * load * float(elliprf(0.0, (b / a) ** 2, 1.0)) / (math.pi * self.modulus * a)
 

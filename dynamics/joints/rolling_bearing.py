@@ -1,0 +1,69 @@
+"""A rolling bearing between a shaft and the ground, by the geometry of its row."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from bounds import Declared, Kind, between, declared, described, required
+from dynamics.bearing_rows import BallBearing, RollerBearing
+from dynamics.checks import declared_fields
+from dynamics.errors import InputError
+from dynamics.joints import seat
+from dynamics.joints.bushing import Bushing
+
+AXIAL_PRELOAD = Declared(
+    Kind.AMOUNT,
+    "N",
+    between(-1e9, 1e9),
+    "Axial force of the inner ring on the outer where the shaft is not displaced; along z, with the sign of "
+    "the contact angle",
+    500.0,
+)
+DAMPING_RATIO = Declared(
+    Kind.RATIO,
+    "",
+    between(0.0, 10.0),
+    "Damping ratio of the shaft bouncing on its bearings under the nominal mesh forces",
+    0.05,
+)
+
+
+@described
+@dataclass(frozen=True)
+class RollingBearing:
+    """One row of balls or rollers whose inner ring sits on the shaft and whose outer ring the ground holds.
+
+    Its five displacements are those of the shaft's section; force and moment are about the row's center. Rows
+    of one bearing, or bearings side by side, are several of these, each at its own position.
+
+    An element of load Q pushes back with ``Q (1 + d p')``, p' the rate at which it is pressed, and never
+    pulls (Hunt and Crossley); d follows from `damping_ratio` with the mass of the shaft and its gears divided
+    by the number of its bearings.
+    """
+
+    name: str
+    shaft: str
+    row: BallBearing | RollerBearing
+    position: float = required(seat.POSITION)
+    axial_preload: float = declared(0.0, AXIAL_PRELOAD)
+    damping_ratio: float = declared(0.05, DAMPING_RATIO)
+
+    def __post_init__(self) -> None:
+        declared_fields(self)
+        angle, preload = self.row.contact_angle, self.axial_preload
+        if preload != 0.0 and angle == 0.0 and isinstance(self.row, RollerBearing):
+            bound = "0: cylindrical rollers carry no axial force"
+            raise InputError("axial_preload", preload, bound)
+        if preload * angle < 0.0:
+            bound = f"{'positive' if angle > 0.0 else 'negative'}, as the contact angle is"
+            raise InputError("axial_preload", preload, bound, "The row carries no other axial force.")
+
+    @property
+    def bushing(self) -> str:
+        """Name of the support whose force it is."""
+        return self.name
+
+    @property
+    def support(self) -> Bushing:
+        """The support at which it acts, without any stiffness of its own."""
+        return Bushing(self.name, self.shaft, self.position)
