@@ -53,17 +53,26 @@ def middle_from_driver(scene: Scene, index: int, line: LineOfAction, sense: int)
     return -table_sense(scene, index, sense) * float(line.point[2] - middle)
 
 
+def misalignment_per_tilt(scene: Scene, index: int, line: LineOfAction, sense: int) -> FloatArray:
+    """Return the derivative of the misalignment in the small rotation of the driver's section, (3,), m/rad.
+
+    The table's face position runs against the scene's z for a driving gear that turns in +z, so the gap grows
+    with it by s b (z x n) per rotation over the face width b, n the transverse line of action.
+    """
+    transverse = line.force * np.array([1.0, 1.0, 0.0])
+    turn = np.cross(UNIT_Z, transverse) * table_sense(scene, index, sense)
+    return np.asarray(turn * common_face_width(scene, index))
+
+
 def misalignment_gradient(
     scene: Scene, rotors: Sequence[Rotor], index: int, line: LineOfAction, sense: int
 ) -> FloatArray:
     """Return the derivative of the misalignment in all rotors' freedoms, (N,).
 
-    The table's face position runs against the scene's z for a driving gear that turns in +z, so the gap grows
-    with it by m = s b (tilt_1 - tilt_2) (z x n) over the face width b, n the transverse line of action.
+    m = (tilt_1 - tilt_2) @ `misalignment_per_tilt`.
     """
-    mesh, transverse = scene.meshes[index], line.force * np.array([1.0, 1.0, 0.0])
-    turn = np.cross(UNIT_Z, transverse) * table_sense(scene, index, sense) * common_face_width(scene, index)
-    moment = np.concatenate([np.zeros(3), turn])
+    mesh = scene.meshes[index]
+    moment = np.concatenate([np.zeros(3), misalignment_per_tilt(scene, index, line, sense)])
     return gear_row(scene, rotors, [(mesh.driver, lambda _: moment), (mesh.driven, lambda _: -moment)])
 
 

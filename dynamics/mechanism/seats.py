@@ -118,19 +118,27 @@ def condense_housing(
 
     the exact stiffness, and the exact damping at frequencies at which damping is small against stiffness.
     """
-    size, followed = stiffness.shape[0], list(housing.columns)
-    ground, loss = housing.matrices()
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(stiffness[np.ix_(followed, followed)] + ground), 1e-300))
-    both = scale[:, None] * (stiffness[np.ix_(followed, followed)] + ground) * scale
-    follow = np.zeros((size, size))
-    follow[followed] = scale[:, None] * (
-        np.linalg.pinv(both, hermitian=True) @ (scale[:, None] * stiffness[followed])
-    )
-    left = np.eye(size) - follow
+    loss, follow = housing.matrices()[1], seat_compliance(housing, stiffness) @ stiffness
+    left = np.eye(stiffness.shape[0]) - follow
     series = stiffness @ left
-    moved = follow[followed]
+    moved = follow[list(housing.columns)]
     return (
         0.5 * (series + series.T),
         left.T @ damping @ left + moved.T @ loss @ moved,
         left.T @ preload,
     )
+
+
+def seat_compliance(housing: Housing, stiffness: FloatArray) -> FloatArray:
+    """Return (K_b + K_h)^-1 over the five directions of all seats, zero where the housing is rigid.
+
+    `stiffness` (5 s, 5 s) is K_b of the bearings alone. Under the shaft's motion d the seats move by this
+    times K_b d - preload.
+    """
+    followed = list(housing.columns)
+    both = stiffness[np.ix_(followed, followed)] + housing.matrices()[0]
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(both), 1e-300))
+    inverse = np.linalg.pinv(scale[:, None] * both * scale, hermitian=True)
+    compliance = np.zeros_like(stiffness)
+    compliance[np.ix_(followed, followed)] = scale[:, None] * inverse * scale
+    return compliance
