@@ -41,6 +41,8 @@ class Kind(StrEnum):
     """A force or moment per rate."""
     INERTIA = auto()
     """A mass, a density, a moment of inertia."""
+    LOAD = auto()
+    """A force or a moment."""
     SPEED = auto()
     TIME = auto()
     FREQUENCY = auto()

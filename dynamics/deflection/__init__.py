@@ -1,0 +1,22 @@
+"""Static deflection of a geared system under load cases, and the alignment of its meshes by cause."""
+
+import host.analysis  # noqa: F401 (says what to install)
+from dynamics.deflection.bearing_load import BearingLoad, equivalent_load
+from dynamics.deflection.causes import CAUSES
+from dynamics.deflection.deflect import CaseDeflection, Deflection, deflect
+from dynamics.deflection.load_case import LoadCase, loaded_scene
+from dynamics.deflection.mesh_alignment import MeshAlignment
+from dynamics.deflection.shaft_line import ShaftLines
+
+__all__ = [
+    "CAUSES",
+    "BearingLoad",
+    "CaseDeflection",
+    "Deflection",
+    "LoadCase",
+    "MeshAlignment",
+    "ShaftLines",
+    "deflect",
+    "equivalent_load",
+    "loaded_scene",
+]

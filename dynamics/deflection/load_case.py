@@ -1,0 +1,190 @@
+"""A load case of a geared system: speed, torque and its direction, and the scene that it makes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from bounds import Declared, Kind, above, declared, described, one_of, up_to
+from dynamics.bodies import TimeLaw
+from dynamics.checks import declared_fields
+from dynamics.errors import InputError
+from dynamics.joints import ImposedRotation
+from dynamics.mechanism.kinematics import Kinematics, solve_kinematics
+from dynamics.scene.scene import Scene
+from model_studies import Record
+
+FOLLOWED = (
+    "lateral",
+    "axial",
+    "tilt",
+    "bearing_clearance",
+    "flexible_shafts",
+    "dynamic_misalignment",
+    "dynamic_center_distance",
+    "moving_application_point",
+)
+"""Effects that statics takes wherever the scene has what they need, unless it switches them off."""
+NEGLECTED = ("friction", "backlash")
+"""Effects of the run: flanks carry by their normal force alone, on the side that the load presses."""
+DRIVE, COAST = "drive", "coast"
+
+_SHARE = Declared(Kind.RATIO, "", up_to(1e9), "Share of the duration, relative to the other load cases", 1.0)
+_FACTOR = Declared(Kind.RATIO, "", up_to(1e6), "Factor on the scene's loads", 1.0)
+_TORQUE = Declared(
+    Kind.LOAD, "N m", up_to(1e9), "Torque on the leading shaft, in place of a factor on the loads", 100.0
+)
+_FASTEST = 1e7 * math.pi / 30.0
+_SPEED = Declared(
+    Kind.SPEED, "rad/s", up_to(_FASTEST), "Speed of the leading shaft; left out: the scene's", 150.0
+)
+_DIRECTION = Declared(
+    Kind.CHOICE,
+    "",
+    one_of((DRIVE, COAST)),
+    "Flanks that carry: the driving ones of the scene, or the others",
+    DRIVE,
+)
+
+
+@described
+@dataclass(frozen=True)
+class LoadCase(Record):
+    """A load of a scene and the share of its duration.
+
+    The leading shaft is that of the first drive that turns, or of the first free rotation if none does. A
+    factor scales all loads of the scene at t = 0; a torque on the leading shaft gives this factor. Torques
+    that depend on speed follow the speed alone. On the coast side all torques are reversed and the other
+    flanks carry: turned end for end, the same pair driven in the other sense.
+    """
+
+    name: str
+    share: float = declared(1.0, _SHARE)
+    factor: float = declared(1.0, _FACTOR)
+    torque: float | None = declared(None, _TORQUE)
+    speed: float | None = declared(None, _SPEED)
+    direction: str = declared(DRIVE, _DIRECTION)
+
+    def __post_init__(self) -> None:
+        declared_fields(self)
+        if self.torque is not None and self.factor != 1.0:
+            raise InputError("factor", self.factor, "left out if a torque is given", "Give one of them.")
+
+
+@dataclass(frozen=True)
+class Leader:
+    """The leading shaft of a scene.
+
+    Attributes
+    ----------
+    law : int
+        Its law among those of the kinematic motion.
+    shaft : str
+    speed : float
+        In the scene, rad/s about +z, of largest size; 0 where a free rotation starts from rest.
+    forward : int
+        Its sense about +z.
+    """
+
+    law: int
+    shaft: str
+    speed: float
+    forward: int
+
+
+def leader_of(scene: Scene) -> Leader:
+    """Return the leading shaft of `scene`."""
+    for law, drive in enumerate(scene.drives):
+        if drive.speed.extreme != 0.0:
+            speed = float(drive.speed.extreme)
+            return Leader(law, drive.shaft, speed, 1 if speed > 0.0 else -1)
+    first = scene.free_rotations[0]
+    return Leader(len(scene.drives), first.shaft, first.initial_speed, first.forward)
+
+
+def loaded_scene(scene: Scene, case: LoadCase) -> Scene:
+    """Return `scene` under the constant loads and speeds of `case`, with everything that statics follows.
+
+    Raises
+    ------
+    InputError
+        If the case has no speed, or its torque cannot be had from the loads of the scene.
+    """
+    leader = leader_of(scene)
+    speed = abs(leader.speed) if case.speed is None else case.speed
+    if speed == 0.0:
+        raise InputError("speed", 0.0, above(0.0, "rad/s"), "The scene starts from rest: give the speed.")
+    turned = 1.0 if case.direction == DRIVE else -1.0
+    scale = turned * (speed / abs(leader.speed) if leader.speed else speed)
+    factor = case.factor if case.torque is None else _factor(scene, leader, speed, case.torque)
+    effects = dict.fromkeys(FOLLOWED, "on") | dict.fromkeys(NEGLECTED, "off")
+    stated = scene.effects.items()
+    own = {name: choice for name, choice in stated if choice == "off" or name not in effects}
+    return replace(
+        scene,
+        drives=(*_drives(scene, scale), *_held_trains(scene, leader, scale)),
+        free_rotations=(),
+        loads=tuple(
+            replace(load, torque=TimeLaw.constant(factor * float(load.torque(0.0)))) for load in scene.loads
+        ),
+        meshes=tuple(
+            replace(
+                mesh,
+                technique="variable_torque",
+                nominal_force=None,
+                misalignment=turned * mesh.misalignment,
+            )
+            for mesh in scene.meshes
+        ),
+        effects={**effects, **own},
+        tolerance=None,
+    )
+
+
+def _drives(scene: Scene, scale: float) -> Iterator[ImposedRotation]:
+    """Yield the drives at constant speeds in the proportion of their extreme ones."""
+    for drive in scene.drives:
+        yield replace(drive, speed=TimeLaw.constant(scale * float(drive.speed.extreme)))
+
+
+def _held_trains(scene: Scene, leader: Leader, scale: float) -> Iterator[ImposedRotation]:
+    """Yield a drive for every free train: it takes what its torques do not balance, at rest and in motion."""
+    for free in scene.free_rotations:
+        speed = free.initial_speed or (free.forward if free.shaft == leader.shaft else 0.0)
+        if speed == 0.0:
+            bound = above(0.0, "rad/s")
+            raise InputError("initial_speed", 0.0, bound, f'Give "{free.name}" its speed in the scene.')
+        yield ImposedRotation(free.name, free.shaft, TimeLaw.constant(scale * speed))
+
+
+def leading_torque(scene: Scene, leader: Leader, speed: float) -> tuple[float, float]:
+    """Return what loads at t = 0, and torques by speed, ask of the leading shaft at a speed, N m.
+
+    By virtual power: a load T on a shaft that turns at `ratio` times the leader takes T times that.
+    """
+    kinematics = solve_kinematics(scene)
+    loads = sum(
+        float(load.torque(0.0)) * _toward(kinematics, scene.shaft_index(load.shaft), leader)
+        for load in scene.loads
+    )
+    by_speed = 0.0
+    for part in scene.speed_torques:
+        toward = _toward(kinematics, scene.shaft_index(part.shaft), leader)
+        by_speed += float(part.curve(abs(toward) * speed)) * toward
+    return loads, by_speed
+
+
+def _toward(kinematics: Kinematics, shaft: int, leader: Leader) -> float:
+    """Speed of a shaft over that of the leader, > 0 where what resists it resists the leader."""
+    return kinematics.sense[shaft] * leader.forward * float(kinematics.ratio[shaft][leader.law])
+
+
+def _factor(scene: Scene, leader: Leader, speed: float, torque: float) -> float:
+    """Return the factor on the loads with which the leading shaft carries `torque`, N m."""
+    loads, by_speed = leading_torque(scene, leader, speed)
+    wanted = torque - by_speed
+    if loads == 0.0 or wanted / loads <= 0.0:
+        bound = above(by_speed, "N m", "what the torques by speed take,") if loads else "left out"
+        raise InputError("torque", torque, bound, "The scene's loads at t = 0 must resist the leading shaft.")
+    return wanted / loads
