@@ -1,0 +1,100 @@
+"""A REXS model of one cylindrical stage: pinion 11 on shaft 1, wheel 12 on shaft 2, stage 20."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from types import MappingProxyType
+from typing import Any
+
+from service.from_rexs.gear_unit import GearUnit
+from service.rexs import Attribute, Component, Model, Reference, Relation
+
+PINION, WHEEL, STAGE = 11, 12, 20
+PINION_LEFT, PINION_RIGHT, WHEEL_LEFT, WHEEL_RIGHT = 31, 32, 33, 34
+_UNITS = {
+    "deg": ("helix_angle_reference_diameter", "normal_pressure_angle"),
+    "none": (
+        "number_of_teeth",
+        "addendum_modification_coefficient",
+        "addendum_coefficient_reference_profile",
+        "tip_corner_radius_factor_reference_profile",
+    ),
+    "1 / min": ("rotational_speed",),
+    "MPa": ("elastic_modulus",),
+}
+Values = Mapping[int, Mapping[str, Any]]
+
+GEARS: dict[int, dict[str, Any]] = {
+    1: {"support_vector": (0.0, 0.0, 0.0)},
+    2: {"support_vector": (0.0, 0.0, 80.0)},
+    PINION: {
+        "number_of_teeth": 20,
+        "normal_module": 2.0,
+        "face_width": 20.0,
+        "helix_angle_reference_diameter": 0.0,
+        "support_vector": (30.0, 0.0, 0.0),
+    },
+    WHEEL: {
+        "number_of_teeth": 60,
+        "normal_module": 2.0,
+        "face_width": 20.0,
+        "helix_angle_reference_diameter": 0.0,
+        "support_vector": (30.0, 0.0, 80.0),
+    },
+    STAGE: {"center_distance": 80.0},
+    **{
+        flank: {"normal_pressure_angle": 20.0, "addendum_modification_coefficient": 0.0}
+        for flank in (PINION_LEFT, PINION_RIGHT, WHEEL_LEFT, WHEEL_RIGHT)
+    },
+}
+_TYPES = {
+    1: "shaft",
+    2: "shaft",
+    PINION: "cylindrical_gear",
+    WHEEL: "cylindrical_gear",
+    STAGE: "cylindrical_stage",
+    **dict.fromkeys((PINION_LEFT, PINION_RIGHT, WHEEL_LEFT, WHEEL_RIGHT), "cylindrical_gear_flank"),
+}
+
+
+def relation(number: int, kind: str, order: int | None = None, **roles: int) -> Relation:
+    """Return a relation by its roles."""
+    return Relation(number, kind, tuple(Reference(part, role) for role, part in roles.items()), order)
+
+
+_RELATIONS = (
+    relation(101, "assembly", assembly=1, part=PINION),
+    relation(102, "assembly", assembly=2, part=WHEEL),
+    relation(103, "stage", stage=STAGE, gear_1=PINION, gear_2=WHEEL),
+    relation(104, "flank", gear=PINION, left=PINION_LEFT, right=PINION_RIGHT),
+    relation(105, "flank", gear=WHEEL, left=WHEEL_LEFT, right=WHEEL_RIGHT),
+)
+
+
+def attribute(name: str, value: Any) -> Attribute:
+    """Return an attribute in the unit that REXS gives it."""
+    unit = next((unit for unit, names in _UNITS.items() if name in names), "mm")
+    if isinstance(value, bool):
+        return Attribute(name, "boolean", value, "none")
+    if isinstance(value, str):
+        return Attribute(name, "enum", value, "none")
+    kind = "floating_point_array" if isinstance(value, tuple) else "floating_point"
+    return Attribute(name, kind, value, unit)
+
+
+def stage_unit(
+    changes: Values = MappingProxyType({}),
+    types: Mapping[int, str] = MappingProxyType({}),
+    relations: Iterable[Relation] = (),
+) -> GearUnit:
+    """Return the unit with attributes changed or added by component; None takes one away.
+
+    `types` adds components or gives them another type; `relations` are further ones.
+    """
+    kinds = {**_TYPES, **types}
+    components = []
+    for number, kind in kinds.items():
+        values = {**GEARS.get(number, {}), **changes.get(number, {})}
+        attributes = tuple(attribute(name, value) for name, value in values.items() if value is not None)
+        components.append(Component(number, kind, attributes, f"{kind} {number}"))
+    return GearUnit(Model("2.0.0", "test", "1", "2026-01-01", (*_RELATIONS, *relations), tuple(components)))

@@ -1,0 +1,197 @@
+"""Cases of the cylindrical stages of a REXS model: macro geometry, driver and load levels."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from service.convert.case import gear_pair
+from service.from_rexs.gear_unit import GearUnit
+from service.from_rexs.stage_case import StageCase, stage_cases
+from tests.fakes.rexs_stage import (
+    GEARS,
+    PINION,
+    PINION_LEFT,
+    PINION_RIGHT,
+    STAGE,
+    WHEEL,
+    WHEEL_LEFT,
+    WHEEL_RIGHT,
+    Values,
+    relation,
+    stage_unit,
+)
+
+
+def only(unit: GearUnit, **options: Any) -> StageCase:
+    """Return the one case of a unit."""
+    (case,) = stage_cases(unit, **{"torques": {}, **options})
+    return case
+
+
+def said(unit: GearUnit, component: int, item: str) -> tuple[str, str]:
+    """Return fate and words of a line of the account."""
+    (line,) = [line for line in unit.account.lines() if (line.component, line.item) == (component, item)]
+    return line.fate, line.words
+
+
+def flanks(gear: tuple[int, int], **values: float | None) -> Values:
+    """Return the same values for both flanks of a gear."""
+    return dict.fromkeys(gear, values)
+
+
+def test_the_macro_geometry_is_that_of_the_file() -> None:
+    unit = stage_unit({PINION: {"tip_diameter": 44.2, "root_diameter": 35.2, "inner_diameter": 15.0}})
+    stage = only(unit)
+    pair = stage.case.pair
+    assert (pair.normal_module_mm, pair.normal_pressure_angle_deg, pair.center_distance_mm) == (2.0, 20.0, 80)
+    assert (pair.pinion.teeth, pair.wheel.teeth) == (20, 60)
+    assert pair.pinion.tip_diameter_mm == 44.2
+    assert pair.pinion.bore_diameter_mm == 15.0
+    assert gear_pair(stage.case).pinion.root_radius == pytest.approx(17.6e-3, rel=1e-12)
+    assert (stage.driver, stage.driven, stage.wheel_drives) == (PINION, WHEEL, False)
+    assert stage.center_distance == pytest.approx(0.08, rel=1e-15)
+
+
+def test_a_missing_shift_follows_from_the_center_distance_and_the_mate() -> None:
+    # x_1 + x_2 = (z_1 + z_2) (inv alpha_wt - inv alpha_t) / (2 tan alpha_n), a = 80.9 mm
+    working = math.acos(80.0 * math.cos(math.radians(20.0)) / 80.9)
+    involutes = [math.tan(angle) - angle for angle in (working, math.radians(20.0))]
+    total = 80 * (involutes[0] - involutes[1]) / (2.0 * math.tan(math.radians(20.0)))
+    changes = {
+        STAGE: {"center_distance": 80.9},
+        **flanks((PINION_LEFT, PINION_RIGHT), addendum_modification_coefficient=0.3),
+        **flanks((WHEEL_LEFT, WHEEL_RIGHT), addendum_modification_coefficient=None),
+    }
+    unit = stage_unit(changes)
+    case = only(unit).case
+    assert case.pair.wheel.profile_shift_coefficient == pytest.approx(total - 0.3, rel=1e-9)
+    assert gear_pair(case).transverse_base_backlash == pytest.approx(0.0, abs=1e-12)
+    assert said(unit, WHEEL, "addendum_modification_coefficient")[0] == "derived"
+
+
+def test_without_any_shift_there_is_no_case_and_the_account_says_why() -> None:
+    both = (PINION_LEFT, PINION_RIGHT, WHEEL_LEFT, WHEEL_RIGHT)
+    unit = stage_unit({flank: {"addendum_modification_coefficient": None} for flank in both})
+    assert stage_cases(unit, {}) == ()
+    fate, words = said(unit, STAGE, "")
+    assert fate == "refused"
+    assert "addendum_modification_coefficient" in words
+
+
+def test_a_tip_of_one_millimeter_is_none() -> None:
+    unit = stage_unit({PINION: {"tip_diameter": 1.0}})
+    assert only(unit).case.pair.pinion.tip_diameter_mm == pytest.approx(44.0, rel=1e-12)
+    fate, words = said(unit, PINION, "tip_diameter")
+    assert fate == "defaulted"
+    assert words.startswith("1 mm is no tip diameter")
+
+
+def test_both_tips_are_cut_by_what_the_shifts_bring_the_gears_closer() -> None:
+    changes = {
+        STAGE: {"center_distance": 80.9},
+        **flanks((PINION_LEFT, PINION_RIGHT), addendum_modification_coefficient=0.3),
+        **flanks((WHEEL_LEFT, WHEEL_RIGHT), addendum_modification_coefficient=None),
+    }
+    pair = gear_pair(only(stage_unit(changes)).case)
+    # With k = (a - a_d)/m_n - (x_1 + x_2) both clearances are that of the basic rack, 0.25 m_n.
+    assert pair.tip_clearances == pytest.approx((0.5e-3, 0.5e-3), rel=1e-9)
+
+
+def test_the_tool_makes_the_root() -> None:
+    tool = {"addendum_coefficient_reference_profile": 1.4, "tip_corner_radius_factor_reference_profile": 0.3}
+    unit = stage_unit(
+        {40: tool},
+        {40: "rack_shaped_tool"},
+        [relation(110, "manufacturing_step", 1, workpiece=PINION_RIGHT, tool=40)],
+    )
+    pinion = only(unit).case.pair.pinion
+    assert (pinion.dedendum_coefficient, pinion.root_radius_coefficient) == (1.4, 0.3)
+    assert said(unit, 40, "addendum_coefficient_reference_profile")[0] == "taken"
+
+
+@pytest.mark.parametrize("hand", [1, -1])
+def test_the_helix_hand_is_that_of_the_driving_gear(hand: int) -> None:
+    changes: dict[int, dict[str, Any]] = {
+        PINION: {"helix_angle_reference_diameter": hand * 15.0},
+        WHEEL: {"helix_angle_reference_diameter": -hand * 15.0},
+        STAGE: {"center_distance": 80.0 / math.cos(math.radians(15.0))},
+    }
+    assert only(stage_unit(changes)).case.pair.helix_angle_deg == hand * 15.0
+    turned = only(stage_unit(changes), drivers={STAGE: WHEEL})
+    assert turned.case.pair.helix_angle_deg == -hand * 15.0
+    assert (turned.driver, turned.case.pair.pinion.teeth) == (WHEEL, 60)
+
+
+def test_external_gears_of_one_hand_do_not_mate() -> None:
+    helix = {"helix_angle_reference_diameter": 15.0}
+    unit = stage_unit({PINION: helix, WHEEL: helix})
+    assert stage_cases(unit, {}) == ()
+    assert "opposite helix angles" in said(unit, STAGE, "")[1]
+
+
+def ring_unit(sign: int = 1) -> GearUnit:
+    """Return a planet of 20 teeth in a ring gear of 60, its teeth counted by a writer's sign."""
+    changes: dict[int, dict[str, Any]] = {
+        WHEEL: {
+            "number_of_teeth": sign * 60,
+            "tip_diameter": sign * 117.0,
+            "support_vector": (30.0, 0.0, -40.0),
+        },
+        STAGE: {"center_distance": sign * 40.0},
+    }
+    return stage_unit(changes, {WHEEL: "ring_gear"})
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_ring_gear_is_the_wheel_whatever_the_sign_of_its_teeth(sign: int) -> None:
+    stage = only(ring_unit(sign))
+    assert stage.case.pair.wheel.internal
+    assert stage.case.pair.wheel.teeth == 60
+    assert stage.case.pair.center_distance_mm == 40.0
+
+
+def test_a_driving_ring_gear_stays_the_wheel_and_its_torque_is_counted_on_the_pinion() -> None:
+    stage = only(ring_unit(), drivers={STAGE: WHEEL}, torques={STAGE: (90.0, 30.0)})
+    assert stage.wheel_drives
+    assert (stage.driver, stage.driven) == (WHEEL, PINION)
+    assert stage.case.load.torque_n_m == (10.0, 30.0)
+
+
+def test_torques_are_load_levels_and_their_sign_is_no_load() -> None:
+    stage = only(stage_unit(), torques={STAGE: (-50.0, -20.0, -50.0)})
+    assert stage.case.load.torque_n_m == (20.0, 50.0)
+
+
+def test_without_torques_the_load_levels_are_stated() -> None:
+    unit = stage_unit()
+    # F_t / (b m_n) = 5, 15, 30 N/mm^2 on b = 20, m_n = 2, d = 40 mm: T = 4, 12, 24 N m
+    assert only(unit).case.load.torque_n_m == (4.0, 12.0, 24.0)
+    assert said(unit, STAGE, "torque")[0] == "defaulted"
+
+
+def test_a_value_out_of_bounds_leaves_the_other_stages() -> None:
+    unit = stage_unit(
+        {PINION: {"face_width": 60e3}, 13: GEARS[PINION], 14: GEARS[WHEEL], 21: GEARS[STAGE]}
+        | {35: GEARS[PINION_LEFT], 36: GEARS[WHEEL_LEFT]},
+        {13: "cylindrical_gear", 14: "cylindrical_gear", 21: "cylindrical_stage"}
+        | {35: "cylindrical_gear_flank", 36: "cylindrical_gear_flank"},
+        [
+            relation(111, "stage", stage=21, gear_1=13, gear_2=14),
+            relation(112, "flank", gear=13, left=35, right=35),
+            relation(113, "flank", gear=14, left=36, right=36),
+        ],
+    )
+    assert only(unit).stage == 21
+    fate, words = said(unit, STAGE, "")
+    assert fate == "refused"
+    assert "pair.pinion.face_width_mm" in words
+    assert "50000" in words
+
+
+def test_other_stages_are_refused() -> None:
+    unit = stage_unit(types={22: "bevel_stage"})
+    only(unit)
+    assert said(unit, 22, "")[0] == "refused"
