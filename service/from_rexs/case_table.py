@@ -13,6 +13,7 @@ from service.from_rexs.gear_bodies import blank_of, elasticity, held_diameter, r
 from service.from_rexs.gear_unit import GearUnit
 from service.from_rexs.meshing import Meshing
 from service.from_rexs.profile_shift import ToothedPair
+from service.from_rexs.ring_tip import clearing_tip
 from service.from_rexs.tooth_depth import ToothDepth, tip_alteration, tooth_depth
 from service.from_rexs.toothing import ToothingData
 from service.problems import BadInput
@@ -69,7 +70,13 @@ def case_of(unit: GearUnit, pair: PairData, pairs: Sequence[PairData], shifts: M
         A shift that cannot be derived, gears that do not mate, a value out of its bounds.
     """
     _refuse_strangers(pair)
-    first, second = (_gear(unit, gear, loaded, pairs, shifts) for gear, loaded in pair.gears)
+    depths = [_depth(unit, gear, loaded, pairs, shifts) for gear, loaded in pair.gears]
+    if pair.meshing.internal and not depths[1].tip_given:
+        depths[1] = clearing_tip(pair.toothed, depths, shifts)
+    first, second = (
+        _gear(unit, gear, depth, shifts[gear.part.id])
+        for (gear, _), depth in zip(pair.gears, depths, strict=True)
+    )
     stiff = tuple(elasticity(unit, gear.part) for gear, _ in pair.gears)
     if stiff[0] != stiff[1]:
         second["material"] = _material(stiff[1])
@@ -120,19 +127,23 @@ def _refuse_strangers(pair: PairData) -> None:
         wheel.part.say("helix_angle_reference_diameter", "derived", "the hand is that of its mate")
 
 
-def _gear(
+def _depth(
     unit: GearUnit,
     gear: ToothingData,
     loaded: LoadedFlank,
     pairs: Sequence[PairData],
     shifts: Mapping[int, float],
-) -> Table:
-    """Return the table of a gear."""
+) -> ToothDepth:
+    """Return tip and root of a gear; raises `BadInput` without a profile shift."""
     shift = shifts.get(gear.part.id)
     if shift is None:
         field = f"{gear.part.place}, addendum_modification_coefficient"
         raise BadInput.of(field, None, "given for this gear or for its mate")
-    depth = tooth_depth(unit, gear, loaded, shift, _tip_alteration(gear, pairs, shifts))
+    return tooth_depth(unit, gear, loaded, shift, _tip_alteration(gear, pairs, shifts))
+
+
+def _gear(unit: GearUnit, gear: ToothingData, depth: ToothDepth, shift: float) -> Table:
+    """Return the table of a gear."""
     held = "rim_diameter_mm" if gear.sign < 0 else "bore_diameter_mm"
     return {
         "teeth": gear.teeth,

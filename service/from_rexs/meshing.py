@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
-
-import numpy as np
 
 from service.from_rexs.axes import Vector, frame_of
 from service.from_rexs.gear_unit import GearUnit
 from service.from_rexs.part import Part
+from service.from_rexs.rotation import rotations, stage_gears
 from service.problems import BadInput
 
 STAGES = ("cylindrical_stage",)
@@ -55,15 +53,6 @@ class Meshing:
         return self.pinion if self.wheel_drives else self.wheel
 
 
-def stage_gears(unit: GearUnit, stage: Part) -> tuple[Part, Part] | None:
-    """Return gear 1 and gear 2 of a stage, None if the file does not relate them."""
-    for relation in unit.relations("stage"):
-        first, second = relation.of_role("gear_1"), relation.of_role("gear_2")
-        if relation.of_role("stage") == stage.id and first is not None and second is not None:
-            return unit.part(first), unit.part(second)
-    return None
-
-
 def meshing_of(
     unit: GearUnit, stage: Part, driver: int | None = None, torques: tuple[float, ...] = ()
 ) -> Meshing:
@@ -85,7 +74,7 @@ def meshing_of(
     if gears is None or all(gear.type == "ring_gear" for gear in gears):
         raise BadInput.of(f"{stage.place}, stage", None, "a relation to two gears, one of them external")
     driving = _driver(unit, stage, gears, driver)
-    sense = _sense(unit, stage, driving, _other(gears, driving), torques)
+    sense = _sense(unit, stage, driving, torques)
     ring = next((gear for gear in gears if gear.type == "ring_gear"), None)
     pinion = driving if ring is None else _other(gears, ring)
     wheel_drives = driving is ring
@@ -124,33 +113,17 @@ def _is_marked(unit: GearUnit, stage: Part, gear: Part) -> bool:
     return False
 
 
-def _sense(unit: GearUnit, stage: Part, driver: Part, driven: Part, torques: tuple[float, ...]) -> float:
-    """Return the sense in which the driver turns about its u axis: by its torque, its speed, the mate's."""
+def _sense(unit: GearUnit, stage: Part, driver: Part, torques: tuple[float, ...]) -> float:
+    """Return the sense in which the driver turns about its u axis: by its torque, else by the speeds."""
     signs = {math.copysign(1.0, torque) for torque in torques if torque}
     if len(signs) > 1:
         advice = "Make a case for each sense of rotation."
         raise BadInput.of(f"{stage.place}, torque", list(torques), "of one sign", advice)
     if signs:
         return signs.pop()
-    for speed in _speeds(unit, driver):
-        return math.copysign(1.0, speed)
-    for speed in _speeds(unit, driven):
-        same = "ring_gear" in (driver.type, driven.type)
-        aligned = float(np.dot(frame_of(unit, driver).u, frame_of(unit, driven).u)) > 0.0
-        stage.say("sense_of_rotation", "derived", f"from the speed of the shaft of {driven.name}")
-        return math.copysign(1.0, speed) * (1.0 if same == aligned else -1.0)
+    rotation = rotations(unit).get(driver.id)
+    if rotation is not None:
+        stage.say("sense_of_rotation", "derived", f"from the speed of {rotation.source}")
+        return rotation.sense
     stage.say("sense_of_rotation", "defaulted", f"{driver.name} turns about +u: the file gives no speed")
     return 1.0
-
-
-def _speeds(unit: GearUnit, gear: Part) -> Iterator[float]:
-    """Yield the speeds of a gear about its u axis: its shaft's own first, then those of the load cases."""
-    shaft = unit.owner(gear, "shaft")
-    if shaft is None:
-        return
-    aligned = math.copysign(1.0, float(np.dot(frame_of(unit, gear).u, frame_of(unit, shaft).u)))
-    parts = (shaft, *(part for case in unit.load_cases() for part in case if part.id == shaft.id))
-    for part in parts:
-        speed = part.number("rotational_speed", "sense in which the driving gear turns")
-        if speed:
-            yield aligned * speed

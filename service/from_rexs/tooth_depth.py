@@ -22,11 +22,14 @@ class ToothDepth:
 
     Attributes
     ----------
+    tip_given : bool
+        Whether the tip diameter is the file's.
     cutter_teeth, cutter_shift : int, float or None
         Of the pinion cutter of a ring gear; None where the file has none.
     """
 
     tip_diameter: float
+    tip_given: bool
     dedendum_coefficient: float
     root_radius_coefficient: float
     cutter_teeth: int | None = None
@@ -47,8 +50,10 @@ def tooth_depth(
     """
     tool = _tool(unit, gear.part, loaded)
     cutter = tool if tool is not None and tool.type == "cutter_wheel_tool" and gear.sign < 0 else None
+    tip = _given_tip(gear, shift)
     return ToothDepth(
-        tip_diameter=_tip_diameter(gear, loaded, shift, tip_alteration),
+        tip_diameter=_computed_tip(gear, loaded, shift, tip_alteration) if tip is None else tip,
+        tip_given=tip is not None,
         dedendum_coefficient=_dedendum(gear, tool, shift),
         root_radius_coefficient=_root_radius(gear, tool),
         cutter_teeth=None if cutter is None else _cutter_teeth(cutter),
@@ -56,20 +61,33 @@ def tooth_depth(
     )
 
 
-def _tip_diameter(gear: ToothingData, loaded: LoadedFlank, shift: float, alteration: float) -> float:
-    """Return the tip diameter as given, else d + 2 m_n (x + h_aP + k), of a ring gear the other way."""
+def _given_tip(gear: ToothingData, shift: float) -> float | None:
+    """Return the tip diameter of the file in m, None if it gives none that a tip can have."""
     value = gear.part.number("tip_diameter", "tip_diameter_mm")
-    diameter = abs(value or 0.0)
-    implied = gear.sign * (diameter - gear.reference_diameter) / (2.0 * gear.normal_module) - shift
-    if diameter and _ADDENDUM_BOUND[0] <= implied <= _ADDENDUM_BOUND[1]:
-        return diameter
+    return None if value is None or not _is_tip(gear, abs(value), shift) else abs(value)
+
+
+def _is_tip(gear: ToothingData, diameter: float, shift: float) -> bool:
+    """Return whether the addendum that a tip diameter means is one of a basic rack."""
+    return _ADDENDUM_BOUND[0] <= _implied_addendum(gear, diameter, shift) <= _ADDENDUM_BOUND[1]
+
+
+def _implied_addendum(gear: ToothingData, diameter: float, shift: float) -> float:
+    """Return h_aP = (d_a - d) / (2 m_n) - x of a tip diameter, of a ring gear (d - d_a)."""
+    return gear.sign * (diameter - gear.reference_diameter) / (2.0 * gear.normal_module) - shift
+
+
+def _computed_tip(gear: ToothingData, loaded: LoadedFlank, shift: float, alteration: float) -> float:
+    """Return d + 2 m_n (x + h_aP + k) in m, of a ring gear d - 2 m_n (x + h_aP)."""
     addendum = _addendum(loaded)
     height = shift + addendum + alteration
     computed = gear.reference_diameter + 2.0 * gear.sign * gear.normal_module * height
     formula = "d + 2 m_n (x + h_aP + k)" if gear.sign > 0 else "d - 2 m_n (x + h_aP)"
     words = f"{computed / MM:.7g} mm = {formula} with h_aP = {addendum:g}, k = {alteration:.4g}"
-    if diameter:
-        words = f"{diameter / MM:.7g} mm is no tip diameter (h_aP would be {implied:.4g}); {words}"
+    value = gear.part.number("tip_diameter", "tip_diameter_mm")
+    if value:
+        implied = _implied_addendum(gear, abs(value), shift)
+        words = f"{value / MM:.7g} mm is no tip diameter (h_aP would be {implied:.4g}); {words}"
     gear.part.say("tip_diameter", "defaulted", words)
     return computed
 
