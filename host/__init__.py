@@ -1,8 +1,9 @@
 """What the host offers: what systems answer differently, and what is installed.
 
-Costs of processes, locks on files, limits, priorities and groups of processes. What a system does not offer
-raises `Unavailable`, what is not installed `MissingExtra`. The only package that imports `resource` and
-`fcntl`. It depends on psutil on Windows, on nothing elsewhere.
+Costs of processes, locks on files, limits, priorities and groups of processes; children that answer one
+request; the directory of caches. What a system does not offer raises `Unavailable`, what is not installed
+`MissingExtra`. The only package that imports `resource` and `fcntl`. It depends on psutil on Windows, on
+nothing elsewhere.
 """
 
 from __future__ import annotations
@@ -10,8 +11,10 @@ from __future__ import annotations
 import sys
 from importlib.util import find_spec
 
+from host.cache_directory import default_cache_directory
 from host.ending import Ended, ending_signal
 from host.extras import MissingExtra, missing_extra, require
+from host.json_child import ChildFailed, ChildOutOfMemory, ask_child
 from host.limits import limit_file_size, limit_memory
 from host.proc import family_cpu_seconds, memory_figure, processes_in
 from host.sessions import (
@@ -26,6 +29,7 @@ from host.sessions import (
     reap,
     require_sessions,
 )
+from host.signal_handlers import handlers_kept
 from host.unavailable import Unavailable
 
 if sys.platform == "win32" or find_spec("fcntl") is None or find_spec("resource") is None:
@@ -48,15 +52,20 @@ else:
     )
 
 __all__ = [
+    "ChildFailed",
+    "ChildOutOfMemory",
     "Ended",
     "MissingExtra",
     "Unavailable",
+    "ask_child",
     "children_cpu_seconds",
     "children_peak_memory",
+    "default_cache_directory",
     "end_after",
     "ending_signal",
     "family_cpu_seconds",
     "halt",
+    "handlers_kept",
     "has_exited",
     "kill",
     "kill_group",

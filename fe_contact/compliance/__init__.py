@@ -1,7 +1,6 @@
 """Flank compliance by finite elements: assembly, condensation to the flanks, checks, disk cache."""
 
 import host.analysis  # noqa: F401 (says what to install)
-from fe_contact.compliance.cache import default_cache_directory
 from fe_contact.compliance.cost_3d import PredictedCost, predict_cost
 from fe_contact.compliance.cyclic_compliance import flank_compliance_3d, flank_compliances_3d
 from fe_contact.compliance.finite_width import FiniteWidthCompliance, finite_width_compliances
@@ -18,6 +17,7 @@ from fe_contact.compliance.unit_root_stress import (
     unit_root_stresses,
     unit_root_stresses_3d,
 )
+from host import default_cache_directory
 
 __all__ = [
     "ComplianceChecks",

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import sys
 import tempfile
 import zipfile
 from contextlib import suppress
@@ -23,29 +22,10 @@ from fe_contact.compliance.flank_3d import FlankCompliance3D
 from fe_contact.compliance.root_stress import RootStressChecks, UnitRootStress
 from fe_contact.types import Json
 
-ENVIRONMENT = "LINEOFACTION_CACHE"
-OFF = ("", "0", "off", "none")
 KEPT_KEYS = 64
 """Hashes of what was requested last, kept in memory."""
 NOT_ARRAYS = ("facts", "checksum")
 Kept = TypeVar("Kept", FlankCompliance, FlankCompliance3D, UnitRootStress)
-
-
-def default_cache_directory() -> Path | None:
-    """Return where compliances are kept.
-
-    ``$LINEOFACTION_CACHE`` if set ("off": nowhere, None), else the platform's cache directory.
-    """
-    setting = os.environ.get(ENVIRONMENT)
-    if setting is not None:
-        return None if setting.strip().lower() in OFF else Path(setting)
-    if sys.platform == "win32":
-        root = Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
-    elif sys.platform == "darwin":
-        root = Path.home() / "Library" / "Caches"
-    else:
-        root = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    return root / "lineofaction"
 
 
 @lru_cache(maxsize=1)

@@ -22,11 +22,10 @@ from __future__ import annotations
 import json
 import math
 import os
-import signal
 import sys
 from typing import Any
 
-from host import end_after
+from host import end_after, handlers_kept
 
 RESET_BY_GMSH = ("SIGTERM", "SIGHUP", "SIGPIPE", "SIGINT")
 
@@ -40,12 +39,8 @@ def start_gmsh() -> Any:
     sys.modules["numpy"] = None  # type: ignore[assignment] # gmsh's documented fallback; saves 0.2 CPU s of start-up
     import gmsh  # noqa: PLC0415
 
-    handlers = {
-        name: signal.getsignal(getattr(signal, name)) for name in RESET_BY_GMSH if hasattr(signal, name)
-    }
-    gmsh.initialize(["loa", "-nopopup"], readConfigFiles=False, interruptible=False)
-    for name, handler in handlers.items():
-        signal.signal(getattr(signal, name), handler)
+    with handlers_kept(RESET_BY_GMSH):
+        gmsh.initialize(["loa", "-nopopup"], readConfigFiles=False, interruptible=False)
     options = {
         "General.Terminal": 0,
         "General.NumThreads": 1,

@@ -104,7 +104,7 @@ def test_a_failing_child_becomes_a_mesh_error_with_the_reason(code: str, complai
 
 
 def test_a_child_that_hangs_is_ended() -> None:
-    with pytest.raises(MeshError, match=r"no mesh within 0\.2 s"):
+    with pytest.raises(MeshError, match=r"no answer within 0\.2 s"):
         triangulate([SQUARE], 1.0, seconds=0.2, command=(sys.executable, "-c", "import time; time.sleep(60)"))
 
 

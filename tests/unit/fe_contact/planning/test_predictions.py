@@ -153,7 +153,7 @@ def test_a_time_takes_the_most_exact_mesh_that_fits():
 def test_a_plan_computes_nothing(monkeypatch):
     """Neither a mesh nor a compliance nor a contact is requested."""
     for place in (
-        "fe_contact.mesh.gmsh_child.subprocess.run",
+        "host.json_child.subprocess.run",
         "fe_contact.analysis.pairs.pair_contact.solve_contact",
         "fe_contact.compliance.flank_compliance_2d.compute_flank_compliance",
         "fe_contact.compliance.cyclic_compliance.compute_flank_compliance_3d",

@@ -1,0 +1,94 @@
+"""A child process that gets one JSON object on standard input and answers with one on standard output."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+from host.ending import ending_signal
+
+_NO_MEMORY = ("MemoryError", "bad_alloc")
+"""How Python and C++ say that an allocation failed."""
+
+
+class ChildFailed(Exception):
+    """A child failed, was killed, ran out of time or answered nonsense; the message says which."""
+
+
+class ChildOutOfMemory(ChildFailed):
+    """A child could not allocate what it needed."""
+
+
+def ask_child(request: dict[str, Any], seconds: float, command: Sequence[str]) -> dict[str, Any]:
+    """Run a child on one request and return its answer.
+
+    Parameters
+    ----------
+    request : dict
+        Plain JSON; ``seconds`` is added.
+    seconds : float
+        Time limit; the child is killed after it.
+    command : sequence of str
+        Program and arguments. It finds Python modules where this process does.
+
+    Raises
+    ------
+    ChildOutOfMemory, ChildFailed
+        Also if the answer is an ``error``: its text.
+    """
+    answer = _ask(json.dumps(request | {"seconds": seconds}), seconds, command)
+    if "error" in answer:
+        _refuse_no_memory(answer["error"])
+        raise ChildFailed(answer["error"])
+    return answer
+
+
+def _ask(request: str, seconds: float, command: Sequence[str]) -> dict[str, Any]:
+    """Run the child on one request and return its answer."""
+    # The child may find a module only where this process does, e.g. in a path added at run time.
+    environment = os.environ | {"OMP_NUM_THREADS": "1", "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    try:
+        child = subprocess.run(
+            command,
+            input=request,
+            capture_output=True,
+            text=True,
+            timeout=seconds,
+            env=environment,
+            check=False,
+        )
+    except subprocess.TimeoutExpired as error:
+        raise ChildFailed(f"no answer within {seconds:g} s") from error
+    except OSError as error:
+        raise ChildFailed(f"cannot be started ({error})") from error
+    _refuse_no_memory(_last_line(child.stderr) if child.returncode else "")
+    if child.returncode != 0:
+        raise ChildFailed(f"{_cause(child.returncode)}. {_last_line(child.stderr)}".rstrip(" ."))
+    try:
+        answer = json.loads(child.stdout)
+    except json.JSONDecodeError as error:
+        raise ChildFailed(f"unusable answer ({error})") from error
+    return answer if isinstance(answer, dict) else {}
+
+
+def _refuse_no_memory(complaint: str) -> None:
+    """Raise what a child's complaint says, if that is a lack of memory."""
+    if any(sign in complaint for sign in _NO_MEMORY):
+        raise ChildOutOfMemory("ran out of memory")
+
+
+def _cause(returncode: int) -> str:
+    """Say how a child ended."""
+    if returncode >= 0:
+        return f"ended with exit code {returncode}"
+    return f"killed by {ending_signal(returncode)}"
+
+
+def _last_line(text: str) -> str:
+    """Return the last line a child complained with."""
+    lines = text.strip().splitlines()
+    return lines[-1] if lines else ""
