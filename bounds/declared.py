@@ -39,6 +39,7 @@ class Kind(StrEnum):
     """A force, traction or stress per displacement or strain."""
     DAMPING = auto()
     """A force or moment per rate."""
+    FORCE = auto()
     INERTIA = auto()
     """A mass, a density, a moment of inertia."""
     LOAD = auto()

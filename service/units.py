@@ -36,6 +36,7 @@ _OF_SI = {
     "s": "_s",
     "Hz": "_hz",
     "Pa": "_gpa",
+    "N": "_n",
     "N/m": "_n_per_m",
     "N/m^3": "_n_per_mm3",
     "N s/m": "_n_s_per_m",

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
-from bounds import Declared, Kind, above, between, declared, described, required
+from bounds import Declared, Kind, below, between, declared, described, required
 from dynamics.bearing_rows.elliptic_contact import EllipticContact
 from dynamics.bearing_rows.row import ANGLE, CLEARANCE, COUNT, DIAMETER, PITCH, Row
 from dynamics.bodies.steel import STEEL_POISSON_RATIO, STEEL_YOUNGS_MODULUS
@@ -41,9 +41,8 @@ class BallBearing(Row):
     def __post_init__(self) -> None:
         self.check_row()
         if self.contact_angle == 0.0 and self.clearance >= 2.0 * self.groove_distance:
-            bound = above(self.clearance / 2.0, "m", "half the clearance")
-            suggestion = "With such a clearance the grooves hold nothing: reduce it, or widen the grooves."
-            raise InputError("groove_distance", self.groove_distance, bound, suggestion)
+            bound = below(2.0 * self.groove_distance, "m", "where the grooves hold nothing")
+            raise InputError("clearance", self.clearance, bound, "Reduce it, or widen the grooves.")
 
     @property
     def groove_distance(self) -> float:

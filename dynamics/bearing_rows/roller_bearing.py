@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from bounds import Choice, Declared, Kind, above, between, declared, described, integers, required
+from bounds import Choice, Declared, Kind, between, declared, described, integers, required
 from dynamics.bearing_rows.roller_profile import (
     CROWNED,
     LOGARITHMIC,
@@ -17,7 +17,7 @@ from dynamics.bearing_rows.roller_profile import (
 from dynamics.bearing_rows.row import ANGLE, CLEARANCE, COUNT, DIAMETER, PITCH, Row
 from dynamics.types import FloatArray
 
-LENGTH = Declared(Kind.LENGTH, "m", above(0.0, "m"), "Effective length of a roller", 0.0136)
+LENGTH = Declared(Kind.LENGTH, "m", between(1e-4, 10.0), "Effective length of a roller", 0.0136)
 PROFILE = Declared(Kind.CHOICE, "", Choice(PROFILES), "Profile of a roller", LOGARITHMIC)
 CROWN = Declared(
     Kind.AMOUNT,

@@ -9,14 +9,14 @@ from dynamics.checks import declared_fields
 from dynamics.errors import InputError
 
 COUNT = Declared(Kind.COUNT, "", integers(3, 500), "Number of rolling elements", 8)
-DIAMETER = Declared(Kind.LENGTH, "m", above(0.0, "m"), "Diameter of a rolling element", 0.008)
-PITCH = Declared(Kind.LENGTH, "m", above(0.0, "m"), "Diameter of the circle of their centers", 0.039)
+DIAMETER = Declared(Kind.LENGTH, "m", between(1e-4, 10.0), "Diameter of a rolling element", 0.008)
+PITCH = Declared(Kind.LENGTH, "m", between(1e-4, 100.0), "Diameter of the circle of their centers", 0.039)
 ANGLE = Declared(
     Kind.ANGLE,
     "rad",
-    between(-1.5, 1.5),
+    between(-math.radians(85.0), math.radians(85.0)),
     "Free contact angle; positive: the bearing holds a shaft that is pushed along z, negative: against z",
-    0.7,
+    math.radians(40.0),
 )
 CLEARANCE = Declared(
     Kind.LENGTH,
@@ -25,6 +25,7 @@ CLEARANCE = Declared(
     "Play: across the axis between both extremes where the contact angle is 0, otherwise along the axis to "
     "contact; negative: preload",
     1e-5,
+    written="um",
 )
 
 

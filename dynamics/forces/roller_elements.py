@@ -67,9 +67,15 @@ def pack_rollers(rows: Sequence[tuple[RollerBearing, RowPlacement]]) -> RollerEl
     places = [lamina_places(bearing.length, bearing.laminae) for bearing, _ in rows]
     drops = [2.0 * bearing.drop(place) for (bearing, _), place in zip(rows, places, strict=True)]
     own = [place / at.lever for (_, at), place in zip(rows, places, strict=True)]
+    stiffness, damping, cosine, sine, arm, play = (np.ascontiguousarray(column) for column in values.T)
     return RollerElements(
         np.array([bearing.count * at.copies for bearing, at in rows], dtype=np.int64),
-        *(np.ascontiguousarray(column) for column in values.T),
+        stiffness,
+        damping,
+        cosine,
+        sine,
+        arm,
+        play,
         np.cumsum([0, *(bearing.laminae for bearing, _ in rows)], dtype=np.int64),
         np.concatenate([np.empty(0), *own]),
         np.concatenate([np.empty(0), *drops]),

@@ -12,7 +12,7 @@ from dynamics.joints import seat
 from dynamics.joints.bushing import Bushing
 
 AXIAL_PRELOAD = Declared(
-    Kind.AMOUNT,
+    Kind.FORCE,
     "N",
     between(-1e9, 1e9),
     "Axial force of the inner ring on the outer where the shaft is not displaced; along z, with the sign of "

@@ -8,6 +8,7 @@ is published; f_0 gives their ratings to 1.3 %.
 References
 ----------
 .. [1] ISO 76:2006, Rolling bearings - Static load ratings, table 1: f_0 of radial ball bearings, in N/mm^2.
+   By its definition, 4200 MPa in the heaviest contact, exact integrals give 2.6 to 3.2 % less at all D/D_pw.
 """
 
 from __future__ import annotations
@@ -17,9 +18,8 @@ import math
 import numpy as np
 from scipy.optimize import brentq
 
-from bounds import above, between
-from dynamics.bearing_rows import BallBearing
-from dynamics.checks import positive
+from bounds import between
+from dynamics.bearing_rows import BallBearing, CatalogLine
 from dynamics.errors import InputError
 
 SLENDERNESS = (0.0, 0.09, 0.1, 0.11, 0.12, 0.15, 0.2, 0.25, 0.3)
@@ -59,10 +59,7 @@ def from_catalog(
     InputError
         A value is out of its bounds, or no number of balls fits rating and section.
     """
-    positive("bore", bore)
-    positive("static_rating", static_rating)
-    if outside_diameter <= bore:
-        raise InputError("outside_diameter", outside_diameter, above(bore, "m", "the bore"))
+    CatalogLine(bore, outside_diameter, static_rating, clearance)
     pitch, largest = (bore + outside_diameter) / 2.0, WALL * (outside_diameter - bore) / 2.0
     least, most = (_filled_rating(diameter, pitch) for diameter in (_smallest(pitch), largest))
     if not least <= static_rating <= most:

@@ -10,7 +10,7 @@ from typing import cast
 import numpy as np
 from scipy.optimize import brentq
 
-from dynamics.bearing_rows import BallBearing
+from dynamics.bearing_rows import BallBearing, RollerBearing
 from dynamics.forces.ball_elements import BallElements, pack_balls
 from dynamics.forces.bearing_law import BearingDuty
 from dynamics.forces.law import Law

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from bounds import inside
+from dynamics.bearing_rows import BallBearing, CatalogLine, RollerBearing
 from dynamics.forces import RollingContact, SpringCurve
-from dynamics.joints import Bushing, PlanetBearing
+from dynamics.joints import Bushing, PlanetBearing, RollingBearing
+from dynamics.rolling_bearings import from_catalog
 from service.convert.declared import in_si
 from service.convert.errors import named
 from service.schemas.scene import SceneInput
+from service.schemas.scene_bearings import RollingBearingInput
 from service.schemas.scene_bodies import BearingInput, BushingInput, PlanetBearingInput
 from service.units import MRAD, UM
 
@@ -31,6 +35,26 @@ def _preload(bushing: BushingInput) -> tuple[float, ...] | None:
     if bushing.preload_force_n is None and bushing.preload_moment_n_m is None:
         return None
     return (*(bushing.preload_force_n or (0.0,) * 3), *(bushing.preload_moment_n_m or (0.0,) * 2))
+
+
+def rolling_bearing_of(index: int, bearing: RollingBearingInput) -> RollingBearing:
+    """Return a rolling bearing, its row as written or by its catalog line."""
+    with named(f"rolling_bearings[{index}]"):
+        own = in_si(RollingBearing, bearing)
+        return RollingBearing(bearing.name, bearing.shaft, _row(bearing), **own)
+
+
+def _row(bearing: RollingBearingInput) -> BallBearing | RollerBearing:
+    """Return the row of a bearing."""
+    if bearing.ball is not None:
+        with inside("ball"):
+            return BallBearing(**in_si(BallBearing, bearing.ball))
+    if bearing.roller is not None:
+        with inside("roller"):
+            return RollerBearing(**in_si(RollerBearing, bearing.roller))
+    assert bearing.catalog is not None  # the schema comes first
+    with inside("catalog"):
+        return from_catalog(**in_si(CatalogLine, bearing.catalog))
 
 
 def rolling_contacts_of(scene: SceneInput) -> Iterator[RollingContact]:

@@ -23,6 +23,7 @@ from fe_contact.ste import PairFacts, SteDatabase
 from service.convert.bearings import (
     bushing_of,
     planet_bearing_of,
+    rolling_bearing_of,
     rolling_contacts_of,
     spring_curves_of,
 )
@@ -142,6 +143,7 @@ def _assembled(scene: SceneInput, facts: Mapping[str, PairFacts], meshes: tuple[
             speed_torques=tuple(_speed_torque(i, part) for i, part in enumerate(scene.speed_torques)),
             free_rotations=tuple(_free_rotation(i, part) for i, part in enumerate(scene.free_rotations)),
             housings=tuple(_housing(i, part) for i, part in enumerate(scene.housings)),
+            rolling_bearings=tuple(rolling_bearing_of(i, b) for i, b in enumerate(scene.rolling_bearings)),
             rolling_contacts=tuple(rolling_contacts_of(scene)),
             spring_curves=tuple(spring_curves_of(scene)),
             loads=tuple(_load(i, load) for i, load in enumerate(scene.loads)),

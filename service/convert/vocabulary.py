@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from bounds import Declared
+from dynamics.bearing_rows import BallBearing, CatalogLine, RollerBearing
 from dynamics.bodies.beam_section import BeamSection
 from dynamics.bodies.disc_body import DiscBody
 from dynamics.bodies.gear_body import GearBody
@@ -15,6 +16,7 @@ from dynamics.joints.coupling import Coupling
 from dynamics.joints.free_rotation import FreeRotation
 from dynamics.joints.imposed_rotation import ImposedRotation
 from dynamics.joints.planet_bearing import PlanetBearing
+from dynamics.joints.rolling_bearing import RollingBearing
 from dynamics.settings.integration import Integration
 from dynamics.settings.outputs import Outputs
 from fe_contact.body.shaft import Shaft
@@ -55,6 +57,7 @@ _ANYWHERE = (
     *(GearBody, DiscBody, Inertia, TurningShaft, BeamSection),
     Outputs,
     *(Bushing, PlanetBearing, Coupling, FreeRotation),
+    *(RollingBearing, BallBearing, RollerBearing, CatalogLine),
 )
 """What declares its fields, by names that mean the same in every table."""
 _OF_TABLE = {"drives": ImposedRotation, "integration": Integration}

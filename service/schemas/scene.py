@@ -13,6 +13,7 @@ from service.schemas.case import Case, EffectName, Switch
 from service.schemas.declared import declared_in, with_fields
 from service.schemas.model import BoundaryModel, refuse
 from service.schemas.rules import exactly_one_of, stated
+from service.schemas.scene_bearings import RollingBearingInput
 from service.schemas.scene_bodies import (
     BushingInput,
     CouplingInput,
@@ -185,6 +186,9 @@ class SceneInput(BoundaryModel):
     )
     discs: Annotated[tuple[DiscInput, ...], Strict(False)] = Field(default=(), max_length=1000)
     bushings: Annotated[tuple[BushingInput, ...], Strict(False)] = Field(default=(), max_length=1000)
+    rolling_bearings: Annotated[tuple[RollingBearingInput, ...], Strict(False)] = Field(
+        default=(), max_length=1000
+    )
     meshes: Annotated[tuple[MeshInput, ...], Strict(False)] = Field(
         min_length=1, max_length=1000, description="Gear pairs in mesh: a table [[meshes]] for each"
     )
@@ -243,7 +247,7 @@ class SceneInput(BoundaryModel):
             _refuse_unknown(f"couplings[{index}].second", coupling.second, shafts)
         for index, planets in enumerate(self.planets):
             _refuse_unknown(f"planets[{index}].planet", planets.planet, shafts)
-        bushings = [bushing.name for bushing in self.bushings]
+        bushings = [*(part.name for part in self.bushings), *(part.name for part in self.rolling_bearings)]
         for index, housing in enumerate(self.housings):
             for number, name in enumerate(housing.bushings):
                 _refuse_unknown(f"housings[{index}].bushings[{number}]", name, bushings)

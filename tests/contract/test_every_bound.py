@@ -90,7 +90,8 @@ DEPEND_ON_OTHERS = (
     *("rim_thickness_mm", "web_thickness_mm", "hub_diameter_mm", "web_offset_mm", "width_mm", "offset_mm"),
     *("rim_diameter_mm", "cutter_teeth", "cutter_profile_shift_coefficient", "center_distance_change_mm"),
     *("teeth", "duration_s", "torsional_stiffness_n_m_per_rad", "dedendum_coefficient", "polar_kg_m2"),
-    *("tip_chamfer_angle_deg", "angles_deg"),
+    *("tip_chamfer_angle_deg", "angles_deg", "pitch_diameter_mm", "clearance_um", "count", "axial_preload_n"),
+    *("bore_mm", "outside_diameter_mm", "static_rating_n", "contact_angle_deg"),
 )
 """Numbers whose bounds follow from others too: what the schema says of them alone is not all."""
 
@@ -113,6 +114,18 @@ def flexible_scene() -> Table:
     ways = {"direction": "x", "displacement_um": [-40.0, 0.0, 40.0], "force_n": [-60.0, 0.0, 60.0]}
     scene["bushings"][0] |= {"rolling_contact": {"stiffness_n_per_m_n": 5e8}, "spring_curves": [ways, tilts]}
     scene["bushings"][1] |= {"preload_force_n": [0.0, 0.0, 5.0], "preload_moment_n_m": [0.0, 0.0]}
+    row = {"count": 14, "diameter_mm": 9.0, "pitch_diameter_mm": 53.5, "clearance_um": 10.0}
+    line = {"bore_mm": 25.0, "outside_diameter_mm": 62.0, "static_rating_n": 11600.0, "clearance_um": 5.0}
+    rolling = {"shaft": "fan", "axial_preload_n": 0.0}
+    rows = {
+        "ball": {**row, "count": 8, "contact_angle_deg": 0.0},
+        "roller": row | {"length_mm": 13.6, "contact_angle_deg": 0.0},
+        "catalog": line,
+    }
+    scene["rolling_bearings"] = [
+        rolling | {"name": kind, "position_mm": 20.0 * (1 + index), kind: own}
+        for index, (kind, own) in enumerate(rows.items())
+    ]
     bearing = {"shaft": "fan", "radial_stiffness_n_per_m": 1e8, "axial_stiffness_n_per_m": 1e8}
     scene["bushings"] += [bearing | {"name": f"fan {z:g}", "position_mm": z} for z in (0.0, 100.0)]
     scene["couplings"] = [

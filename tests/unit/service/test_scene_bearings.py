@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import math
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -12,6 +13,7 @@ import numpy as np
 import pytest
 from small_table import small_table
 
+from dynamics.rolling_bearings import BallBearing, RollerBearing, from_catalog
 from dynamics.scene import Scene
 from service.convert.bearings import planet_bearing_of, rolling_contacts_of, spring_curves_of
 from service.convert.scene import dynamic_scene
@@ -64,6 +66,36 @@ def test_rolling_contacts_and_curves_are_in_si() -> None:
     assert (line.bushing, line.direction, line.force) == ("input right", "x", (-6e3, 0.0, 5e3))
     np.testing.assert_allclose(line.displacement, [-40e-6, 0.0, 40e-6], rtol=1e-12, atol=0.0)
     np.testing.assert_allclose(tilt.displacement, [-1e-3, 1e-3], rtol=1e-12)
+
+
+BALL = {"count": 7, "diameter_mm": 11.5, "pitch_diameter_mm": 43.5, "clearance_um": 10.0}
+TAPERED = {"count": 17, "diameter_mm": 9.0, "length_mm": 13.6, "pitch_diameter_mm": 65.0}
+LINE = {"bore_mm": 25.0, "outside_diameter_mm": 62.0, "static_rating_n": 11600.0, "clearance_um": 10.0}
+
+
+def rolling(**row: Any) -> Change:
+    """Return a change that puts a rolling bearing in place of the first bushing."""
+
+    def change(table: dict[str, Any]) -> None:
+        bushing = table["bushings"].pop(0)
+        place = {name: bushing[name] for name in ("name", "shaft", "position_mm")}
+        table["rolling_bearings"] = [place | row]
+
+    return change
+
+
+def test_rolling_bearings_are_in_si_by_geometry_or_by_their_line() -> None:
+    (balls,) = scene(rolling(ball=BALL)).rolling_bearings
+    assert (balls.name, balls.shaft, balls.row.count) == ("input left", "input", 7)
+    assert balls.row == BallBearing(7, 11.5 * 1e-3, 43.5 * 1e-3, clearance=10.0 * 1e-6)
+    angle = {"contact_angle_deg": -15.0}
+    (taper,) = scene(rolling(roller=TAPERED | angle, axial_preload_n=-500.0)).rolling_bearings
+    assert isinstance(taper.row, RollerBearing)
+    assert taper.row.contact_angle == pytest.approx(math.radians(-15.0), rel=1e-12)
+    assert (taper.axial_preload, taper.row.length) == (-500.0, pytest.approx(13.6e-3, rel=1e-12))
+    (line,) = scene(rolling(catalog=LINE, damping_ratio=0.1)).rolling_bearings
+    assert line.row == from_catalog(25.0 * 1e-3, 62.0 * 1e-3, 11600.0, 10.0 * 1e-6)
+    assert line.damping_ratio == 0.1
 
 
 def test_planet_bearings_have_all_that_bushings_have() -> None:
@@ -152,6 +184,28 @@ WRONG: dict[str, tuple[Change, str]] = {
             spring_curves=[{"direction": "tilt_x", "displacement_um": [0.0, 1.0], "force_n": [0.0, 1.0]}]
         ),
         "bushings[0].spring_curves[0].displacement_um",
+    ),
+    "two rows": (rolling(ball=BALL, catalog=LINE), "rolling_bearings[0].ball"),
+    "no row": (rolling(), "rolling_bearings[0].ball"),
+    "balls in a heap": (
+        rolling(ball=BALL | {"count": 20}),
+        "rolling_bearings[0].ball.pitch_diameter_mm",
+    ),
+    "a rating of no such bearing": (
+        rolling(catalog=LINE | {"static_rating_n": 11.6}),
+        "rolling_bearings[0].catalog.static_rating_n",
+    ),
+    "preload the other way": (
+        rolling(roller=TAPERED | {"contact_angle_deg": 15.0}, axial_preload_n=-500.0),
+        "rolling_bearings[0].axial_preload_n",
+    ),
+    "a bearing twice": (
+        lambda t: t.update(rolling_bearings=[{**t["bushings"][0], "ball": BALL}]),
+        "rolling_bearings[0].radial_stiffness_n_per_m",
+    ),
+    "off its shaft": (
+        rolling(ball=BALL, position_mm=1e4),
+        "rolling_bearings[0].position_mm",
     ),
     "unknown bushing": (housing(bushings=["input left", "x"]), "housings[0].bushings[1]"),
     "wrong size": (housing(stiffness_matrix=np.eye(7).tolist()), "housings[0].stiffness_matrix"),

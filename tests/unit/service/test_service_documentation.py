@@ -13,7 +13,7 @@ from service import problems
 from service.app import create_app
 from service.cli.commands import app as loa
 from service.registry import STUDIES
-from service.schemas import case, gear, scene, scene_bodies, scene_motion
+from service.schemas import case, gear, scene, scene_bearings, scene_bodies, scene_motion
 from service.settings import Settings, load_settings
 
 DOCS = Path(__file__).parents[3] / "docs"
@@ -26,14 +26,15 @@ def page(name: str) -> str:
 
 def models() -> list[type[BaseModel]]:
     """Return the tables of case and scene files."""
-    found = [vars(module).values() for module in (case, gear, scene, scene_bodies, scene_motion)]
+    modules = (case, gear, scene, scene_bearings, scene_bodies, scene_motion)
+    found = [vars(module).values() for module in modules]
     return [m for group in found for m in group if inspect.isclass(m) and issubclass(m, BaseModel)]
 
 
 def test_every_field_of_case_and_scene_is_documented() -> None:
     documented = set(re.findall(r"[`.]([a-z][a-z0-9_]+)`", page("case-file.md")))
     tables = {"pair", "pinion", "wheel", "load", "errors", "accuracy", "effects", "run", "shafts", "gears"}
-    tables |= {"discs", "bushings", "meshes", "drives", "loads", "outputs", "integration"}
+    tables |= {"discs", "bushings", "rolling_bearings", "meshes", "drives", "loads", "outputs", "integration"}
     tables |= {"free_rotations", "housings", "planets", "planet_bearings", "couplings", "speed_torques"}
     fields = {name for model in models() for name in model.model_fields} - tables
     assert fields - documented == set()
