@@ -71,7 +71,7 @@ def classes(kind: Any) -> list[type]:
 def method(study: Study) -> str:
     """Return the declaration of a study."""
     parts = ["self", f"{study.argument}: {SUBJECTS[study.subject]}"]
-    parts += ["study: Mapping[str, Any]"] if study.from_file else []
+    parts += [f"study: Mapping[str, Any]{' = ...' if study.bare else ''}"] if study.from_file else []
     if study.inputs.model_fields and not study.from_file:
         parts += ["*", *(option(name, field) for name, field in study.inputs.model_fields.items())]
     lines = "".join(f"        {part},\n" for part in parts)

@@ -42,6 +42,8 @@ class Study:
         Name of the files, but for their endings, that the verb writes to a folder; empty: it writes one file.
     from_file : bool
         Whether the inputs are a file of the verb and a mapping of the client, rather than options.
+    bare : bool
+        Whether the file of the inputs may be left out; all of them then have defaults.
     collection : str
         See `service.schemas.result_kinds.ResultKind`.
     further : tuple of str
@@ -64,6 +66,7 @@ class Study:
     shared: bool = False
     folder: str = ""
     from_file: bool = False
+    bare: bool = False
     collection: str = ""
     further: tuple[str, ...] = ()
     several: bool = False
@@ -255,6 +258,22 @@ STUDIES: dict[str, Study] = {
             kind="steady",
             collection="steadies",
             stages=(("analysis", 0.4), ("up", 0.2), ("down", 0.2), ("branch", 0.2)),
+        ),
+        Study(
+            "deflect",
+            "scene",
+            "Deflection",
+            "Deflect the gearbox",
+            "Deflect a scene under load cases: misalignment of each mesh by cause, K_Hbeta, contact pattern, "
+            "transmission error, bearing loads.",
+            "examples/flexible_shafts_scene.toml -o deflect",
+            kind="deflection",
+            stages=(("analysis", 0.5), ("deflection", 0.2), ("flanks", 0.3)),
+            version="1",
+            folder="deflection",
+            from_file=True,
+            bare=True,
+            further=(".toml",),
         ),
         Study(
             "study",

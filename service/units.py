@@ -40,6 +40,7 @@ _OF_SI = {
     "N/m": "_n_per_m",
     "N/m^3": "_n_per_mm3",
     "N s/m": "_n_s_per_m",
+    "N m": "_n_m",
     "N m/rad": "_n_m_per_rad",
     "N m s/rad": "_n_m_s_per_rad",
     "kg": "_kg",

@@ -4,9 +4,10 @@ import host.analysis  # noqa: F401 (says what to install)
 from dynamics.deflection.bearing_load import BearingLoad, equivalent_load
 from dynamics.deflection.causes import CAUSES
 from dynamics.deflection.deflect import CaseDeflection, Deflection, deflect
-from dynamics.deflection.load_case import LoadCase, loaded_scene
+from dynamics.deflection.loaded_scene import loaded_scene
 from dynamics.deflection.mesh_alignment import MeshAlignment
 from dynamics.deflection.shaft_line import ShaftLines
+from dynamics.settings.load_case import LoadCase
 
 __all__ = [
     "CAUSES",

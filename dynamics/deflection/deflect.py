@@ -9,12 +9,13 @@ from dynamics.assembly.assemble import assemble
 from dynamics.checks import distinct, integer
 from dynamics.deflection.bearing_load import BearingLoad, bearing_loads
 from dynamics.deflection.bearing_strain import bearing_strain
-from dynamics.deflection.load_case import LoadCase, leader_of, leading_torque, loaded_scene
+from dynamics.deflection.loaded_scene import leader_of, leading_torque, loaded_scene
 from dynamics.deflection.mesh_alignment import MeshAlignment, mesh_alignment
 from dynamics.deflection.mesh_cycle import cycle_times
 from dynamics.deflection.rest import rest_over
 from dynamics.deflection.shaft_line import ShaftLines, shaft_lines
 from dynamics.scene.scene import Scene
+from dynamics.settings.load_case import LoadCase
 from model_studies import Record, in_unit
 
 MOST_POSITIONS = 512
@@ -26,8 +27,10 @@ class CaseDeflection(Record):
 
     Attributes
     ----------
-    case : LoadCase
-        As it was stated.
+    name, direction : str
+        Of the load case.
+    share : float
+        Of the duration, relative to the other cases.
     speed, torque : float
         Of the leading shaft, rad/s and N m, both > 0.
     status : str
@@ -40,7 +43,9 @@ class CaseDeflection(Record):
     shafts : ShaftLines
     """
 
-    case: LoadCase
+    name: str
+    direction: str
+    share: float
     speed: float = field(metadata=in_unit("rad_s"))
     torque: float = field(metadata=in_unit("n_m"))
     status: str
@@ -116,7 +121,9 @@ def _deflected(scene: Scene, case: LoadCase, positions: int) -> CaseDeflection:
     leader = leader_of(loaded)
     speed = abs(leader.speed)
     return CaseDeflection(
-        case,
+        case.name,
+        case.direction,
+        case.share,
         speed,
         sum(leading_torque(loaded, leader, speed)),
         rest.status.name.lower(),

@@ -98,6 +98,8 @@ def _tell(study: Study, subject: Any, result: Any, targets: list[Path], options:
 def _inputs(study: Study, options: Json) -> Any:
     """Return the inputs, from their file or the options that were given."""
     if study.from_file:
+        if options["study"] is None:
+            return validated(study.inputs, {})
         return read_model(study.inputs, options["study"])
     return validated(study.inputs, _fields(study, options))
 

@@ -85,7 +85,7 @@ def _study_offer(study: Study) -> Offer:
     """Return the process of a study."""
     to_inputs = {"case": case_inputs, "scene": scene_inputs, "case or scene": inputs_of}[study.subject]
     varied = (
-        Parameter("study", Parameter.POSITIONAL_OR_KEYWORD)
+        Parameter("study", Parameter.POSITIONAL_OR_KEYWORD, default={} if study.bare else Parameter.empty)
         if study.from_file
         else Parameter("options", Parameter.VAR_KEYWORD)
     )

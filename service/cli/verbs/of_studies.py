@@ -62,7 +62,7 @@ def _parameters(study: Study) -> Iterator[Parameter]:
     argument = file_argument(f"{study.subject.capitalize()} file", metavar)
     yield _parameter(study.argument, Annotated[list[InputFile] if study.several else InputFile, argument])
     if study.from_file:
-        yield _parameter("study", Annotated[Path, typer.Argument(help="Study file (TOML).")])
+        yield _study_file(study)
     else:
         yield from (_option(name, field) for name, field in study.inputs.model_fields.items())
     place = "Folder, or a file" if study.folder else "File to write,"
@@ -77,6 +77,14 @@ def _parameters(study: Study) -> Iterator[Parameter]:
     if ".csv" in study.endings:
         yield _parameter("csv", AsCsv, False)
     yield _parameter("json", AsJson, False)
+
+
+def _study_file(study: Study) -> Parameter:
+    """Return the argument of the file of the inputs."""
+    if study.bare:
+        file = typer.Argument(help="Study file (TOML); left out: all defaults.")
+        return _parameter("study", Annotated[Path | None, file], None)
+    return _parameter("study", Annotated[Path, typer.Argument(help="Study file (TOML).")])
 
 
 def _option(name: str, field: FieldInfo) -> Parameter:

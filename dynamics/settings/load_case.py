@@ -1,0 +1,53 @@
+"""A load case of a geared system: its share of the duration, speed, torque and the flanks that carry."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from bounds import Declared, Kind, declared, described, one_of, up_to
+from dynamics.checks import declared_fields
+from dynamics.errors import InputError
+
+DRIVE, COAST = "drive", "coast"
+
+_SHARE = Declared(Kind.RATIO, "", up_to(1e9), "Share of the duration, relative to the other load cases", 1.0)
+_FACTOR = Declared(Kind.RATIO, "", up_to(1e6), "Factor on the scene's loads", 1.0)
+_TORQUE = Declared(
+    Kind.LOAD, "N m", up_to(1e9), "Torque on the leading shaft, in place of a factor on the loads", 100.0
+)
+_FASTEST = 1e7 * math.pi / 30.0
+_SPEED = Declared(
+    Kind.SPEED, "rad/s", up_to(_FASTEST), "Speed of the leading shaft; left out: the scene's", 150.0
+)
+_DIRECTION = Declared(
+    Kind.CHOICE,
+    "",
+    one_of((DRIVE, COAST)),
+    "Flanks that carry: the driving ones of the scene, or the others",
+    DRIVE,
+)
+
+
+@described
+@dataclass(frozen=True)
+class LoadCase:
+    """A load of a scene and the share of its duration.
+
+    The leading shaft is that of the first drive that turns, or of the first free rotation if none does. A
+    factor scales all loads of the scene at t = 0; a torque on the leading shaft gives this factor. Torques
+    that depend on speed follow the speed alone. On the coast side all torques are reversed and the other
+    flanks carry: turned end for end, the same pair driven in the other sense.
+    """
+
+    name: str
+    share: float = declared(1.0, _SHARE)
+    factor: float = declared(1.0, _FACTOR)
+    torque: float | None = declared(None, _TORQUE)
+    speed: float | None = declared(None, _SPEED)
+    direction: str = declared(DRIVE, _DIRECTION)
+
+    def __post_init__(self) -> None:
+        declared_fields(self)
+        if self.torque is not None and self.factor != 1.0:
+            raise InputError("factor", self.factor, "left out if a torque is given", "Give one of them.")

@@ -1,0 +1,105 @@
+"""A deflection as people see it: the gearbox drawn, its meshes, flanks and bearings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from bounds import engineering
+from dynamics.deflection import CAUSES
+from service.drawing.figure import Figure, Table, number
+from service.drawing.page import Headline, Page, Section
+from service.studies.deflect.gearbox_drawing import gearbox_drawing
+from service.studies.deflect.plots import causes_figure, face_load_figure, pattern_figure
+from service.studies.deflect.result import GearboxDeflection
+from service.studies.deflect.tables import (
+    bearing_table,
+    life_table,
+    mesh_of,
+    mesh_table,
+    meshes_worst_first,
+    worst_case,
+)
+from service.studies.presentation import Presentation
+from service.units import UM
+
+
+def headlines(result: GearboxDeflection) -> tuple[Headline, ...]:
+    """Return the worst mesh and how well bodies and meshes agree."""
+    name = meshes_worst_first(result)[0]
+    case = worst_case(result, name)
+    mesh = mesh_of(case, name)
+    cause = CAUSES[int(np.argmax(np.abs(mesh.causes)))]
+    found = [
+        Headline(
+            "largest misalignment",
+            f"{number(mesh.misalignment / UM, 3)} µm",
+            f"mesh {name}, {case.name}; most by the {cause}",
+        )
+    ]
+    factors = [part for part in result.flanks if np.isfinite(part.face_load_factor)]
+    if factors:
+        worst = max(factors, key=lambda part: part.face_load_factor)
+        found.append(
+            Headline("largest K_Hbeta", number(worst.face_load_factor, 3), f"mesh {worst.mesh}, {worst.case}")
+        )
+    return tuple(found)
+
+
+def page(result: GearboxDeflection) -> Page:
+    """Return the report: the gearbox under the worst load case, then its meshes and bearings."""
+    name = meshes_worst_first(result)[0]
+    drawing = gearbox_drawing(result, worst_case(result, name))
+    contact = tuple(figure for figure in (face_load_figure(result), pattern_figure(result)) if figure)
+    sections = [
+        Section("Gearbox", figures=(drawing,)),
+        Section("Meshes", figures=(causes_figure(result),)),
+        *([Section("Flanks", figures=contact)] if contact else []),
+        Section("Bearings", tables=(bearing_table(result), life_table(result))),
+    ]
+    lead = (
+        f"{len(result.deflection.cases)} load cases on {result.deflection.leading_shaft}. {agreement(result)}"
+    )
+    return Page("Deflection of the gearbox", lead, headlines(result), tuple(sections), _alarms(result))
+
+
+def agreement(result: GearboxDeflection) -> str:
+    """Say how well mesh loads and deflections agree."""
+    if not any(np.isfinite(part.face_load_factor) for part in result.flanks):
+        return "The meshes press evenly over their faces: no table in three dimensions."
+    change = engineering(result.change, 2)
+    return f"Mesh loads and deflections agree to {change} of the misalignments after {result.passes} passes."
+
+
+def _alarms(result: GearboxDeflection) -> tuple[str, ...]:
+    """Say what was not found."""
+    lost = [case for case in result.deflection.cases if case.status != "converged"]
+    alarms = [f'No equilibrium was found under the load case "{case.name}".' for case in lost]
+    if not lost and not result.agreed:
+        alarms.append("Mesh loads and deflections do not agree yet: the misalignments still change.")
+    outside = sorted({m.name for case in result.deflection.cases for m in case.meshes if not m.in_table})
+    alarms += [
+        f'Mesh "{name}" runs beyond the misalignments of its table, whose ends are held.' for name in outside
+    ]
+    return tuple(alarms)
+
+
+def text(result: GearboxDeflection) -> Iterator[Table | str]:
+    """Tables for the terminal, the worst mesh first."""
+    yield from _alarms(result)
+    yield agreement(result)
+    yield mesh_table(result)
+    yield ""
+    yield bearing_table(result)
+    yield ""
+    yield life_table(result)
+    yield f"cost {engineering(result.seconds, 3)} CPU s"
+
+
+def figure(result: GearboxDeflection) -> Figure:
+    """Return the gearbox under the load case that misaligns a mesh most."""
+    return gearbox_drawing(result, worst_case(result, meshes_worst_first(result)[0]))
+
+
+PAGE = Presentation(figure, page, text)

@@ -1,0 +1,124 @@
+"""The result of a deflection: the bodies, the meshes on their flanks, and the outline of the gearbox."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from bounds.types import FloatArray, IntArray, Json
+from dynamics.deflection import Deflection
+from model_studies import Record, in_unit
+
+HARMONICS = 5
+
+
+@dataclass(frozen=True)
+class MeshFlanks(Record):
+    """A mesh on its flanks under a load case, at the alignment that was found.
+
+    Attributes
+    ----------
+    mesh, case : str
+    torque : float
+        On the pinion, N m.
+    mean, peak_to_peak : float
+        Static transmission error, m.
+    harmonics : (5,) array
+        Amplitudes, m.
+    mean_error, peak_to_peak_error, harmonics_error
+        Estimated errors of these, m; NaN: not estimated.
+    face_load_factor : float
+        K_Hbeta over the cycle; NaN in the plane.
+    centroid_difference : float
+        Face centroid on the flanks less that of the table by which the shafts were deflected, m; NaN in the
+        plane.
+    largest_pressure : float
+        Pa.
+    face_position, face_load : (41,) arrays
+        Along the face from the pinion's mid-face, m; mean load over the cycle there, N/m.
+    roll_length : (40,) array
+        Of the pinion, m.
+    pattern : (40, 41) array
+        Contact pattern: largest pressure over the cycle, Pa.
+    """
+
+    mesh: str
+    case: str
+    torque: float = field(metadata=in_unit("n_m"))
+    mean: float = field(metadata=in_unit("m"))
+    mean_error: float = field(metadata=in_unit("m"))
+    peak_to_peak: float = field(metadata=in_unit("m"))
+    peak_to_peak_error: float = field(metadata=in_unit("m"))
+    harmonics: FloatArray = field(metadata=in_unit("m", "harmonic"))
+    harmonics_error: FloatArray = field(metadata=in_unit("m", "harmonic"))
+    face_load_factor: float
+    centroid_difference: float = field(metadata=in_unit("m"))
+    largest_pressure: float = field(metadata=in_unit("pa"))
+    face_position: FloatArray = field(metadata=in_unit("m", "along_face"))
+    face_load: FloatArray = field(metadata=in_unit("n_per_m", "along_face"))
+    roll_length: FloatArray = field(metadata=in_unit("m", "along_profile"))
+    pattern: FloatArray = field(metadata=in_unit("pa", "along_profile", "along_face"))
+
+
+@dataclass(frozen=True)
+class Outline(Record):
+    """The gearbox to scale, m: s shafts, c pieces of them, g gears, b bearings.
+
+    Attributes
+    ----------
+    shafts, gears, bearings : tuples of str
+    origin : (s, 3) array
+        Left ends of the axes.
+    length : (s,) array
+    piece_shaft : (c,) int array
+        Index of the shaft of each piece.
+    piece : (c, 4) array
+        Its start along the shaft, its length, its diameters at the left and the right end.
+    gear_shaft, bearing_shaft : int arrays
+    gear : (g, 3) array
+        Position of mid-face along the shaft, face width, operating pitch diameter.
+    bearing : (b,) array
+        Position along the shaft.
+    """
+
+    shafts: tuple[str, ...]
+    gears: tuple[str, ...]
+    bearings: tuple[str, ...]
+    origin: FloatArray = field(metadata=in_unit("m", "shaft", "axis"))
+    length: FloatArray = field(metadata=in_unit("m", "shaft"))
+    piece_shaft: IntArray = field(metadata={"dimensions": ("piece",)})
+    piece: FloatArray = field(metadata=in_unit("m", "piece", "measure"))
+    gear_shaft: IntArray = field(metadata={"dimensions": ("gear",)})
+    gear: FloatArray = field(metadata=in_unit("m", "gear", "size"))
+    bearing_shaft: IntArray = field(metadata={"dimensions": ("bearing",)})
+    bearing: FloatArray = field(metadata=in_unit("m", "bearing"))
+
+
+@dataclass(frozen=True)
+class GearboxDeflection(Record):
+    """The deflection of a gearbox and what it makes of its meshes.
+
+    Attributes
+    ----------
+    deflection : Deflection
+    flanks : tuple of MeshFlanks
+        By load case, then by mesh; meshes in closed form have none.
+    passes : int
+        Of tables and deflections until they agreed.
+    change : float
+        Of the misalignments by the last pass, relative.
+    agreed : bool
+    outline : Outline
+    cases : dict
+        The cases of the meshes as they were written, by mesh.
+    seconds : float
+        CPU time.
+    """
+
+    deflection: Deflection
+    flanks: tuple[MeshFlanks, ...]
+    passes: int
+    change: float
+    agreed: bool
+    outline: Outline
+    cases: Json
+    seconds: float

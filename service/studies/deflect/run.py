@@ -1,0 +1,193 @@
+"""Deflection of a scene: bodies and meshes in agreement, and what happens on the flanks."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from bounds import inside
+from dynamics.deflection import CaseDeflection, MeshAlignment, deflect
+from dynamics.scene import Scene
+from dynamics.settings.load_case import LoadCase
+from fe_contact.analysis import pressure_map
+from fe_contact.analysis.flanks.load_distribution import LoadDistribution
+from fe_contact.types import FloatArray
+from service.convert.case import boundary_errors
+from service.convert.declared import in_si
+from service.convert.scene import TabledScene
+from service.schemas import Case
+from service.schemas.scene import MeshInput
+from service.studies.computation import Computation, Means
+from service.studies.deflect import Inputs
+from service.studies.deflect.agreement import Agreement, in_agreement
+from service.studies.deflect.figures import facts
+from service.studies.deflect.mesh_contact import MeshContact, mesh_contact
+from service.studies.deflect.outline import outline_of
+from service.studies.deflect.result import HARMONICS, GearboxDeflection, MeshFlanks
+from service.studies.deflect.spectrum import write_spectrum
+from service.studies.result_file import record_file
+
+ALONG_FACE, ALONG_PROFILE = 41, 40
+
+
+def deflection_of(tabled: TabledScene, inputs: Inputs, means: Means) -> GearboxDeflection:
+    """Deflect a scene under its load cases.
+
+    Raises
+    ------
+    BadInput
+        A case that the scene cannot have.
+    JobFailed
+        The contact of a mesh was not solved.
+    """
+    began, scene = time.process_time(), tabled.scene
+    with boundary_errors():
+        cases = load_cases(inputs)
+        first = deflect(scene, cases, inputs.positions, lambda done: means.report("deflection", done))
+        contacts = _contacts(tabled, first.cases, means)
+        across = {name: contact for name, contact in contacts.items() if contact.across_face}
+        agreed = in_agreement(scene, cases, inputs.positions, across, first)
+        flanks = tuple(_flanks(scene, agreed, contacts, means))
+    written = {name: mesh.case.model_dump(mode="json") for name, mesh in _with_case(tabled) if mesh.case}
+    return GearboxDeflection(
+        agreed.deflection,
+        flanks,
+        agreed.passes,
+        agreed.change,
+        agreed.reached,
+        outline_of(scene),
+        written,
+        time.process_time() - began,
+    )
+
+
+def load_cases(inputs: Inputs) -> tuple[LoadCase, ...]:
+    """Return the load cases in SI."""
+    cases = []
+    for index, case in enumerate(inputs.load_cases):
+        with inside(f"load_cases[{index}]"):
+            cases.append(LoadCase(case.name, **in_si(LoadCase, case)))
+    return tuple(cases)
+
+
+def _with_case(tabled: TabledScene) -> Iterator[tuple[str, MeshInput]]:
+    """Yield the name and the input of every mesh whose case is known, copies of planets too."""
+    by_name = {mesh.name: mesh for mesh in tabled.inputs.meshes}
+    tables = {id(mesh.table): by_name[mesh.name] for mesh in tabled.scene.meshes if mesh.name in by_name}
+    for mesh in tabled.scene.meshes:
+        known = by_name.get(mesh.name) or tables.get(id(mesh.table))
+        if known is not None and known.case is not None:
+            yield mesh.name, known
+
+
+def _contacts(tabled: TabledScene, found: tuple[CaseDeflection, ...], means: Means) -> dict[str, MeshContact]:
+    """Return the contacts of all meshes with a case, by name; equal ones are one."""
+    torques: dict[str, list[float]] = {}
+    inputs = dict(_with_case(tabled))
+    for case in found:
+        for mesh in case.meshes:
+            if mesh.name in inputs:
+                torques.setdefault(inputs[mesh.name].name, []).append(_torque(tabled, inputs, mesh))
+    made: dict[str, MeshContact] = {}
+    for mesh_input in {known.name: known for known in inputs.values()}.values():
+        database, own = tabled.databases[mesh_input.name], torques[mesh_input.name]
+        assert isinstance(mesh_input.case, Case)
+        made[mesh_input.name] = mesh_contact(mesh_input.case, database, own, means.home, means.report)
+    return {name: made[known.name] for name, known in inputs.items()}
+
+
+def _torque(tabled: TabledScene, inputs: Mapping[str, MeshInput], mesh: MeshAlignment) -> float:
+    """Return the torque on the pinion of a mesh's case, N m."""
+    return mesh.force * tabled.databases[inputs[mesh.name].name].facts.base_radius[0]
+
+
+def _flanks(
+    scene: Scene, agreed: Agreement, contacts: Mapping[str, MeshContact], means: Means
+) -> Iterator[MeshFlanks]:
+    """Yield what happens on the flanks of every mesh with a contact, case by case."""
+    count = len(agreed.deflection.cases) * max(len(scene.meshes), 1)
+    done = 0
+    for case in agreed.deflection.cases:
+        for mesh in case.meshes:
+            if mesh.name in contacts:
+                yield _on_flanks(case.name, mesh, contacts[mesh.name])
+            done += 1
+            means.report("flanks", done / count)
+
+
+def _on_flanks(case: str, mesh: MeshAlignment, contact: MeshContact) -> MeshFlanks:
+    """Solve the contact of one mesh under one load case."""
+    across = contact.across_face
+    torque = mesh.force * contact.pair.pinion.base_radius
+    misalignment = mesh.misalignment if across else 0.0
+    table, flanks = contact.solved(torque, misalignment, mesh.center_distance_change)
+    at = {
+        "torque": torque,
+        "misalignment": misalignment,
+        "center_distance_change": mesh.center_distance_change,
+    }
+    mean, ripple = table.mean(**at), table.peak_to_peak(**at)
+    harmonics = table.harmonics(**at)[:HARMONICS]
+    roll, pressure = pressure_map(flanks, flanks.roll_length_1)
+    centroid = float(np.mean(table.face_centroid))
+    return MeshFlanks(
+        mesh.name,
+        case,
+        torque,
+        mean.value,
+        mean.error,
+        ripple.value,
+        ripple.error,
+        np.array([harmonic.value for harmonic in harmonics]),
+        np.array([harmonic.error for harmonic in harmonics]),
+        flanks.mean_face_load_factor if across else float("nan"),
+        centroid - mesh.face_centroid if across else float("nan"),
+        float(flanks.pressure.max()),
+        *_along_face(flanks),
+        *_pattern(flanks, roll, pressure),
+    )
+
+
+def _along_face(flanks: LoadDistribution) -> tuple[FloatArray, FloatArray]:
+    """Return evenly spaced positions along the face, m, and the mean load there, N/m."""
+    half = 0.5 * flanks.slice_width
+    ends = flanks.face_position[0] - half, flanks.face_position[-1] + half
+    face = np.linspace(*ends, ALONG_FACE)
+    return face, np.interp(face, flanks.face_position, flanks.face_load.mean(axis=0))
+
+
+def _pattern(
+    flanks: LoadDistribution, roll: FloatArray, pressure: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the contact pattern at evenly spaced roll lengths and face positions."""
+    rows = np.linspace(roll[0], roll[-1], ALONG_PROFILE)
+    nearest = np.abs(roll[:, None] - rows).argmin(axis=0)
+    face = _along_face(flanks)[0]
+    columns = np.abs(flanks.face_position[:, None] - face).argmin(axis=0)
+    return rows, pressure[np.ix_(nearest, columns)]
+
+
+def failure(result: GearboxDeflection) -> str:
+    """Say which load cases were not found, or how far meshes and bodies disagree."""
+    lost = [case for case in result.deflection.cases if case.status != "converged"]
+    if lost:
+        names = ", ".join(f'"{case.name}" ({case.status.replace("_", " ")})' for case in lost)
+        return f"No equilibrium under load case {names}. Check that bearings hold every shaft that is loaded."
+    if not result.agreed:
+        return (
+            f"Mesh loads and deflections disagree: misalignments still change by {result.change:.2g} of "
+            f"their size after {result.passes} passes."
+        )
+    return ""
+
+
+RUN = Computation(
+    deflection_of,
+    facts,
+    record_file(("deflection", GearboxDeflection)),
+    of_scene=lambda tabled: tabled,
+    writers={".toml": write_spectrum},
+    failure=failure,
+)
