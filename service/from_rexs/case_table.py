@@ -12,6 +12,7 @@ from service.from_rexs.flank_sides import LoadedFlank
 from service.from_rexs.gear_bodies import blank_of, elasticity, held_diameter, root_diameter
 from service.from_rexs.gear_unit import GearUnit
 from service.from_rexs.meshing import Meshing
+from service.from_rexs.micro_geometry import micro_geometry
 from service.from_rexs.profile_shift import ToothedPair
 from service.from_rexs.ring_tip import clearing_tip
 from service.from_rexs.tooth_depth import ToothDepth, tip_alteration, tooth_depth
@@ -96,6 +97,9 @@ def case_of(unit: GearUnit, pair: PairData, pairs: Sequence[PairData], shifts: M
         "load": {"torque_n_m": _torques(pair)},
     }
     _say_axial_offset(pair)
+    plain = check_case(validated(Case, table))
+    first.update(micro_geometry(unit, plain.pinion, pair.loaded[0]))
+    second.update(micro_geometry(unit, plain.wheel, pair.loaded[1]))
     case = validated(Case, table)
     check_case(case)
     return case

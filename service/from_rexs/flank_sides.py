@@ -26,6 +26,7 @@ class LoadedFlank:
 
     Attributes
     ----------
+    gear : Part
     side : str
         ``"right"`` or ``"left"``, seen from the datum face.
     flank, other : Part or None
@@ -34,14 +35,11 @@ class LoadedFlank:
         1 if the datum face is at the end of positive z, -1 if at the other.
     """
 
+    gear: Part
     side: str
     flank: Part | None
     other: Part | None
     datum: float
-
-    def face_position(self, coordinate: float, face_width: float) -> float:
-        """Return the distance from mid-face in m, towards +z, of a coordinate in m from the datum face."""
-        return self.datum * (0.5 * face_width - coordinate)
 
     @property
     def flanks(self) -> Iterator[Part]:
@@ -61,7 +59,7 @@ def loaded_flank(unit: GearUnit, meshing: Meshing, gear: Part) -> LoadedFlank:
     datum = u_along_z * _datum_along_u(gear)
     sides = ("right", "left") if datum > 0.0 else ("left", "right")
     flank, other = (_flank(unit, gear, side) for side in sides)
-    return LoadedFlank(sides[0], flank, other, datum)
+    return LoadedFlank(gear, sides[0], flank, other, datum)
 
 
 def _datum_along_u(gear: Part) -> float:

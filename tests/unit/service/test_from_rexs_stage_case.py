@@ -6,11 +6,7 @@ import math
 from typing import Any
 
 import pytest
-
-from service.convert.case import gear_pair
-from service.from_rexs.gear_unit import GearUnit
-from service.from_rexs.stage_case import StageCase, stage_cases
-from tests.fakes.rexs_stage import (
+from rexs_stage import (
     GEARS,
     PINION,
     PINION_LEFT,
@@ -23,6 +19,10 @@ from tests.fakes.rexs_stage import (
     relation,
     stage_unit,
 )
+
+from service.convert.case import gear_pair
+from service.from_rexs.gear_unit import GearUnit
+from service.from_rexs.stage_case import StageCase, stage_cases
 
 
 def only(unit: GearUnit, **options: Any) -> StageCase:
