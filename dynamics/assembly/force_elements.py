@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dynamics.arrays.elements import Element
 from dynamics.assembly.flank_elements import flank_elements
-from dynamics.assembly.frame_couplings import frame_coupling_elements
+from dynamics.assembly.frame_couplings import frame_coupling_elements, frame_turns
 from dynamics.assembly.model import Model
 from dynamics.assembly.rotating_frame_elements import rotating_frame_elements
 from dynamics.assembly.spatial_elements import spatial_elements
@@ -21,7 +21,15 @@ def force_elements(model: Model) -> tuple[tuple[Element, ...], ElementLaws]:
     in_space, spatial = spatial_elements(model, plain)
     by_speed, speed = speed_elements(scene, rotors, kinematics)
     in_frames, rotating_frame = rotating_frame_elements(model)
-    on_bearings, bearing_laws = bearing_elements(scene, rotors, mechanism.bearings, mechanism.bearing_duty)
+    phase = len(scene.meshes) + len(frame_turns(scene, kinematics))
+    passing = [part.name for part in scene.rolling_bearings if part.name in mechanism.passing]
+    on_bearings, bearing_laws = bearing_elements(
+        scene.laws_with(mechanism.passing),
+        rotors,
+        mechanism.bearings,
+        mechanism.bearing_duty,
+        {name: phase + index for index, name in enumerate(passing)},
+    )
     across, frame = frame_coupling_elements(scene, rotors, tilt_lever(scene))
     laws = ElementLaws(
         flank=flanks.law,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from fractions import Fraction
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from dynamics.arrays.arrays import Drives, Loads, Reference
 from dynamics.arrays.law_arrays import pack_laws, revolutions
 from dynamics.assembly.frame_couplings import frame_turns
 from dynamics.joints import ImposedRotation
+from dynamics.mechanism.cage_turns import cage_turns
 from dynamics.mechanism.columns import column_count, elastic_columns, elastic_terms, times_mass, turn_row
 from dynamics.mechanism.connections import Connections
 from dynamics.mechanism.freedoms import ROTATION, Freedoms
@@ -23,20 +25,20 @@ from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
 
-def lay_out_reference(
-    scene: Scene, kinematics: Kinematics, freedoms: Freedoms, vectors: FloatArray
-) -> Reference:
-    """Lay out the kinematic motion; `vectors` (k, N) are the laws' kinematic vectors.
+def lay_out_reference(mechanism: Mechanism, freedoms: Freedoms) -> Reference:
+    """Lay out the kinematic motion.
 
-    Behind the positions of the meshes come the turns of frames that couplings cross, in revolutions.
+    Behind the positions of the meshes come the turns of frames that couplings cross, then those of cages
+    whose elements pass, in revolutions.
     """
+    scene, kinematics, vectors = mechanism.scene, mechanism.kinematics, mechanism.vectors
     laws = [part.speed for part in scene.references]
     turned = [revolutions(law) for law in laws]
     free = [-1] * len(scene.drives) + [
         freedoms.find(shaft, ROTATION) for shaft in kinematics.law_shaft[len(scene.drives) :]
     ]
-    frames = frame_turns(scene, kinematics)
-    rates, none = (*kinematics.mesh_rate, *frames), len(frames)
+    turns = further_turns(mechanism)
+    rates, none = (*kinematics.mesh_rate, *turns), len(turns)
     shape = (len(rates), len(laws))
     return Reference(
         pack_laws(laws),
@@ -50,6 +52,12 @@ def lay_out_reference(
         np.array(free, dtype=np.int64),
         np.ascontiguousarray(vectors[:, freedoms.column]),
     )
+
+
+def further_turns(mechanism: Mechanism) -> tuple[tuple[Fraction, ...], ...]:
+    """Return the revolutions of what is behind the meshes among the positions, per revolution of each law."""
+    scene, kinematics = mechanism.scene, mechanism.kinematics
+    return (*frame_turns(scene, kinematics), *cage_turns(scene, kinematics, mechanism.passing))
 
 
 def lay_out_loads(mechanism: Mechanism, freedoms: Freedoms) -> Loads:

@@ -10,15 +10,21 @@ import numpy as np
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.arrays.elements import Element, gradients, pack_elements
 from dynamics.arrays.sparse_rows import sparse_matrices
-from dynamics.assembly.frame_couplings import frame_turns
 from dynamics.assembly.model import Model
-from dynamics.assembly.references import drive_springs, lay_out_drives, lay_out_loads, lay_out_reference
+from dynamics.assembly.references import (
+    drive_springs,
+    further_turns,
+    lay_out_drives,
+    lay_out_loads,
+    lay_out_reference,
+)
 from dynamics.forces.by_address import by_address
 from dynamics.forces.element_laws import ElementLaws
 from dynamics.mechanism.columns import column_count, times_mass, turn_row
 from dynamics.mechanism.connections import elastic_matrices, linear_matrices
 from dynamics.mechanism.freedoms import FREEDOMS, ROTATION, Freedoms
-from dynamics.mechanism.kinematics import Kinematics, mesh_shafts
+from dynamics.mechanism.kinematics import mesh_shafts
+from dynamics.mechanism.mechanism import Mechanism
 from dynamics.mechanism.rotor import Rotor
 from dynamics.mechanism.weight import weight
 from dynamics.scene.scene import Scene
@@ -40,7 +46,7 @@ def system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) 
     mass = freedoms.motion.T @ np.ascontiguousarray(times_mass(rotors, freedoms.motion.T).T)
     gradient = gradients(elements, column_count(rotors))
     scale, direction = _scales(scene, rotors, freedoms), freedoms.keep(gradient)
-    turn = freedoms.keep(_turns(scene, rotors, kinematics))
+    turn = freedoms.keep(_turns(mechanism))
     packed = pack_elements(elements, laws, len(scene.references))
     along = direction[packed.first[: len(scene.meshes)]]
     held = np.diag(stiffness) + model.flanks.mean_stiffness @ along**2
@@ -59,19 +65,20 @@ def system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) 
         scale,
         scale * np.sqrt(np.diag(mass) / np.maximum(held, 1e-300)),
         packed,
-        lay_out_reference(scene, kinematics, freedoms, vectors),
+        lay_out_reference(mechanism, freedoms),
         lay_out_loads(mechanism, freedoms),
     )
     return by_address(arrays)
 
 
-def _turns(scene: Scene, rotors: Sequence[Rotor], kinematics: Kinematics) -> FloatArray:
+def _turns(mechanism: Mechanism) -> FloatArray:
     """Return the derivatives of each position, (m + f, N): the driver's rotation against its carrier's.
 
-    Frames turn with the kinematic motion alone.
+    Frames and cages turn with the kinematic motion alone.
     """
-    frames = len(frame_turns(scene, kinematics))
-    turn = np.zeros((len(scene.meshes) + frames, column_count(rotors)))
+    scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
+    further = len(further_turns(mechanism))
+    turn = np.zeros((len(scene.meshes) + further, column_count(rotors)))
     for row, mesh in enumerate(scene.meshes):
         driver, _, carrier = mesh_shafts(scene, row)
         gear = scene.gear(mesh.driver)

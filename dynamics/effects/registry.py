@@ -9,6 +9,7 @@ from dynamics.effects.centrifugal_load import CentrifugalLoad
 from dynamics.effects.dynamic_center_distance import DynamicCenterDistance
 from dynamics.effects.dynamic_misalignment import DynamicMisalignment
 from dynamics.effects.effect import Effect
+from dynamics.effects.element_passing import ElementPassing
 from dynamics.effects.flexible_shafts import FlexibleShafts
 from dynamics.effects.friction import Friction
 from dynamics.effects.gyroscopic import Gyroscopic
@@ -21,6 +22,7 @@ EFFECTS: tuple[Effect, ...] = (
     Axial(),
     Tilt(),
     BearingClearance(),
+    ElementPassing(),
     Gyroscopic(),
     CentrifugalLoad(),
     FlexibleShafts(),

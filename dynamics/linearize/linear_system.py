@@ -107,7 +107,7 @@ def _matrices(system: System, time: float) -> list[tuple[str, FloatArray, FloatA
     springs = [*bearings, *((name, keep(motion), matrix) for name, motion, matrix in joints)]
     n = system.arrays.mass.shape[0]
     turned = local_state(system.arrays, time, np.zeros(n), np.zeros(n)).position[len(system.scene.meshes) :]
-    for part, turn in zip(frame_couplings(system.scene), turned, strict=True):
+    for part, turn in zip(frame_couplings(system.scene), turned, strict=False):  # cages behind them
         motion, matrix = frame_joint(system.scene, system.rotors, part, 2.0 * np.pi * float(turn))
         springs.append((system.couplings.name[part.coupling], keep(motion), matrix))
     return springs

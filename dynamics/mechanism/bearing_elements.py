@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from dynamics.arrays.elements import Element
-from dynamics.forces.bearing_law import BearingDuty
+from dynamics.forces.bearing_law import BearingDuty, BearingLaw
 from dynamics.forces.law import Law
 from dynamics.forces.rolling_contact import pack_rolling_contacts
 from dynamics.forces.spring_curve import pack_spring_curves
@@ -111,20 +111,26 @@ def bearing_locations(
 
 
 def bearing_elements(
-    scene: Scene,
+    laws: Sequence[BearingLaw],
     rotors: Sequence[Rotor],
     bearings: Sequence[BearingElement],
     duties: Mapping[str, BearingDuty],
+    phases: Mapping[str, int],
 ) -> tuple[tuple[Element, ...], dict[str, Any]]:
-    """Return the elements at `bearings`, and their laws by the fields of `ElementLaws`."""
+    """Return the elements of `laws` at `bearings`, and their laws by the fields of `ElementLaws`.
+
+    `phases` are the positions that the cages of some bearings are among.
+    """
     supports, elements = supports_by_name(rotors), []
     entries: dict[Law, list[Any]] = {law: [] for law in PACKED}
-    for part, at in zip(scene.bearing_laws, bearings, strict=True):
+    for part, at in zip(laws, bearings, strict=True):
         rotor, support = supports[at.name]
         gradient = at.way @ seat_motion(rotors, rotor, support)
         offset = -at.way @ seat_error(rotors, rotor, support)
         number = len(entries[part.law])
-        elements.append(Element(part.law, number, -1, gradient, offset, stiffness=at.typical))
+        elements.append(
+            Element(part.law, number, phases.get(at.name, -1), gradient, offset, stiffness=at.typical)
+        )
         entries[part.law].append((part, duties[at.name]))
     return tuple(elements), {law.name.lower(): PACKED[law](own) for law, own in entries.items()}
 

@@ -54,6 +54,8 @@ class Mechanism:
         Base radii of gears as given and as used, m.
     additions : Additions
         What the effects may add.
+    passing : frozenset of str
+        Rolling bearings whose elements pass one by one.
     """
 
     scene: Scene
@@ -65,6 +67,7 @@ class Mechanism:
     bearings: tuple[BearingElement, ...]
     corrected: Corrections
     additions: Additions
+    passing: frozenset[str] = frozenset()
 
     @property
     def polar_inertia(self) -> list[float]:

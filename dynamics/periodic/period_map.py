@@ -19,6 +19,7 @@ from dynamics.integrators.workspace import Workspace, make_workspace
 from dynamics.linearize import natural_modes
 from dynamics.linearize.common_period import CommonPeriod, common_period
 from dynamics.linearize.linear_system import about_running
+from dynamics.mechanism.additions import ELEMENT_PASSING
 from dynamics.periodic.constant_speed import at_constant_speed
 from dynamics.periodic.march import HALVINGS, march
 from dynamics.periodic.period_grid import PeriodGrid, period_grid, refined
@@ -85,6 +86,10 @@ def periodic_problem(
     integer("steps_per_cycle", steps_per_cycle, 4, 100_000)
     if not system.freedoms.name:
         raise InputError("freedoms", 0, "at least one", "Leave a shaft free to turn, or switch effects on.")
+    if system.ledger.adds(ELEMENT_PASSING):
+        name = system.ledger.effect_adding(ELEMENT_PASSING)
+        bound = "off: cages turn at no ratio of integers to the meshes, so nothing repeats"
+        raise InputError(f"effects.{name}", "on", bound, "Average the passing, or simulate a run.")
     period, start = common_period(system), static_equilibrium(about_running(system), time)
     if not start.status.usable:
         raise SolveError(f"no static equilibrium: {start.status.name.lower()}, {start.residual:.3g} N left")

@@ -22,19 +22,23 @@ from dynamics.types import FloatArray
 
 AVERAGED = 64
 """Elements in all, at least, whose force is taken for the average over the passing of an element."""
+PASSING_ANGLES = 8
 LEAST_PRESS = 1e-6  # m; of one element: sets the typical load of a bearing that nothing loads
 
 
 class RowLaw:
-    """The law of a bearing, averaged over the passing of its elements.
+    """The law of a bearing.
 
     Parameters
     ----------
     bearing : RollingBearing
+    passing : bool
+        Whether its elements pass one by one; False: their average over the passing. Preload, damping and
+        typical stiffness are those of the average.
     """
 
-    def __init__(self, bearing: RollingBearing) -> None:
-        self.bearing, self.row = bearing, bearing.row
+    def __init__(self, bearing: RollingBearing, passing: bool = False) -> None:
+        self.bearing, self.row, self.passing = bearing, bearing.row, passing
         self.copies = math.ceil(AVERAGED / bearing.row.count)
         self.loaded = LoadedBearing(bearing.row, self.copies)
 
@@ -84,15 +88,23 @@ class RowLaw:
         at = self._under(duty)[1]
         critical = 2.0 * math.sqrt(float(at.tangent[0, 0]) * duty.mass)
         damping = self.bearing.damping_ratio * critical / float(at.viscous[0, 0])
-        return RowPlacement(self.copies, self.lever, self.shift, damping)
+        return RowPlacement(1 if self.passing else self.copies, self.lever, self.shift, damping)
 
-    def _under(self, duty: BearingDuty) -> tuple[float, Reaction]:
+    def passing_motion(self, duty: BearingDuty) -> float:
+        """Return how far the shaft moves as an element passes, from peak to peak along the load, m."""
+        whole, pitch = LoadedBearing(self.row), 2.0 * math.pi / self.row.count
+        angles = np.arange(PASSING_ANGLES) * pitch / PASSING_ANGLES
+        return float(np.ptp([self._under(duty, whole, float(angle))[0] for angle in angles]))
+
+    def _under(
+        self, duty: BearingDuty, loaded: LoadedBearing | None = None, angle: float = 0.0
+    ) -> tuple[float, Reaction]:
         """Return displacement and answer under the typical load across the axis, nothing else moving."""
         exponent = 1.5 if self.law is Law.BALLS else EXPONENT
         load = max(duty.load, self.row.element_stiffness * LEAST_PRESS**exponent)
 
         def reaction(way: float) -> Reaction:
-            return self.loaded.evaluate((way, 0.0, self.shift, 0.0, 0.0))
+            return (loaded or self.loaded).evaluate((way, 0.0, self.shift, 0.0, 0.0), angle)
 
         far = LEAST_PRESS
         while reaction(far).force[0] < load:
@@ -102,9 +114,9 @@ class RowLaw:
 
 
 @lru_cache(maxsize=1024)
-def row_law(bearing: RollingBearing) -> RowLaw:
+def row_law(bearing: RollingBearing, passing: bool = False) -> RowLaw:
     """Return the law of `bearing`, laid out once."""
-    return RowLaw(bearing)
+    return RowLaw(bearing, passing)
 
 
 def pack_ball_laws(laws: Sequence[tuple[RowLaw, BearingDuty]]) -> BallElements:

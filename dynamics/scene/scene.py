@@ -167,8 +167,13 @@ class Scene:
 
     @property
     def bearing_laws(self) -> tuple[BearingLaw, ...]:
-        """All that bearings do which is not linear."""
-        return (*self.rolling_contacts, *self.spring_curves, *map(row_law, self.rolling_bearings))
+        """All that bearings do which is not linear, rolling elements averaged."""
+        return self.laws_with(frozenset())
+
+    def laws_with(self, passing: frozenset[str]) -> tuple[BearingLaw, ...]:
+        """Return all that bearings do which is not linear; the elements of those `passing` one by one."""
+        rows = (row_law(bearing, bearing.name in passing) for bearing in self.rolling_bearings)
+        return (*self.rolling_contacts, *self.spring_curves, *rows)
 
     def gear(self, name: str) -> GearBody:
         """Return the gear called `name`."""

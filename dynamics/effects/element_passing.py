@@ -1,0 +1,51 @@
+"""Element passing: balls and rollers carry one by one, and the stiffness varies as the cage turns."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from dynamics.effects.effect import RotorEffect, Verdict
+from dynamics.effects.loaded_rotors import LoadedRotor
+from dynamics.mechanism.additions import ELEMENT_PASSING
+from dynamics.mechanism.mechanism import Mechanism
+from dynamics.rolling_bearings.row_law import row_law
+
+
+class ElementPassing(RotorEffect):
+    """The elements of every rolling bearing at the angle of its cage, instead of their average."""
+
+    name = "element_passing"
+    adds = (ELEMENT_PASSING,)
+    cost = "less than the average of the elements; the motion has no period, so no periodic states"
+    linear = False
+
+    def called_for(self, rotor: LoadedRotor) -> Verdict:
+        """Call for it where the passing moves the shaft by more than the tolerance of what meshes yield.
+
+        Its influence is that motion: from peak to peak, along the typical load. Averaged without a tolerance.
+        """
+        mechanism, shaft = rotor.mechanism, rotor.rotor.shaft.name
+        own = [bearing for bearing in mechanism.scene.rolling_bearings if bearing.shaft == shaft]
+        if not own:
+            return Verdict(False, False, "no rolling bearing by its geometry", 0.0)
+        size = max(row_law(part).passing_motion(mechanism.bearing_duty[part.name]) for part in own)
+        tolerance = mechanism.scene.tolerance
+        moved = f"elements that pass move the shaft by {1e6 * size:.3g} um"
+        if tolerance is None:
+            return Verdict(False, True, f"{moved}; averaged, as no tolerance is stated", size)
+        yielding = float(np.min(rotor.flanks.nominal_force / rotor.flanks.mean_stiffness))
+        words = f"{moved}, {size / yielding:.3g} of what the meshes yield"
+        return Verdict(size > tolerance * yielding, True, words, size)
+
+    def extend(self, mechanism: Mechanism, decided: Sequence[Verdict | None]) -> Mechanism:
+        """Let the elements of the bearings pass on the shafts on which it is on."""
+        shafts = {
+            rotor.shaft.name
+            for rotor, verdict in zip(mechanism.rotors, decided, strict=True)
+            if verdict is not None
+        }
+        own = (part.name for part in mechanism.scene.rolling_bearings if part.shaft in shafts)
+        return replace(mechanism, passing=frozenset(own))
