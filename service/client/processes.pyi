@@ -22,6 +22,8 @@ from service.client.process import Offered
 from service.client.surface import Surface
 from service.schemas.figures import Figures, RunFigures, TableFigures
 from service.studies.ablate.answer import AblationFigures as ServiceAblationFigures
+from service.studies.deflect.answer import DeflectionFigures as ServiceDeflectionFigures
+from service.studies.deflect.result import GearboxDeflection as ServiceGearboxDeflection
 from service.studies.flank.answer import FlankFigures as ServiceFlankFigures
 from service.studies.frontier.answer import FrontierFigures as ServiceFrontierFigures
 from service.studies.modes.answer import ModesFigures as ServiceModesFigures
@@ -144,6 +146,12 @@ class Processes(Surface):
         repeat: int = ...,
         settling_periods: int = ...,
     ) -> DynamicsSteadyStates: ...
+    @_offered(ServiceDeflectionFigures)
+    def deflect(
+        self,
+        scene: SceneLike,
+        study: Mapping[str, Any] = ...,
+    ) -> ServiceGearboxDeflection: ...
     @_offered(ServiceStudyFigures)
     def study(
         self,

@@ -67,7 +67,9 @@ def plotly_figure(figure: Figure) -> Json:
             data += _band(line, suffix)
             data.append(_line(line, suffix, show=line.name in unnamed))
             unnamed.discard(line.name)
-        data += [_bars(bars, suffix) for bars in panel.bars]
+        for bars in panel.bars:
+            data.append(_bars(bars, suffix, show=bars.name in unnamed))
+            unnamed.discard(bars.name)
         for reference in panel.references:
             _add_reference(layout, reference, panel, suffix)
     return {"data": data, "layout": layout}
@@ -103,11 +105,12 @@ def _line_labels(panel: Panel, suffix: str) -> list[Json]:
     return found
 
 
-def _bars(bars: Bars, suffix: str) -> Json:
-    """Draw bars; a line of a legend names them."""
+def _bars(bars: Bars, suffix: str, *, show: bool) -> Json:
+    """Draw bars; `show` a line of the legend that names them."""
     return {
         "type": "bar",
         "name": bars.name,
+        "showlegend": show,
         "x": numbers(bars.x),
         "y": numbers(bars.top - bars.base),
         "customdata": numbers(bars.top),

@@ -1,0 +1,179 @@
+"""``loa deflect``: what it prints and writes, its record, and the inputs of an optimization."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from declared_figures import check_declared
+from scene_files import scene_file
+from two_stage_scenes import two_stages
+from typer.testing import CliRunner, Result
+
+from dynamics.deflection import deflect
+from dynamics.settings.load_case import LoadCase
+from service.cli.commands import app
+from service.report import write_report
+from service.schemas import read_model
+from service.studies.deflect import Inputs
+from service.studies.deflect.gearbox_drawing import exaggeration
+from service.studies.deflect.outline import outline_of
+from service.studies.deflect.page import page
+from service.studies.deflect.result import GearboxDeflection, MeshFlanks
+from service.studies.deflect.run import RUN, failure, load_cases
+from service.studies.deflect.spectrum import optimization_inputs, write_spectrum
+from service.studies.deflect.tables import mesh_table, meshes_worst_first
+from service.studies.optimize import Inputs as OptimizeInputs
+
+CASES = (
+    LoadCase("climb", share=1.0, factor=1.0),
+    LoadCase("cruise", share=3.0, factor=0.5),
+    LoadCase("again", share=2.0, factor=0.5),
+    LoadCase("back", share=4.0, factor=0.3, direction="coast"),
+)
+
+
+def loa(*arguments: object) -> Result:
+    return CliRunner().invoke(app, ["deflect", *(str(argument) for argument in arguments)])
+
+
+def flanks_of(case: Any, mesh: Any) -> MeshFlanks:
+    """Some flanks under a load."""
+    along, across = np.linspace(-0.015, 0.015, 41), np.linspace(0.005, 0.02, 40)
+    load = np.maximum(0.0, 1e5 * (1.0 - along / 0.02))
+    numbers = {"torque": 0.02 * mesh.force, "mean": 1e-5, "peak_to_peak": 1e-6}
+    return MeshFlanks(
+        mesh.name,
+        case.name,
+        numbers["torque"],
+        numbers["mean"],
+        float("nan"),
+        numbers["peak_to_peak"],
+        float("nan"),
+        np.full(5, 1e-7),
+        np.full(5, 1e-9),
+        1.5,
+        1e-9,
+        9e8,
+        along,
+        load,
+        across,
+        np.full((40, 41), 5e8),
+    )
+
+
+@pytest.fixture(scope="module")
+def result() -> GearboxDeflection:
+    """The two stages under four cases, with flanks as `flanks_of` makes them."""
+    scene = two_stages()
+    found = deflect(scene, CASES, 3)
+    flanks = tuple(flanks_of(case, mesh) for case in found.cases for mesh in case.meshes)
+    return GearboxDeflection(found, flanks, 3, 1e-8, True, outline_of(scene), {"first": {"pair": {}}}, 1.0)
+
+
+def test_json_holds_what_is_declared(tmp_path: Path) -> None:
+    result = loa(scene_file(tmp_path), "--json")
+    assert (result.exit_code, result.stderr) == (0, "")
+    answer = json.loads(result.stdout)
+    check_declared("deflection", answer)
+    (case,) = answer["load_cases"]
+    assert (case["name"], case["status"], case["torque_n_m"]) == ("load", "converged", pytest.approx(100.0))
+    (mesh,) = case["meshes"]
+    assert mesh["force_n"] == pytest.approx(100.0 / 0.0375877, rel=1e-5)
+    left = case["bearings"][0]
+    assert left["elastic_um"][0] == pytest.approx(left["force_n"][0] / 2e8 * 1e6, rel=1e-6)
+
+
+def test_load_cases_come_from_their_file_in_its_units(tmp_path: Path) -> None:
+    file = tmp_path / "cases.toml"
+    file.write_text('[[load_cases]]\nname = "a"\nspeed_rpm = 600.0\ntorque_n_m = 20.0\ndirection = "coast"\n')
+    (case,) = load_cases(read_model(Inputs, file))
+    assert case.speed == pytest.approx(20.0 * np.pi) and (case.torque, case.direction) == (20.0, "coast")
+    answer = json.loads(loa(scene_file(tmp_path), file, "--json").stdout)["load_cases"][0]
+    assert (answer["torque_n_m"], answer["speed_rpm"]) == (pytest.approx(20.0), pytest.approx(600.0))
+
+
+@pytest.mark.parametrize(
+    ("line", "field"),
+    [
+        ("torque_n_m = -1.0", "load_cases[0].torque_n_m"),
+        ('direction = "up"', "load_cases[0].direction"),
+        ("torque_n_m = 1.0\nfactor = 2.0", "load_cases[0].factor"),
+    ],
+)
+def test_a_case_that_cannot_be_is_refused_by_its_field(tmp_path: Path, line: str, field: str) -> None:
+    file = tmp_path / "cases.toml"
+    file.write_text(f'[[load_cases]]\nname = "a"\n{line}\n')
+    result = loa(scene_file(tmp_path), file)
+    assert result.exit_code == 2 and field in result.stderr
+
+
+def test_the_file_gives_back_the_result_bit_by_bit(result: GearboxDeflection, tmp_path: Path) -> None:
+    file = tmp_path / "deflection.nc"
+    RUN.file.write(result, file)
+    back = RUN.file.read(file)
+    assert RUN.facts(back) == RUN.facts(result)
+    assert np.array_equal(back.flanks[3].pattern, result.flanks[3].pattern)
+    assert np.array_equal(back.deflection.cases[1].shafts.motion, result.deflection.cases[1].shafts.motion)
+    write_report([file], tmp_path / "page.html")
+    assert "Misalignment of each mesh by cause" in (tmp_path / "page.html").read_text("utf-8")
+
+
+def test_the_worst_mesh_comes_first(result: GearboxDeflection) -> None:
+    largest = {
+        name: max(abs(m.misalignment) for c in result.deflection.cases for m in c.meshes if m.name == name)
+        for name in ("first", "second")
+    }
+    first, second = meshes_worst_first(result)
+    assert largest[first] > largest[second]
+    assert [row[0] for row in mesh_table(result).rows] == [first] * 4 + [second] * 4
+    assert page(result).headlines[0].remark.startswith(f"mesh {first}")
+
+
+def test_parts_of_the_table_sum_to_the_misalignment(result: GearboxDeflection) -> None:
+    for row in mesh_table(result).rows:
+        total, parts = float(row[3]), [float(part) for part in row[4:10]]
+        assert total == pytest.approx(sum(parts), abs=0.02 * max(map(abs, parts)))
+
+
+def test_the_spectrum_of_the_driving_side_is_what_is_optimized(result: GearboxDeflection) -> None:
+    inputs = optimization_inputs(result, "first")
+    study = OptimizeInputs.model_validate_json(json.dumps(inputs))
+    forces = [case.meshes[0].force for case in result.deflection.cases]
+    assert study.torque_n_m == pytest.approx((0.02 * forces[1], 0.02 * forces[0]), rel=1e-6)
+    assert study.objective.weights == (5.0, 1.0)  # equal torques are one load
+    m = np.array([case.meshes[0].misalignment for case in result.deflection.cases[:3]]) * 1e6
+    mean = float(np.average(m, weights=[1.0, 3.0, 2.0]))
+    assert study.misalignment_um == pytest.approx(mean, rel=1e-6)
+    spread = float(np.sqrt(np.average((m - mean) ** 2, weights=[1.0, 3.0, 2.0])))
+    assert study.scatter.misalignment_um == pytest.approx(spread, rel=1e-6)
+
+
+def test_files_of_an_optimization_stand_beside_the_list_of_calls(
+    result: GearboxDeflection, tmp_path: Path
+) -> None:
+    write_spectrum(result, None, tmp_path / "gearbox.toml")
+    (entry,) = tomllib.loads((tmp_path / "gearbox.toml").read_text("utf-8"))["meshes"]
+    study = tomllib.loads((tmp_path / entry["study_file"]).read_text("utf-8"))
+    assert study == optimization_inputs(result, "first")
+    assert "pair" in tomllib.loads((tmp_path / entry["case_file"]).read_text("utf-8"))
+
+
+def test_what_was_not_found_is_said(result: GearboxDeflection) -> None:
+    assert failure(result) == ""
+    assert "after 3 passes" in failure(replace(result, agreed=False, change=0.1))
+    lost = replace(result.deflection.cases[0], status="unbalanced")
+    broken = replace(result, deflection=replace(result.deflection, cases=(lost,)))
+    assert '"climb" (unbalanced)' in failure(broken) and "climb" in page(broken).alarms[0]
+
+
+def test_deflections_are_drawn_a_round_number_of_times_enlarged(result: GearboxDeflection) -> None:
+    case = result.deflection.cases[0]
+    factor = exaggeration(result.outline, case)
+    largest = float(np.max(np.abs(case.shafts.motion[:, :2])))
+    assert f"{factor:e}"[0] in "125" and 0.04 * 0.2 <= factor * largest <= 0.1 * 0.2 * (1.0 + 1e-9)
