@@ -12,6 +12,7 @@ from service.from_rexs.part import Part
 from service.from_rexs.relief_law import OWN_SHAPES, blended_depth, relative_depth, shape_of
 from service.from_rexs.toothing import required
 from service.problems import BadInput
+from service.units import MM
 
 
 def tip_relief(place: FlankPlace, part: Part) -> Modification:
@@ -31,9 +32,9 @@ def _relief(place: FlankPlace, part: Part, name: str, end: float) -> Modificatio
     start = _start(place, part, name, end)
     stated = _stated(place, part, name, end)
     if not (stated - start) * (end - start) > 0.0:
-        raise BadInput.of(
-            f"{part.place}, {name}_datum_diameter", part.name, "on the involute, before its amount"
-        )
+        lengths = [start / MM, stated / MM]
+        bound = "roll lengths in mm of its start and, towards the end of the involute, of its depth"
+        raise BadInput.of(f"{part.place}, {name}", lengths, bound)
     transition = _transition(place, part, name, start, stated)
     if transition is not None:
         return Modification(part, partial(_blended, depth, start, stated, transition))

@@ -16,6 +16,8 @@ _UNITS = {
     "none": (
         "number_of_teeth",
         "addendum_modification_coefficient",
+        "addendum_coefficient_basic_profile",
+        "poisson_ratio",
         "addendum_coefficient_reference_profile",
         "tip_corner_radius_factor_reference_profile",
     ),
