@@ -59,7 +59,7 @@ def _frame(unit: GearUnit, part: Part, depth: int) -> Frame:
     if depth > _MOST_FRAMES:
         field = f"{part.place}, reference_component_for_position"
         raise BadInput.of(field, part.id, f"at most {_MOST_FRAMES} frames away from the gear unit's")
-    origin = _given(part, "support_vector", "place in the frame of its reference component")
+    origin = part.vector("support_vector", "place in the frame of its reference component")
     shaft = unit.owner(part, "shaft")
     if origin is None and shaft is not None and shaft.id != part.id:
         return _on_shaft(_frame(unit, shaft, depth + 1), part)
@@ -87,28 +87,14 @@ def _reference_frame(unit: GearUnit, part: Part, depth: int) -> Frame:
 
 def _within(outer: Frame, part: Part, origin: tuple[float, ...]) -> Frame:
     """Return the frame at an origin in an outer one; without axes it is parallel to it."""
-    u = _given(part, "u_axis_vector", "direction of its axis") or (1.0, 0.0, 0.0)
-    w = _given(part, "w_axis_vector", "direction across its axis") or (0.0, 0.0, 1.0)
-    return Frame(outer.origin + outer.axes @ np.array(origin), outer.axes @ _axes(part, u, w))
-
-
-def _given(part: Part, item: str, words: str) -> tuple[float, ...] | None:
-    """Return a vector of the file; one that is no three numbers is refused, as if it was left out.
-
-    A writer of the JSON form puts ``false`` in place of every array.
-    """
-    attribute = part.attribute(item)
-    if attribute is None or attribute.value is None:
-        return None
-    if not isinstance(attribute.value, tuple) or len(attribute.value) != 3:
-        part.say(item, "refused", f"{attribute.value!r} is no vector: as if it was left out")
-        return None
-    return part.numbers(item, words)
+    u = part.vector("u_axis_vector", "direction of its axis") or (1.0, 0.0, 0.0)
+    w = part.vector("w_axis_vector", "direction across its axis") or (0.0, 0.0, 1.0)
+    return Frame(outer.origin + outer.axes @ _vector(part, origin), outer.axes @ _axes(part, u, w))
 
 
 def _axes(part: Part, u: tuple[float, ...], w: tuple[float, ...]) -> Vector:
     """Return orthonormal axes: u as it is, w made square to it."""
-    first, last = np.array(u), np.array(w)
+    first, last = _vector(part, u), _vector(part, w)
     length = math.sqrt(float(first @ first))
     if length > 0.0:
         first = first / length
@@ -119,3 +105,10 @@ def _axes(part: Part, u: tuple[float, ...], w: tuple[float, ...]) -> Vector:
         raise BadInput.of(field, [*u, *w], "a direction square to w_axis_vector")
     last = last / height
     return np.column_stack([first, np.cross(last, first), last])
+
+
+def _vector(part: Part, values: tuple[float, ...]) -> Vector:
+    """Return three numbers as a vector."""
+    if len(values) != 3:
+        raise BadInput.of(f"{part.place}, vector", list(values), "three numbers")
+    return np.array(values)

@@ -65,6 +65,22 @@ class Part:
             self.say(item, "taken", words)
         return values
 
+    def vector(self, item: str, words: str) -> tuple[float, ...] | None:
+        """Return an array of numbers in SI, None where the file gives none, or no array.
+
+        One writer's JSON has ``false`` in place of vectors: such a value is refused in the account.
+
+        Raises
+        ------
+        BadInput
+            As of `number`.
+        """
+        attribute = self.component.attribute(item)
+        if attribute is not None and attribute.value is not None and not isinstance(attribute.value, tuple):
+            self.say(item, "refused", f"{attribute.value} is no vector")
+            return None
+        return self.numbers(item, words)
+
     def text(self, item: str, words: str) -> str | None:
         """Return a word or a name, None where the file gives none."""
         attribute = self.component.attribute(item)
