@@ -21,7 +21,17 @@ from bounds.bound import (
     up_to,
 )
 from bounds.checks import Checks
-from bounds.declared import DEPTHS, Declared, Direction, Kind, declarations, declared, described, required
+from bounds.declared import (
+    DEPTHS,
+    Declared,
+    Direction,
+    Kind,
+    declarations,
+    declared,
+    described,
+    required,
+    written,
+)
 from bounds.plausibility import Check, Checklist, Finding, PlausibilityWarning, finding_of, warn_of
 from bounds.reader import Reader
 from bounds.refused import RefusedValue, inside
@@ -66,4 +76,5 @@ __all__ = [
     "required",
     "up_to",
     "warn_of",
+    "written",
 ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Hashable, Mapping
-from dataclasses import MISSING, dataclass, field, fields
+from dataclasses import MISSING, dataclass, field, fields, is_dataclass
 from enum import Flag, StrEnum, auto
 from functools import cache
 from types import MappingProxyType
@@ -86,6 +86,9 @@ class Declared:
         Symbol of the unit in which it is usually written, where that is not the usual one of its SI unit.
     part : type, optional
         The dataclass of a part; its value is None, or the dataclass's own default, where it is left out.
+    later : bool
+        Whether the field came after results had been stored. At its default it is not written out, so that
+        what says nothing of it keeps the address of its result.
     """
 
     kind: Kind
@@ -96,6 +99,7 @@ class Declared:
     along: Direction = Direction.NONE
     written: str = ""
     part: type | None = None
+    later: bool = False
 
 
 def declared(default: Any, declaration: Declared) -> Any:
@@ -106,6 +110,19 @@ def declared(default: Any, declaration: Declared) -> Any:
 def required(declaration: Declared) -> Any:
     """Return the field of a dataclass without a default, with its declaration."""
     return declared(MISSING, declaration)
+
+
+def written(thing: Any) -> Any:
+    """Return a dataclass and all in it as dictionaries, but for later fields at their defaults."""
+    if not is_dataclass(thing):
+        return type(thing)(map(written, thing)) if isinstance(thing, list | tuple) else thing
+    facts = declarations(type(thing))
+    own = ((entry, getattr(thing, entry.name)) for entry in fields(thing))
+    return {
+        entry.name: written(value)
+        for entry, value in own
+        if not (value == entry.default and entry.name in facts and facts[entry.name].later)
+    }
 
 
 def described(kind: type[Thing]) -> type[Thing]:

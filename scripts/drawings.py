@@ -5,10 +5,17 @@ python scripts/drawings.py        writes docs/images/glossary/*.svg
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
+
+import numpy as np
+
+from fe_contact.flank.relief_shape import SHAPES
 
 FOLDER = Path(__file__).parents[1] / "docs" / "images" / "glossary"
 INK, SOFT, STRONG = "#24323f", "#8a97a3", "#c2571a"
+_DEEP = 0.7
+"""Depth of the drawn arc over its length; an arc of usual depth is drawn like the parabola."""
 _HEAD = (
     '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {0} {1}" width="{0}" height="{1}" '
     'font-family="sans-serif" font-size="14">'
@@ -115,10 +122,54 @@ def axes() -> str:
     )
 
 
+def flank_modifications() -> str:
+    """Draw the shapes of a relief over its length, and where on a flank reliefs and crownings act."""
+    return "".join((_HEAD.format(760, 300), *_shapes(60, 250), *_flank(400, 250), "</svg>"))
+
+
+def _shapes(left: float, low: float) -> Iterator[str]:
+    """Draw the depth of every shape, from the start of a relief to its end."""
+    size, fraction = 200.0, np.linspace(0.0, 1.0, 41)
+    yield text(left - 40, 26, "Shapes of a relief")
+    yield line((left, left + size + 20), (low, low), INK, ARROW)
+    yield line((left, left), (low, low - size - 15), INK, ARROW)
+    yield text(left + size, low + 20, "end", SOFT, "middle")
+    yield text(left, low + 20, "start", SOFT, "middle")
+    yield text(left - 8, low - size + 5, "C", SOFT, "end")
+    colors = (INK, STRONG, STRONG, "#2a7f9e", "#6a4c93")
+    for (name, law), color in zip(SHAPES.items(), colors, strict=True):
+        depth = law(fraction, _DEEP)
+        points = (f"{left + size * u:.1f} {low - size * d:.1f}" for u, d in zip(fraction, depth, strict=True))
+        yield path(f"M{'L'.join(points)}", color, DASHED if name == "circular" else "")
+    for row, (name, color) in enumerate(reversed(tuple(zip(SHAPES, colors, strict=True)))):
+        yield text(left + 14, low - size + 8 + 18 * row, name, color)
+
+
+def _flank(left: float, low: float) -> Iterator[str]:
+    """Draw the flank of a right-hand gear, root below, with the ends that reliefs run to."""
+    wide, high, soft = 320, 190, 'style="fill:#f6e9de"'
+    yield text(left, 26, "Flank of a right-hand gear")
+    yield path(f"M{left} {low}h{wide}v{-high}h{-wide}Z", INK, 'style="fill:#e6ebf0"')
+    yield path(f"M{left} {low - high}h{wide}v34h{-wide}Z", SOFT, soft)
+    yield path(f"M{left} {low}v{-high}h30v{high}Z", SOFT, soft)
+    yield path(f"M{left + wide} {low - high}h-90l90 70Z", STRONG, 'style="fill:#f3d3bd"')
+    yield path(f"M{left} {low}h90l-90 -70Z", STRONG, 'style="fill:#f3d3bd"')
+    yield line((left + 70, left + 264), (low - 151, low), STRONG, DASHED)
+    yield text(left + 150, low - 100, "line of contact", STRONG)
+    yield text(left + 110, low - high + 22, "tip relief", anchor="middle")
+    yield text(left + 38, low - 100, "end relief,")
+    yield text(left + 38, low - 84, "datum face")
+    yield text(left + wide - 6, low - high + 22, "triangular", anchor="end")
+    yield text(left + 4, low - 8, "triangular")
+    yield text(left + 150, low - 8, "root", SOFT)
+    yield text(left, low + 20, "datum face (I), -z", SOFT)
+    yield text(left + wide, low + 20, "non-datum face (II), +z", SOFT, "end")
+
+
 def main() -> None:
     """Write all drawings."""
     FOLDER.mkdir(parents=True, exist_ok=True)
-    for draw in (misalignment, transmission_error, axes):
+    for draw in (misalignment, transmission_error, axes, flank_modifications):
         (FOLDER / f"{draw.__name__}.svg").write_text(draw() + "\n", encoding="utf-8")
 
 

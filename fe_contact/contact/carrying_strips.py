@@ -117,7 +117,7 @@ class CarryingStrips:
             steady = np.asarray(gap(self.pair, *rolls_at(self.pair, self.s_1, self.s_2), self.face))
             return steady, steady
         x = self.middle + _NODE * self.half * np.array([[-1.0], [0.0], [1.0]])
-        breaks = [(each, each.distance(self.s_1, self.s_2)) for each in gap.breaks(self.pair)]
+        breaks = [(each, each.distance(self.s_1, self.s_2)) for each in gap.breaks(self.pair, self.face)]
         smooth = gap(self.pair, *rolls_at(self.pair, self.s_1 + x, self.s_2 - x), self.face)
         smooth = smooth - sum(each.height(x - distance) for each, distance in breaks)
         slope = (smooth[2] - smooth[0]) / (2.0 * _NODE)
@@ -132,7 +132,8 @@ class CarryingStrips:
     def _mean_height(self, each: Break, distance: FloatArray) -> FloatArray:
         """Return what a break removes on the mean over the strips (k,), m; `distance` from touch."""
         beyond = each.side * (distance - self.middle)  # from the middle to the break
-        return _mean_past_break(beyond, self.half, each.jump, each.bend)
+        jump, bend = (np.broadcast_to(value, beyond.shape) for value in (each.jump, each.bend))
+        return _mean_past_break(beyond, self.half, jump, bend)
 
     def on_flank(
         self, gear: int, roll_length: FloatArray, face_position: FloatArray, rows: FloatArray
@@ -173,13 +174,13 @@ class CarryingStrips:
 
 
 @njit(cache=True, error_model="numpy")
-def _mean_past_break(beyond: FloatArray, half: FloatArray, jump: float, bend: float) -> FloatArray:
+def _mean_past_break(beyond: FloatArray, half: FloatArray, jump: FloatArray, bend: FloatArray) -> FloatArray:
     """Return the means over strips (k,) of jump d + bend d^2/2 past a break, m."""
     means = np.zeros(beyond.size)
     for i in range(beyond.size):
         if beyond[i] < half[i]:
             _, _, ramp, _, square = past_break(beyond[i], half[i])
-            means[i] = (jump * ramp + 0.5 * bend * square) / math.pi
+            means[i] = (jump[i] * ramp + 0.5 * bend[i] * square) / math.pi
     return means
 
 

@@ -20,21 +20,21 @@ class Break:
     ----------
     gear : int
         0 is the pinion, 1 the wheel.
-    place : float
-        Flank coordinate on that gear, m.
+    place : ndarray
+        Flank coordinate on that gear, m; of no dimension, or one per touching point.
     side : int
         +1 where it runs towards the pinion's tip (the wheel's root), else -1.
-    jump, bend : float
-        1 and 1/m.
+    jump, bend : float or ndarray
+        1 and 1/m; arrays where `place` is one.
     ends_flank : bool
         Whether the usable flank ends there: a rounded or chamfered tip.
     """
 
     gear: int
-    place: float
+    place: FloatArray
     side: int
-    jump: float
-    bend: float
+    jump: FloatArray | float
+    bend: FloatArray | float
     ends_flank: bool = False
 
     def distance(self, s_1: FloatArray, s_2: FloatArray) -> FloatArray:
@@ -58,8 +58,11 @@ class GapTerm(Protocol):
         """Whether the gap depends on the roll lengths."""
         ...
 
-    def breaks(self, pair: ParallelAxes) -> tuple[Break, ...]:
-        """Return where the gap's slope or curvature along the profile jumps."""
+    def breaks(self, pair: ParallelAxes, face: FloatArray) -> tuple[Break, ...]:
+        """Return where the gap's slope or curvature along the profile jumps.
+
+        At `face`, as many distances (n,) from the pinion's mid-face in m as there are touching points.
+        """
         ...
 
     def __call__(

@@ -199,7 +199,7 @@ class _Flanks:
 
     def __init__(self, pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...]) -> None:
         self._pair, self._touch, self._face, self._gaps = pair, touch, face, gaps
-        self._breaks = [each for term in gaps for each in term.breaks(pair)]
+        self._breaks = [each for term in gaps for each in term.breaks(pair, face)]
         cut = {_SIDES[each.gear] for each in self._breaks if each.ends_flank}
         self.cut_tips = [side for side in _SIDES if side in cut]
         # towards a base circle; away from both on the flank of a ring gear

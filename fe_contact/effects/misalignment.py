@@ -20,7 +20,7 @@ class MisalignmentGap:
     growth: float
     along_profile: ClassVar[bool] = False
 
-    def breaks(self, pair: ParallelAxes) -> tuple[Break, ...]:
+    def breaks(self, pair: ParallelAxes, face: FloatArray) -> tuple[Break, ...]:
         """None: it is the same all along the profile."""
         return ()
 

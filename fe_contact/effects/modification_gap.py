@@ -27,20 +27,20 @@ class ModificationGap:
         """Whether the gap depends on the roll lengths."""
         return self.pinion.varies_along_profile or self.wheel.varies_along_profile
 
-    def breaks(self, pair: ParallelAxes) -> tuple[Break, ...]:
+    def breaks(self, pair: ParallelAxes, face: FloatArray) -> tuple[Break, ...]:
         """Roll lengths at which reliefs and the edges of rounded or chamfered tips begin on either flank."""
-        sides = ((pair.pinion, self.pinion), (pair.wheel, self.wheel))
+        sides = ((pair.pinion, self.pinion, face), (pair.wheel, self.wheel, face - pair.axial_offset))
         return tuple(
             Break(
                 index,
-                float(flank_coordinate(gear, start.roll_length)),
+                flank_coordinate(gear, start.roll_length),
                 1 if start.towards_tip == (index == 0) else -1,
                 start.jump,
                 start.bend,
                 start.ends_flank,
             )
-            for index, (gear, modification) in enumerate(sides)
-            for start in modification.relief_starts(gear)
+            for index, (gear, modification, position) in enumerate(sides)
+            for start in modification.relief_starts(gear, position)
         )
 
     def __call__(

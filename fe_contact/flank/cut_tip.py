@@ -66,7 +66,7 @@ class CutTip(FlankPart):
         inside = np.maximum(along, 0.0)
         return np.asarray(inside * (edge.jump + 0.5 * edge.bend * inside))
 
-    def relief_starts(self, gear: Tooth) -> tuple[ReliefStart, ...]:
+    def relief_starts(self, gear: Tooth, face_position: FloatArray | float = 0.0) -> tuple[ReliefStart, ...]:
         """Return where the edge begins.
 
         The involute turns away from its tangent too, with the curvature 1/l; hollow in a ring gear.

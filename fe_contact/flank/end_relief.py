@@ -1,15 +1,19 @@
-"""End relief: material removed towards both ends of the face."""
+"""End relief and one-sided crowning (ISO 21771-1): material removed towards the ends of the face.
+
+The datum face (I) is the end of negative face positions, the non-datum face (II) that of positive ones.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from bounds import Direction
-from fe_contact.flank.fields import Shape, amount, length, shape
-from fe_contact.flank.part import FlankPart
-from fe_contact.flank.relief import check_length, course
+from fe_contact.flank.fields import amount, length, shape
+from fe_contact.flank.relief import FaceRelief
+from fe_contact.flank.relief_shape import Shape
 from fe_contact.flank.tooth import Tooth
 from fe_contact.types import FloatArray
 
@@ -17,18 +21,90 @@ _FACE = Direction.FACE
 
 
 @dataclass(frozen=True, kw_only=True)
-class EndRelief(FlankPart):
+class EndRelief(FaceRelief):
     """Relief over the same length at either end of the face."""
 
     end_relief: float = amount(_FACE, "End relief at both faces", 10e-6)
     end_relief_length: float = length(_FACE, "Length of the end relief along the face", 2e-3)
     end_relief_shape: Shape = shape(_FACE, "End relief over its length")
 
-    def check_fits(self, gear: Tooth) -> None:
-        """Raise `InputError` if it is longer than half the face."""
-        check_length("end_relief_length", self.end_relief_length, 0.5 * gear.face_width)
+    def _outwards(self, face_position: FloatArray) -> FloatArray:
+        """Return them towards the nearer end."""
+        return np.abs(face_position)
 
-    def removed(self, gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
-        """See `FlankPart.removed`."""
-        from_start = (np.abs(face_position) - 0.5 * gear.face_width) / self.end_relief_length + 1.0
-        return np.asarray(self.end_relief * course(self.end_relief_shape, from_start))
+    def _room(self, gear: Tooth) -> float:
+        """Return half the face."""
+        return 0.5 * gear.face_width
+
+
+@dataclass(frozen=True, kw_only=True)
+class OneSidedRelief(FaceRelief):
+    """Relief to one end of the face."""
+
+    _side: ClassVar[int]
+
+    def _outwards(self, face_position: FloatArray) -> FloatArray:
+        """Return them towards that end."""
+        return self._side * face_position
+
+
+@dataclass(frozen=True, kw_only=True)
+class EndReliefDatumFace(OneSidedRelief):
+    """End relief at the datum face alone."""
+
+    _side: ClassVar[int] = -1
+
+    end_relief_datum_face: float = amount(
+        _FACE, "End relief at the datum face, the end of negative face positions", 10e-6, later=True
+    )
+    end_relief_datum_face_length: float = length(
+        _FACE, "Length of the end relief at the datum face", 2e-3, later=True
+    )
+    end_relief_datum_face_shape: Shape = shape(
+        _FACE, "End relief at the datum face over its length", later=True
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class EndReliefNonDatumFace(OneSidedRelief):
+    """End relief at the non-datum face alone."""
+
+    _side: ClassVar[int] = 1
+
+    end_relief_non_datum_face: float = amount(
+        _FACE, "End relief at the non-datum face, the end of positive face positions", 10e-6, later=True
+    )
+    end_relief_non_datum_face_length: float = length(
+        _FACE, "Length of the end relief at the non-datum face", 2e-3, later=True
+    )
+    end_relief_non_datum_face_shape: Shape = shape(
+        _FACE, "End relief at the non-datum face over its length", later=True
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class HelixCrowningDatumFace(OneSidedRelief):
+    """Parabola from the highest point of the face to the datum face."""
+
+    _side: ClassVar[int] = -1
+
+    helix_crowning_datum_face: float = amount(
+        _FACE, "Lead crowning at the datum face alone, besides that at both ends", 5e-6, later=True
+    )
+    helix_crowning_datum_face_length: float = length(
+        _FACE, "Length of the crowning to the datum face, from its highest point", 15e-3, later=True
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class HelixCrowningNonDatumFace(OneSidedRelief):
+    """Parabola from the highest point of the face to the non-datum face."""
+
+    _side: ClassVar[int] = 1
+
+    helix_crowning_non_datum_face: float = amount(
+        _FACE, "Lead crowning at the non-datum face alone, besides that at both ends", 5e-6, later=True
+    )
+    helix_crowning_non_datum_face_length: float = length(
+        _FACE, "Length of the crowning to the non-datum face, from its highest point", 10e-3, later=True
+    )

@@ -16,12 +16,19 @@ from numpy.typing import ArrayLike
 
 from bounds import Direction, Kind, declarations, described
 from fe_contact.flank.cut_tip import CutTip
-from fe_contact.flank.end_relief import EndRelief
+from fe_contact.flank.end_relief import (
+    EndRelief,
+    EndReliefDatumFace,
+    EndReliefNonDatumFace,
+    HelixCrowningDatumFace,
+    HelixCrowningNonDatumFace,
+)
 from fe_contact.flank.free_form import FreeForm
 from fe_contact.flank.part import FlankPart, ReliefStart, involute
 from fe_contact.flank.polynomial import FlankTwist, HelixCrowning, HelixSlope, ProfileCrowning, ProfileSlope
-from fe_contact.flank.tip_relief import RootRelief, TipRelief
+from fe_contact.flank.tip_relief import ProfileCrowningRoot, ProfileCrowningTip, RootRelief, TipRelief
 from fe_contact.flank.tooth import Tooth
+from fe_contact.flank.triangular_relief import TriangularRootRelief, TriangularTipRelief
 from fe_contact.types import FloatArray
 
 if TYPE_CHECKING:
@@ -32,14 +39,22 @@ if TYPE_CHECKING:
 @dataclass(frozen=True, kw_only=True)
 class FlankModification(  # the last comes first: dataclasses take the fields of their bases from the end
     FreeForm,
+    TriangularRootRelief,
+    TriangularTipRelief,
     FlankTwist,
+    EndReliefNonDatumFace,
+    EndReliefDatumFace,
     EndRelief,
     HelixSlope,
+    HelixCrowningNonDatumFace,
+    HelixCrowningDatumFace,
     HelixCrowning,
     CutTip,
     RootRelief,
     TipRelief,
     ProfileSlope,
+    ProfileCrowningRoot,
+    ProfileCrowningTip,
     ProfileCrowning,
 ):
     """Intended departures of one gear's flanks from the involute helicoid: the sum of all its bases.
@@ -95,7 +110,7 @@ class FlankModification(  # the last comes first: dataclasses take the fields of
 
     def tip_form_roll_length(self, gear: Tooth) -> float:
         """Roll length in m at which the usable flank of `gear` ends and its tip's edge begins."""
-        ends = (start.roll_length for start in self.relief_starts(gear) if start.ends_flank)
+        ends = (float(start.roll_length) for start in self.relief_starts(gear) if start.ends_flank)
         return next(ends, gear.tip_roll_length)
 
     def material_removed(
@@ -133,9 +148,13 @@ class FlankModification(  # the last comes first: dataclasses take the fields of
                 removed += part.removed(gear, roll_length, face_position)
         return removed
 
-    def relief_starts(self, gear: Tooth) -> tuple[ReliefStart, ...]:
-        """Return where reliefs, and the tip's edge if it is not sharp, begin along the profile."""
-        return tuple(start for part in self.parts if part.varies for start in part.relief_starts(gear))
+    def relief_starts(self, gear: Tooth, face_position: FloatArray | float = 0.0) -> tuple[ReliefStart, ...]:
+        """Return where reliefs, and the tip's edge if it is not sharp, begin along the profile.
+
+        Where they run aslant over the flank, at face positions (n,) in m from mid-face.
+        """
+        acting = (part for part in self.parts if part.varies)
+        return tuple(start for part in acting for start in part.relief_starts(gear, face_position))
 
 
 FLANK_FIELDS = declarations(FlankModification)

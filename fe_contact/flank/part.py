@@ -21,20 +21,20 @@ class ReliefStart:
 
     Attributes
     ----------
-    roll_length : float
-        m.
+    roll_length : float or ndarray
+        m; an array of as many as there are face positions, if it differs over the face.
     towards_tip : bool
         Whether it runs to the tip; else to the root.
-    jump, bend : float
+    jump, bend : float or ndarray
         Slope and curvature with which it begins, over the arc length of the flank; 1 and 1/m.
     ends_flank : bool
         Whether it is the edge of a rounded or chamfered tip, where the usable flank ends.
     """
 
-    roll_length: float
+    roll_length: FloatArray | float
     towards_tip: bool
-    jump: float
-    bend: float
+    jump: FloatArray | float
+    bend: FloatArray | float
     ends_flank: bool = False
 
 
@@ -78,8 +78,8 @@ class FlankPart:
         """Material removed in m at roll lengths inside the involute and at face positions, both in m."""
         raise NotImplementedError
 
-    def relief_starts(self, gear: Tooth) -> tuple[ReliefStart, ...]:
-        """Return where it begins along the profile, if it does so within the flank."""
+    def relief_starts(self, gear: Tooth, face_position: FloatArray | float = 0.0) -> tuple[ReliefStart, ...]:
+        """Return where it begins along the profile at face positions in m, if it does so within the flank."""
         return ()
 
 

@@ -1,61 +1,125 @@
-"""Relief: from zero where it starts to its amount at the end of its length, along a line or a parabola."""
+"""A relief towards one end of the flank: from zero where it starts to its amount at the end of its length."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
-from bounds import SiNote
+from bounds import SiNote, at_most, declarations
 from fe_contact.checks import within
-from fe_contact.flank.fields import Shape
-from fe_contact.flank.part import ReliefStart
+from fe_contact.errors import InputError
+from fe_contact.flank.part import FlankPart, ReliefStart
+from fe_contact.flank.relief_shape import SHAPES, ReliefShape
 from fe_contact.flank.tooth import Tooth
 from fe_contact.types import FloatArray
 
-
-def course(shape: Shape, fraction: FloatArray) -> FloatArray:
-    """Relative depth of a relief at `fraction` of its length: 0 before it starts, 1 from its end on."""
-    inside = np.clip(fraction, 0.0, 1.0)
-    return inside if shape == "linear" else inside**2
+_LENGTHS = SiNote("Lengths are in m: 1 mm is 0.001.")
 
 
-def check_length(field: str, length: float, room: float) -> None:
-    """Raise `InputError` if a relief is longer than the room in m that there is for it."""
-    within(f"modification.{field}", length, 0.0, room, SiNote("Lengths are in m: 1 mm is 0.001."))
+@dataclass(frozen=True, kw_only=True)
+class Relief(FlankPart):
+    """Amount, length and shape, declared in this order; a crowning has no shape and is a parabola.
 
-
-@dataclass(frozen=True)
-class ProfileRelief:
-    """A relief over the roll length.
-
-    Attributes
-    ----------
-    amount : float
-        m.
-    shape : {"linear", "parabolic"}
-    start, end : float
-        Roll lengths in m; the amount is reached at `end`, which is beyond `start` towards tip or root.
+    Raises
+    ------
+    InputError
+        An arc of a circle that is deeper than long.
     """
 
-    amount: float
-    shape: Shape
-    start: float
-    end: float
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self._shape is SHAPES["circular"] and self._amount > self._length:
+            bound = at_most(self._length, "m", "the length of the arc")
+            raise InputError(self._name, self._amount, bound, "A circular relief is at most as deep as long.")
 
-    def removed(self, roll: FloatArray) -> FloatArray:
-        """Material removed in m at roll lengths in m."""
-        return np.asarray(self.amount * course(self.shape, (roll - self.start) / (self.end - self.start)))
+    @cached_property
+    def _name(self) -> str:
+        """The field of the amount, to which those of length and shape add theirs."""
+        return next(iter(declarations(type(self))))
 
-    def begins(self, gear: Tooth) -> ReliefStart:
-        """Return where it begins, with slope and curvature over the arc length of the flank.
+    @property
+    def _amount(self) -> float:
+        """The amount in m."""
+        return float(getattr(self, self._name))
 
-        The fraction u of its length grows with the arc d as du/dd = r_b/(l |end - start|), and l l' = +-r_b.
+    @property
+    def _length(self) -> float:
+        """The length in m."""
+        return float(getattr(self, f"{self._name}_length"))
+
+    @property
+    def _shape(self) -> ReliefShape:
+        """The law of its depth."""
+        return SHAPES[getattr(self, f"{self._name}_shape", "parabolic")]
+
+    def _check_length(self, room: float) -> None:
+        """Raise `InputError` if it is longer than the room in m that there is for it."""
+        within(f"modification.{self._name}_length", self._length, 0.0, room, _LENGTHS)
+
+    def _depth(self, fraction: FloatArray, length: float) -> FloatArray:
+        """Return what is removed in m at fractions of its length in m, over the roll length or the face."""
+        return np.asarray(self._amount * self._shape(fraction, self._amount / abs(length)))
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProfileRelief(Relief):
+    """A relief from a radius to one end of the involute."""
+
+    _at_tip: ClassVar[bool]
+
+    def check_fits(self, gear: Tooth) -> None:
+        """Raise `InputError` if it is longer than the involute."""
+        self._check_length(abs(gear.tip_radius - gear.form_radius))
+
+    def removed(self, gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
+        """See `FlankPart.removed`."""
+        start, end = self._span(gear)
+        return self._depth((roll_length - start) / (end - start), end - start)
+
+    def relief_starts(self, gear: Tooth, face_position: FloatArray | float = 0.0) -> tuple[ReliefStart, ...]:
+        """See `FlankPart.relief_starts`."""
+        start, end = self._span(gear)
+        return (self._begins(gear, start, end - start),)
+
+    def _span(self, gear: Tooth) -> tuple[float, float]:
+        """Return the roll lengths in m from which and to which it runs."""
+        radius, inwards = (gear.tip_radius, -1) if self._at_tip else (gear.form_radius, 1)
+        end = gear.tip_roll_length if self._at_tip else gear.form_roll_length
+        return gear.roll_length(radius + inwards * gear.sign * self._length), end
+
+    def _begins(self, gear: Tooth, start: FloatArray | float, length: float) -> ReliefStart:
+        """Return where it begins; over a roll length in m, < 0 if that falls.
+
+        The fraction u of its length grows with the arc d as du/dd = r_b/(l |length|), and l l' = +-r_b.
         """
-        amount, start, end = self.amount, self.start, self.end
-        towards_tip = end == gear.tip_roll_length
-        slope = gear.base_radius / (start * abs(end - start))
-        if self.shape == "parabolic":
-            return ReliefStart(start, towards_tip, 0.0, 2.0 * amount * slope**2)
-        bend = -amount * gear.base_radius**2 / (start**3 * (end - start))
-        return ReliefStart(start, towards_tip, amount * slope, bend)
+        amount, shape = self._amount, self._shape
+        slope = gear.base_radius / (start * abs(length))
+        bend = amount * shape.bend(amount / abs(length)) * slope**2
+        if shape.slope:
+            bend = bend - amount * shape.slope * gear.base_radius**2 / (start**3 * length)
+        return ReliefStart(start, self._at_tip, amount * shape.slope * slope, bend)
+
+
+@dataclass(frozen=True, kw_only=True)
+class FaceRelief(Relief):
+    """A relief over a part of the face, to one end or both."""
+
+    def _outwards(self, face_position: FloatArray) -> FloatArray:
+        """Return face positions in m as distances from mid-face towards the end to which it runs."""
+        raise NotImplementedError
+
+    def _room(self, gear: Tooth) -> float:
+        """Return how long it may be, m."""
+        return gear.face_width
+
+    def check_fits(self, gear: Tooth) -> None:
+        """Raise `InputError` if it is longer than the face has room."""
+        self._check_length(self._room(gear))
+
+    def removed(self, gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
+        """See `FlankPart.removed`."""
+        from_start = (self._outwards(face_position) - 0.5 * gear.face_width) / self._length + 1.0
+        return self._depth(from_start, self._length)

@@ -29,6 +29,11 @@ class Tooth(Protocol):
         ...
 
     @property
+    def base_helix_angle(self) -> float:
+        """beta_b; > 0: right hand."""
+        ...
+
+    @property
     def base_thickness_half_angle(self) -> float:
         """Half the angle of a tooth at the base circle."""
         ...

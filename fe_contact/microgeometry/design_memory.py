@@ -12,11 +12,12 @@ import hashlib
 import os
 import struct
 import zlib
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
+from bounds import written
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.request import OptimizationRequest
 from fe_contact.solver_version import SOLVER_VERSION
@@ -50,7 +51,7 @@ class DesignMemory:
     def of(cls, directory: Path, request: OptimizationRequest, evaluator: Evaluator) -> DesignMemory:
         """Open the file of a problem; one that is damaged counts up to the damage."""
         content = {
-            "pair": asdict(request.pair),
+            "pair": written(request.pair),
             "variables": [variable.name for variable in request.variables],
             "bodies": _digest_of_bodies(evaluator),
             "effects": dict(evaluator.choices),

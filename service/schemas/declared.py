@@ -89,8 +89,13 @@ class Figure:
             description=self.with_unit(self.what.description),
             examples=[self.own(self.what.example)],
             json_schema_extra=extra,
+            exclude_if=self._unsaid if self.what.later else None,
         )
         return self.accepted, field
+
+    def _unsaid(self, value: Any) -> bool:
+        """Whether a value of the boundary is the default."""
+        return bool(value == self.own(self.default))
 
 
 def figures(kind: type[Any], *kinds: Kind) -> tuple[Figure, ...]:

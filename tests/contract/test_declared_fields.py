@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from bounds import Direction, Kind
+from bounds import Direction, Kind, written
 from fe_contact.analysis import analyze
 from fe_contact.errors import InputError
 from fe_contact.flank.modification import FlankModification
@@ -57,6 +57,7 @@ def test_all_but_the_grid_are_declared_numbers_or_names() -> None:
 def test_a_case_and_the_library_mean_the_same(figure: Figure) -> None:
     facts = with_length(figure)
     table = json.loads(json.dumps(CASE))
+    table["pair"] |= {"helix_angle_deg": 10.0, "center_distance_mm": 81.5}
     table["pair"]["pinion"] |= as_written(facts)
     case = Case.model_validate_json(json.dumps(table))
     read, meant = gear_pair(case).pinion.modification, FlankModification(**facts)
@@ -65,6 +66,30 @@ def test_a_case_and_the_library_mean_the_same(figure: Figure) -> None:
         near = pytest.approx(value, rel=1e-15) if isinstance(value, float) else value
         assert getattr(read, each.name) == near, each.name
     assert figure.own(figure.default) == getattr(case.pair.wheel, figure.field)
+
+
+LATER = [figure for figure in FIGURES if figure.what.later]
+
+
+def test_a_case_is_written_without_later_figures_that_it_does_not_use() -> None:
+    """So it keeps the address of its result."""
+    table = json.loads(json.dumps(CASE))
+    plain = Case.model_validate_json(json.dumps(table)).model_dump(mode="json")["pair"]["pinion"]
+    gear = GEARS[Gear]
+    assert len(LATER) == 20
+    assert not {figure.field for figure in LATER} & set(plain)
+    assert not {figure.name for figure in LATER} & set(written(gear)["modification"])
+    assert written(gear)["modification"]["tip_relief"] == plain["tip_relief_um"] == 0.0
+
+
+@pytest.mark.parametrize("figure", [each for each in LATER if each.what.kind is not Kind.SHAPE])
+def test_a_case_is_written_with_the_later_figures_that_it_uses(figure: Figure) -> None:
+    facts = with_length(figure)
+    table = json.loads(json.dumps(CASE))
+    table["pair"]["pinion"] |= as_written(facts)
+    found = Case.model_validate_json(json.dumps(table)).model_dump(mode="json")["pair"]["pinion"]
+    assert found[figure.field] == figure.own(facts[figure.name])
+    assert written(FlankModification(**facts))[figure.name] == facts[figure.name]
 
 
 @EVERY
@@ -220,12 +245,16 @@ def test_design_variables_and_scatter_are_depths_and_lengths() -> None:
     }
 
 
+CORNERS = {"triangular_tip_relief", "triangular_root_relief"}
+
+
 def pair_with(figure: Figure, scale: float = 1.0) -> GearPair:
-    """Return a pair whose pinion has a figure alone."""
-    gear = Gear(20, 4e-3, 25e-3, 40e-3)
+    """Return a pair whose pinion has a figure alone; spur gears have no corners to relieve."""
+    gear = Gear(20, 4e-3, 25e-3, 40e-3, helix_angle=0.2 if figure.name in CORNERS else 0.0)
     facts = with_length(figure)
     facts[figure.name] *= scale
-    return GearPair(replace(gear, modification=FlankModification(**facts)), gear, 80e-3)
+    mate = replace(gear, helix_angle=-gear.helix_angle)
+    return GearPair(replace(gear, modification=FlankModification(**facts)), mate)
 
 
 @DEPTHS
@@ -237,7 +266,7 @@ def test_a_depth_too_small_to_be_made_is_implausible(figure: Figure) -> None:
 
 @DEPTHS
 def test_a_plane_refuses_what_acts_across_the_face(figure: Figure) -> None:
-    if Direction.FACE not in figure.what.along:
+    if Direction.FACE not in figure.what.along or figure.name in CORNERS:
         return
     with pytest.raises(InputError) as caught:
         analyze(pair_with(figure), torques=[100.0], model="plane_strain")

@@ -18,6 +18,8 @@ from bound_walk import LONGEST_CHAIN, Trial, chains, dotted, is_field
 from fastapi.testclient import TestClient
 from toml_text import toml_text
 
+from bounds import Kind
+from fe_contact.flank.modification import FlankModification
 from fe_contact.ste import PairFacts
 from service.app import create_app
 from service.convert.checks import check_case
@@ -25,6 +27,7 @@ from service.convert.scene import check_scene
 from service.convert.topology import facts_of
 from service.problems import BadInput, Fault
 from service.schemas import Case, read_model, validated
+from service.schemas.declared import figures
 from service.schemas.request_examples import SCENE
 from service.schemas.scene import SceneInput
 from service.settings import Settings
@@ -86,7 +89,8 @@ DEPEND_ON_OTHERS = (
         "root_radius_coefficient",
     ),
     *("thickness_allowance_um", "tip_rounding_mm", "tip_chamfer_mm", "pitches", "tolerance", "time_budget_s"),
-    *("tip_relief_length_mm", "root_relief_length_mm", "end_relief_length_mm", "position_mm", "diameter_mm"),
+    *(figure.field for figure in figures(FlankModification, Kind.LENGTH)),
+    *("position_mm", "diameter_mm"),
     *("rim_thickness_mm", "web_thickness_mm", "hub_diameter_mm", "web_offset_mm", "width_mm", "offset_mm"),
     *("rim_diameter_mm", "cutter_teeth", "cutter_profile_shift_coefficient", "center_distance_change_mm"),
     *("teeth", "duration_s", "torsional_stiffness_n_m_per_rad", "dedendum_coefficient", "polar_kg_m2"),

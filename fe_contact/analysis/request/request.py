@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from functools import cached_property
 
-from bounds import Finding
+from bounds import Finding, written
 from fe_contact.contact import ContactModel
 from fe_contact.effects import (
     EFFECTS,
@@ -122,7 +122,7 @@ class Request:
     def to_json(self) -> Json:
         """Return plain JSON in SI units: what decides the result."""
         return self.options.to_json() | {
-            "pair": asdict(self.pair),
+            "pair": written(self.pair),
             "normal_force": self.load.tolist(),
             "misalignment": self.misalignment.tolist(),
             "center_distance_change": self.center_distance_change.tolist(),

@@ -34,7 +34,7 @@ def modified_flank(gear: Toothing, s: FloatArray) -> FloatArray:
 def kinks(gear: Toothing) -> FloatArray:
     """Return the flank coordinates where the slope or the curvature of the flank jumps, m, rising."""
     profile = tooth_profile(gear)
-    starts = [start.roll_length for start in gear.modification.relief_starts(gear)]
+    starts = [float(start.roll_length) for start in gear.modification.relief_starts(gear)]
     reliefs = gear.sign * 0.5 * np.square(starts) / gear.base_radius
     inner = np.concatenate([[profile.s_root, profile.s_form], reliefs])
     close = 1e-6 * gear.normal_module

@@ -19,7 +19,7 @@ const depthOf = (name) => name.replace("_length_mm", "_um");
 /** The slider of a figure of one flank, as its field declares it. */
 function figure(field, content) {
   const { schema, path: [, gear, name] } = field;
-  const own = content.pair[gear][name];
+  const own = content.pair[gear][name] ?? schema.default; // a case is written without later figures it does not use
   const along = schema["x-along"].includes("face") ? "face" : "profile";
   const knob = { key: `${gear}.${name}`, label: `${field.label}, ${gear}`, unit: unitOf(name), own, across: along === "face" };
   if (schema["x-kind"] !== "length") return { ...knob, value: own, ...depthRange(knob, schema, content) };

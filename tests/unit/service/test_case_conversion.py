@@ -12,11 +12,13 @@ from typing import Any
 import pytest
 from bad_inputs import GOOD
 
+from bounds import Kind
 from fe_contact import AllowedError, FlankModification
 from service.convert.case import analysis_options, case_json, gear_pair, table_axes
 from service.convert.checks import check_case
 from service.problems import BadInput
 from service.schemas import Case, read_model, validated
+from service.schemas.declared import figures
 from service.schemas.request_examples import CASE
 from service.units import factor
 from service.worker.key import content_key
@@ -45,6 +47,20 @@ MODIFIED: dict[str, Any] = {
     "end_relief_um": 7.0,
     "end_relief_length_mm": 2.0,
     "end_relief_shape": "parabolic",
+    "profile_crowning_tip_um": 2.0,
+    "profile_crowning_tip_length_mm": 3.0,
+    "profile_crowning_root_um": 1.5,
+    "profile_crowning_root_length_mm": 2.5,
+    "helix_crowning_datum_face_um": 3.5,
+    "helix_crowning_datum_face_length_mm": 15.0,
+    "helix_crowning_non_datum_face_um": 4.5,
+    "helix_crowning_non_datum_face_length_mm": 10.0,
+    "end_relief_datum_face_um": 8.0,
+    "end_relief_datum_face_length_mm": 1.8,
+    "end_relief_datum_face_shape": "exponential",
+    "end_relief_non_datum_face_um": 9.0,
+    "end_relief_non_datum_face_length_mm": 2.2,
+    "end_relief_non_datum_face_shape": "logarithmic",
     "tip_chamfer_mm": 0.3,
     "tip_chamfer_angle_deg": 25.0,
 }
@@ -77,7 +93,7 @@ def test_a_gear_without_modifications_is_the_librarys_own_default() -> None:
 
 
 def test_every_field_of_the_gear_schema_reaches_the_gear() -> None:
-    """A field that conversion forgets would leave the gear as it is."""
+    """A field that conversion forgets would leave the gear as it is; corners: test_declared_fields."""
     plain = gear_pair(case()).pinion
     changes: dict[str, Any] = {
         "teeth": 21,
@@ -101,7 +117,9 @@ def test_every_field_of_the_gear_schema_reaches_the_gear() -> None:
             "removed_um": [[0.0, 0.0], [5.0, 7.0]],
         },
     }
-    covered = set(changes) | set(MODIFIED) | {"root_relief_shape"}
+    shapes = {figure.field for figure in figures(FlankModification, Kind.SHAPE)}
+    corners = {figure.field for figure in figures(FlankModification) if figure.name.startswith("triangular")}
+    covered = set(changes) | set(MODIFIED) | shapes | corners
     assert covered == set(type(case().pair.pinion).model_fields)
     for name, value in changes.items():
         table = copy.deepcopy(GOOD)

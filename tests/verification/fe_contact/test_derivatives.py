@@ -147,6 +147,36 @@ def test_by_amounts_along_the_profile_curves_change_as_differences_say(pair, nam
     assert np.median(off) < 1e-4 and off.max() < 2e-3
 
 
+ONE_SIDED = {
+    "tip_relief": ("_length", "_shape"),
+    "root_relief": ("_length", "_shape"),
+    "profile_crowning_tip": ("_length",),
+    "end_relief_datum_face": ("_length", "_shape"),
+    "helix_crowning_non_datum_face": ("_length",),
+    "triangular_tip_relief": ("_length", "_shape"),
+    "triangular_root_relief": ("_length", "_shape"),
+}
+
+
+@pytest.mark.parametrize("shape", ["circular", "exponential", "logarithmic"])
+@pytest.mark.parametrize("quantity", ONE_SIDED)
+def test_by_reliefs_of_any_shape_to_any_end_curves_change_as_differences_say(quantity, shape, condensed):
+    facts = {"_length": 3e-3 if "face" in quantity else 1.2e-3, "_shape": shape}
+    own = {quantity: 8e-6} | {quantity + end: facts[end] for end in ONE_SIDED[quantity]}
+    bodies, plain = condensed("helical"), helical()
+    pair = replace(plain, pinion=replace(plain.pinion, modification=FlankModification(**own)))
+    for name, step in ((f"pinion.{quantity}", 1e-9), (f"pinion.{quantity}_length", 1e-6)):
+        found = curve_derivatives(bodies, pair, TORQUES, [name]).by[0]
+        value = own[name.partition(".")[2]]
+        ends = [
+            bodies.solve(modified(pair, {name: value + way * step}), TORQUES).solution.deflection
+            for way in (1.0, -1.0)
+        ]
+        difference = (ends[0] - ends[1]) / (2.0 * step)
+        off = np.abs(found - difference) / np.abs(found).max()
+        assert np.median(off) < 3e-4 and np.quantile(off, 0.9) < 5e-3, (name, off)
+
+
 @pytest.mark.parametrize("pair", PAIRS)
 def test_by_the_length_of_a_relief_curves_change_as_differences_say(pair, condensed):
     name, bodies = "pinion.tip_relief_length", condensed(pair)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +12,7 @@ from scipy.optimize import minimize_scalar
 from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.contact.touch import conjugate_touch, flank_coordinate, modified_touch
 from fe_contact.effects.modification_gap import ModificationGap
+from fe_contact.flank.relief_shape import SHAPES
 from fe_contact.geometry import InternalGearPair, RingGear, corner_contact, edge_gap
 
 
@@ -30,15 +32,15 @@ class Removed:
 
     along_profile = True
 
-    def breaks(self, gears):
-        return ModificationGap(gears.pinion.modification, gears.wheel.modification).breaks(gears)
+    def breaks(self, gears, face):
+        return ModificationGap(gears.pinion.modification, gears.wheel.modification).breaks(gears, face)
 
     def __call__(self, gears, roll_1, roll_2, face):
         return material_removed(gears, roll_1, roll_2)
 
 
 class Constant(Removed):
-    def breaks(self, gears):
+    def breaks(self, gears, face):
         return ()
 
     def __call__(self, gears, roll_1, roll_2, face):
@@ -89,9 +91,17 @@ def test_a_relief_of_slope_m_touches_r_m_off_the_line_of_action_and_r_m2_over_2_
     assert modified.s_1[0, 0] == pytest.approx(s - radius * slope, abs=3e-6)
 
 
+@pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("position", [-0.72, -0.5, 0.3, 0.55, 0.7, 0.77])
-def test_against_a_direct_search(position):
-    gears = pair(tip_relief=15e-6, tip_relief_length=0.9e-3, profile_crowning=4e-6)
+def test_against_a_direct_search(position, shape):
+    gears = pair(
+        tip_relief=15e-6,
+        tip_relief_length=0.9e-3,
+        tip_relief_shape=shape,
+        profile_crowning=2e-6,
+        profile_crowning_root=3e-6,
+        profile_crowning_root_length=3e-3,
+    )
     plain, modified = touches(gears, [position], (Removed(),))
     s_1, s_2, radius = (float(value[0, 0]) for value in (plain.s_1, plain.s_2, plain.radius))
     tip = float(flank_coordinate(gears.pinion, gears.pinion.tip_roll_length))
@@ -105,6 +115,34 @@ def test_against_a_direct_search(position):
         for bounds in ((max(-0.4e-3, s_2 - tip), 0.0), (0.0, min(0.4e-3, tip - s_1)))
     )
     assert modified.gap[0, 0] == pytest.approx(found, abs=1e-11)
+
+
+@pytest.mark.parametrize("face", [2e-3, 7e-3, 9.9e-3])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_a_triangular_relief_against_a_direct_search_at_any_place_of_the_face(shape, face):
+    """Its start runs aslant over the flank, which the breaks of the gap follow."""
+    modification = FlankModification(
+        triangular_tip_relief=12e-6, triangular_tip_relief_length=2.5e-3, triangular_tip_relief_shape=shape
+    )
+    pinion = Gear(23, 3e-3, 20e-3, 20e-3, helix_angle=math.radians(8.0), modification=modification)
+    gears = GearPair(pinion, Gear(41, 3e-3, 20e-3, 40e-3, helix_angle=-math.radians(8.0)))
+    (start,) = modification.relief_starts(pinion, np.array([face]))
+    tip, begin = pinion.tip_roll_length, start.roll_length[0]
+    assert begin < tip - 0.2e-3
+    for roll in np.linspace(begin - 0.2e-3, tip - 0.1e-3, 7):
+        there = np.array([[roll]])
+        plain = conjugate_touch(gears, there, gears.mating_roll_length(there), corners=True)
+        term = ModificationGap(modification, FlankModification())
+        modified = modified_touch(gears, plain, np.array([face]), (term,))
+        s_1, radius = float(plain.s_1[0, 0]), float(plain.radius[0, 0])
+        reach = float(flank_coordinate(pinion, tip)) - s_1
+
+        def gap(x, s_1=s_1, radius=radius):
+            here = np.array([math.sqrt(2.0 * pinion.base_radius * (s_1 + x))])
+            return x**2 / (2.0 * radius) + float(modification.material_removed(pinion, here, face)[0])
+
+        samples = [gap(x) for x in np.linspace(max(-0.4e-3, -0.3 * s_1), min(0.4e-3, reach), 4001)]
+        assert modified.gap[0, 0] == pytest.approx(min(samples), abs=1e-10)
 
 
 def test_the_gap_has_no_jump_where_the_relief_starts():

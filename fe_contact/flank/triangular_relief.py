@@ -1,0 +1,99 @@
+"""Triangular relief (ISO 21771-1): material removed from the corners where lines of contact begin and end.
+
+It is a tip or root relief whose start is a line of contact instead of a circle: deepest at that corner of the
+flank which lines of contact reach first or last, and the same along every line of contact. Lines of contact
+are those of equal l + z tan(beta_b), roll length l and face position z.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from bounds import Direction
+from fe_contact.errors import InputError
+from fe_contact.flank.fields import amount, length, shape
+from fe_contact.flank.part import ReliefStart, involute
+from fe_contact.flank.relief import ProfileRelief
+from fe_contact.flank.relief_shape import Shape
+from fe_contact.flank.tooth import Tooth
+from fe_contact.types import FloatArray
+
+_FLANK = Direction.PROFILE | Direction.FACE
+
+
+@dataclass(frozen=True, kw_only=True)
+class CornerRelief(ProfileRelief):
+    """A relief over the profile as it is at the end of the face that holds the corner."""
+
+    def check_fits(self, gear: Tooth) -> None:
+        """Raise `InputError` if it is longer than the involute, or no line of contact crosses the flank."""
+        super().check_fits(gear)
+        if self._amount and not gear.base_helix_angle:
+            advice = "Lines of contact of a spur gear run along the face: give it a tip or root relief."
+            raise InputError(f"modification.{self._name}", self._amount, "0 for a spur gear", advice)
+
+    def removed(self, gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
+        """See `FlankPart.removed`."""
+        return super().removed(gear, roll_length - self._inset(gear, face_position), face_position)
+
+    def relief_starts(self, gear: Tooth, face_position: FloatArray | float = 0.0) -> tuple[ReliefStart, ...]:
+        """See `FlankPart.relief_starts`; nothing begins where the triangle has ended."""
+        start, end = self._span(gear)
+        inset = self._inset(gear, np.asarray(face_position))
+        reached = np.abs(inset) < abs(end - start)
+        here = self._begins(gear, np.clip(start + inset, *involute(gear)), end - start)
+        jump, bend = (np.where(reached, value, 0.0) for value in (here.jump, here.bend))
+        return (ReliefStart(here.roll_length, here.towards_tip, jump, bend),)
+
+    def _inset(self, gear: Tooth, face_position: FloatArray) -> FloatArray:
+        """Return how much later than at the corner's end of the face it starts, m of roll length."""
+        start, end = self._span(gear)
+        lead = math.tan(gear.base_helix_angle)
+        corner = math.copysign(0.5 * gear.face_width, lead * (end - start))
+        return np.asarray((corner - face_position) * lead)
+
+
+@dataclass(frozen=True, kw_only=True)
+class TriangularTipRelief(CornerRelief):
+    """Relief of the corner at the tip."""
+
+    _at_tip: ClassVar[bool] = True
+
+    triangular_tip_relief: float = amount(
+        _FLANK,
+        "Triangular tip relief at the corner of the tip which lines of contact reach first or last",
+        15e-6,
+        later=True,
+    )
+    triangular_tip_relief_length: float = length(
+        _FLANK,
+        "Length of the triangular tip relief along the radius at its end of the face",
+        1e-3,
+        later=True,
+    )
+    triangular_tip_relief_shape: Shape = shape(_FLANK, "Triangular tip relief over its length", later=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class TriangularRootRelief(CornerRelief):
+    """Relief of the corner at the form circle."""
+
+    _at_tip: ClassVar[bool] = False
+
+    triangular_root_relief: float = amount(
+        _FLANK,
+        "Triangular root relief at the corner of the root which lines of contact reach first or last",
+        15e-6,
+        later=True,
+    )
+    triangular_root_relief_length: float = length(
+        _FLANK,
+        "Length of the triangular root relief along the radius at its end of the face",
+        1e-3,
+        later=True,
+    )
+    triangular_root_relief_shape: Shape = shape(_FLANK, "Triangular root relief over its length", later=True)
