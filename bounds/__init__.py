@@ -35,7 +35,7 @@ from bounds.declared import (
 from bounds.plausibility import Check, Checklist, Finding, PlausibilityWarning, finding_of, warn_of
 from bounds.reader import Reader
 from bounds.refused import RefusedValue, inside
-from bounds.text import Quantity, SiNote, Text, Words
+from bounds.text import FieldName, Quantity, SiNote, Text, Words
 from bounds.unit import Unit, engineering, leftover
 
 __all__ = [
@@ -48,6 +48,7 @@ __all__ = [
     "Choice",
     "Declared",
     "Direction",
+    "FieldName",
     "Finding",
     "Kind",
     "PlausibilityWarning",

@@ -42,6 +42,17 @@ class Quantity:
 
 
 @dataclass(frozen=True)
+class FieldName:
+    """The name of another field inside a message, by its name in the library."""
+
+    name: str
+
+    def worded(self, reader: Reader) -> str:
+        """Return the reader's name of it."""
+        return reader.at(self.name).name
+
+
+@dataclass(frozen=True)
 class SiNote:
     """A remark on SI units, such as "In m: 25 mm is 0.025."; readers with other units are spared it."""
 

@@ -84,6 +84,11 @@ def unit_in_words(value: float, si: str) -> Unit:
     return next((BY_SUFFIX[name] for name in _IN_WORDS if BY_SUFFIX[name].si == si), Unit(si, 1.0, si))
 
 
+def as_typed(value: float, unit: float = 1.0) -> float:
+    """Return a value in SI in a unit, without the noise of conversions: 60 for 59.99999999999999."""
+    return float(f"{value / unit:.12g}")
+
+
 def boundary_text(value: float) -> str:
     """Return a number as users write it."""
     return f"{value:.7g}"

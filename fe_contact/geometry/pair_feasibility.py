@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, NoReturn
 
-from bounds import LIMIT_SLACK, Quantity, SiNote, Text, Words, at_least, at_most, below, exactly
+from bounds import LIMIT_SLACK, FieldName, Quantity, SiNote, Text, Words, at_least, at_most, below, exactly
 from fe_contact.checks import declared_fields, finite
 from fe_contact.errors import InfeasibleGeometry
 from fe_contact.flank.modification import UNMODIFIED
@@ -79,7 +79,7 @@ def refuse_jamming(pair: ParallelAxes) -> None:
     tight = tight_center_distance(pinion, wheel)
     bound = (at_most if pair.internal else at_least)(tight, "m", note=", where the teeth jam")
     distance = Quantity(tight, "m", side="high" if pair.internal else "low")
-    advice = Text.of("Without backlash: center_distance = ", distance)
+    advice = Text.of("Without backlash: ", FieldName("center_distance"), " = ", distance)
     if not touching:
         largest = Quantity(tight_shift_sum(pinion, wheel, pair.working_pressure_angle), side="high")
         instead = Text.of(largest, " instead of ", Quantity(shift_sum(pinion, wheel)))

@@ -11,7 +11,7 @@ from fe_contact.ste import Curve, SteDatabase
 from fe_contact.types import Estimate
 from service.convert.case import boundary_errors
 from service.problems import JobFailed
-from service.units import MM, UM
+from service.units import MM, UM, as_typed
 
 Json = dict[str, Any]
 
@@ -50,10 +50,10 @@ def curve_json(
 def _curve(curve: Curve) -> Json:
     """Return a curve as plain JSON; a value that is no number is refused rather than written as null."""
     answer = {
-        "torque_n_m": curve.torque,
+        "torque_n_m": as_typed(curve.torque),
         "normal_force_n": curve.point.force,
-        "misalignment_um": curve.point.misalignment / UM,
-        "center_distance_change_mm": curve.point.center_distance_change / MM,
+        "misalignment_um": as_typed(curve.point.misalignment, UM),
+        "center_distance_change_mm": as_typed(curve.point.center_distance_change, MM),
         "period": curve.period,
         "position": curve.position.tolist(),
         "ste_um": (curve.ste / UM).tolist(),
@@ -109,7 +109,7 @@ def summary_json(database: SteDatabase) -> Json:
         "points": int(database.status.size),
         "failed_points": database.n_failed,
         "loads": [
-            {"torque_n_m": curve.torque, "normal_force_n": curve.point.force, **_figures(curve)}
+            {"torque_n_m": as_typed(curve.torque), "normal_force_n": curve.point.force, **_figures(curve)}
             for curve in curves
         ],
         "effect_ledger": database.metadata.effect_ledger,
@@ -131,8 +131,8 @@ def metadata_json(database: SteDatabase) -> Json:
         "failed_points": database.n_failed,
         "period": database.period,
         "position": database.position.tolist(),
-        "torque_n_m": database.torque.tolist(),
+        "torque_n_m": [as_typed(torque) for torque in database.torque],
         "normal_force_n": database.force.tolist(),
-        "misalignment_um": (database.misalignment / UM).tolist(),
-        "center_distance_change_mm": (database.center_distance_change / MM).tolist(),
+        "misalignment_um": [as_typed(skew, UM) for skew in database.misalignment],
+        "center_distance_change_mm": [as_typed(change, MM) for change in database.center_distance_change],
     }

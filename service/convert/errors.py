@@ -21,7 +21,7 @@ from service.problems import BadInput, Fault, JobFailed, ServiceError
 from service.schemas import Case
 from service.schemas.faults import field_advice
 from service.schemas.scene import SceneInput
-from service.units import factor, unit_in_words, unit_of
+from service.units import as_typed, factor, unit_in_words, unit_of
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class CaseReader(Reader):
             return [self.shown(item) for item in value]
         if isinstance(value, bool) or not isinstance(value, int | float) or unit == 1.0:
             return super().shown(value)
-        return float(f"{value / unit:.12g}") if math.isfinite(value) else value
+        return as_typed(value, unit) if math.isfinite(value) else value
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from pydantic import Field, create_model
 
 from bounds import Bound, Choice, Declared, Direction, Kind, Unit, declarations
 from service.schemas.model import BoundaryModel
-from service.units import BY_SUFFIX, suffix_of
+from service.units import BY_SUFFIX, as_typed, suffix_of
 
 Fields = Mapping[str, tuple[Any, Any]]
 Model = TypeVar("Model", bound=BoundaryModel)
@@ -73,7 +73,7 @@ class Figure:
 
     def own(self, value: Any) -> Any:
         """Return a value in SI in the unit of the boundary, without the noise of the conversion."""
-        return float(f"{value / self.unit.factor:.12g}") if isinstance(value, float) else value
+        return as_typed(value, self.unit.factor) if isinstance(value, float) else value
 
     def with_unit(self, text: str) -> str:
         """Return words with the unit before the first semicolon."""

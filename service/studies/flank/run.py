@@ -23,7 +23,7 @@ from service.convert.plausibility import phrased_for
 from service.schemas import Case
 from service.studies.computation import Computation
 from service.studies.result_file import ResultFile
-from service.units import MM, UM
+from service.units import MM, UM, as_typed
 
 Json = dict[str, Any]
 
@@ -54,10 +54,10 @@ def flank_json(flanks: LoadDistribution) -> Json:
     scene, centroid = flanks.scene, flanks.load_centroid
     return {
         "content_hash": flanks.metadata.content_hash,
-        "torque_n_m": scene.torque,
+        "torque_n_m": as_typed(scene.torque),
         "normal_force_n": scene.normal_force,
-        "misalignment_um": scene.misalignment / UM,
-        "center_distance_change_mm": scene.center_distance_change / MM,
+        "misalignment_um": as_typed(scene.misalignment, UM),
+        "center_distance_change_mm": as_typed(scene.center_distance_change, MM),
         "positions": int(flanks.position.size),
         "slices": int(flanks.face_position.size),
         "k_h_beta": flanks.mean_face_load_factor,

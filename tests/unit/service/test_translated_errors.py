@@ -8,6 +8,7 @@ import pytest
 
 from bounds import (
     Bound,
+    FieldName,
     Quantity,
     SiNote,
     Text,
@@ -25,7 +26,16 @@ from fe_contact.errors import InputError, MeshError
 from service.convert.errors import translated
 from service.problems import BadInput, JobFailed
 
+JAM = Text.of("Without backlash: ", FieldName("center_distance"), " = ", Quantity(0.0802, "m"), ".")
 TOO_HIGH = InputError("pinion.modification.tip_relief", 2e-3, at_most(1e-3))
+
+
+def test_advice_names_other_fields_as_its_reader_knows_them() -> None:
+    error = InputError("center_distance", 0.08, at_least(0.0802, "m"), JAM)
+    assert str(error).endswith("Without backlash: center_distance = 0.0802 m.")
+    found = translated(error)
+    assert isinstance(found, BadInput)
+    assert found.faults[0].suggestion == "Without backlash: pair.center_distance_mm = 80.2 mm."
 
 
 @pytest.mark.parametrize(
