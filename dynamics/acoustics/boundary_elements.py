@@ -1,0 +1,126 @@
+"""Boundary elements on a closed hull: the sound of its own surface in free space, scattering included.
+
+Burton and Miller's combination of the boundary integral equation and its normal derivative has no irregular
+frequencies [1]_. Pressure is linear on the panels, normal velocity constant; the dense operators come from
+NGSolve (`boundary_operators`). The radiated power is that of the far field: it is a sum of squares, and
+unlike the product of pressure and velocity on the surface it is no small difference at low frequency.
+
+References
+----------
+.. [1] Burton, A. J.; Miller, G. F.: The application of integral equation methods to the numerical solution of
+   some exterior boundary-value problems. Proc. R. Soc. Lond. A 323 (1971), 201-210.
+.. [2] Nedelec, J.-C.: Acoustic and Electromagnetic Equations. Springer 2001, section 3.4: the hypersingular
+   operator by surface curls.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.acoustics.air import Air
+from dynamics.acoustics.boundary_operators import layer_operators
+from dynamics.acoustics.far_field import far_field_resistance
+from dynamics.acoustics.hull import ComplexArray, Hull
+from dynamics.acoustics.linear_panels import LinearPanels
+from dynamics.errors import InputError, SolveError
+
+RESIDUAL = 1e-8
+"""Greatest relative residual of the dense solve."""
+MOST_PANELS = 8000
+"""Two dense complex operators of so many panels take 2 GB."""
+
+
+@dataclass(frozen=True)
+class SurfacePressure:
+    """The solution of the exterior problem at one frequency.
+
+    Attributes
+    ----------
+    pressure : (N, M) array
+        At the nodes, Pa, complex peak amplitudes of e^{+i omega t} for the shapes with amplitude 1.
+    resistance : (M, M) array
+        From the far field, kg/s.
+    surface_resistance : (M, M) array
+        From pressure and velocity on the hull, Hermitian part; equal but for the discretization.
+    residual : float
+        Of the linear solve, relative.
+    """
+
+    pressure: ComplexArray
+    resistance: ComplexArray
+    surface_resistance: ComplexArray
+    residual: float
+
+    def imbalance(self, amplitudes: ComplexArray) -> float:
+        """Return the power into the air at the hull less that in the far field, relative to the latter."""
+        surface, far = (
+            float(np.real(np.conj(amplitudes) @ matrix @ amplitudes))
+            for matrix in (self.surface_resistance, self.resistance)
+        )
+        return surface / far - 1.0
+
+
+@dataclass(frozen=True)
+class BoundaryElements:
+    """The radiation model without neglect but for its mesh; needs the extra `boundary-elements`."""
+
+    name: str = "boundary_elements"
+
+    def resistance(self, hull: Hull, frequency: float, shapes: ComplexArray, air: Air) -> ComplexArray:
+        """Return the resistance in the far field; see `surface_pressure` for what it raises."""
+        return surface_pressure(hull, frequency, shapes, air).resistance
+
+
+def surface_pressure(hull: Hull, frequency: float, shapes: ComplexArray, air: Air) -> SurfacePressure:
+    """Solve for the pressure on a hull that vibrates in `shapes` (T, M) at a frequency, Hz.
+
+    Time and memory grow with the square of the number of panels, the solve with its cube.
+
+    Raises
+    ------
+    InputError
+        The hull is open, has more than `MOST_PANELS` panels, or does not resolve the wavelength.
+    MissingExtra
+        NGSolve is not installed.
+    SolveError
+        The linear solve leaves a residual above `RESIDUAL`.
+    """
+    wavenumber = 2.0 * np.pi * frequency / air.sound_speed
+    hull.require_closed()
+    hull.require_resolved(wavenumber, air.sound_speed)
+    if len(hull.triangles) > MOST_PANELS:
+        raise InputError("triangles", len(hull.triangles), f"at most {MOST_PANELS}", "Coarsen the hull.")
+    panels = LinearPanels(hull)
+    slope = 1j * wavenumber * air.impedance * shapes.conj()  # dp/dn of e^{-i omega t}, as the kernel has it
+    pressure, residual = _solve(hull, panels, wavenumber, slope)
+    if not residual <= RESIDUAL:
+        raise SolveError(f"boundary elements: the relative residual {residual:.2g} is above {RESIDUAL:g}")
+    far = far_field_resistance(hull, wavenumber, pressure, slope) / air.impedance
+    surface = shapes.T @ (hull.areas[:, None] * np.asarray(panels.mean @ pressure))
+    return SurfacePressure(pressure.conj(), far.conj(), 0.5 * (surface.conj() + surface.T), residual)
+
+
+def _solve(
+    hull: Hull, panels: LinearPanels, wavenumber: float, slope: ComplexArray
+) -> tuple[ComplexArray, float]:
+    """Return the pressure (N, M) for its normal derivative `slope` (T, M), and the residual."""
+    single, double = layer_operators(hull, wavenumber)
+    coupling = _coupling(hull, wavenumber)
+    matrix = 0.5 * panels.mass.toarray() - np.asarray(panels.mean.T @ double)
+    matrix = matrix + coupling * panels.hypersingular(single, wavenumber)
+    right = np.asarray(panels.mean.T @ (single @ slope + 0.5 * coupling * hull.areas[:, None] * slope))
+    right = -right - coupling * (double.T @ slope)
+    pressure: ComplexArray = np.linalg.solve(matrix, right)
+    scale = float(np.linalg.norm(right)) or 1.0
+    return pressure, float(np.linalg.norm(matrix @ pressure - right)) / scale
+
+
+def _coupling(hull: Hull, wavenumber: float) -> complex:
+    """Return the factor of the derived equation: i/k above the first irregular frequency, near ka = pi.
+
+    It vanishes with k, where the plain equation is well conditioned and the derived one is not.
+    """
+    radius = float(np.cbrt(3.0 * hull.volume / (4.0 * np.pi)))
+    return 1j * wavenumber * radius**2 / (1.0 + (wavenumber * radius) ** 2)

@@ -1,0 +1,40 @@
+"""Equivalent radiated power: every panel radiates as a part of an infinite plane that moves as one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.acoustics.air import Air
+from dynamics.acoustics.hull import ComplexArray, Hull
+from dynamics.types import FloatArray
+
+
+@dataclass(frozen=True)
+class EquivalentRadiatedPower:
+    """The radiation model of efficiency 1, W = rho c / 2 sum |v_n|^2 S.
+
+    It takes no account of interference, neither between panels nor around the hull: too high by 1/sigma, see
+    `multipoles`. An upper estimate where the efficiency is at most 1. That holds for a sphere's pulsation and
+    oscillation; its orders 2 to 5 exceed 1 by 0.3 to 1.5 dB near ka = n + 2, plates near coincidence.
+    """
+
+    name: str = "equivalent_radiated_power"
+
+    def resistance(self, hull: Hull, frequency: float, shapes: ComplexArray, air: Air) -> ComplexArray:
+        """Return rho c Phi^H diag(S) Phi."""
+        del frequency
+        return np.asarray(air.impedance * shapes.conj().T @ (hull.areas[:, None] * shapes))
+
+
+def panel_power(hull: Hull, normal_velocity: ComplexArray, air: Air) -> FloatArray:
+    """Return the equivalent radiated power of every panel, (T,) or (T, M), W; its sum is the whole.
+
+    Parameters
+    ----------
+    normal_velocity : (T,) or (T, M) array
+        Complex peak amplitudes, m/s.
+    """
+    squares = np.abs(normal_velocity) ** 2
+    return np.asarray(0.5 * air.impedance * np.einsum("t,t...->t...", hull.areas, squares))

@@ -1,0 +1,156 @@
+"""The radiating surface: triangles with outward normals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bounds import at_most
+from dynamics.checks import positive
+from dynamics.errors import InputError
+from dynamics.types import FloatArray, IntArray
+
+ComplexArray = NDArray[np.complex128]
+PANELS_PER_WAVELENGTH = 6.0
+"""Least number of the longest edges in a wavelength, where a model resolves the waves on the hull."""
+FLAT = 1e-9
+"""A triangle of less height over its longest edge has no normal."""
+
+
+@dataclass(frozen=True)
+class Hull:
+    """A surface of plane triangles (panels), closed or open.
+
+    Attributes
+    ----------
+    nodes : (N, 3) array
+        m.
+    triangles : (T, 3) int array
+        Nodes of each panel, counterclockwise as seen from the air.
+
+    Raises
+    ------
+    InputError
+        Shapes are others, a node does not exist or is not finite, or a triangle has no area.
+    """
+
+    nodes: FloatArray
+    triangles: IntArray
+
+    def __post_init__(self) -> None:
+        nodes, triangles = np.asarray(self.nodes, dtype=float), np.asarray(self.triangles)
+        if nodes.ndim != 2 or nodes.shape[1] != 3 or not np.all(np.isfinite(nodes)):
+            raise InputError("nodes", nodes.shape, "finite positions of shape (N, 3)")
+        if (
+            triangles.ndim != 2
+            or triangles.shape[1] != 3
+            or not triangles.size
+            or triangles.dtype.kind != "i"
+        ):
+            raise InputError("triangles", triangles.shape, "at least one triangle of integers, (T, 3)")
+        if triangles.min() < 0 or triangles.max() >= len(nodes):
+            raise InputError("triangles", int(triangles.max()), f"nodes from 0 to {len(nodes) - 1}")
+        object.__setattr__(self, "nodes", nodes)
+        object.__setattr__(self, "triangles", triangles)
+        flat = 2.0 * self.areas <= FLAT * self._edges.max(axis=1) ** 2
+        if np.any(flat):
+            suggestion = "Remove triangles without an area."
+            raise InputError(f"triangles[{int(np.argmax(flat))}]", 0.0, "a triangle with an area", suggestion)
+
+    @cached_property
+    def corners(self) -> FloatArray:
+        """Return the corners of the panels, (T, 3, 3), m."""
+        return self.nodes[self.triangles]
+
+    @cached_property
+    def centers(self) -> FloatArray:
+        """Return the centroids of the panels, (T, 3), m."""
+        return np.asarray(self.corners.mean(axis=1))
+
+    @cached_property
+    def area_vectors(self) -> FloatArray:
+        """Return outward normals times areas, (T, 3), m^2."""
+        a, b, c = np.moveaxis(self.corners, 1, 0)
+        return np.asarray(0.5 * np.cross(b - a, c - a))
+
+    @cached_property
+    def areas(self) -> FloatArray:
+        """Return the areas of the panels, (T,), m^2."""
+        return np.asarray(np.linalg.norm(self.area_vectors, axis=1))
+
+    @cached_property
+    def normals(self) -> FloatArray:
+        """Return the outward unit normals, (T, 3)."""
+        return np.asarray(self.area_vectors / self.areas[:, None])
+
+    @cached_property
+    def area(self) -> float:
+        """Return the whole area, m^2."""
+        return float(self.areas.sum())
+
+    @cached_property
+    def volume(self) -> float:
+        """Return the enclosed volume, m^3; negative where normals point inwards; of a closed hull alone."""
+        return float(np.sum(self.centers * self.area_vectors) / 3.0)
+
+    @cached_property
+    def _edges(self) -> FloatArray:
+        """Return the lengths of the edges, (T, 3), m."""
+        return np.asarray(np.linalg.norm(self.corners - np.roll(self.corners, 1, axis=1), axis=2))
+
+    @cached_property
+    def highest_wavenumber(self) -> float:
+        """Return the wavenumber at which `PANELS_PER_WAVELENGTH` longest edges make a wavelength, 1/m."""
+        return float(2.0 * np.pi / (PANELS_PER_WAVELENGTH * self._edges.max()))
+
+    def normal_velocity(self, velocity: ComplexArray) -> ComplexArray:
+        """Return the mean normal velocity of the panels, (T,) or (T, M).
+
+        Parameters
+        ----------
+        velocity : (N, 3) or (N, 3, M) array
+            Of the nodes, m/s, complex amplitudes; > 0 outwards in the result.
+
+        Raises
+        ------
+        InputError
+            If the shape is another.
+        """
+        values = np.asarray(velocity)
+        if values.shape[:2] != self.nodes.shape:
+            raise InputError("velocity", values.shape, f"shape {self.nodes.shape} or (N, 3, M)")
+        return np.asarray(np.einsum("td,td...->t...", self.normals, values[self.triangles].mean(axis=1)))
+
+    def require_closed(self) -> None:
+        """Refuse a hull that does not enclose a volume with its normals outwards.
+
+        Raises
+        ------
+        InputError
+            An edge does not join exactly two panels that run through it in opposite directions, or the
+            normals point inwards.
+        """
+        starts, ends = self.triangles, np.roll(self.triangles, -1, axis=1)
+        along = starts * len(self.nodes) + ends
+        against = ends * len(self.nodes) + starts
+        lonely = np.setdiff1d(along, against).size
+        if lonely or np.unique(along).size < along.size:
+            suggestion = "Join nodes at the same position and close the openings of the outer hull."
+            raise InputError("triangles", f"{lonely} open or turned edges", "a closed hull", suggestion)
+        positive("volume", self.volume, "Turn the triangles: their normals point inwards.")
+
+    def require_resolved(self, wavenumber: float, sound_speed: float) -> None:
+        """Refuse a frequency whose waves the panels do not resolve.
+
+        Raises
+        ------
+        InputError
+            If fewer than six of the longest edges fit in a wavelength.
+        """
+        if wavenumber > self.highest_wavenumber:
+            frequency = sound_speed / (2.0 * np.pi)
+            bound = at_most(self.highest_wavenumber * frequency, "Hz", note=", six edges in a wavelength")
+            raise InputError("frequency", wavenumber * frequency, bound, "Use smaller triangles.")
