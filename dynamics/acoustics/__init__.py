@@ -1,13 +1,15 @@
-"""From surface velocity to sound: radiation models, levels, sound power over a run."""
+"""From surface velocity to sound: radiation models, levels, sound power over a run, recordings."""
 
 from dynamics.acoustics.air import Air
 from dynamics.acoustics.boundary_elements import BoundaryElements, SurfacePressure, surface_pressure
 from dynamics.acoustics.elemental_radiators import ElementalRadiators
 from dynamics.acoustics.equivalent_radiated_power import EquivalentRadiatedPower, panel_power
 from dynamics.acoustics.hull import Hull
+from dynamics.acoustics.level_band import LevelBand, Range, level_band
 from dynamics.acoustics.levels import a_weighting, free_field_pressure, level_sum, sound_power_level
 from dynamics.acoustics.modal_resistance import ModalResistance, modal_resistance
 from dynamics.acoustics.multipoles import errors_db, monopoles_efficiency, sphere_efficiency
+from dynamics.acoustics.order_power import OrderPower, order_power
 from dynamics.acoustics.radiation import (
     RadiationModel,
     mean_square_velocity,
@@ -15,6 +17,9 @@ from dynamics.acoustics.radiation import (
     resistance,
     sound_power,
 )
+from dynamics.acoustics.recording import Recording, order_recording
+from dynamics.acoustics.sound_quality import SoundQuality, loudness_over_time, sound_quality
+from dynamics.acoustics.wav import common_full_scale, read_wav, write_wav
 
 __all__ = [
     "Air",
@@ -22,21 +27,34 @@ __all__ = [
     "ElementalRadiators",
     "EquivalentRadiatedPower",
     "Hull",
+    "LevelBand",
     "ModalResistance",
+    "OrderPower",
     "RadiationModel",
+    "Range",
+    "Recording",
+    "SoundQuality",
     "SurfacePressure",
     "a_weighting",
+    "common_full_scale",
     "errors_db",
     "free_field_pressure",
+    "level_band",
     "level_sum",
+    "loudness_over_time",
     "mean_square_velocity",
     "modal_resistance",
     "monopoles_efficiency",
+    "order_power",
+    "order_recording",
     "panel_power",
     "radiation_efficiency",
+    "read_wav",
     "resistance",
     "sound_power",
     "sound_power_level",
+    "sound_quality",
     "sphere_efficiency",
     "surface_pressure",
+    "write_wav",
 ]

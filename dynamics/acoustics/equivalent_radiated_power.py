@@ -17,7 +17,8 @@ class EquivalentRadiatedPower:
 
     It takes no account of interference, neither between panels nor around the hull: too high by 1/sigma, see
     `multipoles`. An upper estimate where the efficiency is at most 1. That holds for a sphere's pulsation and
-    oscillation; its orders 2 to 5 exceed 1 by 0.3 to 1.5 dB near ka = n + 2, plates near coincidence.
+    oscillation; its orders 2 to 5 exceed 1 by 0.3 to 1.5 dB near ka = n + 2, single walls of a box by up to
+    1.7 dB (docs/theory/sound-power.md), plates near coincidence.
     """
 
     name: str = "equivalent_radiated_power"

@@ -4,7 +4,7 @@ from dynamics.orders.peaks import Peak, find_peaks
 from dynamics.orders.position_grid import resample_to_position
 from dynamics.orders.sidebands import Sideband, sidebands
 from dynamics.orders.spectrum import MeshOrder, Spectrum, mesh_orders, spectrum, window_spectrum
-from dynamics.orders.third_octaves import ThirdOctaves, third_octaves
+from dynamics.orders.third_octaves import ThirdOctaves, band_number, nominal_center, third_octaves
 from dynamics.orders.valid_orders import highest_valid_order
 from dynamics.orders.waterfall import OrderTrack, Waterfall, frequency_waterfall, order_track, order_waterfall
 
@@ -16,10 +16,12 @@ __all__ = [
     "Spectrum",
     "ThirdOctaves",
     "Waterfall",
+    "band_number",
     "find_peaks",
     "frequency_waterfall",
     "highest_valid_order",
     "mesh_orders",
+    "nominal_center",
     "order_track",
     "order_waterfall",
     "resample_to_position",

@@ -44,8 +44,18 @@ class ThirdOctaves:
     @property
     def nominal(self) -> FloatArray:
         """The nominal center frequencies in Hz, (K,)."""
-        decades, thirds = np.divmod(self.band, 10)
-        return np.asarray(REFERENCE * 10.0 ** decades.astype(float) * np.array(NOMINAL)[thirds])
+        return nominal_center(self.band)
+
+
+def band_number(frequency: FloatArray) -> IntArray:
+    """Return the band that holds each frequency in Hz, above zero; 0 is the one about 1 kHz."""
+    return np.asarray(np.floor(10.0 * np.log10(frequency / REFERENCE) + 0.5).astype(int))
+
+
+def nominal_center(band: IntArray) -> FloatArray:
+    """Return the nominal center frequencies of bands by their numbers, Hz."""
+    decades, thirds = np.divmod(band, 10)
+    return np.asarray(REFERENCE * 10.0 ** decades.astype(float) * np.array(NOMINAL)[thirds])
 
 
 def third_octaves(blocks: Waterfall, top: float) -> ThirdOctaves:

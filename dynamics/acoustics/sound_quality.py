@@ -1,0 +1,87 @@
+"""Loudness, sharpness and tonality of a sound pressure, by MoSQITo (extra `psychoacoustics`).
+
+References
+----------
+.. [1] ISO 532-1:2017, Methods for calculating loudness - Part 1: Zwicker method.
+.. [2] DIN 45692:2009, Measurement technique for the simulation of the auditory sensation of sharpness.
+.. [3] ECMA-418-1:2022, Psychoacoustic metrics for ITT equipment - Part 1: prominent discrete tones.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from bounds import exactly
+from dynamics.acoustics.recording import SAMPLE_RATE, Recording
+from dynamics.errors import InputError
+from dynamics.types import FloatArray
+from host import MissingExtra
+
+
+@dataclass(frozen=True)
+class SoundQuality:
+    """Metrics of a stationary sound.
+
+    Attributes
+    ----------
+    loudness : float
+        sone, of a free field: 1 for a tone of 1 kHz at 40 dB.
+    sharpness : float
+        acum: 1 for a band of noise, a critical band wide about 1 kHz, at 60 dB.
+    tone_frequency, tone_to_noise : (K,) arrays
+        Hz and dB of the prominent tones.
+    """
+
+    loudness: float
+    sharpness: float
+    tone_frequency: FloatArray
+    tone_to_noise: FloatArray
+
+
+def sound_quality(recording: Recording) -> SoundQuality:
+    """Return the metrics of a sound that does not change over the recording.
+
+    Raises
+    ------
+    InputError
+        It is no sound pressure in Pa at 48 kHz: loudness is no linear quantity, a force has none.
+    MissingExtra
+        MoSQITo is not installed.
+    """
+    metrics = _metrics(recording)
+    loudness, specific, _ = metrics.loudness_zwst(recording.samples, recording.sample_rate)
+    sharpness = metrics.sharpness_din_from_loudness(loudness, specific) if loudness > 0.0 else 0.0
+    _, tones, _, frequency = metrics.tnr_ecma_st(recording.samples, recording.sample_rate, prominence=True)
+    return SoundQuality(
+        float(loudness), float(sharpness), np.asarray(frequency, float), np.asarray(tones, float)
+    )
+
+
+def loudness_over_time(recording: Recording) -> tuple[FloatArray, FloatArray]:
+    """Return times (B,) in s and the loudness (B,) in sone of a sound that changes, e.g. of a run-up.
+
+    Raises
+    ------
+    InputError, MissingExtra
+        As `sound_quality` does.
+    """
+    metrics = _metrics(recording)
+    loudness, _, _, time = metrics.loudness_zwtv(recording.samples, recording.sample_rate)
+    return np.asarray(time), np.asarray(loudness)
+
+
+def _metrics(recording: Recording) -> Any:
+    """Check the recording and load the library."""
+    if recording.unit != "Pa":
+        raise InputError("unit", recording.unit, "Pa", "Loudness is that of a sound pressure.")
+    if recording.sample_rate != SAMPLE_RATE:
+        advice = f"Use recording.resampled({SAMPLE_RATE})."
+        raise InputError("sample_rate", recording.sample_rate, exactly(SAMPLE_RATE, " Hz"), advice)
+    try:
+        from mosqito import sq_metrics  # noqa: PLC0415 (an extra)
+    except ModuleNotFoundError as error:
+        raise MissingExtra(error.name or "mosqito", "psychoacoustics") from None
+    return sq_metrics
