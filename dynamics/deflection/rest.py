@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.forces.element_laws import Law
+from dynamics.forces.law import Law
 from dynamics.integrators import static_equilibrium
 from dynamics.mechanism.flank_gradients import common_face_width, middle_from_driver
 from dynamics.motion.observation import observe
