@@ -9,7 +9,8 @@ from dynamics.checks import declared_fields
 from dynamics.errors import InputError
 from dynamics.joints.matrix import Matrix, check_matrix
 
-_STIFFNESS = Declared(Kind.STIFFNESS, "N m/rad", between(0.0, 1e15), "Torsional stiffness", 5e4)
+_TORSION = "Torsional stiffness; 0 beside a matrix without rotation: a bearing between two shafts"
+_STIFFNESS = Declared(Kind.STIFFNESS, "N m/rad", between(0.0, 1e15), _TORSION, 5e4)
 _DAMPING = Declared(Kind.DAMPING, "N m s/rad", between(0.0, 1e12), "Torsional damping", 5.0)
 _POSITION = Declared(
     Kind.LENGTH,
@@ -25,8 +26,10 @@ _POSITION = Declared(
 class Coupling:
     """A massless spring and damper between a point of one shaft and the same point of another.
 
-    Both shafts turn at the same mean speed. The force on `second` is -K (motion of second - motion of first),
-    with the motion (x, y, z, tilt_x, tilt_y, rotation) of both rigid shafts at the coupling.
+    Both shafts turn at the same mean speed, unless it has no torsional stiffness: a bearing between two
+    shafts, which holds them across and along the axis and leaves their rotations free. The force on `second`
+    is -K (motion of second - motion of first), with the motion (x, y, z, tilt_x, tilt_y, rotation) of both
+    rigid shafts at the coupling.
 
     The 6 by 6 matrices `stiffness` and `damping` are added to the torsional ones: symmetric, positive
     semidefinite, in N, m, rad, s; for coaxial shafts. In a carrier's frame, and between shafts of different
@@ -50,6 +53,11 @@ class Coupling:
                 check_matrix(name, getattr(self, name), (6,))
         if self.first == self.second:
             raise InputError("second", self.second, "another shaft than the first")
-        if self.torsional_stiffness == 0.0 and (self.stiffness is None or self.stiffness[5][5] <= 0.0):
-            suggestion = "Without it the shafts would not turn together."
+        if self.torsional_stiffness == 0.0 and self.stiffness is None:
+            suggestion = "Or give the matrix of a bearing between shafts that turn at speeds of their own."
             raise InputError("torsional_stiffness", 0.0, above(0.0), suggestion)
+
+    @property
+    def joins_rotations(self) -> bool:
+        """Whether both shafts turn at the same mean speed."""
+        return self.torsional_stiffness > 0.0 or (self.stiffness is not None and self.stiffness[5][5] > 0.0)

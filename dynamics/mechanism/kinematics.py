@@ -58,8 +58,8 @@ def solve_kinematics(scene: Scene) -> Kinematics:
     """Solve for the speeds of all shafts.
 
     A mesh of gears a and b on the carrier c (none: w_c = 0) requires (w_a - w_c) z_a = -(w_b - w_c) z_b, with
-    + for a ring gear and its pinion; a coupling for equal speeds. What they leave open, drives and free
-    rotations set.
+    + for a ring gear and its pinion; a coupling that joins rotations for equal speeds. What they leave open,
+    drives and free rotations set.
 
     Raises
     ------
@@ -71,6 +71,8 @@ def solve_kinematics(scene: Scene) -> Kinematics:
     for index in range(len(scene.meshes)):
         _add_mesh(scene, speeds, index)
     for index, coupling in enumerate(scene.couplings):
+        if not coupling.joins_rotations:
+            continue
         ends = scene.shaft_index(coupling.first), scene.shaft_index(coupling.second)
         known = speeds.ratio(*ends, None)
         if known is not None and known != 1:

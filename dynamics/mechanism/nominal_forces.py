@@ -109,8 +109,9 @@ def _levers(scene: Scene, kinematics: Kinematics) -> FloatArray:
     The planets' centers go with the carrier, so that a mesh turns it by the difference of what it turns
     both gears by.
     """
-    lever = np.zeros((len(scene.shafts), len(scene.meshes) + len(scene.couplings)))
-    for column, coupling in enumerate(scene.couplings, start=len(scene.meshes)):
+    couplings = [coupling for coupling in scene.couplings if coupling.joins_rotations]
+    lever = np.zeros((len(scene.shafts), len(scene.meshes) + len(couplings)))
+    for column, coupling in enumerate(couplings, start=len(scene.meshes)):
         lever[scene.shaft_index(coupling.first), column] = 1.0
         lever[scene.shaft_index(coupling.second), column] = -1.0
     for column, mesh in enumerate(scene.meshes):

@@ -13,7 +13,8 @@ from dynamics.assembly.assemble import assemble
 from dynamics.bodies import Inertia, Shaft, TimeLaw
 from dynamics.errors import InputError
 from dynamics.forces import LoadTorque
-from dynamics.joints import Bushing, Coupling
+from dynamics.integrators import static_equilibrium
+from dynamics.joints import Bushing, Coupling, ImposedRotation
 from dynamics.linearize import natural_modes
 from dynamics.mechanism.kinematics import solve_kinematics
 from dynamics.simulation import simulate
@@ -120,3 +121,24 @@ def test_a_drive_behind_a_coupling_takes_its_torque_from_it():
     assert result.drive_torque[0].mean() == pytest.approx(100.0, rel=1e-6)
     assert result.coupling_torque[0].mean() == pytest.approx(100.0, rel=1e-6)
     assert result.energy.relative_to_throughput < 1e-8
+
+
+def test_a_bearing_between_shafts_carries_weight_and_leaves_their_speeds_alone():
+    """A shaft of 4 kg at a speed of its own, held by two such bearings alone: each yields by m g / (2 k)."""
+    radial, weight = 1e7, 4.0 * 9.81
+    rows = tuple(map(tuple, np.diag([radial, radial, radial, 0.0, 0.0, 0.0])))
+    scene = coupled(effects={"lateral": "on", "axial": "on", "tilt": "on"}, gravity=(0.0, -9.81, 0.0))
+    bearings = tuple(
+        Coupling(name, "machine", "output", 0.0, stiffness=rows, position=position)
+        for name, position in (("left", 0.02), ("right", 0.08))
+    )
+    motor = ImposedRotation("machine motor", "machine", TimeLaw.constant(7.0))
+    scene = replace(scene, couplings=bearings, drives=(*scene.drives, motor), loads=())
+    kinematics = solve_kinematics(scene)
+    assert kinematics.ratio[2] == (0, 1)
+    assert kinematics.ratio[1][1] == 0
+    system = assemble(scene)
+    at_rest = static_equilibrium(system).displacement
+    strains = np.einsum("cki,i->ck", system.freedoms.keep(system.couplings.motion), at_rest)
+    assert strains[:, 1] == pytest.approx(np.full(2, 0.5 * weight / radial), rel=1e-9)
+    assert strains[:, 0] == pytest.approx(np.zeros(2), abs=1e-12)
