@@ -1,4 +1,4 @@
-"""The verb that writes first files."""
+"""The verbs that write first files: from rules, or from a file of another tool."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from typing import Annotated
 
 import typer
 
-from service.cli.guard import guarded
+from service.cli.guard import computing, guarded
 from service.cli.new.wanted import Wanted
 from service.cli.signature import grouped
+from service.cli.verbs.options import AsJson
 
 verbs = typer.Typer()
 
@@ -36,3 +37,19 @@ def new(
 
     kinds = {"spur": spur, "helical": helical, "internal": internal, "planetary": planetary, "scene": scene}
     run_new(kinds, wanted, output)
+
+
+@verbs.command("open", epilog="Example: loa open gearbox.rexs --out gearbox")
+@computing
+def open_unit(
+    file: Annotated[Path, typer.Argument(help="Gear unit as REXS: .rexs, .rexsj, .rexsz or .rexs.zip.")],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", help="Folder for the files; default: that of the file's name, here."),
+    ] = None,
+    json: AsJson = False,
+) -> None:
+    """Open a gear unit of another tool (REXS): write its cases, its scene and the report of the import."""
+    from service.cli.open import run_open  # noqa: PLC0415 (start-up time)
+
+    run_open(file, out, as_json=json)

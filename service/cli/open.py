@@ -1,0 +1,69 @@
+"""``loa open``."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+from service.cli.output import console, print_json
+from service.cli.warned import warn
+from service.from_rexs.files import told, unit_files
+from service.from_rexs.opened import OpenedUnit, opened
+from service.problems import BadInput
+from service.rexs import read_rexs
+
+FATES = ("taken", "derived", "defaulted", "ignored", "refused")
+
+
+def run_open(file: Path, out: Path | None, *, as_json: bool) -> None:
+    """Open a REXS file: write cases, scene, load cases and account, and print what is not taken as it is."""
+    unit = opened(read_rexs(file))
+    folder = out or Path(file.name).with_suffix("")
+    written = _write(unit, folder)
+    counts = Counter[str](line.fate for line in unit.lines)
+    if unit.scene is None:
+        warn([{"check": "scene", "message": "no scene was made: see the refused lines"}])
+    if as_json:
+        print_json(
+            {
+                "written": [str(path) for path in written],
+                "cases": [case.name for case in unit.cases],
+                "scene": unit.scene is not None,
+                "load_cases": [case.table() for case in unit.load_cases],
+                "account": {fate: counts[fate] for fate in FATES},
+                "lines": list(told(unit.lines)),
+            }
+        )
+        return
+    _show(unit, counts, written)
+
+
+def _write(unit: OpenedUnit, folder: Path) -> list[Path]:
+    """Write the files into a folder, which is made."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise BadInput.of("out", str(folder), f"a folder that can be made ({error.strerror})") from None
+    written = []
+    for name, text in unit_files(unit).items():
+        path = folder / name
+        path.write_text(text, encoding="utf-8")
+        written.append(path)
+    return written
+
+
+def _show(unit: OpenedUnit, counts: Counter[str], written: list[Path]) -> None:
+    """Print the report for people."""
+    out = console()
+    values = ", ".join(f"{counts[fate]} {fate}" for fate in FATES if counts[fate])
+    out.print(f"{len(unit.lines)} components and values: {values}", highlight=False, soft_wrap=True)
+    for line in told(unit.lines):
+        out.print(line, highlight=False, soft_wrap=True, markup=False)
+    for case in unit.cases:
+        others = f" (and {len(case.equal)} equal)" if case.equal else ""
+        gears = f"gears {case.driver} and {case.driven}, {case.center_distance * 1e3:.6g} mm"
+        out.print(f"stage {case.stage}{others}: {case.name}.toml, {gears}", highlight=False, markup=False)
+    for load in unit.load_cases:
+        words = f"{load.torque_n_m:g} N m at {load.speed_rpm:g} rpm, {load.direction}, share {load.share:g}"
+        out.print(f"{load.name}: {words}", highlight=False, markup=False)
+    out.print(f"written to {', '.join(map(str, written))}", highlight=False, soft_wrap=True, markup=False)

@@ -1,0 +1,71 @@
+"""Load cases of a scene: torque and speed of its driving shaft, and the share of the time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from service.from_rexs.power_flow import PowerFlow
+from service.from_rexs.scene_loads import AppliedTorque
+from service.units import RPM
+
+DIGITS = 12
+
+
+@dataclass(frozen=True)
+class LoadCase:
+    """A load case of a scene.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    share : float
+        Of the time, 0 to 1.
+    torque_n_m : float
+        Torque on the shaft of the scene's first drive, positive.
+    speed_rpm : float
+        Speed of that shaft, positive.
+    direction : "drive" or "coast"
+        Whether the flanks that carry are those of the scene.
+    """
+
+    name: str
+    share: float
+    torque_n_m: float
+    speed_rpm: float
+    direction: Literal["drive", "coast"]
+
+    def table(self) -> dict[str, Any]:
+        """Return its table in a file."""
+        return {
+            "name": self.name,
+            "share": self.share,
+            "torque_n_m": self.torque_n_m,
+            "speed_rpm": self.speed_rpm,
+            "direction": self.direction,
+        }
+
+
+def load_case(flow: PowerFlow, leader: AppliedTorque, torque: float, scene_torque: float) -> LoadCase:
+    """Return the load case of an operating point.
+
+    Parameters
+    ----------
+    flow : PowerFlow
+        At the operating point.
+    leader : AppliedTorque
+        What drives the scene.
+    torque, scene_torque : float
+        Torque on the leader at the operating point and in the scene, N m about z: of opposite signs, the
+        other flanks carry, in whichever sense the shafts turn.
+    """
+    speed = flow.speed(leader.rotor)
+    same = torque * scene_torque >= 0.0
+    return LoadCase(
+        flow.point.name,
+        float(f"{flow.point.share:.{DIGITS}g}"),
+        float(f"{abs(torque):.{DIGITS}g}"),
+        float(f"{abs(speed) / RPM:.{DIGITS}g}"),
+        "drive" if same else "coast",
+    )

@@ -1,0 +1,156 @@
+"""Open a gear unit: from a REXS document to cases, a scene, load cases and the account of the import."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from service.from_rexs.account import Line
+from service.from_rexs.gear_unit import GearUnit
+from service.from_rexs.layout import Layout, layout_of
+from service.from_rexs.load_case import LoadCase, load_case
+from service.from_rexs.operating_points import operating_points
+from service.from_rexs.power_flow import PowerFlow, power_flow
+from service.from_rexs.scene import SceneTable, scene_table
+from service.from_rexs.scene_loads import AppliedTorque
+from service.from_rexs.stage_case import StageCase, stage_cases
+from service.from_rexs.train import train_of
+from service.problems import BadInput
+from service.rexs import Change, Document, upgrade
+from service.schemas import validated
+from service.schemas.scene import SceneInput
+
+_DIGITS = 9
+"""Of torques: those of equal planets agree to the rounding of the statics."""
+
+
+@dataclass(frozen=True)
+class OpenedUnit:
+    """A gear unit as cases and a scene.
+
+    Attributes
+    ----------
+    cases : tuple of StageCase
+        The cylindrical stages; of equal ones the first.
+    scene : SceneInput or None
+        The whole unit; its meshes name the case files ``NAME.toml`` of `cases`. None where the file has not
+        what a scene needs: the account says why.
+    load_cases : tuple of LoadCase
+        Of the scene's driving shaft; one without a spectrum.
+    lines : tuple of Line
+        What became of each component and value.
+    changes : tuple of Change
+        What the upgrade to the newest version of REXS changed.
+    """
+
+    cases: tuple[StageCase, ...]
+    scene: SceneInput | None
+    load_cases: tuple[LoadCase, ...]
+    lines: tuple[Line, ...]
+    changes: tuple[Change, ...]
+
+
+def opened(document: Document) -> OpenedUnit:
+    """Return the cases and the scene of a gear unit.
+
+    The scene runs at the load case of the largest share of the time.
+
+    Parameters
+    ----------
+    document : Document
+        Of any version of REXS.
+
+    Raises
+    ------
+    BadInput
+        A value has the wrong type or unit, or a place, a section or the version is none.
+    """
+    model, changes = upgrade(document.model)
+    unit = GearUnit(model)
+    layout = layout_of(unit)
+    flows = _flows(layout)
+    cases = stage_cases(unit, _torques(layout, flows), _drivers(layout, flows))
+    table = scene_table(layout, flows[0], cases) if flows and cases else None
+    _say_missing(layout, flows, cases)
+    scene = None if table is None else _scene(layout, table)
+    loads = _load_cases(flows, table)
+    return OpenedUnit(cases, scene, loads, unit.account.lines(), tuple(changes))
+
+
+def _flows(layout: Layout) -> list[PowerFlow]:
+    """Return the flows of power of the load cases, that of the largest share first."""
+    train = train_of(layout.stages, layout.rotors)
+    flows = []
+    points = operating_points(layout.unit)
+    for point in points:
+        flow = power_flow(point, layout, train)
+        if isinstance(flow, str):
+            _say(layout, f"load case {point.name}", "refused", flow)
+            continue
+        for remark in flow.remarks:
+            _say(layout, "torque", "derived", remark)
+        flows.append(flow)
+    first = max(range(len(flows)), key=lambda index: flows[index].point.share, default=0)
+    return [*flows[first : first + 1], *flows[:first], *flows[first + 1 :]]
+
+
+def _drivers(layout: Layout, flows: Sequence[PowerFlow]) -> dict[int, int]:
+    """Return the driving gear of each stage."""
+    return {s.stage.id: s.gears[flows[0].driver(s)].id for s in layout.stages} if flows else {}
+
+
+def _torques(layout: Layout, flows: Sequence[PowerFlow]) -> Mapping[int, tuple[float, ...]]:
+    """Return the torques of the shaft on the driving gear about its u, N m, by stage.
+
+    Of all load cases whose flanks are those of the first.
+    """
+    torques: dict[int, tuple[float, ...]] = {}
+    for stage in layout.stages if flows else ():
+        number = flows[0].driver(stage)
+        sense = layout.sense(stage.shafts[number].id)
+        values = [-sense * flow.on_gear(stage, number) for flow in flows]
+        same = {float(f"{value:.{_DIGITS}g}") for value in values if value * values[0] > 0.0}
+        if same:
+            torques[stage.stage.id] = tuple(sorted(same, key=abs))
+        if len(same) < len({float(f"{value:.{_DIGITS}g}") for value in values}):
+            words = "load cases on the other flanks are not in the case: they are load cases of the scene"
+            stage.stage.say("torques", "derived", words)
+    return torques
+
+
+def _scene(layout: Layout, table: SceneTable) -> SceneInput | None:
+    """Return the validated scene, None if the account says what it lacks."""
+    try:
+        return validated(SceneInput, table.table)
+    except BadInput as error:
+        _say(layout, "scene", "refused", f"no scene: {error}")
+        return None
+
+
+def _load_cases(flows: Sequence[PowerFlow], table: SceneTable | None) -> tuple[LoadCase, ...]:
+    """Return the load cases of the scene, in the order of the file."""
+    if table is None or table.leader is None:
+        return ()
+    leader: AppliedTorque = table.leader
+    cases = [load_case(flow, leader, _torque(flow, leader), leader.torque) for flow in flows]
+    order = sorted(range(len(flows)), key=lambda index: flows[index].point.number)
+    return tuple(cases[index] for index in order)
+
+
+def _torque(flow: PowerFlow, leader: AppliedTorque) -> float:
+    """Return the torque of the leader at an operating point, N m about z."""
+    return flow.loads.get(leader.part.id, leader.torque)
+
+
+def _say_missing(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[StageCase]) -> None:
+    """State why there is no scene."""
+    if not flows:
+        _say(layout, "scene", "refused", "no scene: no load case has speeds and torques that fit the train")
+    elif not cases:
+        _say(layout, "scene", "refused", "no scene: no stage has a case")
+
+
+def _say(layout: Layout, item: str, fate: str, words: str) -> None:
+    """State something of the whole unit."""
+    for part in layout.unit.of_type("gear_unit")[:1]:
+        part.say(item, fate, words)  # type: ignore[arg-type]

@@ -1,0 +1,157 @@
+"""The scene of a gear unit: shafts, gears, bearings, housing and loads, put together and validated."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from service.from_rexs.layout import Layout
+from service.from_rexs.names import Names
+from service.from_rexs.placement import FIXED, placement
+from service.from_rexs.power_flow import PowerFlow
+from service.from_rexs.scene_bearings import scene_bearings, stub_couplings
+from service.from_rexs.scene_gears import cases_by_stage, scene_discs, scene_gears
+from service.from_rexs.scene_housing import scene_housings
+from service.from_rexs.scene_loads import (
+    FORCES_REFUSED,
+    AppliedTorque,
+    applied_torques,
+    driving,
+    motion_tables,
+    slowest_mesh,
+    trains_of,
+)
+from service.from_rexs.scene_shafts import scene_shafts
+from service.from_rexs.stage_case import StageCase
+
+STANDARD_GRAVITY = 9.80665
+"""m/s^2."""
+PERIODS = 10
+"""Of the slowest mesh in the run of the scene."""
+
+
+@dataclass(frozen=True)
+class SceneTable:
+    """A scene as its file says it.
+
+    Attributes
+    ----------
+    table : dict
+        Tables of a scene file; meshes name their case files.
+    leader : AppliedTorque or None
+        What drives it first.
+    """
+
+    table: dict[str, Any]
+    leader: AppliedTorque | None
+
+
+def scene_table(layout: Layout, flow: PowerFlow, cases: Sequence[StageCase]) -> SceneTable:
+    """Return the scene at an operating point.
+
+    Parameters
+    ----------
+    layout : Layout
+    flow : PowerFlow
+        Speeds and torques of the operating point.
+    cases : sequence of StageCase
+        Of the stages; those without are cut off.
+    """
+    by_stage, names = cases_by_stage(cases), Names()
+    computed = [s for s in layout.stages if s.stage.id in by_stage and layout.is_computed(s)]
+    cut = [stage for stage in layout.stages if stage not in computed]
+    shafts = scene_shafts(layout, computed, names)
+    bearings = scene_bearings(layout, shafts)
+    gears, meshes = scene_gears(layout, shafts, by_stage, Names())
+    torques = applied_torques(layout, flow, shafts, cut)
+    drivers = driving(torques, flow, trains_of(layout, shafts))
+    _refuse_forces(layout, flow)
+    table: dict[str, Any] = {
+        "run": {"duration_s": _duration(layout, slowest_mesh(layout, flow, shafts))},
+        "gravity_m_per_s2": _gravity(layout),
+        "shafts": [shaft.table for shaft in shafts.all],
+        "gears": gears,
+        "discs": scene_discs(layout, shafts),
+        "bushings": bearings.bushings,
+        "planet_bearings": bearings.planet_bearings,
+        "couplings": [*bearings.couplings, *stub_couplings(shafts, names)],
+        "housings": scene_housings(layout, bearings.seats),
+        "planets": _planets(layout, {shaft.rotor: shaft.name for shaft in shafts.by_rotor.values()}),
+        "meshes": meshes,
+        **motion_tables(layout, flow, shafts, torques, drivers),
+    }
+    return SceneTable(
+        {key: value for key, value in table.items() if value != []}, drivers[0] if drivers else None
+    )
+
+
+def _duration(layout: Layout, rate: float) -> float:
+    """Return the duration of the run, s."""
+    duration = float(f"{PERIODS / rate:.2g}") if rate > 0.0 else 1.0
+    for part in layout.unit.of_type("gear_unit"):
+        words = f"{duration:g} s, {PERIODS} periods of the slowest mesh: a REXS file states no run"
+        part.say("run.duration_s", "defaulted", words)
+    return duration
+
+
+def _gravity(layout: Layout) -> list[float]:
+    """Return the acceleration of gravity in x, y, z, m/s^2; none where the file does not account for it."""
+    for part in layout.unit.of_type("gear_unit"):
+        flag = part.attribute("account_for_gravity")
+        if flag is None or flag.value is not True:
+            continue
+        if layout.rotors.sets:
+            part.say("account_for_gravity", "refused", "a scene with a planet carrier's frame has no gravity")
+            break
+        part.say("account_for_gravity", "taken", "gravity of the scene")
+        items = [f"direction_vector_gravity_{axis}" for axis in "uvw"]
+        vector = np.array([part.number(item, "direction of gravity") or 0.0 for item in items])
+        size = part.number("gravitational_acceleration", "gravity, m/s^2")
+        length = float(np.linalg.norm(vector))
+        if length == 0.0 or not math.isfinite(length):
+            part.say("account_for_gravity", "refused", "the file gives gravity no direction")
+            break
+        place = placement(layout.unit, part) or FIXED
+        turned = layout.axes.turn(place) @ vector / length * (size or STANDARD_GRAVITY)
+        return [float(value) + 0.0 for value in np.round(turned, 12)]
+    return [0.0, 0.0, 0.0]
+
+
+def _planets(layout: Layout, names: dict[int, str]) -> list[dict[str, Any]]:
+    """Return how often the first planet of each set is there, and at which angles."""
+    tables = []
+    for planets in layout.rotors.sets:
+        first = planets.planets[0]
+        if first.id not in names:
+            continue
+        places = [layout.shafts[p.id].origin[:2] for p in planets.planets if p.id in layout.shafts]
+        central = next((layout.shafts[c.id] for c in planets.central if c.id in layout.shafts), None)
+        middle = np.mean(places, axis=0) if central is None else central.origin[:2]
+        offsets = [place - middle for place in places]
+        angles = [math.degrees(math.atan2(y, x)) for x, y in offsets]
+        turned = sorted((angle - angles[0]) % 360.0 for angle in angles)
+        table: dict[str, Any] = {"planet": names[first.id], "number": len(places)}
+        equal = [index * 360.0 / len(places) for index in range(len(places))]
+        if not np.allclose(turned, equal, atol=1e-6):
+            table["angles_deg"] = turned
+        for planet in planets.planets[1:]:
+            planet.say("", "derived", f"copy of planet {names[first.id]}")
+        tables.append(table)
+    return tables
+
+
+def _refuse_forces(layout: Layout, flow: PowerFlow) -> None:
+    """State that forces of external loads are left out."""
+    for load, values in flow.point.forces.items():
+        part = layout.unit.part(load)
+        for item in (a.id for a in part.component.attributes if a.id.startswith("force_")):
+            part.say(item, "refused", FORCES_REFUSED)
+        part.say(
+            "",
+            "refused",
+            f"{FORCES_REFUSED}: {', '.join(f'{value:g}' for value in values)} N, N m in u, v, w",
+        )

@@ -1,0 +1,419 @@
+"""A REXS file as a scene: laws of place, sense, load and stiffness."""
+
+from __future__ import annotations
+
+import json
+import math
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+
+from service.convert.case import gear_pair
+from service.convert.scene import check_scene
+from service.convert.topology import facts_of
+from service.from_rexs.files import unit_files
+from service.from_rexs.opened import OpenedUnit, opened
+from service.problems import BadInput
+from service.rexs import Document
+from service.schemas.scene import SceneInput
+from tests.fakes.rexs_stage import relation
+from tests.fakes.rexs_unit import (
+    CARRIER,
+    CASING,
+    CENTER_DISTANCES,
+    INPUT,
+    MACHINE,
+    MIDDLE,
+    MOTOR,
+    NORMAL_LOAD,
+    NORMAL_SPEED,
+    OUTPUT,
+    PLANETS,
+    ROOT,
+    STAGES,
+    planetary,
+    two_stages,
+)
+
+RATIO = 3.0 * 2.0
+
+
+def scene_of(document: Document) -> SceneInput:
+    """Return the scene of a unit, which dynamics takes."""
+    unit = opened(document)
+    assert unit.scene is not None, [line for line in unit.lines if line.fate == "refused"]
+    facts = {f"{case.name}.toml": facts_of(gear_pair(case.case)) for case in unit.cases}
+    check_scene(unit.scene, {mesh.name: facts[str(mesh.case_file)] for mesh in unit.scene.meshes})
+    return unit.scene
+
+
+def content(scene: SceneInput) -> dict[str, Any]:
+    """Return a scene, numbers to nine digits."""
+
+    def plain(value: Any) -> Any:
+        if isinstance(value, dict):
+            return {key: plain(item) for key, item in value.items()}
+        if isinstance(value, list):
+            return [plain(item) for item in value]
+        return round(float(f"{value:.9g}"), 9) + 0.0 if isinstance(value, float) else value
+
+    return dict(plain(scene.model_dump(mode="json", exclude_unset=True)))
+
+
+def said(unit: OpenedUnit, component: int, item: str) -> tuple[str, str]:
+    """Return fate and words of a line."""
+    (line,) = {line for line in unit.lines if (line.component, line.item) == (component, item)}
+    return line.fate, line.words
+
+
+def test_axes_are_as_far_apart_as_the_center_distances() -> None:
+    scene = scene_of(two_stages())
+    origins = [np.array(shaft.origin_mm[:2]) for shaft in scene.shafts]
+    distances = [float(np.linalg.norm(b - a)) for a, b in pairwise(origins)]
+    assert distances == pytest.approx(CENTER_DISTANCES, rel=1e-12)
+    assert [gear.position_mm for gear in scene.gears] == pytest.approx([60.0, 60.0, 110.0, 110.0])
+
+
+def rotation(axis: int, degrees: float) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """Return a turn about u, v or w."""
+    angle, others = math.radians(degrees), [index for index in range(3) if index != axis]
+    matrix = np.eye(3)
+    matrix[np.ix_(others, others)] = [[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]
+    return matrix
+
+
+def turned_document(turn: np.ndarray[Any, np.dtype[np.float64]], *, root: bool) -> Document:
+    """Return the unit with all places turned, or with its root turned alone."""
+    vectors = ("support_vector", "u_axis_vector", "w_axis_vector")
+
+    def each(number: int, _kind: str, values: dict[str, Any]) -> dict[str, Any]:
+        if (number == ROOT) != root:
+            return values
+        return {k: tuple(turn @ v) if k in vectors else v for k, v in values.items()}
+
+    return two_stages(each=each)
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_a_unit_turned_in_space_is_the_same_scene(axis: int) -> None:
+    turned = turned_document(rotation(axis, 40.0), root=True)
+    assert content(scene_of(turned)) == content(scene_of(two_stages()))
+
+
+def test_shafts_turned_about_u_turn_the_scene_about_z() -> None:
+    plain, turned = (content(scene_of(turned_document(rotation(0, a), root=False))) for a in (0.0, 40.0))
+    spin = rotation(2, 40.0)[:2, :2]
+    for before, after in zip(plain["shafts"], turned["shafts"], strict=True):
+        assert after["origin_mm"][:2] == pytest.approx(list(spin @ before["origin_mm"][:2]), abs=1e-6)
+        assert after["origin_mm"][2] == before["origin_mm"][2]
+    assert turned["drives"] == plain["drives"]
+
+
+def antiparallel(shaft: int, length: float) -> Document:
+    """Return the unit with one shaft described from its other end."""
+    on_shaft = {MIDDLE: (12, 13, 33, 34, 140, 141)}[shaft]
+
+    def each(number: int, _kind: str, values: dict[str, Any]) -> dict[str, Any]:
+        if number == shaft:
+            x, y, z = values["support_vector"]
+            return values | {"support_vector": (x + length, y, z), "u_axis_vector": (-1.0, 0.0, 0.0)}
+        if number not in on_shaft:
+            return values
+        for item in ("u_coordinate_on_shaft", "u_coordinate_on_shaft_inner_side"):
+            if item in values:
+                values = values | {item: length - values[item] - values.get("length", 0.0)}
+        return values | ({"u_axis_vector": (-1.0, 0.0, 0.0)} if "u_axis_vector" in values else {})
+
+    return two_stages(each=each)
+
+
+def test_a_shaft_described_from_its_other_end_is_the_same_shaft() -> None:
+    assert content(scene_of(antiparallel(MIDDLE, 150.0))) == content(scene_of(two_stages()))
+
+
+def mirrored() -> Document:
+    """Return the mirror image in the plane v = 0: hands and senses of rotation are opposite."""
+    opposite = ("helix_angle_reference_diameter", "rotational_speed", "torque_around_u_axis")
+    opposite += ("rotating_angle_around_neg_u_axis",)
+
+    def each(_number: int, _kind: str, values: dict[str, Any]) -> dict[str, Any]:
+        values = {k: -v if k in opposite else v for k, v in values.items()}
+        if "support_vector" in values:
+            x, y, z = values["support_vector"]
+            values["support_vector"] = (x, -y, z)
+        return values
+
+    return two_stages(each=each)
+
+
+def test_a_mirrored_unit_is_the_mirrored_scene() -> None:
+    plain, image = content(scene_of(two_stages())), content(scene_of(mirrored()))
+    for before, after in zip(plain["shafts"], image["shafts"], strict=True):
+        x, y, z = before["origin_mm"]
+        assert after["origin_mm"] == [-x + 0.0, y, z]
+    assert image["drives"][0]["speed_rpm"] == [-plain["drives"][0]["speed_rpm"][0]]
+    assert image["loads"] == plain["loads"]
+    cases = [opened(document).cases for document in (two_stages(), mirrored())]
+    assert [(case.driver, case.driven) for case in cases[0]] == [
+        (case.driver, case.driven) for case in cases[1]
+    ]
+
+
+def test_shafts_without_places_follow_from_the_angles_of_the_stages() -> None:
+    places = ("support_vector", "u_axis_vector", "w_axis_vector", "reference_component_for_position")
+
+    def each(_number: int, _kind: str, values: dict[str, Any]) -> dict[str, Any]:
+        return {name: value for name, value in values.items() if name not in places}
+
+    bare = two_stages(each=each)
+    assert content(scene_of(bare)) == content(scene_of(two_stages()))
+    assert said(opened(bare), OUTPUT, "support_vector")[0] == "derived"
+
+
+def test_the_motor_drives_and_statics_gives_the_load() -> None:
+    scene = scene_of(two_stages())
+    (drive,), (load,) = scene.drives, scene.loads
+    assert (drive.shaft, drive.speed_rpm) == ("shaft 3", (NORMAL_SPEED,))
+    assert (load.shaft, load.torque_n_m) == ("shaft 5", (pytest.approx(RATIO * NORMAL_LOAD, rel=1e-11),))
+    assert said(opened(two_stages()), MACHINE, "torque_around_u_axis") == (
+        "derived",
+        "-600 N m in nominal: statics of the train",
+    )
+
+
+def test_power_from_the_other_end_drives_the_other_gears() -> None:
+    changes = {MOTOR: {"torque_around_u_axis": -NORMAL_LOAD}}
+    unit, scene = opened(two_stages(changes)), scene_of(two_stages(changes))
+    assert [case.driver for case in unit.cases] == [12, 14]
+    assert scene.drives[0].shaft == "shaft 5"
+    assert scene.drives[0].speed_rpm == (pytest.approx(NORMAL_SPEED / RATIO, rel=1e-11),)
+    assert scene.loads[0].torque_n_m == (pytest.approx(NORMAL_LOAD, rel=1e-11),)
+
+
+def test_a_power_is_a_torque_at_the_speed() -> None:
+    power = NORMAL_LOAD * NORMAL_SPEED * math.pi / 30.0 / 1e3
+    stated = two_stages({MOTOR: {"torque_around_u_axis": None, "power": power}})
+    assert content(scene_of(stated))["loads"] == content(scene_of(two_stages()))["loads"]
+
+
+def test_the_scene_runs_at_the_load_case_of_the_largest_share() -> None:
+    def case(share: float, torque: float, speed: float) -> dict[int, tuple[str, dict[str, Any]]]:
+        return {
+            ROOT: ("gear_unit", {"operating_time_fraction": share}),
+            INPUT: ("shaft", {"rotational_speed": speed}),
+            MOTOR: ("external_load", {"torque_around_u_axis": torque}),
+        }
+
+    document = two_stages(cases=(case(20.0, 50.0, 900.0), case(70.0, 80.0, 1200.0), case(10.0, -30.0, 600.0)))
+    unit = opened(document)
+    rows = [(c.share, c.torque_n_m, c.speed_rpm, c.direction) for c in unit.load_cases]
+    assert rows == [(0.2, 50.0, 900.0, "drive"), (0.7, 80.0, 1200.0, "drive"), (0.1, 30.0, 600.0, "coast")]
+    assert scene_of(document).drives[0].speed_rpm == (1200.0,)
+    assert unit.cases[0].case.load.torque_n_m == (50.0, 80.0)
+
+
+def test_sections_without_a_place_are_summed_in_order() -> None:
+    unit = opened(two_stages({130: {"u_coordinate_on_shaft": None}, 131: {"u_coordinate_on_shaft": None}}))
+    assert unit.scene is not None
+    assert unit.scene.shafts[0].length_mm == pytest.approx(150.0, rel=1e-12)
+    assert said(unit, 131, "u_coordinate_on_shaft") == ("derived", "50 mm, the sum of the lengths before it")
+
+
+def test_a_rigid_bearing_is_stiff_and_a_floating_one_free_along_the_axis() -> None:
+    document = two_stages(
+        {31: {"radial_stiffness": 1e23, "axial_stiffness": 1e23, "bending_stiffness": 1e15}}
+    )
+    first, second = scene_of(document).bushings[:2]
+    assert (first.radial_stiffness_n_per_m, first.axial_stiffness_n_per_m) == (1e10, 1e10)
+    assert first.stiffness_matrix is not None and first.stiffness_matrix[3][3] == 1e7
+    assert (second.radial_stiffness_n_per_m, second.axial_stiffness_n_per_m) == (2e8, 0.0)
+    assert said(opened(document), 31, "radial_stiffness")[1].startswith("1e+23 (N, m, rad) means rigid")
+
+
+def test_a_bearing_without_any_stiffness_is_defaulted_and_said() -> None:
+    unit = opened(two_stages({32: {"radial_stiffness": None}}))
+    assert said(unit, 32, "radial_stiffness")[0] == "defaulted"
+
+
+def test_a_stiffness_at_the_operating_point_turns_from_u_v_w_to_x_y_z() -> None:
+    # axial 1, across v 2, across w 3 (1e8 N/m), about v 4 (1e7 N mm/rad), v with the rotation about w
+    values = {"f_u_d_u": 1e8, "f_v_d_v": 2e8, "f_w_d_w": 3e8, "m_v_rot_v": 4e7, "m_w_rot_w": 5e7}
+    values |= {"f_v_rot_w": 1e5, "m_w_d_v": 1e5}
+    stated = {f"operating_point_stiffness_{name}": value for name, value in values.items()}
+    matrix = scene_of(two_stages({31: stated})).bushings[0].stiffness_matrix
+    assert matrix is not None
+    expected = np.diag([2e8, 3e8, 1e8, 4e4, 5e4])
+    expected[0, 4] = expected[4, 0] = 1e5
+    assert np.array(matrix) == pytest.approx(expected, rel=1e-12, abs=1e-6)
+
+
+def housed(matrix: Any) -> Document:
+    """Return the unit with an elastic casing under both bearings of the input shaft, and a free point."""
+    more = {
+        50: ("assembly_group", place_of_group() | {"reduced_static_stiffness_matrix": matrix}),
+        **{51 + point: ("reduction_point", {}) for point in range(3)},
+    }
+    roles = [
+        ("reference", {"origin": CASING, "referenced": 50}),
+        *(("assembly", {"assembly": 50, "part": 51 + point}) for point in range(3)),
+        ("reference", {"origin": 51, "referenced": 32}),
+        ("reference", {"origin": 53, "referenced": 31}),
+    ]
+    further = [relation(2000 + n, kind, **row) for n, (kind, row) in enumerate(roles)]
+    return two_stages(more=more, further=further)
+
+
+def place_of_group() -> dict[str, Any]:
+    """Return the axes of the casing's assembly group: u of the group along v of the unit."""
+    axes = {"u_axis_vector": (0.0, 1.0, 0.0), "w_axis_vector": (0.0, 0.0, 1.0)}
+    return {"support_vector": (0.0, 0.0, 0.0), "reference_component_for_position": ROOT} | axes
+
+
+def test_a_housing_matrix_turns_into_the_axes_of_the_scene() -> None:
+    # per point u, v, w in N/mm, rotations in N mm/rad; the middle point carries nothing
+    matrix = np.kron(np.eye(3), np.diag([1e5, 2e5, 3e5, 1e9, 2e9, 3e9]))
+    matrix[0, 12] = matrix[12, 0] = -2e4
+    scene = scene_of(housed(tuple(map(tuple, matrix.tolist()))))
+    (housing,) = scene.housings
+    assert housing.bushings == ("concept_bearing 32", "concept_bearing 31")
+    stiffness = np.array(housing.stiffness_matrix)
+    # u of the group is v of the unit, x of the scene; its v is -u, -z; its w is w, y
+    assert np.diag(stiffness)[:6] == pytest.approx([1e8, 3e8, 2e8, 1e6, 3e6, 2e6])
+    assert stiffness[0, 6] == pytest.approx(-2e7)
+
+
+def test_points_of_a_housing_that_carry_nothing_follow_free_of_force() -> None:
+    # springs k from the first point over the free one to the third: k / 2 between those
+    matrix = np.zeros((18, 18))
+    for a, b in ((0, 6), (6, 12)):
+        matrix[np.ix_([a, b], [a, b])] += 1e5 * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    (housing,) = scene_of(housed(tuple(map(tuple, matrix.tolist())))).housings
+    x = np.array(housing.stiffness_matrix)[np.ix_([0, 6], [0, 6])]
+    assert x == pytest.approx(0.5e8 * np.array([[1.0, -1.0], [-1.0, 1.0]]))
+
+
+def test_a_planetary_set_turns_and_carries_by_willis() -> None:
+    scene = scene_of(planetary())
+    ratio = 1.0 + 64.0 / 20.0
+    by_shaft = {drive.shaft: drive.speed_rpm for drive in scene.drives}
+    assert by_shaft == {"shaft 3": (1000.0,), "shaft 4": (0.0,)}
+    (load,) = scene.loads
+    assert (load.shaft, load.torque_n_m) == (f"shaft {CARRIER}", (pytest.approx(90.0 * ratio, rel=1e-10),))
+    (planets,) = scene.planets
+    assert (planets.planet, planets.number, planets.angles_deg) == (f"shaft {PLANETS[0]}", 3, None)
+    assert {shaft.frame for shaft in scene.shafts} == {f"shaft {CARRIER}"}
+    cases = opened(planetary()).cases
+    assert [len(case.equal) for case in cases] == [2, 2]
+    assert cases[0].case.load.torque_n_m == (pytest.approx(30.0, rel=1e-8),)
+
+
+def test_planets_may_begin_at_any_angle() -> None:
+    for turned in (0.0, 25.0):
+        (planet,) = [s for s in scene_of(planetary(turned)).shafts if s.name == f"shaft {PLANETS[0]}"]
+        angle = math.radians(turned)
+        expected = [42.0 * math.sin(angle), 42.0 * math.cos(angle)]
+        assert planet.origin_mm[:2] == pytest.approx(expected, abs=1e-9)
+
+
+def test_a_bevel_stage_is_cut_off_and_its_torque_is_a_load() -> None:
+    more = {
+        6: ("shaft", {"support_vector": (180.0, 0.0, 0.0), "u_axis_vector": (0.0, 1.0, 0.0)}),
+        15: ("bevel_gear", {"number_of_teeth": 36, "u_coordinate_on_shaft": 150.0}),
+        16: ("bevel_gear", {"number_of_teeth": 12, "u_coordinate_on_shaft": 0.0}),
+        23: ("bevel_stage", {}),
+    }
+    roles = [
+        ("assembly", {"assembly": INPUT, "part": 15}),
+        ("assembly", {"assembly": 6, "part": 16}),
+        ("assembly", {"assembly": 6, "part": 43}),
+        ("stage", {"stage": 23, "gear_1": 16, "gear_2": 15}),
+    ]
+    more[43] = ("external_load", {"u_coordinate_on_shaft": 0.0, "torque_around_u_axis": NORMAL_LOAD / 3.0})
+    changes = {MOTOR: {"torque_around_u_axis": None}, INPUT: {"rotational_speed": None}}
+    changes[6] = {"rotational_speed": 3.0 * NORMAL_SPEED}
+    further = [relation(2000 + n, kind, **row) for n, (kind, row) in enumerate(roles)]
+    scene = scene_of(two_stages(changes, more=more, further=further))
+    assert [shaft.name for shaft in scene.shafts] == ["shaft 3", "shaft 4", "shaft 5"]
+    assert abs(scene.drives[0].speed_rpm[0]) == pytest.approx(NORMAL_SPEED, rel=1e-11)  # type: ignore[index]
+    assert scene.loads[0].torque_n_m == (pytest.approx(RATIO * NORMAL_LOAD, rel=1e-11),)
+
+
+def test_a_bearing_between_two_shafts_leaves_their_speeds_alone() -> None:
+    changes = {OUTPUT: {"support_vector": (155.0, 0.0, 0.0)}}
+    sides = relation(2000, "side", assembly=60, inner_part=INPUT, outer_part=OUTPUT)
+    more = {60: ("concept_bearing", {"radial_stiffness": 1e8, "u_coordinate_on_shaft_inner_side": 150.0})}
+    unit = opened(two_stages(changes, more=more, further=[sides]))
+    assert unit.scene is not None
+    (coupling,) = unit.scene.couplings
+    assert coupling.torsional_stiffness_n_m_per_rad == 0.0
+    assert np.diag(coupling.stiffness_matrix) == pytest.approx([1e8, 1e8, 0.0, 0.0, 0.0, 0.0])
+
+
+def test_every_value_is_accounted_for_once() -> None:
+    document = two_stages()
+    lines = opened(document).lines
+    stated = [(place, a.id) for place, part in document.model.all_components() for a in part.attributes]
+    known = [(line.place, line.item) for line in lines]
+    assert len(known) == len(set(known))
+    assert set(stated) <= set(known)
+
+
+def test_the_files_are_a_case_a_stage_the_scene_and_the_account() -> None:
+    names = list(unit_files(opened(two_stages())))
+    assert names == [
+        "cylindrical_stage_21.toml",
+        "cylindrical_stage_22.toml",
+        "scene.toml",
+        "load_cases.toml",
+        "import.csv",
+    ]
+
+
+def _without(document: Document, seed: int) -> Document:
+    """Return a document with an attribute or a relation gone, a unit swapped, or a value bent."""
+    random = np.random.default_rng(seed)
+    model = document.model
+    relations, components = list(model.relations), list(model.components)
+    kind = int(random.integers(4))
+    if kind == 0:
+        relations.pop(int(random.integers(len(relations))))
+    else:
+        index = int(random.choice([n for n, part in enumerate(components) if part.attributes]))
+        values = list(components[index].attributes)
+        at = int(random.integers(len(values)))
+        bent: list[Any] = [-1.0, 0.0, 1e300, math.nan, True, "x", (), (1.0, 2.0), None]
+        if kind == 1:
+            values.pop(at)
+        elif kind == 2:
+            values[at] = type(values[at])(**{**vars(values[at]), "unit": "kW"})
+        else:
+            value = bent[int(random.integers(len(bent)))]
+            values[at] = type(values[at])(**{**vars(values[at]), "value": value})
+        components[index] = type(components[index])(
+            **{**vars(components[index]), "attributes": tuple(values)}
+        )
+    changed = {**vars(model), "relations": tuple(relations), "components": tuple(components)}
+    return Document(type(model)(**changed))
+
+
+@pytest.mark.parametrize("make", [two_stages, planetary])
+def test_a_damaged_unit_is_opened_or_refused_with_one_error(make: Any) -> None:
+    whole, refused, changed = opened(make()), 0, 0
+    for seed in range(80):
+        try:
+            unit = opened(_without(make(), seed))
+        except BadInput as error:
+            refused += 1
+            assert len(str(error)) < 2_000
+        else:
+            changed += unit.lines != whole.lines
+            json.dumps(unit_files(unit))
+    assert refused > 5 and changed > 30
+
+
+@pytest.mark.parametrize("stage", STAGES)
+def test_a_stage_without_a_gear_leaves_the_other(stage: int) -> None:
+    unit = opened(two_stages({11 if stage == STAGES[0] else 13: {"number_of_teeth": None}}))
+    assert [case.stage for case in unit.cases] == [other for other in STAGES if other != stage]
