@@ -34,6 +34,7 @@ from service.routes import (
     queries,
     results,
     scenes,
+    units,
 )
 from service.routes.access import Access
 from service.routes.context import Context
@@ -110,6 +111,7 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
         events.router,
         cases.router,
         scenes.router,
+        units.router,
         effects.router,
         former_results.router,
     )

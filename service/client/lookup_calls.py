@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, TypeVar
 
 from service import schemas
 from service.client.portable import CaseLike, SceneLike, case_inputs, scene_inputs
 from service.client.steps import Steps
 from service.client.surface import Surface, operation
+from service.problems import BadInput
 from service.schemas.offers import EffectBody, ExampleBody
+from service.schemas.unit import UnitBody
 
 T = TypeVar("T")
 
@@ -68,6 +72,22 @@ class LookupCalls(Surface):
         """Return a scene, its case files written out, as the text of a scene file."""
         body = {"inputs": scene_inputs(scene)}
         return (yield from self._answer("/v1/scenes/to-toml", body, _text))
+
+    @operation
+    def open_unit(self, file: Path) -> Steps[UnitBody]:
+        """Return the gear unit in a REXS file (.rexs, .rexsj, .rexsz) as cases, scene and account.
+
+        Raises
+        ------
+        BadInput
+            The file cannot be read, or is no sound REXS file; the message names the place.
+        """
+        try:
+            data = Path(file).read_bytes()
+        except OSError as error:
+            raise BadInput.of("file", str(file), f"a file that can be read ({error.strerror})") from None
+        body = {"rexs_base64": base64.b64encode(data).decode()}
+        return (yield from self._answer("/v1/units/open", body, UnitBody.model_validate))
 
     def _answer(self, path: str, body: dict[str, Any], reader: Callable[[Any], T]) -> Steps[T]:
         """Return what `reader` makes of the answer to a body."""

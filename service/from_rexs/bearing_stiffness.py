@@ -109,14 +109,15 @@ def _tilt(part: Part, tangent: FloatArray | None) -> float:
 def _stated(part: Part, item: str, rigid_from: float, rigid: float, derived: float | None) -> float | None:
     """Return a stiffness: a finite stated one, else the derived one, else a rigid one, else None."""
     value = part.number(item, "stiffness of the bearing")
+    unit = "N m/rad" if item == "bending_stiffness" else "N/m"
     if value is not None and 0.0 < value < rigid_from:
         return value
     if derived is not None:
-        of = f"{derived:.3g} (N, m, rad), tangent of the bearing's geometry at {RADIAL_LOAD:g} C0 radially"
-        part.say(item, "derived", of + ("" if value is None else f" instead of the stated {value:g}"))
+        of = f"{derived:.3g} {unit}, tangent of the bearing's geometry at {RADIAL_LOAD:g} C0 radially"
+        part.say(item, "derived", of + ("" if value is None else f" instead of the stated {value:.3g}"))
         return max(0.0, float(derived))
     if value is not None and value >= rigid_from:
-        part.say(item, "derived", f"{value:.3g} (N, m, rad) means rigid: {rigid:g} here")
+        part.say(item, "derived", f"{value:.3g} {unit} means rigid: {rigid:g} here")
         return rigid
     return None
 

@@ -145,7 +145,7 @@ def _torque(flow: PowerFlow, leader: AppliedTorque) -> float:
 def _say_missing(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[StageCase]) -> None:
     """State why there is no scene."""
     if not flows:
-        _say(layout, "scene", "refused", "no scene: no load case has speeds and torques that fit the train")
+        _say(layout, "scene", "refused", "no scene: no load case fits the train")
     elif not cases:
         _say(layout, "scene", "refused", "no scene: no stage has a case")
 

@@ -32,6 +32,7 @@ TAGS = {
     "live": "Answers while the caller waits: other flanks on a stored compliance, plans of runs.",
     "cases": "Gear pairs with their loads: examples, drawing, conversion from and to TOML.",
     "scenes": "Geared systems: conversion from and to TOML.",
+    "units": "Gear units of other tools (REXS).",
     "effects": "The physics that a case can toggle.",
     "operations": "Health, readiness and metrics, for those who run the service.",
 }

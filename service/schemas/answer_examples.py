@@ -220,6 +220,23 @@ ANSWERS: dict[str, Any] = {
     "/v1/cases/to-toml": BODIES["/v1/cases/from-toml"],
     "/v1/scenes/from-toml": BODIES["/v1/scenes/to-toml"]["inputs"],
     "/v1/scenes/to-toml": BODIES["/v1/scenes/from-toml"],
+    "/v1/units/open": {
+        "cases": [],
+        "scene": None,
+        "load_cases": [],
+        "lines": [
+            {
+                "place": "component 1",
+                "component": 1,
+                "kind": "gear_unit",
+                "name": "",
+                "item": "scene",
+                "fate": "refused",
+                "words": "no scene: no load case fits the train",
+            }
+        ],
+        "summary": ["refused   gear_unit 1, scene: no scene: no load case fits the train"],
+    },
     "/v1/effects": [
         {
             "name": "corner_contact",

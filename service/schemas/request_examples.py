@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from base64 import b64encode
 from typing import Any
 
 from service.registry import STUDIES, Study
@@ -95,6 +96,11 @@ time_s = [0.0]
 speed_rpm = [955.0]
 """
 
+_REXS_FILE = (
+    b'<model version="2.0.0" applicationId="hand" applicationVersion="1" date="2026-01-01">'
+    b'<relations/><components><component id="1" type="gear_unit"/></components></model>'
+)
+
 BODIES: dict[str, Json] = {
     "/v1/jobs/{job_id}": {"title": "Tip relief 20 um", "tags": ["ev-3", "draft"]},
     "/v1/batches": {
@@ -118,6 +124,7 @@ BODIES: dict[str, Json] = {
     },
     "/v1/scenes/to-toml": {"inputs": {"scene": SCENE}},
     "/v1/scenes/from-toml": {"toml": _SCENE_FILE},
+    "/v1/units/open": {"rexs_base64": b64encode(_REXS_FILE).decode()},
 }
 """Other bodies, by path."""
 

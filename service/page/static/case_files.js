@@ -3,11 +3,13 @@
 
 import { Problem, post } from "./api.js";
 import { byId, save } from "./elements.js";
+import { OpenedUnit, isUnit } from "./unit.js";
 
 export class CaseFiles {
   /** @param {import("./design.js").Design} design */
   constructor(design) {
     this.design = design;
+    this.unit = new OpenedUnit(design);
     byId("export-json").addEventListener("click", () => {
       save(`${JSON.stringify(design.case, null, 2)}\n`, "case.json", "application/json");
     });
@@ -21,6 +23,11 @@ export class CaseFiles {
   /** @param {any} chosen the control that a file was chosen with */
   async open(chosen) {
     const [file] = chosen.files;
+    if (isUnit(file.name)) {
+      await this.unit.open(file);
+      chosen.value = "";
+      return;
+    }
     const text = await file.text();
     chosen.value = "";
     const content = file.name.endsWith(".json") ? parsed(text) : (await post("/v1/cases/from-toml", { toml: text })).case;

@@ -229,7 +229,7 @@ def test_a_rigid_bearing_is_stiff_and_a_floating_one_free_along_the_axis() -> No
     assert (first.radial_stiffness_n_per_m, first.axial_stiffness_n_per_m) == (1e10, 1e10)
     assert first.stiffness_matrix is not None and first.stiffness_matrix[3][3] == 1e7
     assert (second.radial_stiffness_n_per_m, second.axial_stiffness_n_per_m) == (2e8, 0.0)
-    assert said(opened(document), 31, "radial_stiffness")[1].startswith("1e+23 (N, m, rad) means rigid")
+    assert said(opened(document), 31, "radial_stiffness")[1].startswith("1e+23 N/m means rigid")
 
 
 def test_a_bearing_without_any_stiffness_is_defaulted_and_said() -> None:

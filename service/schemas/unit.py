@@ -1,0 +1,64 @@
+"""A gear unit of another tool: the file, and what it is here."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import BaseModel, Field
+
+from service.schemas.model import BoundaryModel
+from service.schemas.named import Named
+
+
+class UnitFile(BoundaryModel):
+    """A file of REXS, the exchange format of gear-unit tools."""
+
+    rexs_base64: str = Field(
+        min_length=4,
+        max_length=85_400_000,
+        description="The bytes of the file in base64: XML, JSON or ZIP",
+        examples=["PG1vZGVsIHZlcnNpb249IjEuNyI+"],
+    )
+
+
+class StageBody(BaseModel):
+    """A cylindrical stage and its case."""
+
+    name: str
+    stage: int = Field(description="Id of the stage in the file")
+    equal: list[int] = Field(description="Ids of stages with the same case: those of the other planets")
+    case: Annotated[dict[str, Any], Named("Case")]
+
+
+class LoadCaseBody(BaseModel):
+    """A load case of the scene."""
+
+    name: str
+    share: float = Field(description="Of the time, 0 to 1")
+    torque_n_m: float = Field(description="On the shaft of the scene's first drive")
+    speed_rpm: float = Field(description="Of that shaft")
+    direction: str = Field(description="Flanks that carry: drive, as in the scene, or coast")
+
+
+class UnitLine(BaseModel):
+    """What became of a component or of a value."""
+
+    place: str
+    component: int
+    kind: str
+    name: str
+    item: str = Field(description="The attribute; empty for the component itself")
+    fate: str = Field(description="taken, derived, defaulted, ignored or refused")
+    words: str
+
+
+class UnitBody(BaseModel):
+    """Cases, scene and load cases of a gear unit, and the account of the import."""
+
+    cases: list[StageBody]
+    scene: Annotated[dict[str, Any], Named("SceneInput")] | None = Field(
+        description="The whole unit, the cases of its meshes written out; null: the account says why"
+    )
+    load_cases: list[LoadCaseBody]
+    lines: list[UnitLine]
+    summary: list[str] = Field(description="What was refused, defaulted and derived, a sentence each")
