@@ -77,3 +77,7 @@ class BallBearing(Row):
     def laminae(self) -> int:
         """Return the number of parts of an element: a ball is whole."""
         return 1
+
+    def peak_pressure(self, load: float) -> float:
+        """Return the larger of the peak pressures of a ball under `load` (N) on both rings, Pa."""
+        return max(contact.peak_pressure(load) for contact in self.contacts()) if load > 0.0 else 0.0

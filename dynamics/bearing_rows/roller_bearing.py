@@ -15,6 +15,7 @@ from dynamics.bearing_rows.roller_profile import (
     logarithmic_drop,
 )
 from dynamics.bearing_rows.row import ANGLE, CLEARANCE, COUNT, DIAMETER, PITCH, Row
+from dynamics.bodies.steel import STEEL_POISSON_RATIO, STEEL_YOUNGS_MODULUS
 from dynamics.types import FloatArray
 
 LENGTH = Declared(Kind.LENGTH, "m", between(1e-4, 10.0), "Effective length of a roller", 0.0136)
@@ -69,3 +70,12 @@ class RollerBearing(Row):
         if self.profile == LOGARITHMIC:
             return logarithmic_drop(place, self.diameter, self.length, self.contact_angle != 0.0)
         return crowned_drop(place, self.crown if self.profile == CROWNED else 0.0, self.length)
+
+    def peak_pressure(self, load: float) -> float:
+        """Return the Hertz pressure of a lamina under `load` (N) on the inner ring, the smaller one, Pa.
+
+        Steel on steel: p_0 = sqrt(q E*/(pi R)), q load over length, R = D (1 - gamma)/2.
+        """
+        modulus = STEEL_YOUNGS_MODULUS / (2.0 * (1.0 - STEEL_POISSON_RATIO**2))
+        radius = self.diameter * (1.0 - self.slenderness) / 2.0
+        return math.sqrt(load * self.laminae / self.length * modulus / (math.pi * radius))

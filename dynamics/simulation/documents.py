@@ -24,6 +24,7 @@ from dynamics.results.energy_check import energy_check
 from dynamics.results.histories import checked_series, filtered, histories, unfiltered
 from dynamics.results.run_checks import RunChecks
 from dynamics.scene import Integration
+from dynamics.simulation.bearings_at_rest import bearings_at_rest
 from dynamics.simulation.run_modes import modes_of_run
 from dynamics.simulation.violations import FIRST, EarlierRun
 from dynamics.types import FloatArray, Json
@@ -71,6 +72,7 @@ def documents(
         }
         | _method(choice, end)
         | before.to_json()
+        | bearings_at_rest(system)
         | system.corrections,
         "case": resolved_case(system),
         "warnings": [finding.to_json() for finding in scene_findings(decided.scene)],

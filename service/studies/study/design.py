@@ -70,7 +70,7 @@ def _by_class(index: int, factor: FactorInput, scene: SceneInput, places: tuple[
 def _check_parts(scene: Scene, responses: tuple[Response, ...]) -> None:
     """Every response names a mesh or a bearing of the scene."""
     meshes = [mesh.name for mesh in scene.meshes]
-    bearings = [part.name for part in (*scene.bushings, *scene.planet_bearings)]
+    bearings = [part.name for part in (*scene.ground_bearings, *scene.planet_bearings)]
     for index, response in enumerate(responses):
         for field, name, known in (
             ("part", response.part, bearings if response.kind.of == "bearing" else meshes),

@@ -213,6 +213,32 @@ def stiffness_at(system, q):
     return np.diag(total)
 
 
+@pytest.mark.parametrize("kind", ["deep groove", "cylindrical"])
+def test_a_run_says_what_its_bearings_carry_at_rest(kind):
+    """Stribeck: under no clearance the heaviest of n elements carries about 4.37 or 4.08 W/n."""
+    straight = {"profile": "straight"} if kind == "cylindrical" else {}
+    row, weight = replace(KINDS[kind], clearance=0.0, **straight), 40.0 * 9.81
+    scene = rotor((row, row), gravity=(0.0, -9.81, 0.0), duration=0.001)
+    found = simulate(scene).receipt["rolling_bearings"]
+    stribeck = {"deep groove": 4.37, "cylindrical": 4.08}[kind]
+    for name in ("seat 0", "seat 1"):
+        at = found[name]
+        np.testing.assert_allclose(at["force"][:3], [0.0, -weight / 2.0, 0.0], atol=1e-5 * weight)
+        assert at["element_load"] == pytest.approx(stribeck * weight / 2.0 / row.count, rel=0.02)
+        assert at["displacement"][1] < 0.0
+        if kind == "deep groove":
+            inner = row.contacts()[0].peak_pressure(at["element_load"])
+            assert at["peak_pressure"] == pytest.approx(inner, rel=1e-12)
+
+
+def test_the_pressure_of_a_lamina_is_that_of_a_line_contact():
+    """K. L. Johnson, Contact Mechanics, 4.3: p_0 = 2 q/(pi a), a^2 = 4 q R/(pi E*)."""
+    load, length = 20.0, CYLINDRICAL.length / CYLINDRICAL.laminae
+    radius = 1.0 / (2.0 / 9e-3 + 2.0 / (53.5e-3 - 9e-3))
+    half = np.sqrt(4.0 * load / length * radius / np.pi / (210e9 / 2.0 / (1.0 - 0.3**2)))
+    assert CYLINDRICAL.peak_pressure(load) == pytest.approx(2.0 * load / length / np.pi / half, rel=1e-9)
+
+
 def test_preload_is_the_force_at_no_displacement():
     system = assemble(rotor(pair_of(ANGULAR), PRELOAD))
     pressed = forces(system, np.zeros(system.arrays.mass.shape[0]))[-2:]
