@@ -24,6 +24,7 @@ _UNITS = {
     "1 / min": ("rotational_speed",),
     "MPa": ("elastic_modulus",),
 }
+_DATE = "2026-01-01T00:00:00+00:00"
 Values = Mapping[int, Mapping[str, Any]]
 
 GEARS: dict[int, dict[str, Any]] = {
@@ -99,4 +100,4 @@ def stage_unit(
         values = {**GEARS.get(number, {}), **changes.get(number, {})}
         attributes = tuple(attribute(name, value) for name, value in values.items() if value is not None)
         components.append(Component(number, kind, attributes, f"{kind} {number}"))
-    return GearUnit(Model("2.0.0", "test", "1", "2026-01-01", (*_RELATIONS, *relations), tuple(components)))
+    return GearUnit(Model("2.0.0", "test", "1", _DATE, (*_RELATIONS, *relations), tuple(components)))

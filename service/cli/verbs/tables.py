@@ -118,7 +118,8 @@ def export(
         typer.Option(
             "-o",
             "--output",
-            help="Folder for pinion.vtu and wheel.vtu, or MESH.fmu; for a run .unv or .csv.",
+            help="Folder for pinion.vtu and wheel.vtu, or MESH.fmu; for a run .unv or .csv; "
+            "with --rexs .rexs, .rexsj or .rexsz.",
         ),
     ],
     point: LoadPoint,
@@ -126,16 +127,22 @@ def export(
     beside: Annotated[
         int, typer.Option(min=0, max=100, help="Unloaded teeth to show on either side, in three dimensions.")
     ] = 1,
+    rexs: Annotated[
+        Path | None, typer.Option(help="REXS file whose stage the table is of; results are added to it.")
+    ] = None,
     fmu: FmuOptions,
     part: RunPart,
     json: AsJson = False,
 ) -> None:
-    """Write both gears as they bend in mesh (ParaView), the mesh force as an FMU, or a run as UFF or CSV."""
+    """Write gears as they bend in mesh, the mesh force as FMU, results into REXS, a run as UFF or CSV."""
     from service.cli.export import run_export  # noqa: PLC0415 (start-up time)
     from service.cli.export_fmu import run_export_fmu  # noqa: PLC0415
+    from service.cli.export_rexs import run_export_rexs  # noqa: PLC0415
     from service.cli.export_run import is_for_runs, run_export_run  # noqa: PLC0415
 
-    if is_for_runs(output):
+    if rexs is not None:
+        run_export_rexs(case.as_it_is, rexs, output, point.inputs, as_json=json)
+    elif is_for_runs(output):
         run_export_run(case.as_it_is, output, part.function, (part.start, part.end), as_json=json)
     elif output.suffix == ".fmu":
         facts = point.inputs, fmu.damping_n_s_per_m, fmu.backlash_um

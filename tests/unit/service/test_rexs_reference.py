@@ -26,11 +26,18 @@ from rexs_reference import (
     reference,
     step_of,
 )
+from rexs_stage import STAGE, stage_unit
 from small_rexs import small_document, small_model
+from small_table import small_table
 
+from fe_contact.ste import Metadata
+from service.convert.case import case_json
+from service.from_rexs.gear_unit import GearUnit
+from service.from_rexs.stage_case import stage_cases
 from service.rexs import Document, parsed, read_rexs, serialized, upgrade
 from service.rexs.kinds import KINDS, kind_of
 from service.rexs.units import UNITS
+from service.to_rexs.exported import exported
 
 pytestmark = needs_reference
 PACKAGE = Path(__file__).parents[3] / "service" / "rexs"
@@ -144,6 +151,21 @@ def test_what_is_written_of_an_example_is_valid(path: Path) -> None:
     document = read_rexs(path)
     _validate(document)
     _validate(Document(upgrade(document.model)[0]))
+
+
+def test_a_stage_with_results_is_valid() -> None:
+    document = Document(stage_unit().model)
+    cases = stage_cases(GearUnit(document.model), {})
+    table = replace(small_table(), metadata=Metadata(case=case_json(cases[0].case)))
+    written = exported(document, cases, [table])
+    _validate(written)
+    known = attributes_of("2.0.0")
+    (stage,) = [part for part in written.model.components if part.id == STAGE]
+    results = [entry for entry in stage.attributes if entry.origin and not entry.id.startswith("custom_")]
+    assert {(entry.id, entry.kind, entry.unit) for entry in results} == {
+        (entry.id, *known[entry.id][:2]) for entry in results
+    }
+    assert len(results) == 4
 
 
 def test_what_is_written_of_every_form_is_valid() -> None:

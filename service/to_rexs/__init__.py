@@ -1,0 +1,1 @@
+"""Results in a REXS document: attributes of origin ``calculated`` beside what the file says."""
