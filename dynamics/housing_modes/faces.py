@@ -1,0 +1,193 @@
+"""Parts of a mesh's surface: bores by their axis, planes, boxes, named groups."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from bounds import Declared, Kind, described, required, up_to
+from dynamics.checks import declared_fields, finite, one_of
+from dynamics.errors import InputError
+from dynamics.housing_modes.tetrahedral_mesh import TetrahedralMesh
+from dynamics.types import BoolArray, FloatArray, IntArray
+
+NEAR = 5e-3
+"""Distance at which corners are on a face, relative to its size."""
+INWARD = 0.7
+"""Least cosine between the normal of a bore's wall and the direction to its axis."""
+COVERED = 0.5
+"""Least part of a bore's wall that must be there: a split seat has half of it."""
+_DIAMETER = Declared(Kind.LENGTH, "m", up_to(20.0), "Diameter of the bore", 0.062)
+_LENGTH = Declared(Kind.LENGTH, "m", up_to(20.0), "Length of the bore along its axis", 0.025)
+
+
+class Face(Protocol):
+    """Chooses triangles of a surface."""
+
+    def triangles(self, mesh: TetrahedralMesh) -> IntArray:
+        """Return those of `mesh.surface` that are on the face, (t, 6).
+
+        Raises
+        ------
+        InputError
+            There are none.
+        """
+
+
+def _vector(name: str, values: tuple[float, float, float]) -> None:
+    """Refuse what is not three finite numbers."""
+    if len(values) != 3:
+        raise InputError(name, values, "three numbers: x, y, z")
+    for index, value in enumerate(values):
+        finite(f"{name}[{index}]", value)
+
+
+def unit(name: str, values: tuple[float, float, float]) -> FloatArray:
+    """Return a direction of length 1."""
+    _vector(name, values)
+    length = float(np.linalg.norm(values))
+    if length == 0.0:
+        raise InputError(name, values, "a direction: not all zero")
+    return np.array(values) / length
+
+
+@described
+@dataclass(frozen=True)
+class Bore:
+    """The wall of a bore: corners within 0.5 % of its diameter of the cylinder, facing its axis.
+
+    ``position`` is the middle of the bore on its axis in m, ``axis`` its direction, as x, y, z of the mesh.
+    """
+
+    position: tuple[float, float, float]
+    axis: tuple[float, float, float]
+    diameter: float = required(_DIAMETER)
+    length: float = required(_LENGTH)
+
+    def __post_init__(self) -> None:
+        _vector("position", self.position)
+        unit("axis", self.axis)
+        declared_fields(self)
+
+    def triangles(self, mesh: TetrahedralMesh) -> IntArray:
+        """Return the triangles of the wall."""
+        axis = unit("axis", self.axis)
+        surface, near = mesh.surface, NEAR * self.diameter
+        arm = mesh.points[surface[:, :3]] - np.array(self.position)
+        along = arm @ axis
+        radial = arm - along[..., None] * axis
+        radius = np.linalg.norm(radial, axis=2)
+        level = np.all(np.abs(along) <= self.length / 2.0 + near, axis=1)
+        normal, area = _normals(mesh, surface)
+        toward = -np.einsum("ti,ti->t", normal, radial.mean(axis=1)) / np.maximum(radius.mean(axis=1), 1e-300)
+        wall = level & (toward >= INWARD)
+        chosen = wall & np.all(np.abs(radius - self.diameter / 2.0) <= near, axis=1)
+        self._check(float(area[chosen].sum()), radius[wall])
+        return np.asarray(surface[chosen])
+
+    def _check(self, area: float, radii: FloatArray) -> None:
+        """Refuse a bore of which too little is there."""
+        whole = np.pi * self.diameter * self.length
+        if area >= COVERED * whole:
+            return
+        others = "no wall faces the axis there"
+        if radii.size:
+            others = (
+                f"walls facing the axis have diameters from {2.0 * radii.min():g} to {2.0 * radii.max():g} m"
+            )
+        bound = (
+            f"that of a bore of the mesh, of which at least {COVERED:.0%} is there ({area / whole:.0%} is)"
+        )
+        advice = f"Check position, axis, length and the unit of the mesh: {others}."
+        raise InputError("diameter", self.diameter, bound, advice)
+
+
+@dataclass(frozen=True)
+class Plane:
+    """The flat part of the surface through `point` (m) whose outward normal is `normal`."""
+
+    point: tuple[float, float, float]
+    normal: tuple[float, float, float]
+
+    def __post_init__(self) -> None:
+        _vector("point", self.point)
+        unit("normal", self.normal)
+
+    def triangles(self, mesh: TetrahedralMesh) -> IntArray:
+        """Return the triangles in the plane."""
+        direction, surface = unit("normal", self.normal), mesh.surface
+        height = (mesh.points[surface[:, :3]] - np.array(self.point)) @ direction
+        size = np.sqrt(_normals(mesh, surface)[1])[:, None]
+        facing = _normals(mesh, surface)[0] @ direction > 1.0 - NEAR
+        return _some("point", self.point, mesh, facing & np.all(np.abs(height) <= NEAR * size, axis=1))
+
+
+@dataclass(frozen=True)
+class Box:
+    """The part of the surface inside a box along the axes, from `low` to `high` (m)."""
+
+    low: tuple[float, float, float]
+    high: tuple[float, float, float]
+
+    def __post_init__(self) -> None:
+        _vector("low", self.low)
+        _vector("high", self.high)
+
+    def triangles(self, mesh: TetrahedralMesh) -> IntArray:
+        """Return the triangles whose corners are all inside."""
+        corner = mesh.points[mesh.surface[:, :3]]
+        inside = np.all((corner >= np.array(self.low)) & (corner <= np.array(self.high)), axis=(1, 2))
+        return _some("low", self.low, mesh, inside)
+
+
+@dataclass(frozen=True)
+class BoundedPlane:
+    """The part of a plane inside a box."""
+
+    plane: Plane
+    box: Box
+
+    def triangles(self, mesh: TetrahedralMesh) -> IntArray:
+        """Return the triangles that are in both."""
+        flat, inside = self.plane.triangles(mesh), self.box.triangles(mesh)
+        both = np.isin(
+            flat[:, 0] * len(mesh.points) + flat[:, 1], inside[:, 0] * len(mesh.points) + inside[:, 1]
+        )
+        if not both.any():
+            raise InputError("box", (self.box.low, self.box.high), "one that holds triangles of the plane")
+        return np.asarray(flat[both])
+
+
+@dataclass(frozen=True)
+class Group:
+    """A named part of the surface: a physical group, a node set."""
+
+    name: str
+
+    def triangles(self, mesh: TetrahedralMesh) -> IntArray:
+        """Return the triangles whose corners all belong to the group."""
+        one_of("name", self.name, list(mesh.groups), "Name the physical group or node set in the mesh file.")
+        member = np.zeros(len(mesh.points), dtype=bool)
+        member[mesh.groups[self.name]] = True
+        return _some("name", self.name, mesh, np.all(member[mesh.surface[:, :3]], axis=1))
+
+
+def _normals(mesh: TetrahedralMesh, triangles: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Return unit normals and areas of the flat triangles between corners."""
+    a, b, c = (mesh.points[triangles[:, k]] for k in range(3))
+    area = np.cross(b - a, c - a) / 2.0
+    size = np.linalg.norm(area, axis=1)
+    return area / size[:, None], size
+
+
+def _some(field: str, value: object, mesh: TetrahedralMesh, chosen: BoolArray) -> IntArray:
+    """Return the triangles chosen, of which there must be some."""
+    if not chosen.any():
+        low, high = mesh.points.min(axis=0), mesh.points.max(axis=0)
+        extent = ", ".join(f"{a:g} to {b:g}" for a, b in zip(low, high, strict=True))
+        raise InputError(
+            field, value, "where the surface has triangles", f"The mesh spans {extent} m in x, y, z."
+        )
+    return np.asarray(mesh.surface[chosen])

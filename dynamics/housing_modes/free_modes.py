@@ -1,0 +1,153 @@
+"""Natural modes of a housing with its seats free, and its static deflection under forces on them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+import scipy.sparse as sp
+
+from dynamics.errors import SolveError
+from dynamics.housing_modes.assembled_housing import AssembledHousing
+from dynamics.housing_modes.factor import Solve, factorized
+from dynamics.types import FloatArray
+
+SHIFT = 1e-10
+"""Shift of a housing that may move freely, relative to a bound of the highest squared frequency."""
+REFINEMENTS = 8
+REFINED, ACCEPTED = 1e-12, 1e-6
+"""Work of the forces that a deflection leaves unbalanced, relative to that of its load: where refining ends,
+and the most that is accepted. Soft mounts and slender bodies are ill conditioned and stay between."""
+
+
+class ModeStatus(IntEnum):
+    """The end of the search for modes."""
+
+    CONVERGED = 0
+    ITERATION_LIMIT = 1
+
+
+@dataclass(frozen=True)
+class FreeModes:
+    """Modes, unit modal mass, and static deflections.
+
+    Attributes
+    ----------
+    rigid : (f, k) array
+        Rigid motions that nothing holds.
+    shape : (f, m) array
+    frequency : (m,) array
+        Hz, rising; of elastic modes alone.
+    deflection : (f, s) array
+        Under unit forces on the seats; where the housing is loose, in balance with its inertia.
+    status : ModeStatus
+    eigen_residual : float
+        Largest |K x - w^2 M x| / |K x|.
+    solve_residual : float
+        Largest work of the unbalanced forces on a deflection, relative to that of its load.
+    rigid_ratio : float
+        Highest frequency found for a rigid motion over that of the first elastic mode; 0 where held.
+    """
+
+    rigid: FloatArray
+    shape: FloatArray
+    frequency: FloatArray
+    deflection: FloatArray
+    status: ModeStatus
+    eigen_residual: float
+    solve_residual: float
+    rigid_ratio: float
+
+
+def free_modes(housing: AssembledHousing, count: int) -> FreeModes:
+    """Find the lowest elastic modes by shift-invert Lanczos, and the deflections by the same factor.
+
+    Raises
+    ------
+    SolveError
+        The stiffness is singular, the modes do not converge, or a deflection misses its residual.
+    """
+    from scipy.sparse.linalg import ArpackNoConvergence  # noqa: PLC0415 (start-up time)
+
+    loose = housing.loose.shape[1]
+    shift = _shift(housing) if loose else 0.0
+    shifted = sp.csr_array(housing.stiffness + shift * housing.mass) if loose else housing.stiffness
+    solve = factorized(shifted)
+    rigid = _orthonormal(housing.loose, housing.mass)
+    try:
+        square, shape = _lanczos(housing, solve, shift, count + loose)
+        status = ModeStatus.CONVERGED
+    except ArpackNoConvergence as error:
+        found = len(error.eigenvalues)
+        advice = "Ask for fewer modes, or check the mesh for parts that hardly hold together."
+        raise SolveError(f"{found} of {count + loose} modes of the housing converged. {advice}") from error
+    deflection, residual = _deflections(housing, solve, rigid)
+    elastic, first = shape[:, loose:], square[loose]
+    force = housing.stiffness @ elastic
+    missed = np.linalg.norm(force - (housing.mass @ elastic) * square[loose:], axis=0)
+    return FreeModes(
+        rigid,
+        elastic,
+        np.sqrt(np.maximum(square[loose:], 0.0)) / (2.0 * math.pi),
+        deflection,
+        status,
+        float(np.max(missed / np.linalg.norm(force, axis=0))),
+        residual,
+        math.sqrt(float(np.abs(square[:loose]).max()) / first) if loose else 0.0,
+    )
+
+
+def _shift(housing: AssembledHousing) -> float:
+    """Return a small squared frequency that makes a loose housing's stiffness definite."""
+    return SHIFT * float(np.max(housing.stiffness.diagonal() / housing.mass.diagonal()))
+
+
+def _lanczos(
+    housing: AssembledHousing, solve: Solve, shift: float, count: int
+) -> tuple[FloatArray, FloatArray]:
+    """Return squared circular frequencies, rising, and their modes."""
+    from scipy.sparse.linalg import LinearOperator, eigsh  # noqa: PLC0415 (start-up time)
+
+    size = housing.stiffness.shape[0]
+    inverse = LinearOperator((size, size), matvec=solve, dtype=float)
+    start = np.cos(np.arange(size, dtype=float))  # the same in every run
+    basis = min(size - 1, count + max(count // 2, 20))
+    square, shape = eigsh(
+        housing.stiffness, count, housing.mass, sigma=-shift, OPinv=inverse, v0=start, ncv=basis
+    )
+    order = np.argsort(square)
+    return square[order], shape[:, order]
+
+
+def _orthonormal(vectors: FloatArray, mass: sp.csr_array) -> FloatArray:
+    """Return vectors of the same span with unit modal masses."""
+    return np.asarray(np.linalg.solve(np.linalg.cholesky(vectors.T @ (mass @ vectors)), vectors.T).T)
+
+
+def _deflections(housing: AssembledHousing, solve: Solve, rigid: FloatArray) -> tuple[FloatArray, float]:
+    """Return deflections and their residual.
+
+    A loose housing is accelerated by the loads: inertia balances them, and the shift of the factor is
+    taken out by iterative refinement.
+    """
+    inertia = housing.mass @ rigid
+    load = housing.seats.T.toarray()
+    load -= inertia @ (rigid.T @ load)
+    deflection, missed = np.zeros_like(load), load
+    residual = math.inf
+    for _ in range(REFINEMENTS):
+        deflection = deflection + solve(missed)
+        deflection -= rigid @ (inertia.T @ deflection)
+        missed = load - housing.stiffness @ deflection
+        lost, done = (np.einsum("fs,fs->s", deflection, force) for force in (missed, load))
+        previous, residual = residual, float(np.max(np.abs(lost) / done))
+        if residual <= REFINED or residual > 0.5 * previous:
+            break
+    if residual <= ACCEPTED:
+        return deflection, residual
+    raise SolveError(
+        f"Of the work of forces on the housing's seats {residual:.1e} is lost, above {ACCEPTED:g}: "
+        "the mesh is badly conditioned. Check its quality and the mounts' stiffness."
+    )

@@ -1,0 +1,96 @@
+"""Shape functions of scikit-fem at its quadrature points, and integrals of them over quadratic elements."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+
+from dynamics.types import FloatArray, IntArray
+
+ORDER = 4
+"""Degree that is integrated exactly: products of two quadratic shape functions on straight elements."""
+
+
+class Reference(NamedTuple):
+    """Shape functions on the reference element: points p, nodes a, local directions k.
+
+    Attributes
+    ----------
+    weight : (p,) array
+    shape : (a, p) array
+    slope : (a, k, p) array
+    """
+
+    weight: FloatArray
+    shape: FloatArray
+    slope: FloatArray
+
+
+class VolumeIntegral(NamedTuple):
+    """Volumes in m^3 and gradients in 1/m at the quadrature points: (e, p) and (e, 10, 3, p)."""
+
+    volume: FloatArray
+    gradient: FloatArray
+
+
+class SurfaceIntegral(NamedTuple):
+    """Area vectors, outward, in m^2 and points in m at the quadrature points: both (t, p, 3)."""
+
+    area: FloatArray
+    point: FloatArray
+
+
+@cache
+def tetrahedron() -> Reference:
+    """Return the reference of tetrahedra with ten nodes."""
+    from skfem import ElementTetP2  # noqa: PLC0415 (start-up time)
+    from skfem.refdom import RefTet  # noqa: PLC0415
+
+    return _reference(ElementTetP2(), RefTet, 10)
+
+
+@cache
+def triangle() -> Reference:
+    """Return the reference of triangles with six nodes."""
+    from skfem import ElementTriP2  # noqa: PLC0415 (start-up time)
+    from skfem.refdom import RefTri  # noqa: PLC0415
+
+    return _reference(ElementTriP2(), RefTri, 6)
+
+
+def _reference(element: object, domain: object, nodes: int) -> Reference:
+    """Evaluate an element of scikit-fem, whose nodes are ordered as ours."""
+    from skfem.quadrature import get_quadrature  # noqa: PLC0415 (start-up time)
+
+    points, weight = get_quadrature(domain, ORDER)
+    values = [element.lbasis(points, node) for node in range(nodes)]  # type: ignore[attr-defined]
+    shape = np.array([np.broadcast_to(value, weight.shape) for value, _ in values])
+    return Reference(weight, shape, np.array([slope for _, slope in values]))
+
+
+def over_volume(points: FloatArray, tetrahedra: IntArray) -> VolumeIntegral:
+    """Map the reference onto elements; a volume is negative where an element is turned inside out."""
+    rule = tetrahedron()
+    jacobian = np.einsum("eai,akp->epik", points[tetrahedra], rule.slope, optimize=True)
+    determinant = np.linalg.det(jacobian)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        inverse = _inverse(jacobian, determinant)
+    gradient = np.einsum("akp,epki->eaip", rule.slope, inverse, optimize=True)
+    return VolumeIntegral(determinant * rule.weight, gradient)
+
+
+def _inverse(matrix: FloatArray, determinant: FloatArray) -> FloatArray:
+    """Return inverses of 3 by 3 matrices by cross products of their columns."""
+    a, b, c = (matrix[..., :, k] for k in range(3))
+    rows = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=-2)
+    return np.asarray(rows / determinant[..., None, None])
+
+
+def over_surface(points: FloatArray, triangles: IntArray) -> SurfaceIntegral:
+    """Map the reference onto triangles with six nodes."""
+    rule = triangle()
+    tangent = np.einsum("tai,akp->tpki", points[triangles], rule.slope, optimize=True)
+    area = np.cross(tangent[:, :, 0], tangent[:, :, 1]) * rule.weight[:, None]
+    return SurfaceIntegral(area, np.einsum("tai,ap->tpi", points[triangles], rule.shape))

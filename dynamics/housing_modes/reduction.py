@@ -1,0 +1,171 @@
+"""Component mode synthesis: free modes and residual flexibility, in coordinates of Craig and Bampton."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eigh, null_space
+
+from dynamics.errors import InputError
+from dynamics.housing_modes.assembled_housing import AssembledHousing, assemble
+from dynamics.housing_modes.free_modes import FreeModes, free_modes
+from dynamics.housing_modes.meshed_housing import MeshedHousing
+from dynamics.housing_modes.quadrature import over_surface
+from dynamics.housing_modes.reduced_housing import PointMotion, ReducedHousing, ReductionChecks, SurfaceMotion
+from dynamics.housing_modes.rigid_motion import rigid_motions
+from dynamics.housing_modes.seats import in_axes
+from dynamics.types import FloatArray, IntArray
+
+INDEPENDENT = 1e-12
+"""Share of a deflection that is not in the modes kept, in modal mass, below which it adds nothing."""
+SINGULAR = 1e-12
+
+
+@dataclass(frozen=True)
+class Coordinates:
+    """Reduced coordinates: their mass and stiffness, and the housing's freedoms per coordinate, (f, r)."""
+
+    mass: FloatArray
+    stiffness: FloatArray
+    motion: FloatArray
+
+
+def reduce_housing(housing: MeshedHousing) -> ReducedHousing:
+    """Reduce a housing to its seats and modes.
+
+    Its motion is a sum of the natural modes with the seats free and the static deflections under forces on
+    the seats (Craig and Chang, AIAA paper 77-405; Rubin, AIAA Journal 13 (1975) 995-1006), projected by
+    Galerkin's method: natural frequencies kept are those of the mesh, static motion is exact, and so are
+    rigid motions. The coordinates are those of Craig and Bampton (AIAA Journal 6 (1968) 1313-1319) there.
+
+    Raises
+    ------
+    InputError
+        A seat, foot or point is not on the mesh, or two seats are one.
+    SolveError
+        The stiffness is singular or the modes do not converge.
+    """
+    assembled = assemble(housing)
+    modes = free_modes(assembled, housing.modes)
+    space = _independent(assembled, modes)
+    coordinates = _craig_bampton(assembled, space)
+    frequency = np.concatenate([np.zeros(modes.rigid.shape[1]), modes.frequency])
+    ratio, damping = _damping(housing, assembled, coordinates, len(frequency))
+    return ReducedHousing(
+        coordinates.mass,
+        coordinates.stiffness,
+        damping,
+        assembled.frames,
+        frequency,
+        ratio[: len(frequency)],
+        assembled.body,
+        _checks(housing, assembled, modes),
+        _surface(housing, assembled, coordinates),
+        _points(housing, assembled, coordinates),
+    )
+
+
+def _independent(housing: AssembledHousing, modes: FreeModes) -> FloatArray:
+    """Return rigid motions, modes and what the deflections add to them, unit modal masses, (f, r)."""
+    kept = np.hstack([modes.rigid, modes.shape])
+    rest = modes.deflection
+    for _ in range(2):  # the second time takes out what rounding left
+        rest = rest - kept @ (kept.T @ (housing.mass @ rest))
+    own = np.einsum("fs,fs->s", modes.deflection, housing.mass @ modes.deflection)
+    gram = rest.T @ (housing.mass @ rest) / np.sqrt(np.outer(own, own))
+    value, vector = np.linalg.eigh(gram)
+    if value[0] <= INDEPENDENT * value[-1]:
+        names = [frame.name for frame in housing.frames]
+        raise InputError(
+            "seats", names, "independent of each other", "Two seats share a bore: make them one."
+        )
+    return np.hstack([kept, rest / np.sqrt(own) @ (vector / np.sqrt(value))])
+
+
+def _craig_bampton(housing: AssembledHousing, space: FloatArray) -> Coordinates:
+    """Change to coordinates of which the first are the motions of the seats."""
+    mass, stiffness = (_symmetric(space.T @ (matrix @ space)) for matrix in (housing.mass, housing.stiffness))
+    seats = housing.seats @ space
+    held = null_space(seats)
+    static = np.linalg.pinv(seats)
+    inside = held.T @ stiffness @ held
+    static = static - held @ (
+        np.linalg.pinv(inside, SINGULAR, hermitian=True) @ (held.T @ stiffness @ static)
+    )
+    _, shape = eigh(inside, held.T @ mass @ held)
+    change = np.hstack([static, held @ shape])
+    return Coordinates(
+        _symmetric(change.T @ mass @ change), _symmetric(change.T @ stiffness @ change), space @ change
+    )
+
+
+def _damping(
+    housing: MeshedHousing, assembled: AssembledHousing, coordinates: Coordinates, kept: int
+) -> tuple[FloatArray, FloatArray]:
+    """Return damping ratios of all reduced modes, and the damping matrix with that of the mounts."""
+    square, shape = eigh(coordinates.stiffness, coordinates.mass)
+    square[: assembled.loose.shape[1]] = 0.0
+    motion, (stiffness, loss) = coordinates.motion, assembled.mounts
+    springs = motion.T @ (stiffness @ motion)
+    energy = np.einsum("rm,rs,sm->m", shape, springs, shape, optimize=True)
+    share = np.where(square > 0.0, 1.0 - energy / np.where(square > 0.0, square, 1.0), 0.0)
+    ratio = housing.damping.ratios(np.clip(share, 0.0, 1.0))
+    impulse = coordinates.mass @ shape
+    own = impulse @ np.diag(2.0 * ratio * np.sqrt(np.maximum(square, 0.0))) @ impulse.T
+    return ratio, _symmetric(own + motion.T @ (loss @ motion))
+
+
+def _checks(housing: MeshedHousing, assembled: AssembledHousing, modes: FreeModes) -> ReductionChecks:
+    """Measure what the reduction rests on."""
+    mesh = housing.mesh
+    area, point = over_surface(mesh.points, mesh.surface)
+    volume = float(np.einsum("tpi,tpi->", area, point)) / 3.0
+    return ReductionChecks(
+        abs(housing.material.density * volume / assembled.body.mass - 1.0),
+        modes.eigen_residual,
+        modes.solve_residual,
+        modes.rigid_ratio,
+        _seat_rigid(housing, assembled),
+    )
+
+
+def _seat_rigid(housing: MeshedHousing, assembled: AssembledHousing) -> float:
+    """Return how far the motion of seats is off in rigid motions of all nodes and rigid faces."""
+    center = assembled.body.center
+    found = assembled.seats @ assembled.freedoms.rigid(housing.mesh.points, center)
+    turned = np.hstack([np.zeros((3, 3)), np.eye(3)])
+    bodies = (np.vstack([rigid_motions(frame.position[None], center), turned]) for frame in assembled.frames)
+    expected = np.vstack(
+        [in_axes(frame) @ body for frame, body in zip(assembled.frames, bodies, strict=True)]
+    )
+    return float(np.abs(found - expected).max() / np.abs(expected).max())
+
+
+def _surface(housing: MeshedHousing, assembled: AssembledHousing, coordinates: Coordinates) -> SurfaceMotion:
+    """Return the motion of the surface."""
+    nodes, triangles = np.unique(housing.mesh.surface, return_inverse=True)
+    motion = _motion_of(nodes, assembled, coordinates)
+    return SurfaceMotion(housing.mesh.points[nodes], triangles.reshape(-1, 6), motion)
+
+
+def _points(
+    housing: MeshedHousing, assembled: AssembledHousing, coordinates: Coordinates
+) -> tuple[PointMotion, ...]:
+    """Return the motion of the points."""
+    nodes = housing.nodes_of_points()
+    motion = _motion_of(nodes, assembled, coordinates)
+    position = housing.mesh.points[nodes]
+    return tuple(PointMotion(*point) for point in zip(housing.points, position, motion, strict=True))
+
+
+def _motion_of(nodes: IntArray, assembled: AssembledHousing, coordinates: Coordinates) -> FloatArray:
+    """Return displacements of nodes per coordinate, (n, 3, r)."""
+    rows = (3 * nodes[:, None] + np.arange(3)).ravel()
+    motion = assembled.freedoms.motion[rows] @ coordinates.motion
+    return np.asarray(motion).reshape(len(nodes), 3, coordinates.motion.shape[1])
+
+
+def _symmetric(matrix: FloatArray) -> FloatArray:
+    """Return the symmetric part: rounding leaves another."""
+    return np.asarray(0.5 * (matrix + matrix.T))

@@ -1,0 +1,85 @@
+"""Child process that meshes a STEP file with gmsh, and does nothing else.
+
+Run as a script by `dynamics.housing_modes.step_mesh`, never imported by it: gmsh changes signal handlers, may
+crash on hard input and keeps global state, so it lives and dies here. It reads one JSON object from standard
+input and writes one to standard output::
+
+    {"step": file, "mesh": file to write, "size": m or null, "wall_elements": 0.7, "seconds": 600}
+    {"solids": 1, "size": 0.014}   or   {"error": "..."}
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from typing import Any
+
+from host import end_after, handlers_kept
+
+RESET_BY_GMSH = ("SIGTERM", "SIGHUP", "SIGPIPE", "SIGINT")
+MILLIMETER = 1e-3
+ELEMENTS_A_TURN = 12
+FRONTAL_DELAUNAY = 6
+
+
+def start_gmsh() -> Any:
+    """Import and start gmsh: one thread, silent, no user files, signal handlers left as they were."""
+    import gmsh  # noqa: PLC0415
+
+    with handlers_kept(RESET_BY_GMSH):
+        gmsh.initialize(["loa", "-nopopup"], readConfigFiles=False, interruptible=False)
+    options = {
+        "General.Terminal": 0,
+        "General.NumThreads": 1,
+        "Mesh.Algorithm": FRONTAL_DELAUNAY,
+        "Mesh.ElementOrder": 2,
+        "Mesh.HighOrderOptimize": 1,
+        "Mesh.MeshSizeFromPoints": 0,
+        "Mesh.MeshSizeFromCurvature": ELEMENTS_A_TURN,
+        "Mesh.Optimize": 1,
+    }
+    for name, value in options.items():
+        gmsh.option.setNumber(name, value)
+    gmsh.option.setString("Geometry.OCCTargetUnit", "MM")
+    return gmsh
+
+
+def mesh(gmsh: Any, request: dict[str, Any]) -> dict[str, Any]:
+    """Mesh the one solid of a file, in mm."""
+    gmsh.model.occ.importShapes(request["step"])
+    gmsh.model.occ.synchronize()
+    solids = gmsh.model.getEntities(3)
+    if len(solids) != 1:
+        return {"solids": len(solids)}
+    size = request["size"] or MILLIMETER * wall_thickness(gmsh, solids[0][1]) / request["wall_elements"]
+    gmsh.option.setNumber("Mesh.MeshSizeMax", size / MILLIMETER)
+    gmsh.model.addPhysicalGroup(3, [solids[0][1]])  # only its elements are written
+    gmsh.model.mesh.generate(3)
+    gmsh.write(request["mesh"])
+    return {"solids": 1, "size": size}
+
+
+def wall_thickness(gmsh: Any, solid: int) -> float:
+    """Return 2 V/S of a solid, the mean thickness of a thin-walled one, mm."""
+    volume = gmsh.model.occ.getMass(3, solid)
+    faces = gmsh.model.getBoundary([(3, solid)], oriented=False)
+    return float(2.0 * volume / sum(gmsh.model.occ.getMass(2, face) for _, face in faces))
+
+
+def main() -> None:
+    """Answer the one request on standard input."""
+    answer_to = os.dup(1)
+    os.dup2(2, 1)  # whatever gmsh prints must not mix with the answer
+    request = json.load(sys.stdin)
+    end_after(int(request["seconds"]) + 1)  # ends this process even when its parent is gone
+    try:
+        answer = mesh(start_gmsh(), request)
+    except Exception as error:  # noqa: BLE001 - gmsh raises bare Exception; the parent turns the text into an error
+        answer = {"error": str(error) or type(error).__name__}
+    with os.fdopen(answer_to, "w") as stream:
+        json.dump(answer, stream)
+
+
+if __name__ == "__main__":
+    main()
