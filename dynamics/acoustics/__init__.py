@@ -8,6 +8,7 @@ from dynamics.acoustics.hull import Hull
 from dynamics.acoustics.level_band import LevelBand, Range, level_band
 from dynamics.acoustics.levels import a_weighting, free_field_pressure, level_sum, sound_power_level
 from dynamics.acoustics.modal_resistance import ModalResistance, modal_resistance
+from dynamics.acoustics.model_ladder import ModelLadder, ModelResult, compare_models
 from dynamics.acoustics.multipoles import errors_db, monopoles_efficiency, sphere_efficiency
 from dynamics.acoustics.order_power import OrderPower, order_power
 from dynamics.acoustics.radiation import (
@@ -29,6 +30,8 @@ __all__ = [
     "Hull",
     "LevelBand",
     "ModalResistance",
+    "ModelLadder",
+    "ModelResult",
     "OrderPower",
     "RadiationModel",
     "Range",
@@ -37,6 +40,7 @@ __all__ = [
     "SurfacePressure",
     "a_weighting",
     "common_full_scale",
+    "compare_models",
     "errors_db",
     "free_field_pressure",
     "level_band",
