@@ -15,7 +15,7 @@ from service.problems import BadInput
 from service.schemas import Case, read_model, validated
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
-CASE_FILES = [file for file in sorted(EXAMPLES.glob("*.toml")) if "[pair]" in file.read_text("utf-8")]
+CASE_FILES = [file for file in sorted(EXAMPLES.rglob("*.toml")) if "[pair]" in file.read_text("utf-8")]
 SPUR = {
     "pair": {
         "normal_module_mm": 4.0,

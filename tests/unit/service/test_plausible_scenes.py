@@ -229,11 +229,13 @@ def test_the_end_of_a_shaft_is_on_it() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["palermo_scene", "flexible_shafts_scene", "planetary_scene", "wind_turbine_scene"]
+    "name",
+    ["palermo_scene", "flexible_shafts_scene", "planetary_scene", "wind_turbine_scene", "two_stage/scene"],
 )
 def test_examples_are_plausible(name: str) -> None:
-    content = tomllib.loads((EXAMPLES / f"{name}.toml").read_text(encoding="utf-8"))
+    file = EXAMPLES / f"{name}.toml"
+    content = tomllib.loads(file.read_text(encoding="utf-8"))
     for mesh in content["meshes"]:
-        mesh["case"] = tomllib.loads((EXAMPLES / mesh.pop("case_file")).read_text(encoding="utf-8"))
+        mesh["case"] = tomllib.loads((file.parent / mesh.pop("case_file")).read_text(encoding="utf-8"))
         assert validated(Case, mesh["case"])
     assert warnings_of(validated(SceneInput, content)) == []
