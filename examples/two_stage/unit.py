@@ -1,6 +1,6 @@
 """A two-stage unit over its load spectrum: the ripple of both stages in every load case, and a run-up.
 
-    python examples/two_stage/unit.py            # tables, load cases, run-up: about 1 CPU minute beside the integration
+    python examples/two_stage/unit.py            # tables and load cases: 1 CPU minute; then the run-up
     python examples/two_stage/unit.py --seconds 0.1
 
 Both stages run aligned; the shafts of the run-up bend and tilt on their bearings.

@@ -39,6 +39,10 @@ _DECISIONS = {
 }
 
 
+_UNBOUNDED = "error not estimated: meshes and slices are compared by STE alone"
+"""Why the largest pressure has no error: its largest point moves between positions and slices of unlike meshes."""
+
+
 def static_headlines(database: SteDatabase, force: float | None = None) -> tuple[Headline, ...]:
     """Mean and peak-to-peak STE and the largest pressure at the stored load nearest to `force` (N)."""
     load = headline_load(database, force)
@@ -49,7 +53,7 @@ def static_headlines(database: SteDatabase, force: float | None = None) -> tuple
         Headline(
             f"peak-to-peak STE at {label}", f"{_um(curve.peak_to_peak.value)} µm", _band(curve.peak_to_peak)
         ),
-        Headline(f"largest pressure at {label}", f"{number(1e-6 * pressure, 4)} MPa", "no error stated"),
+        Headline(f"largest pressure at {label}", f"{number(1e-6 * pressure, 4)} MPa", _UNBOUNDED),
     )
 
 
