@@ -66,7 +66,7 @@ class SurfacePressure:
 class BoundaryElements:
     """The radiation model without neglect but for its mesh; needs the extra `boundary-elements`."""
 
-    name: str = "boundary_elements"
+    model_name: str = "boundary_elements"
 
     def resistance(self, hull: Hull, frequency: float, shapes: ComplexArray, air: Air) -> ComplexArray:
         """Return the resistance in the far field; see `surface_pressure` for what it raises."""

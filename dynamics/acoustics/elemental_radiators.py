@@ -34,7 +34,7 @@ class ElementalRadiators:
     baffled: bool = False
 
     @property
-    def name(self) -> str:
+    def model_name(self) -> str:
         """Return the name by which results are listed."""
         return "rayleigh_integral" if self.baffled else "monopoles"
 

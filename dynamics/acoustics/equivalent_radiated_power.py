@@ -13,7 +13,7 @@ from dynamics.types import FloatArray
 
 @dataclass(frozen=True)
 class EquivalentRadiatedPower:
-    """The radiation model of efficiency 1, W = rho c / 2 sum |v_n|^2 S.
+    """The radiation model of efficiency 1, W = rho c / 2 times the sum of S abs(v_n)^2.
 
     It takes no account of interference, neither between panels nor around the hull: too high by 1/sigma, see
     `multipoles`. An upper estimate where the efficiency is at most 1. That holds for a sphere's pulsation and
@@ -21,7 +21,7 @@ class EquivalentRadiatedPower:
     1.7 dB (docs/theory/sound-power.md), plates near coincidence.
     """
 
-    name: str = "equivalent_radiated_power"
+    model_name: str = "equivalent_radiated_power"
 
     def resistance(self, hull: Hull, frequency: float, shapes: ComplexArray, air: Air) -> ComplexArray:
         """Return rho c Phi^H diag(S) Phi."""

@@ -91,6 +91,6 @@ def compare_models(
         power = sound_power(model, hull, frequency, normal_velocity, air)
         return ModelResult(power, power / plane, time.process_time() - began)
 
-    by_name = {model.name: model for model in models}
+    by_name = {model.model_name: model for model in models}
     results, left_out = run_variants("models", by_name, compute, (DynamicsError, MissingExtra), progress)
     return ModelLadder(results, left_out)

@@ -18,7 +18,7 @@ from dynamics.types import FloatArray
 
 
 def sphere_efficiency(order: int, ka: float) -> float:
-    """Return the radiation efficiency of a sphere in spherical harmonics of an order, 1/|ka h_n'(ka)|^2.
+    """Return the radiation efficiency of a sphere in spherical harmonics of an order, 1/abs(ka h_n'(ka))^2.
 
     (ka)^2/(1 + (ka)^2) for order 0, (ka)^4/(4 + (ka)^4) for order 1.
 

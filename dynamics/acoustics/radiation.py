@@ -20,7 +20,7 @@ class RadiationModel(Protocol):
     """A way to compute the sound that a hull radiates."""
 
     @property
-    def name(self) -> str:
+    def model_name(self) -> str:
         """Return the name by which results are listed."""
 
     def resistance(self, hull: Hull, frequency: float, shapes: ComplexArray, air: Air) -> ComplexArray:

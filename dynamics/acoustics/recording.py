@@ -80,7 +80,7 @@ def order_recording(
     unit: str,
     sample_rate: int = SAMPLE_RATE,
 ) -> Recording:
-    """Return the sum of orders sum |a| cos(2 pi integral f dt + arg a) along a run.
+    """Return the sum of abs(a) cos(2 pi integral f dt + arg a) over the orders of a run.
 
     Frequencies, magnitudes and phases are linear between the given times.
 

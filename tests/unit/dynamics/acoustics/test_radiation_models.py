@@ -61,7 +61,9 @@ def test_models_miss_the_sphere_by_their_stated_errors(ka: float, order: int) ->
     exact = sphere_efficiency(order, ka)
     for model in MODELS[:2]:
         sigma = radiation_efficiency(model, SPHERE, frequency(ka), velocity, AIR)
-        assert 10.0 * np.log10(sigma / exact) == pytest.approx(errors_db(ka)[model.name][order], abs=0.06)
+        assert 10.0 * np.log10(sigma / exact) == pytest.approx(
+            errors_db(ka)[model.model_name][order], abs=0.06
+        )
 
 
 def test_monopoles_on_a_sphere_converge_with_the_square_of_the_edges() -> None:
@@ -101,7 +103,7 @@ def test_a_baffled_piston_radiates_as_rayleigh_says(ka: float) -> None:
     assert sigma == pytest.approx(1.0 - j1(2.0 * ka) / ka, rel=0.01)
 
 
-@pytest.mark.parametrize("model", MODELS, ids=lambda model: model.name)
+@pytest.mark.parametrize("model", MODELS, ids=lambda model: model.model_name)
 def test_resistance_is_reciprocal_and_takes_energy_from_every_motion(model) -> None:
     hull = box((0.4, 0.3, 0.2), (6, 5, 4))
     shapes = random_shapes(hull)
@@ -112,7 +114,7 @@ def test_resistance_is_reciprocal_and_takes_energy_from_every_motion(model) -> N
     np.testing.assert_allclose(real, real.T, rtol=1e-12)
 
 
-@pytest.mark.parametrize("model", MODELS, ids=lambda model: model.name)
+@pytest.mark.parametrize("model", MODELS, ids=lambda model: model.model_name)
 def test_shapes_superpose_and_power_goes_with_the_square(model) -> None:
     hull = box((0.4, 0.3, 0.2), (6, 5, 4))
     shapes, factors = random_shapes(hull), np.array([1.0, 2j, -0.5, 0.1 + 1j, 3.0])
@@ -124,7 +126,7 @@ def test_shapes_superpose_and_power_goes_with_the_square(model) -> None:
     )
 
 
-@pytest.mark.parametrize("model", MODELS, ids=lambda model: model.name)
+@pytest.mark.parametrize("model", MODELS, ids=lambda model: model.model_name)
 def test_where_the_hull_is_does_not_matter(model) -> None:
     hull = box((0.4, 0.3, 0.2), (6, 5, 4))
     turn, _ = np.linalg.qr(np.random.default_rng(2).normal(size=(3, 3)))
