@@ -15,12 +15,13 @@ from service.from_rexs.meshing import Meshing
 from service.from_rexs.micro_geometry import micro_geometry
 from service.from_rexs.profile_shift import ToothedPair
 from service.from_rexs.ring_tip import clearing_tip
+from service.from_rexs.thickness_allowance import thickness_allowance
 from service.from_rexs.tooth_depth import ToothDepth, tip_alteration, tooth_depth
 from service.from_rexs.toothing import ToothingData
 from service.problems import BadInput
 from service.schemas import Case
 from service.schemas.reading import validated
-from service.units import DEGREE, GPA, MM
+from service.units import DEGREE, GPA, MM, UM
 
 Table = dict[str, Any]
 
@@ -156,6 +157,7 @@ def _gear(unit: GearUnit, gear: ToothingData, depth: ToothDepth, shift: float) -
         "tip_diameter_mm": rounded(depth.tip_diameter / MM),
         "dedendum_coefficient": rounded(depth.dedendum_coefficient),
         "root_radius_coefficient": rounded(depth.root_radius_coefficient),
+        "thickness_allowance_um": rounded(thickness_allowance(gear) / UM),
         held: rounded(held_diameter(unit, gear, root_diameter(gear, depth, shift)) / MM),
         **_cutter(depth),
         **_blank(unit, gear),

@@ -23,6 +23,7 @@ _UNITS = {
     ),
     "1 / min": ("rotational_speed",),
     "MPa": ("elastic_modulus",),
+    "mum": ("upper_backlash_allowance_referenced_to_span", "lower_backlash_allowance_referenced_to_span"),
 }
 _DATE = "2026-01-01T00:00:00+00:00"
 Values = Mapping[int, Mapping[str, Any]]

@@ -101,6 +101,8 @@ def whole_units() -> Iterator[GearUnit]:
                     "tip_diameter": 44.0,
                     "root_diameter": 35.0,
                     "tip_form_diameter": 43.8,
+                    "upper_backlash_allowance_referenced_to_span": -20.0,
+                    "lower_backlash_allowance_referenced_to_span": -60.0,
                     "datum_face_orientation": "negative",
                     "u_coordinate_on_shaft": 30.0,
                     "reference_component_for_position": 1.0,

@@ -100,6 +100,18 @@ def test_both_tips_are_cut_by_what_the_shifts_bring_the_gears_closer() -> None:
     assert pair.tip_clearances == pytest.approx((0.5e-3, 0.5e-3), rel=1e-9)
 
 
+def test_the_mean_deviation_of_the_span_is_the_allowance_and_the_backlash() -> None:
+    span = "{}_backlash_allowance_referenced_to_span"
+    unit = stage_unit({PINION: {span.format("upper"): -20.0, span.format("lower"): -60.0}})
+    pair = gear_pair(only(unit).case)
+    # The span is measured along the normal: 40 um of it are 40 um of backlash of a spur pair.
+    assert pair.normal_backlash == pytest.approx(40e-6, rel=1e-6)
+    assert said(unit, PINION, span.format("upper"))[0] == "derived"
+    thick = stage_unit({PINION: {span.format("upper"): 60.0, span.format("lower"): 20.0}})
+    assert only(thick).case.pair.pinion.thickness_allowance_um == 0.0
+    assert said(thick, PINION, span.format("upper"))[0] == "refused"
+
+
 def test_the_tool_makes_the_root() -> None:
     tool = {"addendum_coefficient_reference_profile": 1.4, "tip_corner_radius_factor_reference_profile": 0.3}
     unit = stage_unit(
