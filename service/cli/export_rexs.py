@@ -7,10 +7,9 @@ from typing import Any
 
 from service.cli.output import check_writable, console, print_json
 from service.cli.ste import open_ste
-from service.from_rexs.gear_unit import GearUnit
-from service.from_rexs.stage_case import stage_cases
+from service.from_rexs.opened import opened
 from service.problems import BadInput
-from service.rexs import Attribute, Document, read_rexs, serialized, upgrade
+from service.rexs import Attribute, Document, read_rexs, serialized
 from service.to_rexs.calculated import CALCULATED
 from service.to_rexs.exported import exported
 
@@ -27,8 +26,7 @@ def run_export_rexs(
             raise BadInput.of(option, point[name], "left out with --rexs", "Results are those of --torque.")
     check_writable(output)
     document = read_rexs(rexs)
-    cases = stage_cases(GearUnit(upgrade(document.model)[0]), {})
-    written = exported(document, cases, [open_ste(file)], point["torque_n_m"])
+    written = exported(document, opened(document).cases, [open_ste(file)], point["torque_n_m"])
     output.write_bytes(serialized(written, output.name))
     facts: dict[str, Any] = {"file": str(output), "calculated": _calculated(written)}
     if as_json:

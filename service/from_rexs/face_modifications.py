@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from fe_contact.types import FloatArray
 from service.from_rexs.flank_place import FlankPlace, Modification, mm, um
 from service.from_rexs.part import Part
 from service.from_rexs.profile_modifications import two_parabolas
-from service.from_rexs.relief_law import OWN_SHAPES, relative_depth, shape_of
+from service.from_rexs.relief_law import SCALABLE, relative_depth, shape_of
 from service.from_rexs.toothing import required
 from service.problems import BadInput
 
@@ -40,14 +41,28 @@ def helix_crowning(place: FlankPlace, part: Part) -> Modification:
     if not ends[0] < highest < ends[1]:
         raise BadInput.of(f"{part.place}, helix_highest_point", 1e3 * highest, "between the stated amounts")
     part.text("shape_of_helix_crowning", "a parabola; an arc is one to (amount / length)^2")
-    whole = place.same(ends[0], 0.0) and place.same(ends[1], place.width)
-    even = whole and place.same(highest, 0.5 * place.width) and amounts[0] == amounts[1]
     return Modification(
         part,
         lambda _roll, face: two_parabolas(face, highest, ends, amounts),
-        {"helix_crowning_um": um(amounts[0])} if even else {},
+        _crowning_fields(place, highest, ends, amounts),
         faces=(highest,),
     )
+
+
+def _crowning_fields(
+    place: FlankPlace, highest: float, ends: tuple[float, float], amounts: tuple[float, float]
+) -> dict[str, float]:
+    """Return the fields of a helix crowning: one if it is even, else those of both faces."""
+    whole = place.same(ends[0], 0.0) and place.same(ends[1], place.width)
+    if whole and place.same(highest, 0.5 * place.width) and amounts[0] == amounts[1]:
+        return {"helix_crowning_um": um(amounts[0])}
+    fields = {}
+    faces = (0.0, place.width)
+    for datum, face, stated, amount in zip((True, False), faces, ends, amounts, strict=True):
+        name = place.face_field("helix_crowning", datum=datum)
+        fields[f"{name}_um"] = um(amount * ((face - highest) / (stated - highest)) ** 2)
+        fields[f"{name}_length_mm"] = mm(1e3 * abs(face - highest))
+    return fields
 
 
 def helix_slope(place: FlankPlace, part: Part) -> Modification:
@@ -99,15 +114,11 @@ def end_relief(place: FlankPlace, part: Part) -> Modification:
     stated = end if stated is None else stated
     if not 0.0 < length <= place.width or not (start - stated) * inwards > 0.0:
         raise BadInput.of(f"{part.place}, end_relief_length_{side}", 1e3 * length, "above 0, within the face")
-    fields = {}
-    if shape in OWN_SHAPES:
+    fields: dict[str, Any] = {}
+    if shape in SCALABLE or place.same(stated, end):
         at_end = depth * float(relative_depth(shape, np.asarray((end - start) / (stated - start))))
-        own = OWN_SHAPES[shape]
-        fields = {
-            "end_relief_um": um(at_end),
-            "end_relief_length_mm": mm(1e3 * length),
-            "end_relief_shape": own,
-        }
+        name = place.face_field("end_relief", datum=side == "datum_face")
+        fields = {f"{name}_um": um(at_end), f"{name}_length_mm": mm(1e3 * length), f"{name}_shape": shape}
     return Modification(part, partial(_end, depth, shape, start, stated), fields, faces=(start,))
 
 
@@ -119,14 +130,25 @@ def _end(
 
 
 def at_both_ends(place: FlankPlace, modifications: Sequence[Modification]) -> list[Modification]:
-    """Return the modifications with end reliefs that are alike at both faces as one, which has fields."""
+    """Return the modifications with end reliefs that are alike at both faces as one."""
     ends = [entry for entry in modifications if entry.part.type.startswith("end_relief_")]
-    alike = len(ends) == 2 and ends[0].part.type != ends[1].part.type and ends[0].fields == ends[1].fields
-    if not alike or not ends[0].fields or ends[0].fields["end_relief_length_mm"] > 0.5e3 * place.width:
-        return [replace(entry, fields={}) if entry in ends else entry for entry in modifications]
+    plain = [{_both(name): value for name, value in entry.fields.items()} for entry in ends]
+    alike = len(ends) == 2 and ends[0].part.type != ends[1].part.type and plain[0] == plain[1]
+    if not alike or not plain[0] or plain[0]["end_relief_length_mm"] > 0.5e3 * place.width:
+        return list(modifications)
     first, second = ends
-    both = replace(first, removed=lambda roll, face: first.removed(roll, face) + second.removed(roll, face))
+    both = replace(
+        first,
+        removed=lambda roll, face: first.removed(roll, face) + second.removed(roll, face),
+        fields=plain[0],
+        faces=(*first.faces, *second.faces),
+    )
     return [both, *(entry for entry in modifications if entry not in ends)]
+
+
+def _both(name: str) -> str:
+    """Return the field of both faces for one of a face."""
+    return name.replace("_non_datum_face", "").replace("_datum_face", "")
 
 
 def profile_twist(place: FlankPlace, part: Part) -> Modification:

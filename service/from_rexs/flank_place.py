@@ -90,6 +90,11 @@ class FlankPlace:
             raise BadInput.of(f"{part.place}, {diameter}", value / MM, bound)
         return math.sqrt(radius**2 - base**2)
 
+    def face_field(self, name: str, *, datum: bool) -> str:
+        """Return a field of one face: the case's datum face is the end of negative z, whatever the file's."""
+        at_negative_z = datum == (self.loaded.datum < 0.0)
+        return f"{name}_{'datum_face' if at_negative_z else 'non_datum_face'}"
+
     def same(self, first: float, second: float) -> bool:
         """Return whether two roll lengths or face coordinates are one."""
         return abs(first - second) <= _SAME * max(abs(self.tip - self.root), self.width)

@@ -9,7 +9,7 @@ import numpy as np
 from fe_contact.types import FloatArray
 from service.from_rexs.flank_place import FlankPlace, Modification, mm, um
 from service.from_rexs.part import Part
-from service.from_rexs.relief_law import OWN_SHAPES, blended_depth, relative_depth, shape_of
+from service.from_rexs.relief_law import SCALABLE, blended_depth, relative_depth, shape_of
 from service.from_rexs.toothing import required
 from service.problems import BadInput
 from service.units import MM
@@ -39,12 +39,12 @@ def _relief(place: FlankPlace, part: Part, name: str, end: float) -> Modificatio
     if transition is not None:
         return Modification(part, partial(_blended, depth, start, stated, transition))
     fields = {}
-    if shape in OWN_SHAPES:
+    if shape in SCALABLE or place.same(stated, end):
         at_end = depth * float(relative_depth(shape, np.asarray((end - start) / (stated - start))))
         fields = {
             f"{name}_um": um(at_end),
             f"{name}_length_mm": mm(place.radial(start, end)),
-            f"{name}_shape": OWN_SHAPES[shape],
+            f"{name}_shape": shape,
         }
     return Modification(part, partial(_grown, depth, shape, start, stated), fields, rolls=(start,))
 
@@ -123,10 +123,23 @@ def profile_crowning(place: FlankPlace, part: Part) -> Modification:
     highest = place.roll_length(part, "profile_highest_point", "highest point")
     highest = middle if highest is None else highest
     _say_shape(part, "shape_of_profile_crowning")
+    if not (ends[0] - highest) * place.towards_tip > 0.0 > (ends[1] - highest) * place.towards_tip:
+        bound = "between the places of the amounts"
+        raise BadInput.of(
+            f"{part.place}, profile_highest_point", highest / MM, bound, "In mm of roll length."
+        )
     whole = place.same(ends[0], place.tip) and place.same(ends[1], place.root)
     fields = {}
     if whole and place.same(highest, middle) and tip == root:
         fields = {"profile_crowning_um": um(tip)}
+    else:
+        for side, end, stated, amount in (
+            ("tip", place.tip, ends[0], tip),
+            ("root", place.root, ends[1], root),
+        ):
+            name = f"profile_crowning_{side}"
+            fields[f"{name}_um"] = um(amount * ((end - highest) / (stated - highest)) ** 2)
+            fields[f"{name}_length_mm"] = mm(place.radial(highest, end))
     return Modification(part, partial(_bowed, highest, ends, (tip, root)), fields, rolls=(highest,))
 
 

@@ -28,8 +28,8 @@ LAWS: dict[str, Law] = {
     "logarithmic": lambda u: np.log1p(_GROWTH * u),
 }
 
-OWN_SHAPES = {"linear": "linear", "parabolic": "parabolic", "circular": "parabolic"}
-"""The shapes of the case by those of REXS."""
+SCALABLE = ("linear", "parabolic", "circular")
+"""Shapes that stay the same where the amount is stated at another place than the relief's end."""
 
 
 def shape_of(part: Part, item: str = "shape_of_relief") -> str:

@@ -175,20 +175,70 @@ def test_crownings_with_equal_ends_are_fields() -> None:
     assert only_case(modified("helix_crowning", values)).pair.pinion.helix_crowning_um == 4.0
 
 
-def test_a_crowning_with_different_ends_is_rasterized_with_its_difference() -> None:
-    values = {"helix_crowning_amount_datum_face": 0.004, "helix_crowning_amount_non_datum_face": 0.010}
-    unit = modified("helix_crowning", {**values, "helix_highest_point": 8.0})
-    case = only_case(unit)
-    gear, roll = gear_pair(case).pinion, 7e-3
-    # The pinion turns about +u: z = -u, towards the datum face.
-    coordinates = np.linspace(0.0, 20.0, 1001)
-    law = np.where(
-        coordinates < 8.0, 4.0 * (coordinates / 8.0 - 1.0) ** 2, 10.0 * (coordinates - 8.0) ** 2 / 144
+UNEVEN = {"helix_crowning_amount_datum_face": 0.004, "helix_crowning_amount_non_datum_face": 0.010}
+COORDINATES = np.linspace(0.0, 20.0, 1001)
+"""From the datum face, mm. The pinion turns about +u: z = -u, towards the datum face."""
+
+
+def uneven_crowning() -> FloatArray:
+    """Return what the crowning with its highest point at 8 mm removes at the coordinates, um."""
+    to_datum, to_other = ((COORDINATES - 8.0) / 8.0) ** 2, ((COORDINATES - 8.0) / 12.0) ** 2
+    return np.where(COORDINATES < 8.0, 4.0 * to_datum, 10.0 * to_other)
+
+
+@pytest.mark.parametrize("datum", SIGNS)
+def test_a_crowning_with_different_ends_has_fields_of_each_face(datum: int) -> None:
+    flank, orientation = (PINION_RIGHT, PINION_LEFT)[datum > 0], {"datum_face_orientation": DIRECTION[datum]}
+    unit = modified("helix_crowning", {**UNEVEN, "helix_highest_point": 8.0}, flank, {PINION: orientation})
+    gear = gear_pair(only_case(unit)).pinion
+    assert gear.modification.flank_grid is None
+    found = removed(gear, 7e-3, -datum * 1e-3 * (10.0 - COORDINATES))
+    assert found == pytest.approx(uneven_crowning(), abs=1e-9)
+
+
+def test_a_second_modification_of_a_kind_is_rasterized_with_its_difference() -> None:
+    crowning = {**UNEVEN, "helix_highest_point": 8.0}
+    unit = stage_unit(
+        {51: crowning, 52: crowning},
+        {51: "helix_crowning", 52: "helix_crowning"},
+        [relation(120 + part, "reference", origin=PINION_RIGHT, referenced=part) for part in (51, 52)],
     )
-    measured = np.abs(removed(gear, roll, 1e-3 * (10.0 - coordinates)) - law).max()
+    gear = gear_pair(only_case(unit)).pinion
+    found = removed(gear, 7e-3, 1e-3 * (10.0 - COORDINATES))
+    measured = np.abs(found - 2.0 * uneven_crowning()).max()
     fate, words = account(unit, PINION_RIGHT, "flank_grid")
     assert fate == "derived"
     assert measured / 1.2 <= float(words.rsplit(" ", 2)[1]) <= 0.05
+
+
+def test_a_profile_crowning_with_different_ends_has_fields_of_tip_and_root() -> None:
+    values = {
+        "profile_crowning_at_tip": 0.006,
+        "profile_crowning_at_root": 0.002,
+        "profile_highest_point": 41.0,
+    }
+    gear = gear_pair(only_case(modified("profile_crowning", values))).pinion
+    highest = gear.roll_length(20.5e-3)
+    assert gear.modification.flank_grid is None
+    for end, amount in ((gear.tip_roll_length, 6.0), (gear.form_roll_length, 2.0)):
+        assert removed(gear, 0.5 * (highest + end)) == pytest.approx(0.25 * amount, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("shape", "half"),
+    [("exponential", math.expm1(0.5) / math.expm1(1.0)), ("logarithmic", math.log1p(0.5 * math.expm1(1.0)))],
+)
+def test_further_shapes_are_fields_where_the_depth_is_that_of_the_end(shape: str, half: float) -> None:
+    values = {"tip_relief_depth": 0.02, "tip_relief_datum_diameter": 42.0, "shape_of_relief": shape}
+    gear = gear_pair(only_case(modified("tip_relief", values))).pinion
+    middle = 0.5 * (gear.roll_length(21e-3) + gear.tip_roll_length)
+    assert gear.modification.flank_grid is None
+    assert removed(gear, middle) == pytest.approx(20.0 * half, abs=1e-9)
+    inner = gear_pair(
+        only_case(modified("tip_relief", {**values, "tip_relief_evaluation_reference": 43.0}))
+    ).pinion
+    stated = 0.5 * (inner.roll_length(21e-3) + inner.roll_length(21.5e-3))
+    assert removed(inner, stated) == pytest.approx(20.0 * half, abs=0.1)
 
 
 @pytest.mark.parametrize(("torque", "datum"), list(itertools.product((10.0, -10.0), SIGNS)))
@@ -199,9 +249,9 @@ def test_an_end_relief_lies_at_its_face(torque: float, datum: int) -> None:
     unit = modified("end_relief_datum_face", values, flank, orientation)
     gear = gear_pair(only_case(unit, torque)).pinion
     at_datum = -math.copysign(1.0, torque) * datum  # z = -u for a driver that turns about +u
-    assert removed(gear, 7e-3, at_datum * 10e-3) == pytest.approx(12.0, abs=0.05)
-    assert removed(gear, 7e-3, at_datum * 8e-3) == pytest.approx(6.0, abs=0.05)
-    assert removed(gear, 7e-3, -at_datum * 10e-3) == pytest.approx(0.0, abs=0.05)
+    assert removed(gear, 7e-3, at_datum * 10e-3) == pytest.approx(12.0, abs=1e-9)
+    assert removed(gear, 7e-3, at_datum * 8e-3) == pytest.approx(6.0, abs=1e-9)
+    assert removed(gear, 7e-3, -at_datum * 10e-3) == pytest.approx(0.0, abs=1e-9)
 
 
 def test_end_reliefs_that_are_alike_are_one_field() -> None:
