@@ -7,7 +7,7 @@ from dataclasses import dataclass
 COAST_FLANKS = "coast_flanks"
 BEARING_LAWS = "bearing_laws"
 """Laws of bearings that are not linear; without them their tangents at the load."""
-ELEMENT_PASSING = "element_passing"
+ELEMENT_PASSING = "passing_elements"
 """Rolling elements one by one, at the angle of their cage."""
 SPEED_DEPENDENCE = "speed_dependence"
 """Terms of the linear system that change with the speed."""
