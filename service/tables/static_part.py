@@ -40,7 +40,7 @@ _DECISIONS = {
 
 
 _UNBOUNDED = "error not estimated: meshes and slices are compared by STE alone"
-"""Why the largest pressure has no error: its largest point moves between positions and slices of unlike meshes."""
+"""Why the largest pressure has no error: where it is largest differs between meshes and between slices."""
 
 
 def static_headlines(database: SteDatabase, force: float | None = None) -> tuple[Headline, ...]:

@@ -137,12 +137,13 @@ def test_a_triangular_relief_against_a_direct_search_at_any_place_of_the_face(sh
         s_1, radius = float(plain.s_1[0, 0]), float(plain.radius[0, 0])
         reach = float(flank_coordinate(pinion, tip)) - s_1
 
-        def gap(x, s_1=s_1, radius=radius):
-            here = np.array([math.sqrt(2.0 * pinion.base_radius * (s_1 + x))])
-            return x**2 / (2.0 * radius) + float(modification.material_removed(pinion, here, face)[0])
-
-        samples = [gap(x) for x in np.linspace(max(-0.4e-3, -0.3 * s_1), min(0.4e-3, reach), 4001)]
-        assert modified.gap[0, 0] == pytest.approx(min(samples), abs=1e-10)
+        x = np.linspace(max(-0.4e-3, -0.3 * s_1), min(0.4e-3, reach), 4001)
+        here = np.sqrt(2.0 * pinion.base_radius * (s_1 + x))
+        gap = x**2 / (2.0 * radius) + modification.material_removed(pinion, here, face)
+        assert modified.gap[0, 0] == pytest.approx(gap.min(), abs=1e-10)
+        away = flank_coordinate(pinion, begin) - modified.s_1[0, 0]
+        assert modified.place[0, 0] == pytest.approx([away], abs=1e-12)
+        assert modified.jump[0, 0] == pytest.approx(start.jump, rel=1e-12)
 
 
 def test_the_gap_has_no_jump_where_the_relief_starts():
