@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from service.from_rexs.account import Fate
 from service.from_rexs.gear_unit import GearUnit
 from service.from_rexs.part import Part
 
 _SPEED, _TORQUE, _POWER = "rotational_speed", "torque_around_u_axis", "power"
+FORCES_REFUSED = "a scene has no forces on shafts"
 _SHARES = ("operating_time_fraction", "load_duration_fraction")
 """As REXS has it, and as one writer names it."""
 _FORCES = (
@@ -38,8 +40,6 @@ class OperatingPoint:
         N m about u from outside, by external load; None where it follows from the others.
     powers : mapping of int to float
         W into the unit, by external load whose torque is not stated.
-    forces : mapping of int to tuple of float
-        Forces u, v, w in N and moments v, w in N m, by external load; those that are not all zero.
     """
 
     name: str
@@ -48,7 +48,6 @@ class OperatingPoint:
     speeds: Mapping[int, float]
     torques: Mapping[int, float | None]
     powers: Mapping[int, float]
-    forces: Mapping[int, tuple[float, ...]]
 
 
 def operating_points(unit: GearUnit) -> tuple[OperatingPoint, ...]:
@@ -99,13 +98,18 @@ def _point(
     }
     torques: dict[int, float | None] = {}
     powers: dict[int, float] = {}
-    forces: dict[int, tuple[float, ...]] = {}
     for part in loads:
         _enter_torque(part, torques, powers)
-        values = tuple(part.number(item, "load on the shaft") or 0.0 for item in _FORCES)
-        if any(values):
-            forces[part.id] = values
-    return OperatingPoint(name, *place, speeds, torques, powers, forces)
+        _refuse_forces(part)
+    return OperatingPoint(name, *place, speeds, torques, powers)
+
+
+def _refuse_forces(part: Part) -> None:
+    """State that forces and moments across the axis are left out; none of 0 is missed."""
+    for item in _FORCES:
+        if (value := part.number(item, "load on the shaft")) is not None:
+            fate: Fate = "refused" if value else "ignored"
+            part.say(item, fate, FORCES_REFUSED if value else "0")
 
 
 def _enter_torque(part: Part, torques: dict[int, float | None], powers: dict[int, float]) -> None:

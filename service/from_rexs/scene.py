@@ -17,7 +17,6 @@ from service.from_rexs.scene_bearings import scene_bearings, stub_couplings
 from service.from_rexs.scene_gears import cases_by_stage, scene_discs, scene_gears
 from service.from_rexs.scene_housing import scene_housings
 from service.from_rexs.scene_loads import (
-    FORCES_REFUSED,
     AppliedTorque,
     applied_torques,
     driving,
@@ -69,7 +68,6 @@ def scene_table(layout: Layout, flow: PowerFlow, cases: Sequence[StageCase]) -> 
     gears, meshes = scene_gears(layout, shafts, by_stage, Names())
     torques = applied_torques(layout, flow, shafts, cut)
     drivers = driving(torques, flow, trains_of(layout, shafts))
-    _refuse_forces(layout, flow)
     table: dict[str, Any] = {
         "run": {"duration_s": _duration(layout, slowest_mesh(layout, flow, shafts))},
         "gravity_m_per_s2": _gravity(layout),
@@ -142,16 +140,3 @@ def _planets(layout: Layout, names: dict[int, str]) -> list[dict[str, Any]]:
             planet.say("", "derived", f"copy of planet {names[first.id]}")
         tables.append(table)
     return tables
-
-
-def _refuse_forces(layout: Layout, flow: PowerFlow) -> None:
-    """State that forces of external loads are left out."""
-    for load, values in flow.point.forces.items():
-        part = layout.unit.part(load)
-        for item in (a.id for a in part.component.attributes if a.id.startswith("force_")):
-            part.say(item, "refused", FORCES_REFUSED)
-        part.say(
-            "",
-            "refused",
-            f"{FORCES_REFUSED}: {', '.join(f'{value:g}' for value in values)} N, N m in u, v, w",
-        )

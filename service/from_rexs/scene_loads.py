@@ -17,7 +17,6 @@ from service.from_rexs.power_flow import PowerFlow
 from service.from_rexs.scene_shafts import SceneShafts
 from service.units import RPM
 
-FORCES_REFUSED = "forces on shafts have no place in a scene yet"
 HELD_TORQUE = 1e-9
 """Of the largest torque; less is rounding."""
 
@@ -62,7 +61,7 @@ def _external(layout: Layout, flow: PowerFlow, shafts: SceneShafts) -> Iterator[
         placed = layout.shafts[shaft.id]
         z = float(placed.start[2]) + placed.sense * layout.u_on(placed, part)
         item = "torque_around_u_axis"
-        if part.attribute(item) is None or flow.point.torques[load] is None:
+        if flow.point.torques[load] is None:
             part.say(
                 item, "derived", f"{placed.sense * torque:.6g} N m in {flow.point.name}: statics of the train"
             )
