@@ -113,14 +113,16 @@ def test_shafts_turned_about_u_turn_the_scene_about_z() -> None:
 
 def antiparallel(shaft: int, length: float) -> Document:
     """Return the unit with one shaft described from its other end."""
-    on_shaft = {MIDDLE: (12, 13, 33, 34, 140, 141)}[shaft]
+    parts = {INPUT: (11, 31, 32, 130, 131, MOTOR), MIDDLE: (12, 13, 33, 34, 140, 141)}
+    on_shaft, about_u = parts[shaft], ("rotational_speed", "torque_around_u_axis")
 
     def each(number: int, _kind: str, values: dict[str, Any]) -> dict[str, Any]:
         if number == shaft:
             x, y, z = values["support_vector"]
-            return values | {"support_vector": (x + length, y, z), "u_axis_vector": (-1.0, 0.0, 0.0)}
-        if number not in on_shaft:
+            values = values | {"support_vector": (x + length, y, z), "u_axis_vector": (-1.0, 0.0, 0.0)}
+        if number not in (shaft, *on_shaft):
             return values
+        values = {item: -value if item in about_u else value for item, value in values.items()}
         for item in ("u_coordinate_on_shaft", "u_coordinate_on_shaft_inner_side"):
             if item in values:
                 values = values | {item: length - values[item] - values.get("length", 0.0)}
@@ -129,8 +131,9 @@ def antiparallel(shaft: int, length: float) -> Document:
     return two_stages(each=each)
 
 
-def test_a_shaft_described_from_its_other_end_is_the_same_shaft() -> None:
-    assert content(scene_of(antiparallel(MIDDLE, 150.0))) == content(scene_of(two_stages()))
+@pytest.mark.parametrize("shaft", [INPUT, MIDDLE])
+def test_a_shaft_described_from_its_other_end_is_the_same_shaft(shaft: int) -> None:
+    assert content(scene_of(antiparallel(shaft, 150.0))) == content(scene_of(two_stages()))
 
 
 def mirrored() -> Document:
