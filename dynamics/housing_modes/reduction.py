@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eigh, null_space
 
-from dynamics.errors import InputError
+from dynamics.errors import InputError, SolveError
 from dynamics.housing_modes.assembled_housing import AssembledHousing, assemble
-from dynamics.housing_modes.free_modes import FreeModes, free_modes
+from dynamics.housing_modes.free_modes import ACCEPTED, FreeModes, ModeStatus, free_modes
 from dynamics.housing_modes.meshed_housing import MeshedHousing
 from dynamics.housing_modes.quadrature import over_surface
 from dynamics.housing_modes.reduced_housing import PointMotion, ReducedHousing, ReductionChecks, SurfaceMotion
@@ -48,6 +48,7 @@ def reduce_housing(housing: MeshedHousing) -> ReducedHousing:
     """
     assembled = assemble(housing)
     modes = free_modes(assembled, housing.modes)
+    _require_converged(modes, housing.modes)
     space = _independent(assembled, modes)
     coordinates = _craig_bampton(assembled, space)
     frequency = np.concatenate([np.zeros(modes.rigid.shape[1]), modes.frequency])
@@ -64,6 +65,19 @@ def reduce_housing(housing: MeshedHousing) -> ReducedHousing:
         _surface(housing, assembled, coordinates),
         _points(housing, assembled, coordinates),
     )
+
+
+def _require_converged(modes: FreeModes, count: int) -> None:
+    """Raise where modes or deflections did not converge."""
+    if modes.status is ModeStatus.ITERATION_LIMIT:
+        advice = "Ask for fewer modes, or check the mesh for parts that hardly hold together."
+        raise SolveError(f"{len(modes.frequency)} of {count} modes of the housing converged. {advice}")
+    if modes.status is ModeStatus.ILL_CONDITIONED:
+        advice = "Check the quality of the mesh and the stiffness of the mounts."
+        lost = f"{modes.solve_residual:.1e}, above {ACCEPTED:g}"
+        raise SolveError(
+            f"Of the work of forces on the housing's seats {lost}, is lost to rounding. {advice}"
+        )
 
 
 def _independent(housing: AssembledHousing, modes: FreeModes) -> FloatArray:

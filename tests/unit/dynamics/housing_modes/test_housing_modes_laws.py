@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 from lattice_meshes import box, tube
-from scipy.sparse.linalg import spsolve
+from scipy.sparse.linalg import ArpackNoConvergence, eigsh, spsolve
 
-from dynamics.errors import InputError
+from dynamics.errors import InputError, SolveError
 from dynamics.housing_modes import (
     Bore,
     Box,
@@ -27,9 +27,10 @@ from dynamics.housing_modes import (
     SeatBore,
     receptance,
 )
+from dynamics.housing_modes import free_modes as free_modes_module
 from dynamics.housing_modes.assembled_housing import AssembledHousing, assemble
 from dynamics.housing_modes.elasticity import mass_and_stiffness
-from dynamics.housing_modes.free_modes import free_modes
+from dynamics.housing_modes.free_modes import ModeStatus, free_modes
 from dynamics.housing_modes.reduction import reduce_housing
 from dynamics.housing_modes.rigid_faces import independent_freedoms
 from dynamics.housing_modes.rigid_motion import rigid_body
@@ -307,6 +308,7 @@ class Points(dict):
         ({"seats": (UPPER, UPPER)}, "seats[1].name"),
         ({"seats": (UPPER, replace(UPPER, name="same"))}, "seats"),
         ({"seats": (replace(UPPER, bore=replace(UPPER.bore, diameter=0.09)),)}, "diameter"),
+        ({"seats": (replace(UPPER, bore=replace(UPPER.bore, diameter=OUTER)),)}, "diameter"),  # faces outward
         ({"seats": (replace(UPPER, bore=replace(UPPER.bore, position=(0.01, 0.0, 0.075))),)}, "diameter"),
         ({"feet": (Foot("base", Plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0))),)}, "point"),
         ({"feet": (Foot("base", Box((1.0, 1.0, 1.0), (2.0, 2.0, 2.0))),)}, "low"),
@@ -320,3 +322,24 @@ def test_what_is_not_on_the_mesh_is_refused_by_name(changes, field: str) -> None
     with pytest.raises(InputError) as caught:
         reduce_housing(housing(**changes))
     assert caught.value.field == field
+
+
+@pytest.mark.parametrize(
+    ("status", "complaint"),
+    [(ModeStatus.ITERATION_LIMIT, "19 of 20 modes"), (ModeStatus.ILL_CONDITIONED, "1.0e-03, above 1e-06")],
+)
+def test_modes_that_did_not_converge_are_an_error_with_their_residual(status, complaint, monkeypatch) -> None:
+    """As the solver reports them: deflections by a wrong factor, and a search that ended early."""
+
+    def ended_early(matrix, count, *args, **options):
+        square, shape = eigsh(matrix, count, *args, **options)
+        raise ArpackNoConvergence("%s", square[:-1], shape[:, :-1])
+
+    if status is ModeStatus.ITERATION_LIMIT:
+        monkeypatch.setattr("scipy.sparse.linalg.eigsh", ended_early)
+    else:
+        exact = free_modes_module._deflections
+        monkeypatch.setattr(free_modes_module, "_deflections", lambda *a: (exact(*a)[0], 1e-3))
+    assert free_modes(assemble(housing()), 20).status is status
+    with pytest.raises(SolveError, match=complaint):
+        reduce_housing(housing())
