@@ -23,7 +23,8 @@ from service.convert.scene import TabledScene, check_scene, dynamic_scene
 from service.convert.topology import facts_of
 from service.problems import BadInput
 from service.schemas import Case
-from service.schemas.scene import MeshInput, SceneInput
+from service.schemas.scene import SceneInput
+from service.schemas.scene_meshes import MeshInput
 
 _ADVICE = "Name the service that holds it: --service http://127.0.0.1:8321"
 

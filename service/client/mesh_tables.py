@@ -13,7 +13,7 @@ from service.problems import BadInput
 if TYPE_CHECKING:
     from fe_contact.ste import SteDatabase
     from service.schemas import Case
-    from service.schemas.scene import MeshInput
+    from service.schemas.scene_meshes import MeshInput
 
 
 class TableSource(Protocol):

@@ -11,7 +11,7 @@ from service.input_file import InputFile
 from service.problems import BadInput
 
 if TYPE_CHECKING:
-    from service.schemas.scene import MeshInput
+    from service.schemas.scene_meshes import MeshInput
 
 CaseLike: TypeAlias = "schemas.Case | Mapping[str, Any] | Path | InputFile"
 SceneLike: TypeAlias = "schemas.SceneInput | Mapping[str, Any] | Path | InputFile"

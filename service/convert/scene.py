@@ -33,12 +33,13 @@ from service.convert.declared import declared_part, in_si
 from service.convert.errors import named
 from service.convert.shafts import disc_of, has_bent_shafts, shaft_of
 from service.convert.topology import Teeth, check_center_distances, teeth_of
-from service.schemas.scene import CoastFlankInput, MeshInput, SceneInput
+from service.schemas.scene import SceneInput
 from service.schemas.scene_bodies import (
     CouplingInput,
     GearBodyInput,
     HousingInput,
 )
+from service.schemas.scene_meshes import CoastFlankInput, MeshInput
 from service.schemas.scene_motion import DriveInput, FreeRotationInput, LoadTorqueInput, SpeedTorqueInput
 from service.units import DEGREE, MM, RPM, UM
 

@@ -7,7 +7,8 @@ from service.convert.checks import check_case
 from service.convert.scene import check_scene
 from service.convert.topology import facts_of
 from service.problems import BadInput
-from service.schemas.scene import MeshInput, SceneInput
+from service.schemas.scene import SceneInput
+from service.schemas.scene_meshes import MeshInput
 from service.store import ResultStore
 
 

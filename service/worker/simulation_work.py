@@ -18,7 +18,8 @@ from service.convert.plausibility import scene_warnings
 from service.convert.runs import staged
 from service.convert.scene import TabledScene, dynamic_scene
 from service.problems import BadInput, JobFailed
-from service.schemas.scene import MeshInput, SceneInput
+from service.schemas.scene import SceneInput
+from service.schemas.scene_meshes import MeshInput
 from service.store import ResultStore, stored_results
 from service.worker.analysis_work import database_of
 from service.worker.catalogue import ANALYZE

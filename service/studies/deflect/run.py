@@ -18,7 +18,7 @@ from service.convert.case import boundary_errors
 from service.convert.declared import in_si
 from service.convert.scene import TabledScene
 from service.schemas import Case
-from service.schemas.scene import MeshInput
+from service.schemas.scene_meshes import MeshInput
 from service.studies.computation import Computation, Means
 from service.studies.deflect import Inputs
 from service.studies.deflect.agreement import Agreement, in_agreement

@@ -13,7 +13,7 @@ from service import problems
 from service.app import create_app
 from service.cli.commands import app as loa
 from service.registry import STUDIES
-from service.schemas import case, gear, scene, scene_bearings, scene_bodies, scene_motion
+from service.schemas import case, gear, scene, scene_bearings, scene_bodies, scene_meshes, scene_motion
 from service.settings import Settings, load_settings
 
 DOCS = Path(__file__).parents[3] / "docs"
@@ -26,7 +26,7 @@ def page(name: str) -> str:
 
 def models() -> list[type[BaseModel]]:
     """Return the tables of case and scene files."""
-    modules = (case, gear, scene, scene_bearings, scene_bodies, scene_motion)
+    modules = (case, gear, scene, scene_bearings, scene_bodies, scene_meshes, scene_motion)
     found = [vars(module).values() for module in modules]
     return [m for group in found for m in group if inspect.isclass(m) and issubclass(m, BaseModel)]
 
