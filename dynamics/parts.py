@@ -13,6 +13,8 @@ KINDS = (
     "free_rotations",
     "loads",
     "speed_torques",
+    "forces",
+    "unbalances",
     "housings",
 )
 """Kinds whose parts have a name."""
@@ -27,5 +29,7 @@ ON_A_SHAFT = (
     "free_rotations",
     "loads",
     "speed_torques",
+    "forces",
+    "unbalances",
 )
 """Kinds whose parts name the shaft that they are on."""

@@ -20,6 +20,7 @@ from dynamics.joints import Bushing, PlanetBearing
 from dynamics.joints.matrix import Matrix, congruent
 from dynamics.joints.seat import SEAT, seat_matrix
 from dynamics.mechanism.bearing_elements import BearingElement
+from dynamics.motion.mean_loads import at_mean_loads, mean_loads
 from dynamics.motion.observation import local_state
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray, IntArray
@@ -146,8 +147,10 @@ def linear_scene(
     SolveError
         If they do not rest.
     """
+    arrays = at_mean_loads(arrays)
     torque = np.array([float(load.torque(0.0)) for load in scene.loads])
     matrix = arrays.stiffness + stiffness_across(arrays, 0.0)
+    push = push + mean_loads(arrays, 0.0)
     rest = rest_on_bearings(arrays, matrix, arrays.constant + torque @ arrays.load.direction + push)
     if not rest.settled:
         raise SolveError(f"the shafts do not rest on their bearings: {rest.residual:.3g} N are left")

@@ -1,11 +1,13 @@
-"""All force elements of a model: flanks, torques by speed, rotating frames, couplings, bearings."""
+"""All force elements of a model: flanks, loads, rotating frames, couplings, bearings."""
 
 from __future__ import annotations
 
 from dynamics.arrays.elements import Element
 from dynamics.assembly.flank_elements import flank_elements
-from dynamics.assembly.frame_couplings import frame_coupling_elements, frame_turns
+from dynamics.assembly.frame_couplings import frame_coupling_elements
+from dynamics.assembly.load_elements import force_course_elements, unbalance_elements
 from dynamics.assembly.model import Model
+from dynamics.assembly.phases import repeating_phases
 from dynamics.assembly.rotating_frame_elements import rotating_frame_elements
 from dynamics.assembly.spatial_elements import spatial_elements
 from dynamics.assembly.speed_elements import speed_elements
@@ -21,7 +23,7 @@ def force_elements(model: Model) -> tuple[tuple[Element, ...], ElementLaws]:
     in_space, spatial = spatial_elements(model, plain)
     by_speed, speed = speed_elements(scene, rotors, kinematics)
     in_frames, rotating_frame = rotating_frame_elements(model)
-    phase = len(scene.meshes) + len(frame_turns(scene, kinematics))
+    phase = len(scene.meshes) + len(repeating_phases(scene, kinematics))
     passing = [part.name for part in scene.rolling_bearings if part.name in mechanism.passing]
     on_bearings, bearing_laws = bearing_elements(
         scene.laws_with(mechanism.passing),
@@ -31,12 +33,16 @@ def force_elements(model: Model) -> tuple[tuple[Element, ...], ElementLaws]:
         {name: phase + index for index, name in enumerate(passing)},
     )
     across, frame = frame_coupling_elements(scene, rotors, tilt_lever(scene))
+    applied, course = force_course_elements(mechanism)
+    eccentric, unbalance = unbalance_elements(mechanism)
     laws = ElementLaws(
         flank=flanks.law,
         speed_torque=speed,
         spatial_flank=spatial,
         rotating_frame=rotating_frame,
         frame_coupling=frame,
+        applied_force=course,
+        unbalance=unbalance,
         **bearing_laws,
     )
-    return (*in_space, *by_speed, *in_frames, *across, *on_bearings), laws
+    return (*in_space, *by_speed, *applied, *eccentric, *in_frames, *across, *on_bearings), laws

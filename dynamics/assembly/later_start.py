@@ -28,4 +28,10 @@ def starting_at(system: System, time: float, moved: IntArray) -> System:
     )
     torque = arrays.load.torque
     load = arrays.load._replace(torque=torque._replace(start=torque.start - time))
-    return replace(system, arrays=by_address(arrays._replace(reference=moved_on, load=load)))
+    laws = arrays.elements.laws
+    elements = arrays.elements._replace(
+        laws=laws._replace(applied_force=laws.applied_force.starting_at(time))
+    )
+    return replace(
+        system, arrays=by_address(arrays._replace(reference=moved_on, load=load, elements=elements))
+    )

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from fractions import Fraction
 
 import numpy as np
 
 from dynamics.arrays.arrays import Drives, Loads, Reference
 from dynamics.arrays.law_arrays import pack_laws, revolutions
-from dynamics.assembly.frame_couplings import frame_turns
+from dynamics.assembly.phases import phases
 from dynamics.joints import ImposedRotation
-from dynamics.mechanism.cage_turns import cage_turns
 from dynamics.mechanism.columns import column_count, elastic_columns, elastic_terms, times_mass, turn_row
 from dynamics.mechanism.connections import Connections
 from dynamics.mechanism.freedoms import ROTATION, Freedoms
@@ -28,8 +26,7 @@ from dynamics.types import FloatArray
 def lay_out_reference(mechanism: Mechanism, freedoms: Freedoms) -> Reference:
     """Lay out the kinematic motion.
 
-    Behind the positions of the meshes come the turns of frames that couplings cross, then those of cages
-    whose elements pass, in revolutions.
+    Behind the positions of the meshes come the turns of `phases`.
     """
     scene, kinematics, vectors = mechanism.scene, mechanism.kinematics, mechanism.vectors
     laws = [part.speed for part in scene.references]
@@ -37,8 +34,8 @@ def lay_out_reference(mechanism: Mechanism, freedoms: Freedoms) -> Reference:
     free = [-1] * len(scene.drives) + [
         freedoms.find(shaft, ROTATION) for shaft in kinematics.law_shaft[len(scene.drives) :]
     ]
-    turns = further_turns(mechanism)
-    rates, none = (*kinematics.mesh_rate, *turns), len(turns)
+    turns = phases(mechanism)
+    rates, none = (*kinematics.mesh_rate, *(phase.rate for phase in turns)), len(turns)
     shape = (len(rates), len(laws))
     return Reference(
         pack_laws(laws),
@@ -48,16 +45,12 @@ def lay_out_reference(mechanism: Mechanism, freedoms: Freedoms) -> Reference:
         np.array([[rate.denominator for rate in row] for row in rates], dtype=np.int64).reshape(shape),
         np.array([[float(rate) for rate in row] for row in rates]).reshape(shape) / (2.0 * math.pi),
         np.array([*(mesh.position_offset for mesh in scene.meshes), *[0.0] * none], dtype=float),
-        np.array([*(mesh.table.period for mesh in scene.meshes), *[1] * none], dtype=np.int64),
+        np.array(
+            [*(mesh.table.period for mesh in scene.meshes), *(phase.turns for phase in turns)], dtype=np.int64
+        ),
         np.array(free, dtype=np.int64),
         np.ascontiguousarray(vectors[:, freedoms.column]),
     )
-
-
-def further_turns(mechanism: Mechanism) -> tuple[tuple[Fraction, ...], ...]:
-    """Return the revolutions of what is behind the meshes among the positions, per revolution of each law."""
-    scene, kinematics = mechanism.scene, mechanism.kinematics
-    return (*frame_turns(scene, kinematics), *cage_turns(scene, kinematics, mechanism.passing))
 
 
 def lay_out_loads(mechanism: Mechanism, freedoms: Freedoms) -> Loads:

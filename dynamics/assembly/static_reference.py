@@ -24,7 +24,9 @@ def operating_points_at(system: System, displacement: FloatArray, time: float = 
     rest = np.zeros(displacement.size)
     coordinate = local_state(system.arrays, time, displacement, rest).coordinate
     elements, laws = system.arrays.elements, system.arrays.elements.laws.spatial_flank
-    points = np.array([[mesh.misalignment, mesh.center_distance_change] for mesh in system.scene.meshes])
+    points = np.array(
+        [[mesh.misalignment, mesh.center_distance_change] for mesh in system.scene.meshes]
+    ).reshape(-1, 2)
     for index in range(points.shape[0]):
         if elements.law[index] != SPATIAL_FLANK:
             continue
@@ -40,7 +42,9 @@ def with_static_reference(system: System, displacement: FloatArray, time: float 
 
     Where no table follows the bodies it is `system` itself.
     """
-    fixed = np.array([[mesh.misalignment, mesh.center_distance_change] for mesh in system.scene.meshes])
+    fixed = np.array(
+        [[mesh.misalignment, mesh.center_distance_change] for mesh in system.scene.meshes]
+    ).reshape(-1, 2)
     points = operating_points_at(system, displacement, time)
     moved = np.any(points != fixed, axis=1)
     if not np.any(moved):

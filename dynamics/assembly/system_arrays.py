@@ -11,13 +11,8 @@ from dynamics.arrays.arrays import SystemArrays
 from dynamics.arrays.elements import Element, gradients, pack_elements
 from dynamics.arrays.sparse_rows import sparse_matrices
 from dynamics.assembly.model import Model
-from dynamics.assembly.references import (
-    drive_springs,
-    further_turns,
-    lay_out_drives,
-    lay_out_loads,
-    lay_out_reference,
-)
+from dynamics.assembly.phases import phases
+from dynamics.assembly.references import drive_springs, lay_out_drives, lay_out_loads, lay_out_reference
 from dynamics.forces.by_address import by_address
 from dynamics.forces.element_laws import ElementLaws
 from dynamics.mechanism.columns import column_count, times_mass, turn_row
@@ -27,7 +22,7 @@ from dynamics.mechanism.kinematics import mesh_shafts
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.mechanism.rotor import Rotor
 from dynamics.mechanism.weight import weight
-from dynamics.scene.scene import Scene
+from dynamics.scene.scene import LEAST_RATE, Scene
 from dynamics.types import FloatArray
 
 
@@ -63,7 +58,7 @@ def system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) 
         np.ascontiguousarray(times_mass(rotors, vectors) @ vectors.T),
         lay_out_drives(mechanism, freedoms, joined, gradient),
         scale,
-        scale * np.sqrt(np.diag(mass) / np.maximum(held, 1e-300)),
+        scale * _reach(np.diag(mass), held),
         packed,
         lay_out_reference(mechanism, freedoms),
         lay_out_loads(mechanism, freedoms),
@@ -74,11 +69,14 @@ def system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) 
 def _turns(mechanism: Mechanism) -> FloatArray:
     """Return the derivatives of each position, (m + f, N): the driver's rotation against its carrier's.
 
-    Frames and cages turn with the kinematic motion alone.
+    Frames and cages turn with the kinematic motion alone, angles of loads with their shafts.
     """
     scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
-    further = len(further_turns(mechanism))
-    turn = np.zeros((len(scene.meshes) + further, column_count(rotors)))
+    further = phases(mechanism)
+    turn = np.zeros((len(scene.meshes) + len(further), column_count(rotors)))
+    for row, phase in enumerate(further, start=len(scene.meshes)):
+        if phase.shaft is not None:
+            turn[row] += turn_row(rotors, phase.shaft, phase.position) / (2.0 * math.pi)
     for row, mesh in enumerate(scene.meshes):
         driver, _, carrier = mesh_shafts(scene, row)
         gear = scene.gear(mesh.driver)
@@ -87,6 +85,16 @@ def _turns(mechanism: Mechanism) -> FloatArray:
         if carrier is not None:
             turn[row, 6 * carrier + ROTATION] -= rate
     return turn
+
+
+def _reach(mass: FloatArray, held: FloatArray) -> FloatArray:
+    """Return how long an error of each rate moves the freedom on, (n,) s: 1/natural circular frequency.
+
+    What nothing holds, a rotor that torques alone turn, takes that of the slowest freedom that is held.
+    """
+    bound = held > 0.0
+    own = np.sqrt(mass / np.where(bound, held, 1.0))
+    return np.where(bound, own, np.max(own[bound], initial=1.0 / LEAST_RATE))
 
 
 def _scales(scene: Scene, rotors: Sequence[Rotor], freedoms: Freedoms) -> FloatArray:

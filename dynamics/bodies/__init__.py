@@ -8,6 +8,7 @@ from dynamics.bodies.disc_body import DiscBody
 from dynamics.bodies.elastic_shaft import ElasticShaft, elastic_shaft
 from dynamics.bodies.gear_body import GearBody
 from dynamics.bodies.inertia import Inertia, hollow_cylinder
+from dynamics.bodies.load_course import BySpeed, Orders
 from dynamics.bodies.shaft import Shaft
 from dynamics.bodies.speed_curve import SpeedCurve
 from dynamics.bodies.time_law import TimeLaw
@@ -16,11 +17,13 @@ from dynamics.bodies.timoshenko_beam import TimoshenkoBeam, timoshenko_beam
 __all__ = [
     "AngleLaw",
     "BeamSection",
+    "BySpeed",
     "Disc",
     "DiscBody",
     "ElasticShaft",
     "GearBody",
     "Inertia",
+    "Orders",
     "PointOfApplication",
     "ReducedBody",
     "Shaft",

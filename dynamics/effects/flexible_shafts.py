@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dynamics.bodies import ElasticShaft
+from dynamics.bodies.load_course import mean_factor
 from dynamics.effects.effect import RotorEffect, Verdict
 from dynamics.effects.loaded_rotors import LoadedRotor
 from dynamics.joints.seat import SEAT
@@ -85,6 +86,8 @@ def _influence(
     )
     moved = np.linalg.lstsq(held[np.ix_(own, own)], force, rcond=1e-13)[0]
     moved[: len(rigid)] -= np.linalg.lstsq(held[np.ix_(rigid, rigid)], force[: len(rigid)], rcond=1e-13)[0]
+    if not rows and _loaded(mechanism, index):
+        return Bending(True, True, "loads act on the shaft, which no mesh measures", 0.0, elastic)
     away, share, tilted = 0.0, 0.0, 0.0
     for mesh, row in rows.items():
         here = abs(float(row @ moved))
@@ -125,7 +128,19 @@ def _torques(mechanism: Mechanism, index: int) -> FloatArray:
         if load.shaft == scene.shafts[index].name:
             torque = -mechanism.kinematics.sense[index] * float(load.torque(0.0))
             force += torque * turn_row(rotors, index, load.position)
+    for part in scene.forces:
+        if part.shaft == scene.shafts[index].name and part.turns_with is None:
+            rows = section_rows(rotors, index, rotors[index].shaft.origin[2] + part.position)
+            force += float(mean_factor(part.course, 0.0, 0.0)) * (
+                np.array([*part.force, *part.moment]) @ rows
+            )
     return force
+
+
+def _loaded(mechanism: Mechanism, index: int) -> bool:
+    """Whether a force or an unbalance acts on the shaft `index`."""
+    scene, name = mechanism.scene, mechanism.scene.shafts[index].name
+    return name in [part.shaft for part in scene.forces] + [part.shaft for part in scene.unbalances]
 
 
 def _held(mechanism: Mechanism) -> FloatArray:

@@ -14,10 +14,12 @@ class Lateral(RotorEffect):
     cost = "two freedoms per shaft"
 
     def called_for(self, rotor: LoadedRotor) -> Verdict:
-        """Call for it wherever bushings with radial stiffness carry a mesh."""
+        """Call for it wherever bushings with radial stiffness carry a mesh or a load across the axis."""
         stiffness = rotor.rotor.radial_stiffness
         if stiffness == 0.0:
             return Verdict(False, False, "no bushing with radial stiffness: held rigidly", 0.0)
+        if not rotor.meshes and rotor.applied:
+            return Verdict(True, True, "loads displace the shaft on its bushings", 0.0)
         if not rotor.meshes:
             return Verdict(False, True, "no mesh on this shaft", 0.0)
         return Verdict(True, True, "mesh forces displace the shaft on its bushings", rotor.pushed / stiffness)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.bodies.shaft_position import OnShaft
 from dynamics.mechanism.flanks import Flanks
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.mechanism.rotor import Rotor
@@ -64,6 +65,16 @@ class LoadedRotor:
         """Resultant across the axis of all nominal mesh forces, N: around a sun they cancel."""
         along_x, along_y = (sum(mesh.force * mesh.direction[k] for mesh in self.meshes) for k in (0, 1))
         return math.hypot(along_x, along_y)
+
+    @property
+    def applied(self) -> tuple[float, ...]:
+        """Where forces and unbalances act across it: distances from its center of mass, m; weight: at 0."""
+        scene, own = self.mechanism.scene, self.rotor
+        across = [part for part in scene.forces if any((*part.force[:2], *part.moment[:2]))]
+        parts: list[OnShaft] = [*across, *scene.unbalances]
+        at = [part.position for part in parts if part.shaft == own.shaft.name]
+        weight = (0.0,) if any(scene.gravity[:2]) else ()
+        return (*(own.shaft.origin[2] + position - float(own.center[2]) for position in at), *weight)
 
 
 def loaded_rotors(mechanism: Mechanism, flanks: Flanks) -> tuple[LoadedRotor, ...]:

@@ -18,24 +18,37 @@ class Tilt(RotorEffect):
     def called_for(self, rotor: LoadedRotor) -> Verdict:
         """Call for it where a mesh is off the supports' center, or has an axial force, which tilts.
 
-        A center of mass off the supports' center couples tilt to lateral motion and calls for it too.
+        A center of mass off the supports' center couples tilt to lateral motion and calls for it too, as do
+        other loads off that center.
         """
         own = rotor.rotor
         if own.tilt_stiffness == 0.0:
             return Verdict(False, False, "no bushing with tilt stiffness: held rigidly", 0.0)
-        arms = [(mesh.lever - own.elastic_lever, mesh.axial * mesh.radius) for mesh in rotor.meshes]
         influence = sum(
-            mesh.force * (along**2 + across**2)
-            for mesh, (along, across) in zip(rotor.meshes, arms, strict=True)
+            mesh.force * ((mesh.lever - own.elastic_lever) ** 2 + (mesh.axial * mesh.radius) ** 2)
+            for mesh in rotor.meshes
         )
         influence /= own.tilt_stiffness
-        limit = CENTERED * own.shaft.length
-        if any(across > 0.0 for _, across in arms):
-            return Verdict(True, True, "a helical mesh tilts the shaft", influence)
-        if any(abs(along) > limit for along, _ in arms):
-            return Verdict(True, True, "a mesh is off the supports' center", influence)
-        if rotor.meshes and abs(own.elastic_lever) > limit:
-            return Verdict(True, True, "the center of mass is off the supports' center", influence)
+        reason = _why(rotor)
+        if reason:
+            return Verdict(True, True, reason, influence)
         return Verdict(
             False, True, "meshes and mass centered between the supports, no axial force", influence
         )
+
+
+def _why(rotor: LoadedRotor) -> str:
+    """Return what tilts the shaft; empty: nothing does."""
+    own, forces = rotor.rotor, rotor.mechanism.scene.forces
+    limit = CENTERED * own.shaft.length
+    if any(mesh.axial * mesh.radius > 0.0 for mesh in rotor.meshes):
+        return "a helical mesh tilts the shaft"
+    if any(abs(mesh.lever - own.elastic_lever) > limit for mesh in rotor.meshes):
+        return "a mesh is off the supports' center"
+    if (rotor.meshes or rotor.applied) and abs(own.elastic_lever) > limit:
+        return "the center of mass is off the supports' center"
+    if any(abs(along - own.elastic_lever) > limit for along in rotor.applied):
+        return "a load is off the supports' center"
+    if any(any(force.moment[:2]) for force in forces if force.shaft == own.shaft.name):
+        return "a moment tilts the shaft"
+    return ""

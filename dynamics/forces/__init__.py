@@ -1,6 +1,7 @@
 """Forces between bodies and on them: gear mesh, torques by time and by speed, nonlinear bearings."""
 
 import host.analysis  # noqa: F401 (says what to install)
+from dynamics.forces.applied_force import AppliedForce
 from dynamics.forces.coast_flank import CoastFlank
 from dynamics.forces.gear_mesh import GearMesh
 from dynamics.forces.load_torque import LoadTorque
@@ -10,8 +11,10 @@ from dynamics.forces.speed_torque import SpeedTorque
 from dynamics.forces.spring_curve import SpringCurve
 from dynamics.forces.stiffness_table import PeriodicCurve, stiffness_table
 from dynamics.forces.straight_table import straight_table
+from dynamics.forces.unbalance import Unbalance
 
 __all__ = [
+    "AppliedForce",
     "CoastFlank",
     "GearMesh",
     "LoadTorque",
@@ -20,6 +23,7 @@ __all__ = [
     "RollingContact",
     "SpeedTorque",
     "SpringCurve",
+    "Unbalance",
     "stiffness_table",
     "straight_table",
 ]

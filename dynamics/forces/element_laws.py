@@ -15,6 +15,7 @@ from dynamics.forces.ball_elements import BallElements, balls, balls_energy
 from dynamics.forces.by_address import by_address
 from dynamics.forces.compiled import inner
 from dynamics.forces.flank_force import FlankLaws, flank_force
+from dynamics.forces.force_course import ForceCourseLaws, applied_force
 from dynamics.forces.frame_coupling import (
     FrameCouplingLaws,
     frame_coupling,
@@ -33,6 +34,7 @@ from dynamics.forces.spatial_flank import SpatialFlankLaws, spatial_energy, spat
 from dynamics.forces.speed_torque import SpeedTorqueLaws, speed_torque
 from dynamics.forces.spring_curve import SpringCurveLaws, spring_curve, spring_curve_energy
 from dynamics.forces.table_energy import table_energy
+from dynamics.forces.unbalance import UnbalanceLaws, unbalance, unbalance_energy
 from dynamics.types import FloatArray, IntArray
 
 FLANK, SPEED_TORQUE = int(Law.FLANK), int(Law.SPEED_TORQUE)
@@ -40,6 +42,7 @@ ROLLING_CONTACT, SPRING_CURVE = int(Law.ROLLING_CONTACT), int(Law.SPRING_CURVE)
 SPATIAL_FLANK = int(Law.SPATIAL_FLANK)
 ROTATING_FRAME, FRAME_COUPLING = int(Law.ROTATING_FRAME), int(Law.FRAME_COUPLING)
 BALLS, ROLLERS = int(Law.BALLS), int(Law.ROLLERS)
+APPLIED_FORCE, UNBALANCE = int(Law.APPLIED_FORCE), int(Law.UNBALANCE)
 
 
 class ElementLaws(NamedTuple):
@@ -54,6 +57,8 @@ class ElementLaws(NamedTuple):
     frame_coupling: FrameCouplingLaws
     balls: BallElements
     rollers: RollerElements
+    applied_force: ForceCourseLaws
+    unbalance: UnbalanceLaws
 
 
 class Elements(NamedTuple):
@@ -104,9 +109,12 @@ def make_local(elements: Elements, meshes: int) -> LocalState:
         np.zeros(rows),
         np.zeros(rows),
         np.zeros(rows),
+        np.zeros(rows),
+        np.zeros(1),
         np.zeros((count, 2)),
         np.zeros(rows),
         np.zeros(rows),
+        np.zeros((rows, most)),
         np.zeros((rows, most)),
         np.zeros((rows, most)),
         np.zeros(count, dtype=np.int64),
@@ -122,6 +130,8 @@ ROUTINES = {
     Law.FRAME_COUPLING: (frame_coupling, frame_coupling_energy),
     Law.BALLS: (balls, balls_energy),
     Law.ROLLERS: (rollers, rollers_energy),
+    Law.APPLIED_FORCE: (applied_force,),
+    Law.UNBALANCE: (unbalance, unbalance_energy),
 }
 """What a kind of law is compiled from, when a scene first has it; flanks are compiled into every loop."""
 
@@ -166,6 +176,10 @@ def evaluate(elements: Elements, local: LocalState, e: int) -> None:
         balls(laws.balls, entry, local, row, elements.mesh[e])
     elif kind == ROLLERS:
         rollers(laws.rollers, entry, local, row, elements.mesh[e])
+    elif kind == APPLIED_FORCE:
+        applied_force(laws.applied_force, entry, local, row)
+    elif kind == UNBALANCE:
+        unbalance(laws.unbalance, entry, local, row)
 
 
 @inner
@@ -192,6 +206,8 @@ def potential(elements: Elements, local: LocalState, e: int) -> tuple[float, flo
         energy, slope = balls_energy(laws.balls, entry, local, row, elements.mesh[e])
     elif kind == ROLLERS:
         energy, slope = rollers_energy(laws.rollers, entry, local, row, elements.mesh[e])
+    elif kind == UNBALANCE:
+        energy = unbalance_energy(laws.unbalance, entry, local, row)
     return energy, slope
 
 
@@ -225,3 +241,10 @@ def slides(elements: Elements, e: int, row: int) -> bool:
         return False
     first = elements.laws.spatial_flank.row[elements.entry[e], 2]
     return bool(first > 0 and row >= elements.first[e] + first)
+
+
+@inner
+def has_unbalance(elements: Elements) -> bool:
+    """Return whether forces depend on accelerations."""
+    laws = elements.laws.unbalance
+    return bool(laws.amount.size > 0 and not laws.steady[0])

@@ -17,6 +17,8 @@ class Law(IntEnum):
     FRAME_COUPLING = 6  # p = 4 or 8: a coupling of shafts in frames that turn against each other
     BALLS = 7  # p = 5: a bearing's row of balls
     ROLLERS = 8  # p = 5: a bearing's row of rollers
+    APPLIED_FORCE = 9  # p = 1 to 4: a force on a shaft by time, speed or angle
+    UNBALANCE = 10  # p = 3: mass off a shaft's axis
 
 
 OF_BEARINGS = (Law.ROLLING_CONTACT, Law.SPRING_CURVE, Law.BALLS, Law.ROLLERS)

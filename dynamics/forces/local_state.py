@@ -26,12 +26,18 @@ class LocalState(NamedTuple):
         y (m) and y' (m/s), those of the deviations from the kinematic motion.
     drift : (R,) array
         What the kinematic motion adds to the rates, m/s.
+    acceleration : (R,) array
+        y'' with that of the kinematic motion, m/s^2; kept only for unbalances.
+    clock : (1,) array
+        Time, s.
     speed : (E, 2) array
         Spin and speed of the frame in the kinematic motion, rad/s.
     force, elastic : (R,) arrays
         f and the part of it that stores energy, N.
     tangent, viscous : (R, P) arrays
         Row r: df_r/dy and df_r/dy' in the coordinates of its own element, N/m and N s/m.
+    inertial : (R, P) array
+        Row r: df_r/dy'', kg, of unbalances.
     hint : (E,) int array
         Where the last look-up ended: the next starts there.
     """
@@ -43,28 +49,31 @@ class LocalState(NamedTuple):
     coordinate: FloatArray
     rate: FloatArray
     drift: FloatArray
+    acceleration: FloatArray
+    clock: FloatArray
     speed: FloatArray
     force: FloatArray
     elastic: FloatArray
     tangent: FloatArray
     viscous: FloatArray
+    inertial: FloatArray
     hint: IntArray
 
 
 def alone(rows: int) -> LocalState:
     """Allocate for one law of that many rows, and one position."""
+    per_row = {
+        name: np.zeros(rows) for name in ("coordinate", "rate", "drift", "acceleration", "force", "elastic")
+    }
+    square = {name: np.zeros((rows, rows)) for name in ("tangent", "viscous", "inertial")}
     return LocalState(
-        np.zeros(1),
-        np.zeros(1),
-        np.zeros(0),
-        np.zeros((1, 0)),
-        np.zeros(rows),
-        np.zeros(rows),
-        np.zeros(rows),
-        np.zeros((1, 2)),
-        np.zeros(rows),
-        np.zeros(rows),
-        np.zeros((rows, rows)),
-        np.zeros((rows, rows)),
-        np.zeros(1, dtype=np.int64),
+        position=np.zeros(1),
+        pace=np.zeros(1),
+        whole=np.zeros(0),
+        whole_part=np.zeros((1, 0)),
+        clock=np.zeros(1),
+        speed=np.zeros((1, 2)),
+        hint=np.zeros(1, dtype=np.int64),
+        **per_row,
+        **square,
     )

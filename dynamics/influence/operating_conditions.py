@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.bodies import BySpeed, TimeLaw
 from dynamics.scene import Scene
 from dynamics.types import FloatArray
 
@@ -77,5 +78,10 @@ def _condition(time: FloatArray, speed: FloatArray, rate: FloatArray, count: int
 
 def _loads_vary(scene: Scene, time: FloatArray) -> bool:
     """Whether torques change along the run."""
-    laws: Sequence[object] = [load.torque(time) for load in scene.loads]
-    return bool(scene.speed_torques) or any(np.ptp(np.asarray(law)) > 0.0 for law in laws)
+    courses = [force.course for force in scene.forces]
+    laws: Sequence[object] = [
+        *(load.torque(time) for load in scene.loads),
+        *(course(time) for course in courses if isinstance(course, TimeLaw)),
+    ]
+    by_speed = bool(scene.speed_torques) or any(isinstance(course, BySpeed) for course in courses)
+    return by_speed or any(np.ptp(np.asarray(law)) > 0.0 for law in laws)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.arrays.sparse_rows import row_product, subtract_columns, subtract_resistance
-from dynamics.forces.element_laws import evaluate
+from dynamics.forces.element_laws import evaluate, has_unbalance
 from dynamics.forces.routine import routine
 from dynamics.integrators.powers import write_powers
 from dynamics.integrators.stage import add_stages, finish_step, set_motion
@@ -15,6 +15,7 @@ from dynamics.integrators.tableaus import (
     EXPLICIT_WEIGHTS,
 )
 from dynamics.integrators.workspace import Workspace
+from dynamics.motion.accelerations import settle_unbalance
 from dynamics.motion.motion import add_motion
 
 STAGE_COUNT = 7
@@ -61,3 +62,7 @@ def accelerate(system: SystemArrays, work: Workspace, time: float, stage: int) -
     subtract_resistance(sparse, q, v, work.external)
     for i in range(q.size):
         acceleration[i] = row_product(sparse.mobility, sparse.mobility.weight, i, work.external)
+    if has_unbalance(system.elements):
+        settle_unbalance(system, work.motion, local, work.external, acceleration)
+        for r in range(work.force.size):
+            work.force[r] = local.force[r]

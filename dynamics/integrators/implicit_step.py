@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.arrays.sparse_rows import row_product, subtract_columns, subtract_resistance
+from dynamics.forces.element_laws import has_unbalance
 from dynamics.forces.routine import routine
 from dynamics.integrators.local_newton import solve_local_forces
 from dynamics.integrators.powers import write_powers
@@ -17,6 +18,7 @@ from dynamics.integrators.tableaus import (
     IMPLICIT_WEIGHTS,
 )
 from dynamics.integrators.workspace import Count, Workspace
+from dynamics.motion.accelerations import set_acceleration
 from dynamics.motion.motion import add_motion
 
 STAGE_COUNT = 6
@@ -73,6 +75,8 @@ def solve_stage(system: SystemArrays, work: Workspace, level: int, stage: int, t
         q[i] += span * span * linear[i]
         work.external[i] = 0.0  # it has done its part
     add_motion(system, q, v, work.free_position, work.free, work.free_rate)
+    if has_unbalance(system.elements):
+        set_acceleration(system, work.motion, linear, work.free_acceleration)
     iterations = solve_local_forces(system, work, level, span, tolerance, stage == 1)
     subtract_columns(sparse.direction, work.force, work.external)
     for i in range(size):

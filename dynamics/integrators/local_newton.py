@@ -75,6 +75,7 @@ def _move(work: Workspace, span: float) -> None:
     for k in range(rows):
         local.coordinate[k] = work.free[k] - span * span * response[k]
         local.rate[k] = work.free_rate[k] - span * response[k]
+        local.acceleration[k] = work.free_acceleration[k] - response[k]
     for m in range(work.free_position.size):
         local.position[m] = work.free_position[m] - span * span * response[rows + m]
 
@@ -82,15 +83,16 @@ def _move(work: Workspace, span: float) -> None:
 @inner
 def _gain(work: Workspace, span: float, k: int, j: int) -> float:
     """Return how the law of row k changes with what moves the coordinate j of its own element."""
-    return float(span * (span * work.local.tangent[k, j] + work.local.viscous[k, j]))
+    moved = span * (span * work.local.tangent[k, j] + work.local.viscous[k, j])
+    return float(moved + work.local.inertial[k, j])
 
 
 @inner
 def _invert_equations(system: SystemArrays, work: Workspace, level: int, span: float) -> None:
     """List the rows whose law changes by more than WEAK with their own force, and invert their equations.
 
-    These are I + (span^2 df/dy + span df/dy') approach, transposed: then columns of the inverse lie along
-    rows in memory.
+    These are I + (span^2 df/dy + span df/dy' + df/dy'') approach, transposed: then columns of the inverse lie
+    along rows in memory.
     """
     size, approach = 0, work.approach
     for e in range(system.elements.law.size):

@@ -6,10 +6,12 @@ from dynamics.arrays.arrays import SystemArrays
 from dynamics.arrays.sparse_rows import row_product
 from dynamics.forces.compiled import inner
 from dynamics.forces.element_laws import (
+    APPLIED_FORCE,
     FLANK,
     ROTATING_FRAME,
     SPATIAL_FLANK,
     SPEED_TORQUE,
+    UNBALANCE,
     power_along_axes,
     power_by_frames,
     slides,
@@ -84,7 +86,7 @@ def _by_frame_speed(system: SystemArrays, work: Workspace, e: int) -> float:
 
 @inner
 def _in_elements(system: SystemArrays, work: Workspace) -> tuple[float, float, float, float, float]:
-    """Return the powers lost in bearings, flanks and friction, and the one that torques by speed supply.
+    """Return the powers lost in bearings, flanks and friction, and the one that loads supply.
 
     Then that which the kinematic motion exchanges with rotating frames: kinetic energy in the product of
     displacements and speeds, which the balance does not hold.
@@ -93,7 +95,9 @@ def _in_elements(system: SystemArrays, work: Workspace) -> tuple[float, float, f
     for e in range(system.elements.law.size):
         for r in range(system.elements.first[e], system.elements.first[e + 1]):
             lost = (work.force[r] - work.local.elastic[r]) * work.local.rate[r]
-            if system.elements.law[e] == SPEED_TORQUE:
+            if system.elements.law[e] == UNBALANCE:
+                continue  # its work is what it stores
+            if system.elements.law[e] == SPEED_TORQUE or system.elements.law[e] == APPLIED_FORCE:
                 supplied -= work.force[r] * (work.local.rate[r] + work.local.drift[r])
             elif slides(system.elements, e, r):
                 friction += work.force[r] * (work.local.rate[r] + work.local.drift[r])

@@ -69,8 +69,8 @@ class SampleRing(NamedTuple):
     ----------
     point : (L, C) array
         The last L points, in a ring.
-    q, v : (n,) arrays
-        Scratch: the state at a point.
+    q, v, a : (n,) arrays
+        Scratch: the state at a point, and accelerations.
     local : LocalState
         Of the elements there.
     motion : (k, 4) array
@@ -88,6 +88,7 @@ class SampleRing(NamedTuple):
     point: FloatArray
     q: FloatArray
     v: FloatArray
+    a: FloatArray
     local: LocalState
     motion: FloatArray
     moved: IntArray
@@ -112,6 +113,7 @@ def make_ring(arrays: SystemArrays, sampler: Sampler) -> SampleRing:
     signals = rows + sampler.bearings.constant.size
     return SampleRing(
         np.zeros((sampler.taps.size, channels)),
+        np.zeros(n),
         np.zeros(n),
         np.zeros(n),
         make_local(arrays.elements, arrays.turn.shape[0]),

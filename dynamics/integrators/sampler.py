@@ -12,11 +12,12 @@ import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.forces.compiled import compiled, inner
-from dynamics.forces.element_laws import evaluate
+from dynamics.forces.element_laws import evaluate, has_unbalance
 from dynamics.forces.routine import routine
 from dynamics.forces.table_lookup import table_deflection
 from dynamics.integrators.sample_ring import Sampler, SampleRing
 from dynamics.integrators.workspace import Count, Workspace
+from dynamics.motion.accelerations import set_acceleration
 from dynamics.motion.motion import (
     QUANTUM,
     add_motion,
@@ -38,7 +39,7 @@ def sample_start(
 ) -> None:
     """Put the state at t = 0 into the ring."""
     for i in range(ring.q.size):
-        ring.q[i], ring.v[i] = work.q[i], work.v[i]
+        ring.q[i], ring.v[i], ring.a[i] = work.q[i], work.v[i], work.a[i]
     _look(system, work, sampler, ring, work.time[0], 0)
     _see_peaks(ring, sampler, 0, True)
     work.counts[Count.POINT] = 1
@@ -112,12 +113,18 @@ def move_sampled_trains(system: SystemArrays, work: Workspace, ring: SampleRing)
 
 @inner
 def _interpolate(work: Workspace, ring: SampleRing, step: float, elapsed: float) -> None:
-    """Cubic Hermite interpolation of displacements (with rates) and of rates (with accelerations)."""
+    """Cubic Hermite interpolation of displacements (with rates) and of rates (with accelerations).
+
+    Accelerations are the derivative of the latter.
+    """
     u = elapsed / step
     end = u * u * (3.0 - 2.0 * u)
     first, last = step * u * (1.0 - u) ** 2, -step * u * u * (1.0 - u)
     q, v = ring.q, ring.v
+    slope = 6.0 * u * (1.0 - u) / step
     for i in range(q.size):
+        ring.a[i] = slope * (work.v_new[i] - work.v[i])
+        ring.a[i] += (1.0 - u) * (1.0 - 3.0 * u) * work.a[i] + u * (3.0 * u - 2.0) * work.a_new[i]
         q[i] = work.q[i] + end * (work.q_new[i] - work.q[i]) + first * work.v[i] + last * work.v_new[i]
         v[i] = work.v[i] + end * (work.v_new[i] - work.v[i]) + first * work.a[i] + last * work.a_new[i]
 
@@ -130,8 +137,10 @@ def _look(
     local, q, v = ring.local, ring.q, ring.v
     write_motion(system.reference, time, work.moved, ring.motion)
     set_phases(system.reference, ring.motion, local.position, local)
-    set_drift(system.elements, ring.motion, local)
+    set_drift(system.elements, time, ring.motion, local)
     add_motion(system, q, v, local.position, local.coordinate, local.rate)
+    if has_unbalance(system.elements):
+        set_acceleration(system, ring.motion, ring.a, local.acceleration)
     for e in range(system.elements.law.size):
         evaluate(system.elements, local, e)
     rows, n = local.force.size, q.size

@@ -15,7 +15,7 @@ def set_motion(system: SystemArrays, work: Workspace, time: float, position: Flo
     write_motion(system.reference, time, work.moved, work.motion)
     external_force(system, time, work.motion, work.external)
     set_phases(system.reference, work.motion, position, work.local)
-    set_drift(system.elements, work.motion, work.local)
+    set_drift(system.elements, time, work.motion, work.local)
 
 
 @inner

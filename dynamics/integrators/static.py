@@ -13,6 +13,7 @@ from dynamics.assembly.frame_couplings import stiffness_across
 from dynamics.forces.law import Law
 from dynamics.forces.table_lookup import table_deflection
 from dynamics.motion.force_balance import ForceBalance, force_balance
+from dynamics.motion.mean_loads import at_mean_loads, mean_loads
 from dynamics.motion.observation import local_state, observe_laws
 from dynamics.types import FloatArray, IntArray, StaticStatus
 
@@ -51,8 +52,9 @@ def static_equilibrium(system: System, time: float = 0.0) -> StaticSolution:
     Newton's method with step halving, from the state in which every mesh is a spring of its nominal force,
     on the flank that the load presses. Meshes stay in contact on the way; where that leads to no equilibrium
     (a planet whose pin is too far back to carry), they may part, and what nothing holds then stays where it
-    is.
+    is. Loads that change with an angle act by their means over a turn.
     """
+    system = replace(system, arrays=at_mean_loads(system.arrays))
     external = _external(system, time)
     guess = _first_guess(system, time, external)
     solution = _newton(system, time, guess, external, parting=False)
@@ -113,19 +115,11 @@ def _balance(arrays: SystemArrays, time: float, q: FloatArray, external: FloatAr
     return replace(balance, force=force, stiffness=stiffness)
 
 
-def _by_speed(arrays: SystemArrays, time: float) -> FloatArray:
-    """Return the forces (n,) of torques that depend on speed, at the speeds of the kinematic motion."""
-    none = np.zeros(arrays.mass.shape[0])
-    local = local_state(arrays, time, none, none)
-    rows = arrays.elements.first[:-1][arrays.elements.law == Law.SPEED_TORQUE]
-    return np.asarray(-local.force[rows] @ arrays.direction[rows])
-
-
 def _first_guess(system: System, time: float, external: FloatArray) -> FloatArray:
     """Displacements if every mesh were a spring, on the coast flank where the driving one would pull."""
     flanks = system.flanks
     carrying = np.arange(flanks.nominal_force.size)
-    loads = _accelerating(system.arrays, external + _by_speed(system.arrays, time))
+    loads = _accelerating(system.arrays, external + mean_loads(system.arrays, time))
     q, force = _on_springs(system, time, loads, carrying)
     for element, mesh in enumerate(flanks.coast, start=carrying.size):
         if force[mesh] < 0.0:

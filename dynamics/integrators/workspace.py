@@ -93,8 +93,8 @@ class Workspace(NamedTuple):
         Of the elements at the current stage.
     before, after : StepEnd
         Motion at the start and the end of the step accepted, for the audit.
-    free, free_rate : (R,) arrays
-        Local coordinates and their rates without the elements' forces.
+    free, free_rate, free_acceleration : (R,) arrays
+        Local coordinates, their rates and accelerations without the elements' forces.
     free_position : (m,) array
         Positions without them.
     response : (R + m,) array
@@ -151,6 +151,7 @@ class Workspace(NamedTuple):
     after: StepEnd
     free: FloatArray
     free_rate: FloatArray
+    free_acceleration: FloatArray
     free_position: FloatArray
     response: FloatArray
     motion: FloatArray
@@ -190,6 +191,7 @@ def make_workspace(
     counts[Count.LEVEL] = min(int(np.searchsorted(-step_sizes, -first_step)), r - 2)
     counts[Count.SMALLEST_LEVEL] = r - 1
     per_freedom = ("v", "v_rest", "a", "q_new", "v_new", "a_new", "q_error", "v_error", "external", "linear")
+    per_row = ("force", "free", "free_rate", "free_acceleration", "update", "correction")
     return Workspace(
         time=np.zeros(1),
         time_rest=np.zeros(1),
@@ -198,7 +200,7 @@ def make_workspace(
         **{name: np.zeros(n) for name in per_freedom},
         stage_v=np.zeros((STAGES, n)),
         stage_a=np.zeros((STAGES, n)),
-        **{name: np.zeros(rows) for name in ("force", "free", "free_rate", "update", "correction")},
+        **{name: np.zeros(rows) for name in per_row},
         local=make_local(system.elements, meshes),
         before=_step_end(meshes, rows, laws),
         after=_step_end(meshes, rows, laws),

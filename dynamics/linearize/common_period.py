@@ -1,4 +1,4 @@
-"""The common period of all meshes, exact, and where each mesh's harmonics lie among its multiples."""
+"""The common period of meshes and loads, exact, and where each mesh's harmonics lie among its multiples."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from fractions import Fraction
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.assembly.frame_couplings import frame_turns
+from dynamics.assembly.phases import repeating_phases
 from dynamics.errors import InputError
 from dynamics.types import FloatArray
 
@@ -21,7 +21,7 @@ AGREEMENT = 1e-12
 class CommonPeriod:
     """After how many base pitches all meshes are in phase again, with the laws' speeds in fixed proportion.
 
-    Frames that a coupling crosses have turned by whole revolutions then, too.
+    Frames that a coupling crosses have turned by whole revolutions then, too, and loads by angle repeat.
 
     Attributes
     ----------
@@ -42,8 +42,12 @@ class CommonPeriod:
 
     @property
     def counted(self) -> int:
-        """Base pitches in one common period of the first mesh that turns, by which orders are counted."""
-        return abs(next(pitches for pitches in self.pitches if pitches))
+        """Base pitches of the first mesh that turns in one common period, by which orders are counted.
+
+        Without a mesh: revolutions of the leading shaft.
+        """
+        pitches = next((abs(pitches) for pitches in self.pitches if pitches), None)
+        return int(self.revolutions) if pitches is None else pitches
 
     def duration(self, speed: float) -> float:
         """Return the common period in s at the law's speed in rad/s."""
@@ -77,13 +81,13 @@ def common_period(system: System) -> CommonPeriod:
         for mesh, rate in zip(scene.meshes, rates, strict=True)
         if rate
     ]
-    frames = [
-        sum((turn * part for turn, part in zip(row, proportion, strict=True)), Fraction(0))
-        for row in frame_turns(scene, system.kinematics)
+    turning = [
+        (sum((turn * part for turn, part in zip(phase.rate, proportion, strict=True)), Fraction(0)), phase)
+        for phase in repeating_phases(scene, system.kinematics)
     ]
-    turns += [1 / abs(rate) for rate in frames if rate]
-    if not turns:
-        raise InputError("meshes", len(scene.meshes), "at least one that turns")
+    turns += [phase.turns / abs(rate) for rate, phase in turning if rate]
+    if not any(rates):
+        turns.append(Fraction(1))  # of the leading shaft, by which orders then count
     revolutions = Fraction(
         math.lcm(*(turn.numerator for turn in turns)), math.gcd(*(turn.denominator for turn in turns))
     )

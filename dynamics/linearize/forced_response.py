@@ -186,7 +186,7 @@ def peaks(response: ForcedResponse) -> tuple[Peak, ...]:
         ("mesh_force", response.mesh, np.abs(response.mesh_force)),
         ("bearing_force", response.bearing, force),
     ):
-        gains = gain if quantity == "mesh_force" else [np.max(gain, axis=0)] * len(names)
+        gains = gain if quantity == "mesh_force" else [np.max(gain, axis=0, initial=0.0)] * len(names)
         own = [
             _peak(response, quantity, name, (s, h), float(amplitude[k, s, h]), gains[k])
             for k, name in enumerate(names)

@@ -14,6 +14,7 @@ from dynamics.forces.spatial_flank import as_running
 from dynamics.integrators import StaticSolution, static_equilibrium
 from dynamics.mechanism.columns import elastic_terms
 from dynamics.motion.force_balance import force_balance
+from dynamics.motion.mean_loads import at_mean_loads
 from dynamics.motion.observation import local_state
 from dynamics.types import FloatArray
 
@@ -59,13 +60,15 @@ class LinearSystem:
 def about_running(system: System) -> System:
     """Return `system` for small motions about gears that run in the sense of the scene.
 
-    Friction then has the direction of running, also at a time of rest, and no slope in the speed.
+    Friction then has the direction of running, also at a time of rest, and no slope in the speed. Loads that
+    change with an angle are at their means.
     """
-    elements = system.arrays.elements
-    if elements.laws.spatial_flank.running.size == 0:
-        return system
-    laws = elements.laws._replace(spatial_flank=as_running(elements.laws.spatial_flank))
-    return replace(system, arrays=system.arrays._replace(elements=elements._replace(laws=laws)))
+    arrays = at_mean_loads(system.arrays)
+    elements = arrays.elements
+    if elements.laws.spatial_flank.running.size > 0:
+        laws = elements.laws._replace(spatial_flank=as_running(elements.laws.spatial_flank))
+        arrays = arrays._replace(elements=elements._replace(laws=laws))
+    return replace(system, arrays=arrays)
 
 
 def linearize(system: System, time: float = 0.0) -> LinearSystem:
@@ -106,8 +109,9 @@ def _matrices(system: System, time: float) -> list[tuple[str, FloatArray, FloatA
     joints = zip(couplings.name, couplings.motion, couplings.stiffness, strict=True)
     springs = [*bearings, *((name, keep(motion), matrix) for name, motion, matrix in joints)]
     n = system.arrays.mass.shape[0]
+    parts = frame_couplings(system.scene)
     turned = local_state(system.arrays, time, np.zeros(n), np.zeros(n)).position[len(system.scene.meshes) :]
-    for part, turn in zip(frame_couplings(system.scene), turned, strict=False):  # cages behind them
+    for part, turn in zip(parts, turned[: len(parts)], strict=True):
         motion, matrix = frame_joint(system.scene, system.rotors, part, 2.0 * np.pi * float(turn))
         springs.append((system.couplings.name[part.coupling], keep(motion), matrix))
     return springs

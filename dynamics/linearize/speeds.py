@@ -41,8 +41,7 @@ def law_speeds(system: System, speed: float) -> FloatArray:
 
 def mesh_frequencies(system: System, speed: FloatArray) -> FloatArray:
     """Return the mesh frequency of every mesh in Hz at speeds (S,) of the leading law in rad/s, (m, S)."""
-    rate = np.array([[float(value) for value in row] for row in system.kinematics.mesh_rate])
-    per_unit = np.abs(rate @ law_speeds(system, 1.0)) / (2.0 * math.pi)
+    per_unit = np.abs(system.kinematics.float_mesh_rate @ law_speeds(system, 1.0)) / (2.0 * math.pi)
     return np.asarray(per_unit[:, None] * np.abs(speed))
 
 

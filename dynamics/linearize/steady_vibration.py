@@ -10,12 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.assembly.assemble import System
+from dynamics.forces.law import Law
 from dynamics.linearize.common_period import CommonPeriod, common_period
 from dynamics.linearize.flank_cycles import SAMPLES, FlankCycle, averaged, flank_cycles
 from dynamics.linearize.linear_system import LinearSystem, about_running, linearize
+from dynamics.linearize.load_harmonics import load_harmonics
 from dynamics.linearize.speeds import law_speeds
 from dynamics.linearize.whirl import terms_at
-from dynamics.types import FloatArray, IntArray
+from dynamics.types import BoolArray, FloatArray, IntArray
 
 ComplexArray = NDArray[np.complex128]
 Terms = tuple[FloatArray, FloatArray]
@@ -41,6 +43,8 @@ class Excited:
     linear : LinearSystem
         With the mean tangents of the flanks.
     cycles : tuple of FlankCycle
+    turning : bool
+        Whether rotating-frame elements act: gyroscopic and frame terms belong to the system.
     """
 
     system: System
@@ -48,6 +52,7 @@ class Excited:
     period: CommonPeriod
     linear: LinearSystem
     cycles: tuple[FlankCycle, ...]
+    turning: bool = False
 
 
 @dataclass(frozen=True)
@@ -94,7 +99,8 @@ def excited(system: System, time: float = 0.0, orders: int = 10, samples: int = 
     system = about_running(system)
     period, linear = common_period(system), linearize(system, time)
     cycles = flank_cycles(system, linear, time, orders, samples)
-    return Excited(system, time, period, averaged(system, linear, cycles, time), cycles)
+    turning = bool(np.any(system.arrays.elements.law == Law.ROTATING_FRAME))
+    return Excited(system, time, period, averaged(system, linear, cycles, time), cycles, turning)
 
 
 def steady_vibration(
@@ -106,12 +112,24 @@ def steady_vibration(
 ) -> Steady:
     """Return the vibration at `speed` (S,), of `harmonics` (H,) those that are excited."""
     static, force = _excitation(at.system, at.cycles, at.period, harmonics, excitation)
-    heard = np.max(np.abs(force), axis=0)
-    kept = np.flatnonzero(heard > NOTHING * np.max(heard, initial=0.0))
+    loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
+    kept = np.flatnonzero(_heard(force) | _heard(np.moveaxis(loads / at.linear.scale, 1, 2)))
     harmonics, static, force = harmonics[kept], static[:, kept], force[:, kept]
     omega = _omega(at, speed, harmonics)
-    u, residual = _solve(at, force, omega, progress=progress)
+    terms = gyroscopic_terms(at.system, speed) if at.turning else []
+    u, residual = _solve(at, _pushed(at, force) + loads[:, kept], omega, terms, progress=progress)
     return Steady(harmonics, omega, static, force, u[..., 0], residual, u[..., 1:])
+
+
+def _heard(force: ComplexArray) -> BoolArray:
+    """Return which of H harmonics excite: of forces (..., H)."""
+    heard = np.max(np.abs(force), axis=tuple(range(force.ndim - 1)), initial=0.0)
+    return np.asarray(heard > NOTHING * np.max(heard, initial=0.0))
+
+
+def _pushed(at: Excited, force: ComplexArray) -> ComplexArray:
+    """Return the generalized forces (1, H, n) of those on the driving flanks' rows, (R', H)."""
+    return np.asarray(force.T @ at.system.arrays.direction[: force.shape[0]])[None]
 
 
 def swept_vibration(
@@ -127,7 +145,7 @@ def swept_vibration(
     decay = SWEPT * np.sqrt(omega * (np.abs(rate) / np.abs(speed))[:, None])
     rows = at.system.arrays.direction[at.system.driving_rows]
     terms = gyroscopic_terms(at.system, speed) if gyroscopic else []
-    u, residual = _solve(at, force, omega - 1j * decay, terms, rows)
+    u, residual = _solve(at, _pushed(at, force), omega - 1j * decay, terms, rows)
     return Steady(harmonics, omega, static, force, u[..., 0], residual, u[..., 1:])
 
 
@@ -158,7 +176,7 @@ def _excitation(
     mesh force is held, they excite too.
     """
     static = np.zeros((len(cycles), harmonics.size), dtype=complex)
-    force = np.zeros((cycles[-1].rows.stop, harmonics.size), dtype=complex)
+    force = np.zeros((cycles[-1].rows.stop if cycles else 0, harmonics.size), dtype=complex)
     for f, (mesh, cycle) in enumerate(zip(system.scene.meshes, cycles, strict=True)):
         grid = period.pitches[f], mesh.table.period, mesh.position_offset, harmonics
         static[f] = harmonics_of(cycle.static_error, *grid)
@@ -199,21 +217,21 @@ def _solve(
 ) -> tuple[ComplexArray, float]:
     """Displacements (S, H, n, 1 + f), and the relative residual; a block of speeds at a time.
 
-    The first are those of `force` (R', H) on the driving flanks' rows, the others per force along each of
+    The first are those of `force` (S or 1, H, n) on the freedoms, the others per force along each of
     `rows` (f, n). `terms` are those of `gyroscopic_terms` at each speed; none: nothing.
     """
     linear, per_meter = at.linear, 1.0 / at.linear.scale
-    g = at.system.arrays.direction[: force.shape[0]]
+    size = per_meter.size
     mass, damping, total = (
         per_meter[:, None] * a * per_meter for a in (linear.mass, linear.damping, linear.stiffness)
     )
-    pushed = (force.T @ g * per_meter)[None, :, :, None]
+    pushed = (force * per_meter)[..., None]
     if rows is not None:
         each = np.broadcast_to((rows * per_meter).T, (*pushed.shape[:3], rows.shape[0]))
         pushed = np.concatenate([pushed, each], axis=-1)
     displacement = np.empty((*omega.shape, *pushed.shape[2:]), dtype=complex)
     parts = np.stack([total, mass, damping]).reshape(3, -1).astype(complex)
-    block = max(BLOCK // max(omega.shape[1] * g.shape[1] ** 2, 1), 1)
+    block = max(BLOCK // max(omega.shape[1] * size**2, 1), 1)
     left = 0.0
     for start in range(0, omega.shape[0], block):
         part = slice(start, start + block)
@@ -225,7 +243,8 @@ def _solve(
                 np.stack([per_meter[:, None] * term[k] * per_meter for term in terms[part]]) for k in (0, 1)
             ]
             matrix += 1j * w * swept[0][:, None] + swept[1][:, None]
-        right = np.broadcast_to(pushed, (*matrix.shape[:-1], pushed.shape[-1]))
+        exciting = pushed if pushed.shape[0] == 1 else pushed[part]
+        right = np.broadcast_to(exciting, (*matrix.shape[:-1], pushed.shape[-1]))
         solved = np.linalg.solve(matrix, right)
         miss = np.abs(np.einsum("shij,shj->shi", matrix, solved[..., 0]) - right[..., 0])
         left = max(left, float(np.max(miss, initial=0.0)))

@@ -53,6 +53,12 @@ class Kinematics:
         """`ratio` as floats, (shafts, laws)."""
         return np.array([[float(value) for value in row] for row in self.ratio])
 
+    @property
+    def float_mesh_rate(self) -> FloatArray:
+        """`mesh_rate` as floats, (meshes, laws)."""
+        rates = [[float(value) for value in row] for row in self.mesh_rate]
+        return np.array(rates).reshape(len(rates), len(self.law_shaft))
+
 
 def solve_kinematics(scene: Scene) -> Kinematics:
     """Solve for the speeds of all shafts.

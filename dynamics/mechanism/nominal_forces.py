@@ -6,6 +6,8 @@ import numpy as np
 
 from bounds import Quantity
 from dynamics.arrays.law_arrays import slope
+from dynamics.bodies.load_course import BySpeed, mean_factor
+from dynamics.bodies.time_law import TimeLaw
 from dynamics.errors import InputError
 from dynamics.mechanism.kinematics import Kinematics, mesh_shafts
 from dynamics.scene.scene import Scene
@@ -74,7 +76,8 @@ def mean_forces(scene: Scene, kinematics: Kinematics, inertia: FloatArray, momen
 
 def telling_moments(scene: Scene) -> FloatArray:
     """Return times that show how loads and drives run: the laws' knots, just before them, and between."""
-    laws = [*(drive.speed for drive in scene.drives), *(load.torque for load in scene.loads)]
+    courses = [force.course for force in scene.forces if isinstance(force.course, TimeLaw)]
+    laws = [*(drive.speed for drive in scene.drives), *(load.torque for load in scene.loads), *courses]
     stated = np.concatenate([np.empty(0), *(np.asarray(law.time, dtype=float) for law in laws)])
     inside = stated[(stated > 0.0) & (stated < scene.duration)]
     knots = np.unique(np.concatenate([[0.0, scene.duration], inside]))
@@ -90,7 +93,7 @@ def _free_shafts(scene: Scene, kinematics: Kinematics) -> list[int]:
 
 
 def _loads(scene: Scene, kinematics: Kinematics, moments: FloatArray) -> FloatArray:
-    """Load torque about +z on every shaft at `moments` (T,), (s, T)."""
+    """Mean load torque about +z on every shaft at `moments` (T,), (s, T)."""
     torque = np.zeros((len(scene.shafts), moments.size))
     for load in scene.loads:
         shaft = scene.shaft_index(load.shaft)
@@ -100,6 +103,13 @@ def _loads(scene: Scene, kinematics: Kinematics, moments: FloatArray) -> FloatAr
         shaft = scene.shaft_index(part.shaft)
         sense = kinematics.sense[shaft]
         torque[shaft] -= sense * part.curve(sense * (kinematics.float_ratio[shaft] @ laws))
+    for force in scene.forces:
+        speed = 0.0
+        if isinstance(force.course, BySpeed):
+            shaft = scene.shaft_index(force.course.shaft)
+            speed = kinematics.sense[shaft] * (kinematics.float_ratio[shaft] @ laws)
+        shaft = scene.shaft_index(force.shaft)
+        torque[shaft] += force.moment[2] * mean_factor(force.course, moments, speed)
     return torque
 
 

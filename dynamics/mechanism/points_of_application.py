@@ -99,6 +99,12 @@ def _points_of_application(
     points += [
         PointOfApplication(rotor.on_shaft(part.position), turn=True) for part in torques if part.shaft == name
     ]
+    applied: list[OnShaft] = [*scene.forces, *scene.unbalances]
+    points += [
+        PointOfApplication(rotor.on_shaft(part.position), bends, bends, stretches, True)
+        for part in applied
+        if part.shaft == name
+    ]
     return tuple(points)
 
 
@@ -116,7 +122,8 @@ def _positions(scene: Scene, rotor: Rotor) -> list[tuple[str, float]]:
     """Names and positions of what must lie on the shaft; torsional couplings act at its nearer end."""
     name = rotor.shaft.name
     torques: list[OnShaft] = [*scene.drives, *scene.loads, *scene.speed_torques]
-    parts: list[OnShaft] = [*scene.gears, *scene.discs, *scene.ground_bearings, *torques]
+    points: list[OnShaft] = [*scene.forces, *scene.unbalances]
+    parts: list[OnShaft] = [*scene.gears, *scene.discs, *scene.ground_bearings, *torques, *points]
     return [(part.name, part.position) for part in parts if part.shaft == name]
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.linalg import eigh
 
 from dynamics.mechanism.kinematics import Kinematics
+from dynamics.mechanism.load_phases import load_orders
 from dynamics.scene.scene import LEAST_RATE, Scene, check_samples
 from dynamics.types import FloatArray, Json
 
@@ -20,7 +21,7 @@ STOP_BAND = 80.0
 DESIGN = STOP_BAND + 3.0
 """Attenuation required of Kaiser's formulas: they miss by up to 2 dB."""
 INNER_PER_PITCH = 64.0
-"""Inner samples per base pitch at the least: as many as the integrator takes steps."""
+"""Inner samples per base pitch, or period of a load's highest order, at the least: as many as steps."""
 LEAST_FACTOR = 3
 """Inner samples per output sample at the least."""
 MESH_SHARE = 0.01
@@ -110,19 +111,28 @@ def kaiser_shape(stop_band: float) -> float:
 
 
 def order_rate(scene: Scene, kinematics: Kinematics) -> float:
-    """Return the rate, Hz, that passes the wanted mesh orders at the highest speed."""
-    rate = PER_BAND * scene.outputs.mesh_orders * top_mesh_frequency(scene, kinematics)
-    return max(rate, LEAST_RATE)
+    """Return the rate, Hz, that passes the wanted mesh orders and those of loads at the highest speed."""
+    meshes = scene.outputs.mesh_orders * top_mesh_frequency(scene, kinematics)
+    return max(PER_BAND * meshes, PER_BAND * top_load_frequency(scene, kinematics), LEAST_RATE)
 
 
 def top_mesh_frequency(scene: Scene, kinematics: Kinematics) -> float:
-    """Return the highest mesh frequency of the kinematic motion over the run, Hz."""
+    """Return the highest mesh frequency of the kinematic motion over the run, Hz; 0 without a mesh."""
+    return _highest(scene, kinematics.float_mesh_rate)
+
+
+def top_load_frequency(scene: Scene, kinematics: Kinematics) -> float:
+    """Return the highest frequency at which a load excites in the kinematic motion, Hz; 0 without one."""
+    return _highest(scene, load_orders(scene, kinematics))
+
+
+def _highest(scene: Scene, rate: FloatArray) -> float:
+    """Return the highest frequency over the run of what turns at `rate` (r, k) per turn of each law, Hz."""
     time = np.linspace(0.0, scene.duration, SPEED_POINTS)
     knots = [np.asarray(part.speed.time, dtype=float) for part in scene.references]
     inside = np.concatenate(knots)
     time = np.union1d(time, inside[(inside >= 0.0) & (inside <= scene.duration)])
     speed = np.array([part.speed(time) for part in scene.references])
-    rate = np.array([[float(value) for value in row] for row in kinematics.mesh_rate])
     return float(np.max(np.abs(rate @ speed), initial=0.0)) / (2.0 * math.pi)
 
 
@@ -154,17 +164,18 @@ def choose_sampling(scene: Scene, kinematics: Kinematics, mode: float) -> Sampli
         If the run would have too many samples.
     """
     mesh, outputs = top_mesh_frequency(scene, kinematics), scene.outputs
+    load = top_load_frequency(scene, kinematics)
     rate, chosen = outputs.sample_rate, "sample_rate of the scene"
     if rate is None:
         by_order, by_mode = order_rate(scene, kinematics), PER_BAND * mode
         rate = _rounded_up(max(by_order, by_mode))
-        chosen = (
-            f"{outputs.mesh_orders} orders of the highest mesh frequency, {mesh:.4g} Hz"
-            if by_order >= by_mode
-            else f"highest mode that meshes excite, {mode:.4g} Hz"
-        )
+        chosen = f"highest mode that meshes excite, {mode:.4g} Hz"
+        if by_order >= by_mode and load > outputs.mesh_orders * mesh:
+            chosen = f"highest order of a load, {load:.4g} Hz"
+        elif by_order >= by_mode:
+            chosen = f"{outputs.mesh_orders} orders of the highest mesh frequency, {mesh:.4g} Hz"
         check_samples(scene.duration, rate)
-    factor = max(LEAST_FACTOR, math.ceil(INNER_PER_PITCH * mesh / rate))
+    factor = max(LEAST_FACTOR, math.ceil(INNER_PER_PITCH * max(mesh, load) / rate))
     stop_band = STOP_BAND if outputs.anti_alias else 0.0
     return Sampling(
         rate,

@@ -100,8 +100,9 @@ def set_phases(reference: Reference, motion: FloatArray, position: FloatArray, l
 
 
 @inner
-def set_drift(elements: Elements, motion: FloatArray, local: LocalState) -> None:
-    """Write what the kinematic motion adds to the rates of local coordinates, and the speeds of rotation."""
+def set_drift(elements: Elements, time: float, motion: FloatArray, local: LocalState) -> None:
+    """Write the time, what the kinematic motion adds to local rates, and the speeds of rotation."""
+    local.clock[0] = time
     for r in range(local.drift.size):
         local.drift[r] = 0.0
     for e in range(elements.law.size):

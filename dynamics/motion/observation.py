@@ -7,13 +7,22 @@ from typing import NamedTuple
 import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
+from dynamics.arrays.sparse_rows import row_product, subtract_columns, subtract_resistance
 from dynamics.forces.by_address import by_address
-from dynamics.forces.compiled import compiled
-from dynamics.forces.element_laws import evaluate, make_local
+from dynamics.forces.compiled import compiled, inner
+from dynamics.forces.element_laws import evaluate, has_unbalance, make_local
 from dynamics.forces.local_state import LocalState
 from dynamics.forces.packed_tables import PackedTables
 from dynamics.forces.table_lookup import table_deflection, wrapped
-from dynamics.motion.motion import MOTION_COLUMNS, add_motion, set_drift, set_phases, write_motion
+from dynamics.motion.accelerations import settle_unbalance
+from dynamics.motion.motion import (
+    MOTION_COLUMNS,
+    add_motion,
+    external_force,
+    set_drift,
+    set_phases,
+    write_motion,
+)
 from dynamics.types import FloatArray, IntArray
 
 
@@ -63,11 +72,13 @@ class Watch:
         seen = Observed(*(np.empty((size, 1)) for size in (meshes, rows, rows)))
         self._at = by_address(system), by_address(self.local), np.empty((laws, MOTION_COLUMNS))
         self._counted, self._seen = np.zeros((1, laws), dtype=np.int64), by_address(seen)
+        self._scratch = np.empty((2, system.direction.shape[1]))
 
     def look(self, time: float, q: FloatArray, v: FloatArray) -> LocalState:
         """Return what `local_state` does, in arrays that the next look writes over."""
         moment = np.array([time])
-        _observe(*self._at, moment, self._counted, q[np.newaxis], v[np.newaxis], self._seen)
+        states = q[np.newaxis], v[np.newaxis]
+        _observe(*self._at, moment, self._counted, *states, self._scratch, self._seen)
         return self.local
 
 
@@ -84,7 +95,8 @@ def _look(
     seen = Observed(*(np.empty((size, time.size)) for size in (meshes, rows, rows)))
     counted = np.zeros((time.size, laws), dtype=np.int64) if moved is None else moved
     motion = np.empty((laws, MOTION_COLUMNS))
-    _observe(by_address(system), by_address(local), motion, time, counted, q, v, by_address(seen))
+    scratch = np.empty((2, q.shape[1]))
+    _observe(by_address(system), by_address(local), motion, time, counted, q, v, scratch, by_address(seen))
     return seen
 
 
@@ -97,20 +109,44 @@ def _observe(
     moved: IntArray,
     q: FloatArray,
     v: FloatArray,
+    scratch: FloatArray,
     seen: Observed,
 ) -> None:
     """Fill `seen`."""
     for k in range(time.size):
         write_motion(system.reference, time[k], moved[k], motion)
         set_phases(system.reference, motion, local.position, local)
-        set_drift(system.elements, motion, local)
+        set_drift(system.elements, time[k], motion, local)
         add_motion(system, q[k], v[k], local.position, local.coordinate, local.rate)
         for e in range(system.elements.law.size):
             evaluate(system.elements, local, e)
+        if has_unbalance(system.elements):
+            _settle(system, local, motion, time[k], q[k], v[k], scratch)
         for m in range(local.position.size):
             seen.position[m, k] = wrapped(local.position[m], float(system.reference.period[m]))
         for r in range(local.force.size):
             seen.coordinate[r, k], seen.force[r, k] = local.coordinate[r], local.force[r]
+
+
+@inner
+def _settle(
+    system: SystemArrays,
+    local: LocalState,
+    motion: FloatArray,
+    time: float,
+    q: FloatArray,
+    v: FloatArray,
+    scratch: FloatArray,
+) -> None:
+    """Let unbalances agree with the accelerations in this state; `scratch` is (2, n)."""
+    external, acceleration = scratch[0], scratch[1]
+    external_force(system, time, motion, external)
+    subtract_columns(system.sparse.direction, local.force, external)
+    subtract_resistance(system.sparse, q, v, external)
+    mobility = system.sparse.mobility
+    for i in range(q.size):
+        acceleration[i] = row_product(mobility, mobility.weight, i, external)
+    settle_unbalance(system, motion, local, external, acceleration)
 
 
 def observe_laws(system: SystemArrays, time: FloatArray) -> FloatArray:

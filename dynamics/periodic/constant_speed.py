@@ -16,7 +16,7 @@ from dynamics.types import FloatArray
 def at_constant_speed(system: System, period: CommonPeriod, speed: float, time: float) -> SystemArrays:
     """Return the arrays with the drives at `speed` (rad/s, of the leading law) for ever.
 
-    Load torques keep the values that they have at `time`.
+    Loads by time keep the values that they have at `time`.
 
     Raises
     ------
@@ -27,13 +27,16 @@ def at_constant_speed(system: System, period: CommonPeriod, speed: float, time: 
     if not np.isfinite(speed) or speed * extreme <= 0.0:
         bound = (above if extreme > 0.0 else below)(0.0, note=", the sense in which the scene turns")
         raise InputError("speed", speed, bound, "Reverse the scene's drive for the other flanks.")
-    laws = _constant(speed * period.proportion)
+    speeds = _constant(speed * period.proportion)
     none = np.zeros(period.proportion.size)
     torque = np.array([float(load.torque(time)) for load in system.scene.loads])
     arrays = system.arrays
+    laws = arrays.elements.laws
+    laws = laws._replace(applied_force=laws.applied_force.held_at(time))
     changed = arrays._replace(
-        reference=arrays.reference._replace(speed=laws, whole=none, fraction=none),
+        reference=arrays.reference._replace(speed=speeds, whole=none, fraction=none),
         load=arrays.load._replace(torque=_constant(torque)),
+        elements=arrays.elements._replace(laws=laws),
     )
     return by_address(changed)
 

@@ -72,7 +72,7 @@ def motion(
     path = over_period.path(orbit.state)
     once = over_period.times
     step_end = np.concatenate([once[:-1] + k * once[-1] for k in range(problem.repeat)] + [[orbit.duration]])
-    pitches = problem.repeat * next(abs(count) for count in problem.period.pitches if count)
+    pitches = problem.repeat * problem.period.counted
     finest = max((step_end.size - 1) / pitches, samples_per_pitch)
     samples = pitches * 2 ** int(np.ceil(np.log2(finest)))
     time = orbit.duration * np.arange(samples) / samples

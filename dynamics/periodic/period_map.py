@@ -19,14 +19,16 @@ from dynamics.integrators.workspace import Workspace, make_workspace
 from dynamics.linearize import natural_modes
 from dynamics.linearize.common_period import CommonPeriod, common_period
 from dynamics.linearize.linear_system import about_running
+from dynamics.linearize.load_harmonics import load_cycles
 from dynamics.mechanism.additions import ELEMENT_PASSING
 from dynamics.periodic.constant_speed import at_constant_speed
 from dynamics.periodic.march import HALVINGS, march
 from dynamics.periodic.period_grid import PeriodGrid, period_grid, refined
+from dynamics.periodic.typical_size import largest_force, resonant_gain, stiffest
 from dynamics.types import FloatArray
 
 STEPS_PER_CYCLE = 24  # of the highest natural frequency
-STEPS_PER_PITCH = 64  # of the mesh with the most pitches
+STEPS_PER_PITCH = 64  # of the mesh with the most pitches, or cycle of a load's highest order
 NEWTON_SHARE = 1e-12  # of the largest force: last update in an implicit stage
 DIFFERENCE = 1e-6  # of the size of the state, for derivatives
 
@@ -95,13 +97,13 @@ def periodic_problem(
         raise SolveError(f"no static equilibrium: {start.status.name.lower()}, {start.residual:.3g} N left")
     at_constant_speed(system, period, slowest, time)  # checks the speed
     system = with_static_reference(system, start.displacement, time)
-    cycles = _highest(system, natural_modes(system, time).frequency) * period.duration(slowest)
-    pitches = max(abs(count) for count in period.pitches)
+    modes = natural_modes(system, time)
+    cycles = _highest(system, modes.frequency) * period.duration(slowest)
+    pitches = max((abs(count) for count in period.pitches), default=0)
+    waves = max(pitches, load_cycles(system, period))
     rest = start.displacement * system.arrays.scale
-    force = max(float(np.max(np.abs(start.mesh_force))), float(np.max(system.flanks.nominal_force)))
-    size = float(np.max(np.abs(rest)))
-    stiff = float(np.max(system.flanks.mean_stiffness))
-    size = max(size, force / stiff)
+    force, stiff = largest_force(system, start.mesh_force), stiffest(system)
+    size = max(float(np.max(np.abs(rest))), resonant_gain(system, modes) * force / stiff)
     if size <= 0.0:
         raise InputError(
             "loads", 0.0, "present, or a nominal force given", "They set the size of the motion."
@@ -109,7 +111,7 @@ def periodic_problem(
     return PeriodicProblem(
         system,
         period,
-        period_grid(system, period, 1.0 / max(steps_per_cycle * cycles, STEPS_PER_PITCH * pitches)),
+        period_grid(system, period, 1.0 / max(steps_per_cycle * cycles, STEPS_PER_PITCH * waves)),
         repeat,
         time,
         np.concatenate([rest, np.zeros(rest.size)]),

@@ -25,6 +25,8 @@ def resolved_case(system: System) -> Json:
         "meshes": [_mesh(system, index) for index in range(len(scene.meshes))],
         "drives": [asdict(drive) for drive in scene.drives],
         "speed_torques": [asdict(torque) for torque in scene.speed_torques],
+        "forces": [asdict(force) for force in scene.forces],
+        "unbalances": [asdict(part) for part in scene.unbalances],
         "housings": [asdict(housing) for housing in scene.housings],
         "rolling_contacts": [asdict(part) for part in scene.rolling_contacts],
         "spring_curves": [asdict(part) for part in scene.spring_curves],

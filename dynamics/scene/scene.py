@@ -10,7 +10,15 @@ from bounds import at_most
 from dynamics.bodies import AngleLaw, DiscBody, GearBody, Shaft, TimeLaw
 from dynamics.checks import distinct, not_negative, one_of, positive, within
 from dynamics.errors import InputError
-from dynamics.forces import GearMesh, LoadTorque, RollingContact, SpeedTorque, SpringCurve
+from dynamics.forces import (
+    AppliedForce,
+    GearMesh,
+    LoadTorque,
+    RollingContact,
+    SpeedTorque,
+    SpringCurve,
+    Unbalance,
+)
 from dynamics.forces.bearing_law import BearingLaw
 from dynamics.joints import (
     Bushing,
@@ -24,6 +32,7 @@ from dynamics.joints import (
 from dynamics.parts import KINDS, ON_A_SHAFT
 from dynamics.rolling_bearings.row_law import row_law
 from dynamics.scene.bearing_check import check_bearing_laws
+from dynamics.scene.force_check import check_force_shafts
 from dynamics.scene.frame_check import check_couplings, check_frames, check_gravity, check_on_axis
 from dynamics.scene.housing_check import check_housings
 from dynamics.scene.position_check import check_positions
@@ -58,7 +67,7 @@ class Scene:
     Attributes
     ----------
     shafts, gears, bushings, planet_bearings, couplings, meshes, drives, free_rotations, loads : tuples
-    speed_torques, housings, discs, rolling_bearings : tuples
+    speed_torques, housings, discs, rolling_bearings, forces, unbalances : tuples
         Parts, each with a name unique among its kind. Drives and free rotations together set the kinematic
         motion of all shafts: one for each independent speed of the gearing.
     rolling_contacts, spring_curves : tuples
@@ -98,6 +107,8 @@ class Scene:
     spring_curves: tuple[SpringCurve, ...] = ()
     discs: tuple[DiscBody, ...] = ()
     rolling_bearings: tuple[RollingBearing, ...] = ()
+    forces: tuple[AppliedForce, ...] = ()
+    unbalances: tuple[Unbalance, ...] = ()
     gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
     effects: Mapping[str, str] = field(default_factory=dict)
     outputs: Outputs = field(default_factory=Outputs)
@@ -121,7 +132,9 @@ class Scene:
         for kind in ON_A_SHAFT:
             for index, part in enumerate(getattr(self, kind)):
                 one_of(f"{kind}[{index}].shaft", part.shaft, shafts)
-        for kind in ("gears", "discs", "bushings", "rolling_bearings", "planet_bearings"):
+        check_force_shafts(self.forces, shafts)
+        placed = ("gears", "discs", "bushings", "rolling_bearings", "planet_bearings")
+        for kind in (*placed, "forces", "unbalances"):
             check_positions(self.shafts, kind, getattr(self, kind))
         for index, mesh in enumerate(self.meshes):
             one_of(f"meshes[{index}].driver", mesh.driver, gears)

@@ -59,7 +59,9 @@ class Window:
 
     def on_laws_of(self, other: System) -> System:
         """Return its system with the force laws of `other`, the run's system but for these."""
-        arrays = self.system.arrays._replace(elements=other.arrays.elements)
+        own, laws = self.system.arrays.elements.laws, other.arrays.elements.laws
+        laws = laws._replace(applied_force=own.applied_force)  # whose clock starts here
+        arrays = self.system.arrays._replace(elements=other.arrays.elements._replace(laws=laws))
         return replace(self.system, arrays=by_address(arrays))
 
 
@@ -81,10 +83,10 @@ class Difference:
 
 
 def windows(system: System, states_of: StatesOf, samples: int) -> list[Window]:
-    """Return windows at the ends of equal parts of the run; none where it is too short for one."""
+    """Return windows at the ends of equal parts of the run; none where it is too short or has no mesh."""
     count = WINDOWS if SHARE * samples >= WINDOWS * LEAST_SAMPLES else 1
     size = int(SHARE * samples / count)
-    if size < LEAST_SAMPLES:
+    if size < LEAST_SAMPLES or not system.scene.meshes:
         return []
     ends = [round((k + 1) * samples / count) for k in range(count)]
     return [_window(system, states_of, end - size, end) for end in ends]

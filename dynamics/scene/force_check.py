@@ -1,0 +1,23 @@
+"""Check of the shafts that applied forces name beside their own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from dynamics.bodies.time_law import TimeLaw
+from dynamics.checks import one_of
+from dynamics.forces.applied_force import AppliedForce
+
+
+def check_force_shafts(forces: Sequence[AppliedForce], shafts: Sequence[str]) -> None:
+    """Refuse forces that turn with, or depend on, a shaft that does not exist.
+
+    Raises
+    ------
+    InputError
+    """
+    for index, force in enumerate(forces):
+        if force.turns_with is not None:
+            one_of(f"forces[{index}].turns_with", force.turns_with, shafts)
+        if not isinstance(force.course, TimeLaw):
+            one_of(f"forces[{index}].course.shaft", force.course.shaft, shafts)
