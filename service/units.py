@@ -13,11 +13,13 @@ MRAD = 1e-3
 NM = 1e-9
 GPA = 1e9
 DEGREE = math.pi / 180.0
+G_MM = 1e-6
 RPM = 2.0 * math.pi / 60.0
 N_PER_UM = 1e6
 N_PER_MM3 = 1e9
 
 BY_SUFFIX: dict[str, Unit] = {
+    "_g_mm": Unit("g mm", G_MM, "kg m"),  # before "_mm", with which it ends
     "_mm": Unit("mm", MM, "m"),
     "_n_per_um": Unit("N/um", N_PER_UM, "N/m"),
     "_n_per_mm3": Unit("N/mm^3", N_PER_MM3, "N/m^3"),
@@ -44,6 +46,7 @@ _OF_SI = {
     "N m/rad": "_n_m_per_rad",
     "N m s/rad": "_n_m_s_per_rad",
     "kg": "_kg",
+    "kg m": "_g_mm",
     "kg m^2": "_kg_m2",
     "kg/m^3": "_kg_per_m3",
 }

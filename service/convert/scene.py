@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from dynamics.bodies import AngleLaw, GearBody, Inertia, SpeedCurve, TimeLaw, hollow_cylinder
+from dynamics.bodies import AngleLaw, GearBody, Inertia, TimeLaw, hollow_cylinder
 from dynamics.effects.mechanism_of import mechanism_of
 from dynamics.forces import (
     CoastFlank,
     GearMesh,
-    LoadTorque,
     MeshTable,
-    SpeedTorque,
     straight_table,
 )
 from dynamics.joints import Coupling, FreeRotation, Housing, ImposedRotation
@@ -31,6 +29,7 @@ from service.convert.case import boundary_errors
 from service.convert.closed_form import closed_forms
 from service.convert.declared import declared_part, in_si
 from service.convert.errors import named
+from service.convert.loads import force_of, load_torque_of, speed_torque_of, unbalance_of
 from service.convert.shafts import disc_of, has_bent_shafts, shaft_of
 from service.convert.topology import Teeth, check_center_distances, teeth_of
 from service.schemas.scene import SceneInput
@@ -40,7 +39,7 @@ from service.schemas.scene_bodies import (
     HousingInput,
 )
 from service.schemas.scene_meshes import CoastFlankInput, MeshInput
-from service.schemas.scene_motion import DriveInput, FreeRotationInput, LoadTorqueInput, SpeedTorqueInput
+from service.schemas.scene_motion import DriveInput, FreeRotationInput
 from service.units import DEGREE, MM, RPM, UM
 
 ANY_STIFFNESS = 1e8  # N/m; checks that need no table do not read it
@@ -141,13 +140,15 @@ def _assembled(scene: SceneInput, facts: Mapping[str, PairFacts], meshes: tuple[
             drives=tuple(_drive(i, drive) for i, drive in enumerate(scene.drives)),
             planet_bearings=tuple(planet_bearing_of(i, b) for i, b in enumerate(scene.planet_bearings)),
             couplings=tuple(_coupling(i, part) for i, part in enumerate(scene.couplings)),
-            speed_torques=tuple(_speed_torque(i, part) for i, part in enumerate(scene.speed_torques)),
+            speed_torques=tuple(speed_torque_of(i, part) for i, part in enumerate(scene.speed_torques)),
             free_rotations=tuple(_free_rotation(i, part) for i, part in enumerate(scene.free_rotations)),
             housings=tuple(_housing(i, part) for i, part in enumerate(scene.housings)),
             rolling_bearings=tuple(rolling_bearing_of(i, b) for i, b in enumerate(scene.rolling_bearings)),
             rolling_contacts=tuple(rolling_contacts_of(scene)),
             spring_curves=tuple(spring_curves_of(scene)),
-            loads=tuple(_load(i, load) for i, load in enumerate(scene.loads)),
+            loads=tuple(load_torque_of(i, load) for i, load in enumerate(scene.loads)),
+            forces=tuple(force_of(i, force) for i, force in enumerate(scene.forces)),
+            unbalances=tuple(unbalance_of(i, part) for i, part in enumerate(scene.unbalances)),
             duration=scene.run.duration_s,
             gravity=(x, y, z),
             effects=dict(scene.effects),
@@ -255,23 +256,3 @@ def _free_rotation(index: int, rotation: FreeRotationInput) -> FreeRotation:
     """Return a free rotation."""
     with named(f"free_rotations[{index}]"):
         return FreeRotation(rotation.name, rotation.shaft, **in_si(FreeRotation, rotation))
-
-
-def _load(index: int, load: LoadTorqueInput) -> LoadTorque:
-    """Return a load."""
-    with named(f"loads[{index}]"):
-        law = TimeLaw(load.time_s, load.torque_n_m, load.course)
-        return LoadTorque(load.name, load.shaft, law, load.position_mm * MM)
-
-
-def _speed_torque(index: int, torque: SpeedTorqueInput) -> SpeedTorque:
-    """Return a torque by speed."""
-    with named(f"speed_torques[{index}]"):
-        speed = [value * RPM for value in torque.speed_rpm]
-        if torque.kind == "table":
-            curve = SpeedCurve.table(speed, torque.torque_n_m)
-        elif torque.kind == "quadratic":
-            curve = SpeedCurve.quadratic(torque.torque_n_m[0], speed[0])
-        else:
-            curve = SpeedCurve.constant(torque.torque_n_m[0], speed[0])
-        return SpeedTorque(torque.name, torque.shaft, curve, torque.position_mm * MM)

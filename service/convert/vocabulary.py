@@ -11,6 +11,8 @@ from dynamics.bodies.disc_body import DiscBody
 from dynamics.bodies.gear_body import GearBody
 from dynamics.bodies.inertia import Inertia
 from dynamics.bodies.shaft import Shaft as TurningShaft
+from dynamics.forces.applied_force import AppliedForce
+from dynamics.forces.unbalance import Unbalance
 from dynamics.joints.bushing import Bushing
 from dynamics.joints.coupling import Coupling
 from dynamics.joints.free_rotation import FreeRotation
@@ -56,7 +58,7 @@ _ANYWHERE = (
     *(FlankModification, Material, Shaft, *(Gear, RingGear, *_with_parts(parts_of(Gear)))),
     *(GearBody, DiscBody, Inertia, TurningShaft, BeamSection),
     Outputs,
-    *(Bushing, PlanetBearing, Coupling, FreeRotation),
+    *(Bushing, PlanetBearing, Coupling, FreeRotation, AppliedForce, Unbalance),
     *(RollingBearing, BallBearing, RollerBearing, CatalogLine),
 )
 """What declares its fields, by names that mean the same in every table."""

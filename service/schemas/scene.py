@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, Strict, model_validator
@@ -22,6 +23,7 @@ from service.schemas.scene_bodies import (
     PlanetsInput,
 )
 from service.schemas.scene_discs import DiscInput
+from service.schemas.scene_loads import ForceInput, UnbalanceInput
 from service.schemas.scene_meshes import MeshInput
 from service.schemas.scene_motion import DriveInput, FreeRotationInput, LoadTorqueInput, SpeedTorqueInput
 from service.schemas.scene_shafts import ShaftInput
@@ -79,7 +81,7 @@ class SceneInput(BoundaryModel):
         min_length=1, max_length=1000, description="Shafts: a table [[shafts]] for each"
     )
     gears: Annotated[tuple[GearBodyInput, ...], Strict(False)] = Field(
-        min_length=2, max_length=1000, description="Gears on the shafts: a table [[gears]] for each"
+        default=(), max_length=1000, description="Gears on the shafts: a table [[gears]] for each"
     )
     discs: Annotated[tuple[DiscInput, ...], Strict(False)] = Field(default=(), max_length=1000)
     bushings: Annotated[tuple[BushingInput, ...], Strict(False)] = Field(default=(), max_length=1000)
@@ -87,7 +89,7 @@ class SceneInput(BoundaryModel):
         default=(), max_length=1000
     )
     meshes: Annotated[tuple[MeshInput, ...], Strict(False)] = Field(
-        min_length=1, max_length=1000, description="Gear pairs in mesh: a table [[meshes]] for each"
+        default=(), max_length=1000, description="Gear pairs in mesh: a table [[meshes]] for each"
     )
     drives: Annotated[tuple[DriveInput, ...], Strict(False)] = Field(default=(), max_length=1000)
     free_rotations: Annotated[tuple[FreeRotationInput, ...], Strict(False)] = Field(
@@ -101,6 +103,8 @@ class SceneInput(BoundaryModel):
     housings: Annotated[tuple[HousingInput, ...], Strict(False)] = Field(default=(), max_length=100)
     planets: Annotated[tuple[PlanetsInput, ...], Strict(False)] = Field(default=(), max_length=100)
     loads: Annotated[tuple[LoadTorqueInput, ...], Strict(False)] = Field(default=(), max_length=1000)
+    forces: Annotated[tuple[ForceInput, ...], Strict(False)] = Field(default=(), max_length=1000)
+    unbalances: Annotated[tuple[UnbalanceInput, ...], Strict(False)] = Field(default=(), max_length=1000)
     accuracy: SceneAccuracyInput = Field(
         default=SceneAccuracyInput(), description="Tolerance that decides on automatic effects", examples=[{}]
     )
@@ -136,14 +140,8 @@ class SceneInput(BoundaryModel):
         for kind in ON_A_SHAFT:
             for index, part in enumerate(getattr(self, kind)):
                 _refuse_unknown(f"{kind}[{index}].shaft", part.shaft, shafts)
-        for index, shaft in enumerate(self.shafts):
-            if shaft.frame is not None:
-                _refuse_unknown(f"shafts[{index}].frame", shaft.frame, shafts)
-        for index, coupling in enumerate(self.couplings):
-            _refuse_unknown(f"couplings[{index}].first", coupling.first, shafts)
-            _refuse_unknown(f"couplings[{index}].second", coupling.second, shafts)
-        for index, planets in enumerate(self.planets):
-            _refuse_unknown(f"planets[{index}].planet", planets.planet, shafts)
+        for field, name in _further_shafts(self):
+            _refuse_unknown(field, name, shafts)
         bushings = [*(part.name for part in self.bushings), *(part.name for part in self.rolling_bearings)]
         for index, housing in enumerate(self.housings):
             for number, name in enumerate(housing.bushings):
@@ -153,6 +151,21 @@ class SceneInput(BoundaryModel):
             _refuse_unknown(f"meshes[{index}].driver", mesh.driver, gears)
             _refuse_unknown(f"meshes[{index}].driven", mesh.driven, [g for g in gears if g != mesh.driver])
         return self
+
+
+def _further_shafts(scene: SceneInput) -> Iterator[tuple[str, str]]:
+    """Yield the fields by which parts name shafts beside that they are on, and the names."""
+    fields = {
+        "shafts": ("frame",),
+        "couplings": ("first", "second"),
+        "planets": ("planet",),
+        "forces": ("turns_with", "of_shaft"),
+    }
+    for kind, names in fields.items():
+        for index, part in enumerate(getattr(scene, kind)):
+            for name in names:
+                if getattr(part, name) is not None:
+                    yield f"{kind}[{index}].{name}", getattr(part, name)
 
 
 def _refuse_repeated(kind: str, names: list[str]) -> None:

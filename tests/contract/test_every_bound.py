@@ -143,6 +143,16 @@ def flexible_scene() -> Table:
         "torque_n_m": [0.0, 9.0],
     }
     scene["meshes"][0] |= {"coast_flank": {"backlash_um": 80.0}}
+    on_the_fan = {"shaft": "fan", "position_mm": 50.0}
+    pull = on_the_fan | {"force_n": [0.0, 5.0, 0.0], "moment_n_m": [0.0, 0.0, 1.0]}
+    courses = [
+        {"name": "time", "time_s": [0.0, 1.0], "factor": [0.0, 1.0]},
+        {"name": "speed", "speed_rpm": [0.0, 1500.0], "factor": [0.0, 1.0], "turns_with": "fan"},
+        {"name": "orders", "orders": [2.0], "amplitude": [0.1], "phase_deg": [0.0], "mean": 1.0},
+        {"name": "turn", "turn_factor": [1.0, 0.5, 0.0]},
+    ]
+    scene["forces"] = [copy.deepcopy(pull) | course for course in courses]
+    scene["unbalances"] = [on_the_fan | {"name": "fan", "amount_g_mm": 10.0, "angle_deg": 0.0}]
     return scene | {"speed_torques": [curve], "integration": {}, "accuracy": {}}
 
 

@@ -13,7 +13,16 @@ from service import problems
 from service.app import create_app
 from service.cli.commands import app as loa
 from service.registry import STUDIES
-from service.schemas import case, gear, scene, scene_bearings, scene_bodies, scene_meshes, scene_motion
+from service.schemas import (
+    case,
+    gear,
+    scene,
+    scene_bearings,
+    scene_bodies,
+    scene_loads,
+    scene_meshes,
+    scene_motion,
+)
 from service.settings import Settings, load_settings
 
 DOCS = Path(__file__).parents[3] / "docs"
@@ -26,7 +35,7 @@ def page(name: str) -> str:
 
 def models() -> list[type[BaseModel]]:
     """Return the tables of case and scene files."""
-    modules = (case, gear, scene, scene_bearings, scene_bodies, scene_meshes, scene_motion)
+    modules = (case, gear, scene, scene_bearings, scene_bodies, scene_loads, scene_meshes, scene_motion)
     found = [vars(module).values() for module in modules]
     return [m for group in found for m in group if inspect.isclass(m) and issubclass(m, BaseModel)]
 
@@ -36,6 +45,7 @@ def test_every_field_of_case_and_scene_is_documented() -> None:
     tables = {"pair", "pinion", "wheel", "load", "errors", "accuracy", "effects", "run", "shafts", "gears"}
     tables |= {"discs", "bushings", "rolling_bearings", "meshes", "drives", "loads", "outputs", "integration"}
     tables |= {"free_rotations", "housings", "planets", "planet_bearings", "couplings", "speed_torques"}
+    tables |= {"forces", "unbalances"}
     fields = {name for model in models() for name in model.model_fields} - tables
     assert fields - documented == set()
     for table in tables:
