@@ -1,5 +1,6 @@
 """Spectra of run results: over frequency, over mesh orders, and their peaks."""
 
+from dynamics.orders.order_frequency import leading_shaft, order_frequency
 from dynamics.orders.peaks import Peak, find_peaks
 from dynamics.orders.position_grid import resample_to_position
 from dynamics.orders.sidebands import Sideband, sidebands
@@ -20,8 +21,10 @@ __all__ = [
     "find_peaks",
     "frequency_waterfall",
     "highest_valid_order",
+    "leading_shaft",
     "mesh_orders",
     "nominal_center",
+    "order_frequency",
     "order_track",
     "order_waterfall",
     "resample_to_position",

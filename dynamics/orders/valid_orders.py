@@ -9,6 +9,7 @@ import numpy as np
 from bounds import at_most
 from dynamics.checks import integer
 from dynamics.errors import InputError
+from dynamics.orders.order_frequency import order_frequency
 from dynamics.results import RunResult
 
 USUAL = 10
@@ -16,8 +17,11 @@ ROUNDING = 1e-9  # of an order that lies on the edge of the pass band
 
 
 def highest_valid_order(result: RunResult, mesh: int = 0) -> int:
-    """Return the highest multiple of a mesh's frequency below the pass frequency at its highest speed."""
-    top = float(np.max(result.mesh_frequency[mesh], initial=0.0))
+    """Return the highest multiple of a mesh's frequency below the pass frequency at its highest speed.
+
+    Of a run without meshes, of its leading shaft's rotation.
+    """
+    top = float(np.max(order_frequency(result, mesh), initial=0.0))
     if top == 0.0:
         return 0
     passed = float(result.receipt["sampling"]["pass_frequency"])

@@ -12,12 +12,13 @@ from service.drawing.figure import Table, number
 def sampling_table(run: RunResult) -> Table:
     """Tabulate rate, filter, highest valid order and the sampling error of the mesh forces."""
     sampling, error = run.receipt["sampling"], run.receipt["error"].get("sampling", {})
+    of = "mesh" if run.mesh else "shaft"
     rows = [
         ("rate, samples per second", number(float(sampling["rate"]), 6)),
         ("chosen by", str(sampling["chosen"])),
         ("passed up to, Hz", number(float(sampling["pass_frequency"]), 6)),
         *_filter(sampling),
-        ("highest valid mesh order at the highest speed", str(highest_valid_order(run))),
+        (f"highest valid {of} order at the highest speed", str(highest_valid_order(run))),
     ]
     for mesh, part in error.get("mesh_force", {}).items():
         rows.append((f"mesh force of {mesh} above the pass band, N rms", number(float(part["removed"]), 3)))

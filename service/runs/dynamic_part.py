@@ -39,10 +39,10 @@ _ERRORS = {
 
 def dynamic_headlines(run: RunResult) -> tuple[Headline, ...]:
     """Mean mesh force, and the balance of energy."""
-    force = float(np.mean(run.mesh_force[0]))
-    headlines = [
-        Headline("mean mesh force", f"{number(force)} N", f"nominal {number(float(run.nominal_force[0]))} N")
-    ]
+    headlines = []
+    if run.mesh:
+        force, nominal = (number(float(v)) for v in (np.mean(run.mesh_force[0]), run.nominal_force[0]))
+        headlines.append(Headline("mean mesh force", f"{force} N", f"nominal {nominal} N"))
     if run.energy is not None:
         headlines.append(
             Headline("energy balance", f"{leftover(100 * run.energy.relative, 2)} %", "unaccounted for")
@@ -70,10 +70,13 @@ def dynamic_results(run: RunResult, view: RunView) -> tuple[Section, ...]:
     """
     signal = shown_signal(run, view)
     series = run_series(run, signal.mesh)
+    shown = (signal_over_time(run, series, signal), signal_spectrum(run, signal))
+    section = Section(signal.heading, figures=shown)
+    if not run.mesh:
+        return (section,)
     text = "" if len(run.mesh) == 1 else f"Of {len(run.mesh)} meshes, {run.mesh[signal.mesh]} is shown."
     motion = Section("Dynamic transmission error", text, figures=(dynamic_error(series),))
-    shown = (signal_over_time(run, series, signal), signal_spectrum(run, signal))
-    return motion, Section(signal.heading, figures=shown), *_orders(run, signal), *_forces(run)
+    return motion, section, *_orders(run, signal), *_forces(run)
 
 
 def dynamic_making(run: RunResult) -> tuple[Section, ...]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.orders import leading_shaft, order_frequency
 from dynamics.results import RunResult
 from service.drawing.figure import FloatArray, number
 
@@ -21,9 +22,9 @@ class RunSeries:
     speed_rpm : (n,) array
         Speed of the driving gear, without sign.
     mesh_frequency : (n,) array
-        Hz.
+        By which orders count, Hz.
     position : (n,) array
-        Travel of the driving gear in base pitches, not wrapped.
+        Travel of the driving gear in base pitches, without gears of the shaft in turns, not wrapped.
     dynamic_error, static_error : (n,) arrays
         Transmission errors in m; the static one is the table's at the nominal force.
     mesh_force, least_force, largest_force : (n,) arrays
@@ -45,12 +46,17 @@ class RunSeries:
 
 
 def run_series(run: RunResult, mesh: int = 0) -> RunSeries:
-    """Take the series of one mesh out of a run."""
+    """Take the series of one mesh out of a run; of one without meshes those of its leading shaft alone."""
     shaft = run.shaft.index(driving_shaft(run, mesh))
+    speed, frequency = np.abs(run.speed[shaft]) * 30.0 / np.pi, order_frequency(run, mesh)
+    if not run.mesh:
+        turns = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(run.time) * (frequency[1:] + frequency[:-1]))])
+        none = np.zeros(run.time.size)
+        return RunSeries(run.time, speed, frequency, turns, none, none, none, none, none, 0.0)
     return RunSeries(
         time=run.time,
-        speed_rpm=np.abs(run.speed[shaft]) * 30.0 / np.pi,
-        mesh_frequency=run.mesh_frequency[mesh],
+        speed_rpm=speed,
+        mesh_frequency=frequency,
         position=np.abs(np.unwrap(run.position[mesh], period=1.0)),
         dynamic_error=run.dynamic_transmission_error[mesh],
         static_error=run.static_transmission_error[mesh],
@@ -61,12 +67,19 @@ def run_series(run: RunResult, mesh: int = 0) -> RunSeries:
     )
 
 
-def validity(valid_order: int, top: float) -> str:
-    """Say up to which mesh order a picture holds at the highest mesh frequency `top`, Hz."""
-    return f"Valid to mesh order {valid_order} at the highest mesh frequency, {number(top, 4)} Hz."
+def validity(valid_order: int, top: float, of: str = "mesh") -> str:
+    """Say up to which order of a `mesh` or `shaft` a picture holds at its highest frequency `top`, Hz."""
+    return f"Valid to {of} order {valid_order} at the highest {of} frequency, {number(top, 4)} Hz."
+
+
+def counted_by(run: RunResult) -> str:
+    """Say what orders of a run are multiples of: "mesh", or "shaft" where it has none."""
+    return "mesh" if run.mesh else "shaft"
 
 
 def driving_shaft(run: RunResult, mesh: int) -> str:
-    """Name of the shaft that carries the driving gear."""
+    """Name of the shaft that carries the driving gear; without gears of the first that is driven."""
+    if not run.mesh:
+        return leading_shaft(run)
     driver = run.case["meshes"][mesh]["driver"]
     return str(next(gear["shaft"] for gear in run.case["gears"] if gear["name"] == driver))

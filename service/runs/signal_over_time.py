@@ -17,7 +17,8 @@ def signal_over_time(run: RunResult, series: RunSeries, signal: Signal) -> Figur
     """Draw the components of the quantity."""
     speed = window_speeds(series.speed_rpm)[-1]
     window = speed_window(series.position, series.speed_rpm, speed)
-    detail = f"three base pitches at {number(speed, 3)} rpm"
+    of = "base pitches" if run.mesh else "turns"
+    detail = f"three {of} at {number(speed, 3)} rpm"
     vector = signal.quantity.part == "bearing"
     return Figure(
         key="signal",

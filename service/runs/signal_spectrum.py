@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from dynamics.orders import highest_valid_order, spectrum
+from dynamics.orders import highest_valid_order, order_frequency, spectrum
 from dynamics.results import RunResult
 from service.drawing import palette
 from service.drawing.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Table, number
-from service.runs.run_series import validity
+from service.runs.run_series import counted_by, validity
 from service.runs.run_view import Signal
 
 WINDOW = (0.9, 0.95)  # of the duration
@@ -20,7 +20,8 @@ def signal_spectrum(run: RunResult, signal: Signal) -> Figure:
     """Draw the amplitude spectrum."""
     window = spectrum_window(run.time)
     frequency, amplitude = amplitude_spectrum(run, signal, window)
-    mesh = run.mesh_frequency[signal.mesh, window]
+    whole, of = order_frequency(run, signal.mesh), counted_by(run)
+    mesh = whole[window]
     valid = highest_valid_order(run, signal.mesh)
     first, last = (number(float(run.time[at]), 3) for at in (window.start, window.stop - 1))
     return Figure(
@@ -28,11 +29,11 @@ def signal_spectrum(run: RunResult, signal: Signal) -> Figure:
         title=f"Spectrum of the {signal.name}",
         caption=f"From {first} to {last} s, "
         f"{_NAMES[signal.window]} window, {signal.scale} values. "
-        "Dashed: the mesh frequency in the middle of the window and its multiples. "
-        f"{validity(valid, float(run.mesh_frequency[signal.mesh].max()))}",
-        alternative=_words(signal, frequency, amplitude, mesh),
+        f"Dashed: the {of} frequency in the middle of the window and its multiples. "
+        f"{validity(valid, float(whole.max()), of)}",
+        alternative=_words(signal, frequency, amplitude, mesh, of),
         content=(_panel(signal, frequency, amplitude, float(np.median(mesh)), valid),),
-        table=_table(signal, frequency, amplitude, mesh, valid),
+        table=_table(signal, frequency, amplitude, mesh, (of, valid)),
     )
 
 
@@ -77,23 +78,24 @@ def _panel(signal: Signal, frequency: FloatArray, amplitude: FloatArray, mesh: f
     return Panel(Axis("frequency, Hz", limits=(0.0, end)), y, (line,), tuple(orders))
 
 
-def _words(signal: Signal, frequency: FloatArray, amplitude: FloatArray, mesh: FloatArray) -> str:
-    """Name the largest line and where the mesh frequency is."""
+def _words(signal: Signal, frequency: FloatArray, amplitude: FloatArray, mesh: FloatArray, of: str) -> str:
+    """Name the largest line and where the frequency of the orders is."""
     peak = int(np.argmax(amplitude))
     low, high = number(float(mesh.min()), 3), number(float(mesh.max()), 3)
     return (
         f"The largest line is {number(float(amplitude[peak]), 3)} {signal.unit} at "
-        f"{number(float(frequency[peak]), 4)} Hz; the mesh frequency runs from {low} to {high} Hz."
+        f"{number(float(frequency[peak]), 4)} Hz; the {of} frequency runs from {low} to {high} Hz."
     )
 
 
 def _table(
-    signal: Signal, frequency: FloatArray, amplitude: FloatArray, mesh: FloatArray, valid: int
+    signal: Signal, frequency: FloatArray, amplitude: FloatArray, mesh: FloatArray, orders: tuple[str, int]
 ) -> Table:
-    """Largest line near every valid order."""
+    """Largest line near every valid order of what they count by."""
+    of, valid = orders
     rows = tuple(
         (str(order), number(where, 4), number(size, 3))
         for order, (where, size) in enumerate(order_amplitudes(frequency, amplitude, mesh)[:valid], start=1)
     )
     head = ("order", "frequency, Hz", f"amplitude, {signal.unit}")
-    return Table("Largest line in the band of each mesh order", head, rows)
+    return Table(f"Largest line in the band of each {of} order", head, rows)

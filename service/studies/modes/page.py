@@ -45,7 +45,7 @@ def whirl_name(whirl: float) -> str:
 def _campbell(modes: ModalAnalysis) -> Figure:
     """Frequencies over speed."""
     speed = modes.speed / RPM
-    reach = float(modes.facts["orders"]) * float(np.max(modes.mesh_frequency))
+    reach = float(modes.facts["orders"]) * float(np.max(modes.mesh_frequency, initial=0.0))
     top = min(HEADROOM * float(np.nanmax(modes.frequency)), max(HEADROOM * reach, LEAST_TOP))
     lines = [*_orders(modes, speed, top), *_modes(modes, speed)]
     if modes.critical_speed.size:

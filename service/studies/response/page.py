@@ -17,33 +17,52 @@ from service.studies.presentation import Presentation, dynamics_page
 RPM = np.pi / 30.0
 SHOWN_ORDERS, SHOWN_PEAKS = 6, 15
 
+WITH_MESHES = (
+    "Peak amplitudes of the mesh orders about the static equilibrium, linear: mean mesh stiffness, no loss "
+    "of contact. Below: the least mesh force; negative means that flanks lift off."
+)
+WITHOUT_MESHES = "Peak amplitudes of the orders of the leading shaft about the static equilibrium, linear."
+
 
 def response_figure(response: ForcedResponse, mesh: int = 0) -> Figure:
     """Draw the largest orders of one mesh and of the bearing that feels most."""
     speed = response.speed / RPM
     ends = (float(speed[0]), float(speed[-1])) if speed.size > 1 else None
     x = Axis(f"speed of {response.facts['leading_shaft']}, rpm", limits=ends)
-    shown = _loudest(np.abs(response.mesh_force[mesh]))
-    name = f" of {response.mesh[mesh]}" if len(response.mesh) > 1 else ""
-    force = np.sqrt(np.sum(np.abs(response.bearing_force[:, :3]) ** 2, axis=1))
-    quantities = [
-        (f"transmission error{name}, µm", 1e6 * np.abs(response.dynamic_transmission_error[mesh])),
-        (f"mesh force{name}, N", np.abs(response.mesh_force[mesh])),
-    ]
-    if force.size:
-        loudest = int(np.argmax(np.max(force, axis=(1, 2))))
-        quantities.append((f"force on {response.bearing[loudest]}, N", force[loudest]))
+    quantities = _quantities(response, mesh)
+    shown = _loudest(quantities[1 if response.mesh else 0][1]) if quantities else []
     panels = [_panel(x, label, speed, amplitude, response, shown) for label, amplitude in quantities]
-    panels.append(_least(x, speed, response, mesh))
+    if response.mesh:
+        panels.append(_least(x, speed, response, mesh))
     return Figure(
         key="response",
-        title="Forced response to the transmission error",
-        caption="Peak amplitudes of the mesh orders about the static equilibrium, linear: mean mesh "
-        "stiffness, no loss of contact. Below: the least mesh force; negative means that flanks lift off.",
+        title="Forced response to transmission errors and loads" if response.mesh else "Forced response",
+        caption=WITH_MESHES if response.mesh else WITHOUT_MESHES,
         alternative=_words(response),
         content=tuple(panels),
         table=peak_table(response),
     )
+
+
+def _quantities(response: ForcedResponse, mesh: int) -> list[tuple[str, FloatArray]]:
+    """Return what is shown by name, (S, H) each."""
+    quantities = []
+    if response.mesh:
+        name = f" of {response.mesh[mesh]}" if len(response.mesh) > 1 else ""
+        quantities += [
+            (f"transmission error{name}, µm", 1e6 * np.abs(response.dynamic_transmission_error[mesh])),
+            (f"mesh force{name}, N", np.abs(response.mesh_force[mesh])),
+        ]
+    force = _bearing_force(response)
+    if force.size:
+        loudest = int(np.argmax(np.max(force, axis=(1, 2))))
+        quantities.append((f"force on {response.bearing[loudest]}, N", force[loudest]))
+    return quantities
+
+
+def _bearing_force(response: ForcedResponse) -> FloatArray:
+    """Return the size of the force on each bearing, (b, S, H)."""
+    return np.asarray(np.sqrt(np.sum(np.abs(response.bearing_force[:, :3]) ** 2, axis=1)))
 
 
 def _loudest(amplitude: FloatArray) -> list[int]:
@@ -103,6 +122,8 @@ def peak_table(response: ForcedResponse) -> Table:
 
 def _words(response: ForcedResponse) -> str:
     """Say the largest amplitude, and where flanks part."""
+    if not response.mesh:
+        return " ".join(f"{part.name}: {part.value}, {part.remark}." for part in headlines(response))
     size = np.abs(response.mesh_force)
     mesh, s, h = np.unravel_index(int(np.argmax(size)), size.shape)
     text = (
@@ -118,15 +139,14 @@ def _words(response: ForcedResponse) -> str:
 
 def headlines(response: ForcedResponse) -> tuple[Headline, ...]:
     """Return the largest mesh force, and the largest bearing force or where flanks part."""
-    parting = response.speed[~response.in_contact] / RPM
-    largest = _largest("mesh force of", response.mesh, np.abs(response.mesh_force), response)
-    if parting.size:
-        at = f"{parting.size} of {response.speed.size} speeds"
-        return (largest, Headline("flanks part at", at, f"from {number(float(parting[0]), 4)} rpm on"))
-    if not response.bearing:
-        return (largest,)
-    force = np.sqrt(np.sum(np.abs(response.bearing_force[:, :3]) ** 2, axis=1))
-    return (largest, _largest("force on bearing", response.bearing, force, response))
+    parting, force = response.speed[~response.in_contact] / RPM, _bearing_force(response)
+    own = [("mesh force of", response.mesh, np.abs(response.mesh_force))]
+    own += [("force on bearing", response.bearing, force)]
+    shown = [_largest(what, names, size, response) for what, names, size in own if size.size]
+    if not parting.size:
+        return tuple(shown)
+    at = f"{parting.size} of {response.speed.size} speeds"
+    return (shown[0], Headline("flanks part at", at, f"from {number(float(parting[0]), 4)} rpm on"))
 
 
 def _largest(what: str, names: Sequence[str], size: FloatArray, response: ForcedResponse) -> Headline:

@@ -24,21 +24,10 @@ _SWEEPS = ((UP, "rising speed", palette.BLUE), (DOWN, "falling speed", palette.O
 
 def steady_figure(states: SteadyStates, mesh: int = 0) -> Figure:
     """Draw one mesh: stable motions of the branch solid, unstable ones dashed, both sweeps as points."""
-    name = f" of {states.mesh[mesh]}" if len(states.mesh) > 1 else ""
     swept = states.speed[states.curve != BRANCH] / RPM
     ends = (float(swept.min()), float(swept.max()))
     x = Axis(f"speed of {states.facts['leading_shaft']}, rpm", limits=ends if ends[1] > ends[0] else None)
-    quantities = [
-        (f"rms of the transmission error{name}, µm", 1e6 * states.rms_error[:, mesh]),
-        (f"peak to peak{name}, µm", 1e6 * states.peak_to_peak_error[:, mesh]),
-        (f"largest mesh force{name}, N", states.largest_force[:, mesh]),
-    ]
-    if np.nanmax(states.parted[:, mesh], initial=0.0) > 0.0:
-        quantities.append(
-            (f"driving flank lifted off{name}, % of the period", 100.0 * states.parted[:, mesh])
-        )
-    if np.nanmax(states.coasting[:, mesh], initial=0.0) > 0.0:
-        quantities.append((f"coast flank touching{name}, % of the period", 100.0 * states.coasting[:, mesh]))
+    quantities = _quantities(states, mesh)
     marks = tuple(Reference(f"fold {number(speed, 5)}", speed) for speed in _folds(states, ends))
     panels = tuple(Panel(x, Axis(label), tuple(_lines(states, shown)), marks) for label, shown in quantities)
     return Figure(
@@ -50,6 +39,28 @@ def steady_figure(states: SteadyStates, mesh: int = 0) -> Figure:
         content=panels,
         table=steady_table(states),
     )
+
+
+def _quantities(states: SteadyStates, mesh: int) -> list[tuple[str, FloatArray]]:
+    """Return what is shown by name, (P,) each; without meshes the bearing that feels most."""
+    if not states.mesh:
+        if not states.bearing:
+            return []
+        loudest = int(np.argmax(np.nanmax(states.rms_bearing_force, axis=0)))
+        return [(f"rms force on {states.bearing[loudest]}, N", states.rms_bearing_force[:, loudest])]
+    name = f" of {states.mesh[mesh]}" if len(states.mesh) > 1 else ""
+    quantities = [
+        (f"rms of the transmission error{name}, µm", 1e6 * states.rms_error[:, mesh]),
+        (f"peak to peak{name}, µm", 1e6 * states.peak_to_peak_error[:, mesh]),
+        (f"largest mesh force{name}, N", states.largest_force[:, mesh]),
+    ]
+    if np.nanmax(states.parted[:, mesh], initial=0.0) > 0.0:
+        quantities.append(
+            (f"driving flank lifted off{name}, % of the period", 100.0 * states.parted[:, mesh])
+        )
+    if np.nanmax(states.coasting[:, mesh], initial=0.0) > 0.0:
+        quantities.append((f"coast flank touching{name}, % of the period", 100.0 * states.coasting[:, mesh]))
+    return quantities
 
 
 def _folds(states: SteadyStates, ends: tuple[float, float]) -> list[float]:
@@ -86,7 +97,9 @@ def _lines(states: SteadyStates, values: FloatArray) -> Iterator[Line]:
 
 
 def steady_table(states: SteadyStates) -> Table:
-    """List both sweeps, one line per speed and mesh."""
+    """List both sweeps, one line per speed and mesh, or without meshes per speed and bearing."""
+    if not states.mesh:
+        return _bearing_table(states)
     rows = [
         _row(states, int(index), mesh)
         for curve in (UP, DOWN)
@@ -106,6 +119,24 @@ def steady_table(states: SteadyStates) -> Table:
         "contact",
         "step error, nm",
     )
+    return Table("Periodic steady states", head, tuple(rows))
+
+
+def _bearing_table(states: SteadyStates) -> Table:
+    """List both sweeps by bearing."""
+    rows = [
+        (
+            "up" if states.curve[index] == UP else "down",
+            number(float(states.speed[index]) / RPM, 5),
+            name,
+            KINDS[int(states.instability[index])] if not states.status[index] else "not found",
+            number(float(states.rms_bearing_force[index, bearing]), 4),
+        )
+        for curve in (UP, DOWN)
+        for index in np.flatnonzero(states.curve == curve)
+        for bearing, name in enumerate(states.bearing)
+    ]
+    head = ("sweep", "speed, rpm", "bearing", "state", "rms force, N")
     return Table("Periodic steady states", head, tuple(rows))
 
 
@@ -144,8 +175,10 @@ def contact_name(parted: float, coasting: float) -> str:
 
 def _words(states: SteadyStates) -> str:
     """Say the largest motion, and the jumps."""
-    if not np.any(np.isfinite(states.rms_error)):
+    if np.all(states.status != 0):
         return "No periodic motion was found."
+    if not states.mesh:
+        return " ".join(f"{part.name}: {part.value}, {part.remark}." for part in headlines(states))
     index, mesh = np.unravel_index(int(np.nanargmax(states.rms_error)), states.rms_error.shape)
     text = (
         f"Largest rms: {number(1e6 * float(states.rms_error[index, mesh]), 3)} µm at "
@@ -159,8 +192,11 @@ def _words(states: SteadyStates) -> str:
 
 def headlines(states: SteadyStates) -> tuple[Headline, ...]:
     """Return the largest motion, and the jumps or the largest mesh force."""
-    if not np.any(np.isfinite(states.rms_error)):
+    if np.all(states.status != 0):
         return ()
+    if not states.mesh:
+        force, names = states.rms_bearing_force, states.bearing
+        return (_largest(states, "rms bearing force", force, "N", names),) if force.size else ()
     error = _largest(states, "rms transmission error", 1e6 * states.rms_error, "µm")
     if not states.jump_curve.size:
         return (error, _largest(states, "mesh force", states.largest_force, "N"))
@@ -170,12 +206,14 @@ def headlines(states: SteadyStates) -> tuple[Headline, ...]:
     return (error, Headline("jumps", str(states.jump_curve.size), first))
 
 
-def _largest(states: SteadyStates, what: str, values: FloatArray, unit: str) -> Headline:
-    """Name the largest of values (motion, mesh) with mesh, speed and stability."""
+def _largest(
+    states: SteadyStates, what: str, values: FloatArray, unit: str, names: tuple[str, ...] = ()
+) -> Headline:
+    """Name the largest of values (motion, mesh) with mesh, or other part, speed and stability."""
     index, mesh = np.unravel_index(int(np.nanargmax(values)), values.shape)
     at = f"{number(float(states.speed[index]) / RPM, 4)} rpm, {KINDS[int(states.instability[index])]}"
     value = f"{number(float(values[index, mesh]), 3)} {unit}"
-    return Headline(f"largest {what} of {states.mesh[mesh]}", value, at)
+    return Headline(f"largest {what} of {(names or states.mesh)[mesh]}", value, at)
 
 
 def _text(states: SteadyStates) -> Iterator[Table | str]:
