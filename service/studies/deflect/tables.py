@@ -6,12 +6,9 @@ import numpy as np
 
 from dynamics.deflection import CaseDeflection, MeshAlignment
 from service.drawing.figure import Table, number
-from service.studies.deflect.figures import facts, mesh_names
+from service.studies.deflect.figures import axial_force, facts, mesh_names
 from service.studies.deflect.result import GearboxDeflection, MeshFlanks
 from service.units import RPM, UM
-
-ROUNDING = 1e-9
-"""Of the radial force of a bearing: a smaller axial force is none."""
 
 
 def meshes_worst_first(result: GearboxDeflection) -> list[str]:
@@ -107,7 +104,7 @@ def bearing_table(result: GearboxDeflection) -> Table:
                     _titled(case),
                     number(load.speed / RPM),
                     number(load.radial),
-                    number(load.axial if abs(load.axial) > ROUNDING * load.radial else 0.0),
+                    number(axial_force(load)),
                     *(number(float(value), 3) for value in moved),
                 )
             )

@@ -60,7 +60,7 @@ def test_a_rigid_shaft_on_springs_tilts_by_its_reactions():
     expected = 2.0 * FACE * FORCE * ((1.0 - share) - share) / (k * 0.2)  # two gears, apart
     assert case.meshes[0].misalignment == pytest.approx(expected, rel=1e-9)
     assert parts(case)[BEARING] == pytest.approx(expected, rel=1e-9)
-    left = next(load for load in case.bearings if load.name == "input.left")
+    left = case.bearing("input.left")
     assert left.radial == pytest.approx((1.0 - share) * FORCE, rel=1e-9)
     assert np.hypot(*left.elastic[:2]) == pytest.approx((1.0 - share) * FORCE / k, rel=1e-9)
 
@@ -238,8 +238,7 @@ def test_a_torque_on_the_leading_shaft_sets_the_factor():
     assert (case.torque, case.speed) == pytest.approx((50.0, 200.0), rel=1e-12)
     factor = only(two_stages(), LoadCase("load", factor=50.0 * ratio / 900.0))
     assert case.meshes[1].force == pytest.approx(factor.meshes[1].force, rel=1e-9)
-    out = next(load for load in case.bearings if load.name == "out.left")
-    assert out.speed == pytest.approx(200.0 / ratio, rel=1e-12)
+    assert case.bearing("out.left").speed == pytest.approx(200.0 / ratio, rel=1e-12)
 
 
 def test_a_free_train_is_held_where_its_law_is():
@@ -271,5 +270,7 @@ def test_a_misalignment_beyond_the_table_is_flagged():
 
 def test_the_equivalent_load_adds_damage():
     assert equivalent_load((10.0, 20.0), (1.0, 1.0), (1.0, 1.0), 3.0) == pytest.approx(4500.0 ** (1 / 3))
+    rollers = ((10.0 ** (10.0 / 3.0) + 2.0 * 20.0 ** (10.0 / 3.0)) / 3.0) ** 0.3
+    assert equivalent_load((10.0, 20.0), (1.0, 2.0), (1.0, 1.0)) == pytest.approx(rollers)
     assert equivalent_load((7.0, 0.0), (5.0, 2.0), (1.0, 0.0)) == pytest.approx(7.0)
     assert equivalent_load((7.0,), (0.0,), (1.0,)) == 0.0
