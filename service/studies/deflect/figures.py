@@ -29,7 +29,7 @@ def facts(result: GearboxDeflection) -> Json:
         },
         "load_cases": [_case(case, flanks) for case in result.deflection.cases],
         "meshes": [_over_cases(result, name) for name in mesh_names(result)],
-        "bearings": [_bearing_over_cases(result, k) for k in range(len(result.outline.bearings))],
+        "bearings": [_bearing_over_cases(result, k) for k in range(len(result.deflection.cases[0].bearings))],
         "cpu_seconds": result.seconds,
     }
 

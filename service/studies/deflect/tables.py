@@ -94,7 +94,7 @@ def bearing_table(result: GearboxDeflection) -> Table:
         "seat, µm",
     )
     rows = []
-    for index in range(len(result.outline.bearings)):
+    for index in range(len(result.deflection.cases[0].bearings)):
         for case in result.deflection.cases:
             load = case.bearings[index]
             moved = [np.hypot(*part[:2]) / UM for part in (load.elastic, load.clearance, load.seat)]

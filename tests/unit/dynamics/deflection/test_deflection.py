@@ -19,9 +19,10 @@ from dynamics.deflection.mesh_cycle import cycle_times
 from dynamics.deflection.rest import rest_over
 from dynamics.errors import InputError
 from dynamics.forces import RollingContact
-from dynamics.joints import Bushing, FreeRotation, Housing
+from dynamics.joints import Bushing, FreeRotation, Housing, RollingBearing
 from dynamics.mechanism.flank_gradients import misalignment_gradient
 from dynamics.motion.observation import local_state
+from dynamics.rolling_bearings import LoadedBearing, from_catalog
 
 FORCE, FACE = 100.0 / BASE_RADIUS, 0.025
 SHAFT, BEARING, CLEARANCE, HOUSING, COUPLING, SET = range(len(CAUSES))
@@ -121,6 +122,23 @@ def test_clearance_is_what_the_bearing_moves_before_it_presses(exponent):
     pressed = (0.7 * FORCE / stiffness) ** (1.0 / exponent)
     assert np.hypot(*left.elastic[:2]) == pytest.approx(pressed, rel=1e-6)
     assert parts(case)[CLEARANCE] == pytest.approx(FACE * clearance / 0.2, rel=1e-6)
+
+
+def test_a_bearing_by_its_geometry_answers_to_its_displacement():
+    row = from_catalog(0.035, 0.080, 20000.0, clearance=10e-6)
+    scene = two_stages()
+    springs = tuple(part for part in scene.bushings if part.name != "mid.left")
+    case = only(
+        replace(scene, bushings=springs, rolling_bearings=(RollingBearing("mid.left", "mid", row, 0.01),))
+    )
+    load = case.bearing("mid.left")
+    again = LoadedBearing(row, 16).evaluate(load.displacement).force
+    assert again[:3] == pytest.approx(load.force[:3], rel=1e-3)
+    # the force makes the share of the displacement that is clearance one of all five directions
+    share = load.clearance / load.displacement
+    assert np.ptp(share) < 1e-9 and 0.05 < share[0] < 0.5
+    for mesh in case.meshes:
+        assert mesh.causes.sum() == pytest.approx(mesh.misalignment, rel=1e-9)
 
 
 def test_a_housing_moves_its_seats_in_series_with_the_bearings():
