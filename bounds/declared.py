@@ -40,9 +40,10 @@ class Kind(StrEnum):
     DAMPING = auto()
     """A force or moment per rate."""
     FORCE = auto()
-    """A force or a moment."""
     INERTIA = auto()
     """A mass, a density, a moment of inertia."""
+    LOAD = auto()
+    """A force or a moment."""
     SPEED = auto()
     TIME = auto()
     FREQUENCY = auto()

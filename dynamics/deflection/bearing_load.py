@@ -46,11 +46,6 @@ class BearingLoad(Record):
     seat: FloatArray = field(metadata=in_unit("m", "direction"))
 
     @property
-    def displacement(self) -> FloatArray:
-        """Of the shaft against what holds the bearing, (5,): what a bearing by its geometry answers to."""
-        return self.elastic + self.clearance
-
-    @property
     def radial(self) -> float:
         """Radial force, N."""
         return float(np.hypot(self.force[0], self.force[1]))

@@ -54,10 +54,6 @@ class CaseDeflection(Record):
     bearings: tuple[BearingLoad, ...]
     shafts: ShaftLines
 
-    def bearing(self, name: str) -> BearingLoad:
-        """Return the load of the bearing called `name`."""
-        return next(load for load in self.bearings if load.name == name)
-
 
 @dataclass(frozen=True)
 class Deflection(Record):

@@ -69,8 +69,7 @@ class LoadedBearing:
 
     def __init__(self, bearing: BallBearing | RollerBearing, copies: int = 1) -> None:
         self.bearing, self.copies = bearing, copies
-        self._local = alone(SEAT)
-        self._at = by_address(self._local)
+        self._local = by_address(alone(SEAT))
         self._load = np.zeros((bearing.count * copies, bearing.laminae))
         place = RowPlacement(copies, damping=1.0)
         if isinstance(bearing, BallBearing):
@@ -82,7 +81,7 @@ class LoadedBearing:
             self._react = roller_reaction
             routines = rollers, rollers_energy
         for routine in routines:
-            routine.prepare(self._laws, self._at)
+            routine.prepare(self._laws, self._local)
 
     def evaluate(self, displacement: ArrayLike, angle: float = 0.0) -> Reaction:
         """Return the answer to `displacement` (5,) of the inner ring against the outer.
@@ -96,7 +95,7 @@ class LoadedBearing:
         """
         local = self._local
         local.coordinate[:], local.position[0] = displacement, angle / (2.0 * math.pi)
-        energy, slope = self._react(self._laws, self._at, self._load)
+        energy, slope = self._react(self._laws, local, self._load)
         matrices = local.tangent.copy(), local.viscous.copy()
         whole = self.copies * self._load
         return Reaction(local.force.copy(), *matrices, energy, slope / (2.0 * math.pi), whole)

@@ -14,7 +14,7 @@ DRIVE, COAST = "drive", "coast"
 _SHARE = Declared(Kind.RATIO, "", up_to(1e9), "Share of the duration, relative to the other load cases", 1.0)
 _FACTOR = Declared(Kind.RATIO, "", up_to(1e6), "Factor on the scene's loads", 1.0)
 _TORQUE = Declared(
-    Kind.FORCE, "N m", up_to(1e9), "Torque on the leading shaft, in place of a factor on the loads", 100.0
+    Kind.LOAD, "N m", up_to(1e9), "Torque on the leading shaft, in place of a factor on the loads", 100.0
 )
 _FASTEST = 1e7 * math.pi / 30.0
 _SPEED = Declared(

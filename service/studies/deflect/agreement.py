@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from dynamics.deflection import Deflection, deflect
-from dynamics.forces import GearMesh, MeshTable
+from dynamics.forces import MeshTable
 from dynamics.scene import Scene
 from dynamics.settings.load_case import LoadCase
 from service.studies.deflect.mesh_contact import MeshContact
@@ -51,7 +51,6 @@ def in_agreement(
     positions: int,
     contacts: Mapping[str, MeshContact],
     first: Deflection,
-    progress: Callable[[float], None] = lambda _done: None,
 ) -> Agreement:
     """Deflect the scene until the misalignments are those of the tables.
 
@@ -67,21 +66,16 @@ def in_agreement(
         Of the meshes whose load may vary over the face, by name.
     first : Deflection
         On the tables of the scene.
-    progress : callable
-        Called with the fraction done.
     """
     if not contacts:
         return Agreement(first, 1, 0.0)
-    meshes = [mesh for mesh in scene.meshes if mesh.name in contacts]
-    knots = {mesh.name: _first_knots(_misalignments(first, mesh.name), mesh.misalignment) for mesh in meshes}
-    distances = {mesh.name: _distances(first, mesh) for mesh in meshes}
+    knots = {name: _first_knots(_misalignments(first, name)) for name in contacts}
     last, found, change, passes = first, first, float("inf"), 0
     while passes < PASSES:
         passes += 1
-        tables = {name: contact.table(knots[name], distances[name]) for name, contact in contacts.items()}
+        tables = {name: contact.table(knots[name]) for name, contact in contacts.items()}
         found = deflect(_with_tables(scene, tables), cases, positions)
         change = _change(last, found, contacts)
-        progress(passes / PASSES)
         if change <= TOLERANCE or not found.converged:
             break
         knots = {name: with_knots(own, _misalignments(found, name)) for name, own in knots.items()}
@@ -102,27 +96,10 @@ def _misalignments(deflection: Deflection, mesh: str) -> list[float]:
     return [own.misalignment for case in deflection.cases for own in case.meshes if own.name == mesh]
 
 
-def _distances(deflection: Deflection, mesh: GearMesh) -> list[float]:
-    """Return two changes of the center distance, m: that of the mesh at rest, and beyond all load cases."""
-    changes = [
-        own.center_distance_change
-        for case in deflection.cases
-        for own in case.meshes
-        if own.name == mesh.name
-    ]
-    at_rest = mesh.center_distance_change
-    low, high = min(at_rest, *changes), max(at_rest, *changes)
-    return [low if low == at_rest else low - SMALL, high + SMALL]
-
-
-def _first_knots(misalignments: Sequence[float], at_rest: float) -> list[float]:
-    """Return knots from the misalignments without the moment of uneven loads, m, increasing.
-
-    The table is also read at what the scene sets, which changes its sign on the coast side.
-    """
-    ends = [*misalignments, at_rest, -at_rest]
-    low, high = min(ends), max(ends)
-    margin = max(MARGIN * (high - low), LEAST_MARGIN)
+def _first_knots(misalignments: Sequence[float]) -> list[float]:
+    """Return knots from the misalignments without the moment of uneven loads, m, increasing."""
+    low, high = min(misalignments), max(misalignments)
+    margin = max(MARGIN * (high - low), MARGIN * max(abs(low), abs(high)), LEAST_MARGIN)
     return with_knots([low - margin, high + margin], misalignments, 0.1 * margin)
 
 

@@ -13,8 +13,6 @@ from service.studies.deflect.result import GearboxDeflection, MeshFlanks
 from service.units import MM, MRAD, RPM, UM
 
 MPA = 1e6
-ROUNDING = 1e-9
-"""Of the radial force of a bearing: a smaller axial force is none."""
 
 
 def facts(result: GearboxDeflection) -> Json:
@@ -29,7 +27,7 @@ def facts(result: GearboxDeflection) -> Json:
         },
         "load_cases": [_case(case, flanks) for case in result.deflection.cases],
         "meshes": [_over_cases(result, name) for name in mesh_names(result)],
-        "bearings": [_bearing_over_cases(result, k) for k in range(len(result.deflection.cases[0].bearings))],
+        "bearings": [_bearing_over_cases(result, k) for k in range(len(result.outline.bearings))],
         "cpu_seconds": result.seconds,
     }
 
@@ -101,18 +99,13 @@ def _bearing(load: BearingLoad) -> Json:
         "force_n": load.force[:3].tolist(),
         "moment_n_m": load.force[3:].tolist(),
         "radial_force_n": load.radial,
-        "axial_force_n": axial_force(load),
+        "axial_force_n": load.axial,
         "largest_radial_force_n": load.largest_radial,
         "elastic_um": (load.elastic[:3] / UM).tolist(),
         "clearance_um": (load.clearance[:3] / UM).tolist(),
         "seat_um": (load.seat[:3] / UM).tolist(),
         "tilt_mrad": ((load.elastic + load.clearance)[3:] / MRAD).tolist(),
     }
-
-
-def axial_force(load: BearingLoad) -> float:
-    """Return the axial force of a bearing, N; 0 where it is rounding alone."""
-    return load.axial if abs(load.axial) > ROUNDING * load.radial else 0.0
 
 
 def _over_cases(result: GearboxDeflection, name: str) -> Json:
@@ -146,7 +139,7 @@ def _bearing_over_cases(result: GearboxDeflection, index: int) -> Json:
     """Return the equivalent radial loads of a bearing over all load cases."""
     loads = [case.bearings[index] for case in result.deflection.cases]
     weights, speed = shares(result), [load.speed for load in loads]
-    radial, axial = [load.radial for load in loads], [abs(axial_force(load)) for load in loads]
+    radial, axial = [load.radial for load in loads], [abs(load.axial) for load in loads]
     return {
         "name": loads[0].name,
         "mean_speed_rpm": float(np.dot(weights, speed)) / RPM,

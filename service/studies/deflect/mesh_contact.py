@@ -14,8 +14,9 @@ from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import Run, TableAxes
 from fe_contact.ste import SteDatabase
-from fe_contact.ste.joined import joined
+from fe_contact.ste.joined import joined_over_misalignment
 from fe_contact.types import FloatArray
+from model_studies import Progress
 from service.convert.case import analysis_options, gear_pair
 from service.schemas import Case
 
@@ -42,20 +43,17 @@ class MeshContact:
     pair: ParallelAxes
     bodies: CondensedPair
     torques: FloatArray
-    _tables: dict[tuple[float, float], SteDatabase] = field(default_factory=dict, repr=False)
+    _tables: dict[float, SteDatabase] = field(default_factory=dict, repr=False)
 
     @property
     def across_face(self) -> bool:
         """Whether the load may vary over the face; a plane model has no misalignment."""
         return bool(self.bodies.checked.model.across_face)
 
-    def table(self, misalignments: Sequence[float], distances: Sequence[float]) -> MeshTable:
-        """Return the mesh-force table over misalignments and changes of the center distance, m."""
-        over = [
-            joined([self._at(misalignment, change) for misalignment in misalignments], "misalignment")
-            for change in distances
-        ]
-        return joined(over, "center_distance_change").force_table()
+    def table(self, misalignments: Sequence[float]) -> MeshTable:
+        """Return the mesh-force table over misalignments, m, increasing."""
+        tables = [self._at(misalignment) for misalignment in misalignments]
+        return joined_over_misalignment(tables).force_table()
 
     def solved(
         self, torque: float, misalignment: float, change: float
@@ -70,15 +68,16 @@ class MeshContact:
             center_distance_change=change,
         )
 
-    def _at(self, misalignment: float, change: float) -> SteDatabase:
-        """Return the table of one alignment; it is kept."""
-        at = misalignment, change
-        if at not in self._tables:
-            self._tables[at] = self.bodies.table(self.pair, self.torques, *at)
-        return self._tables[at]
+    def _at(self, misalignment: float) -> SteDatabase:
+        """Return the table of one misalignment; it is kept."""
+        if misalignment not in self._tables:
+            self._tables[misalignment] = self.bodies.table(self.pair, self.torques, misalignment)
+        return self._tables[misalignment]
 
 
-def mesh_contact(case: Case, database: SteDatabase, torques: Sequence[float], home: Path) -> MeshContact:
+def mesh_contact(
+    case: Case, database: SteDatabase, torques: Sequence[float], home: Path, report: Progress
+) -> MeshContact:
     """Return the contact of a case for loads on its pinion, N m.
 
     A case whose model the planner may choose, and one in three dimensions, is condensed across the face.
@@ -91,10 +90,10 @@ def mesh_contact(case: Case, database: SteDatabase, torques: Sequence[float], ho
     if case.accuracy.model not in PLANE and (too_low or not _across_face(database)):
         axes = TableAxes(torques=loads, misalignments=[-FIRST_MISALIGNMENT, FIRST_MISALIGNMENT])
         options = replace(analysis_options(case), receipt="minimal", positions=8)
-        across = ste_database(pair, axes, options, Run(cache=cache))
+        across = ste_database(pair, axes, options, Run(cache=cache, progress=report))
     elif too_low:
         options = replace(analysis_options(case), receipt="minimal")
-        across = ste_database(pair, TableAxes(torques=loads), options, Run(cache=cache))
+        across = ste_database(pair, TableAxes(torques=loads), options, Run(cache=cache, progress=report))
     bodies = condensed_pair(pair, across, dict(case.effects), cache, compute=True)
     assert bodies is not None
     return MeshContact(pair, bodies, levels)

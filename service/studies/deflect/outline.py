@@ -14,7 +14,7 @@ RIGID_DIAMETER = 0.08
 
 
 def outline_of(scene: Scene) -> Outline:
-    """Return the outline of a scene; bearings are all on the ground, then planet bearings."""
+    """Return the outline of a scene; bearings are those to the ground and planet bearings."""
     index = {shaft.name: k for k, shaft in enumerate(scene.shafts)}
     supports = (*scene.ground_bearings, *scene.planet_bearings)
     pieces = [(k, *piece) for k, shaft in enumerate(scene.shafts) for piece in _pieces(shaft)]

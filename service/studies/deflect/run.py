@@ -45,12 +45,10 @@ def deflection_of(tabled: TabledScene, inputs: Inputs, means: Means) -> GearboxD
     began, scene = time.process_time(), tabled.scene
     with boundary_errors():
         cases = load_cases(inputs)
-        first = deflect(scene, cases, inputs.positions)
+        first = deflect(scene, cases, inputs.positions, lambda done: means.report("deflection", done))
         contacts = _contacts(tabled, first.cases, means)
         across = {name: contact for name, contact in contacts.items() if contact.across_face}
-        agreed = in_agreement(
-            scene, cases, inputs.positions, across, first, lambda done: means.report("deflection", done)
-        )
+        agreed = in_agreement(scene, cases, inputs.positions, across, first)
         flanks = tuple(_flanks(scene, agreed, contacts, means))
     written = {name: mesh.case.model_dump(mode="json") for name, mesh in _with_case(tabled) if mesh.case}
     return GearboxDeflection(
@@ -96,7 +94,7 @@ def _contacts(tabled: TabledScene, found: tuple[CaseDeflection, ...], means: Mea
     for mesh_input in {known.name: known for known in inputs.values()}.values():
         database, own = tabled.databases[mesh_input.name], torques[mesh_input.name]
         assert isinstance(mesh_input.case, Case)
-        made[mesh_input.name] = mesh_contact(mesh_input.case, database, own, means.home)
+        made[mesh_input.name] = mesh_contact(mesh_input.case, database, own, means.home, means.report)
     return {name: made[known.name] for name, known in inputs.items()}
 
 

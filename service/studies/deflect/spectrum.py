@@ -21,7 +21,7 @@ def optimization_inputs(result: GearboxDeflection, mesh: str) -> Json:
     """Return torques with their weights, mean misalignment and its scatter over the spectrum of a mesh.
 
     Load cases of equal torque are one. Those on the coast side load the other flanks and are left aside,
-    unless all are. A plane model knows no misalignment.
+    unless all are.
     """
     points = _points(result, mesh)
     torque = np.array([point[0] for point in points])
@@ -38,11 +38,9 @@ def optimization_inputs(result: GearboxDeflection, mesh: str) -> Json:
     spread = float(np.sqrt(np.average((misalignment - mean) ** 2, weights=weight)))
     inputs: Json = {
         "torque_n_m": [_digits(point[0]) for point in merged],
+        "misalignment_um": _digits(mean / UM),
         "objective": {"kind": "weighted_mean", "weights": [_digits(point[1]) for point in merged]},
     }
-    if not _across_face(result, mesh):
-        return inputs
-    inputs = {"misalignment_um": _digits(mean / UM), **inputs}
     if spread > ALIKE * max(abs(mean), UM):
         inputs["scatter"] = {"misalignment_um": _digits(spread / UM)}
     return inputs
@@ -57,11 +55,6 @@ def _points(result: GearboxDeflection, mesh: str) -> list[tuple[float, float, fl
         points.append((case.direction == COAST, torque[case.name], case.share, own.misalignment))
     driving = [point[1:] for point in points if not point[0]]
     return driving or [point[1:] for point in points]
-
-
-def _across_face(result: GearboxDeflection, mesh: str) -> bool:
-    """Whether the load of a mesh may vary over its face."""
-    return any(np.isfinite(part.face_load_factor) for part in result.flanks if part.mesh == mesh)
 
 
 def write_spectrum(result: GearboxDeflection, _scene: Any, target: Path) -> None:

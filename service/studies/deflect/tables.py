@@ -6,9 +6,12 @@ import numpy as np
 
 from dynamics.deflection import CaseDeflection, MeshAlignment
 from service.drawing.figure import Table, number
-from service.studies.deflect.figures import axial_force, facts, mesh_names
+from service.studies.deflect.figures import facts, mesh_names
 from service.studies.deflect.result import GearboxDeflection, MeshFlanks
 from service.units import RPM, UM
+
+ROUNDING = 1e-9
+"""Of the radial force of a bearing: a smaller axial force is none."""
 
 
 def meshes_worst_first(result: GearboxDeflection) -> list[str]:
@@ -94,7 +97,7 @@ def bearing_table(result: GearboxDeflection) -> Table:
         "seat, µm",
     )
     rows = []
-    for index in range(len(result.deflection.cases[0].bearings)):
+    for index in range(len(result.outline.bearings)):
         for case in result.deflection.cases:
             load = case.bearings[index]
             moved = [np.hypot(*part[:2]) / UM for part in (load.elastic, load.clearance, load.seat)]
@@ -104,7 +107,7 @@ def bearing_table(result: GearboxDeflection) -> Table:
                     _titled(case),
                     number(load.speed / RPM),
                     number(load.radial),
-                    number(axial_force(load)),
+                    number(load.axial if abs(load.axial) > ROUNDING * load.radial else 0.0),
                     *(number(float(value), 3) for value in moved),
                 )
             )

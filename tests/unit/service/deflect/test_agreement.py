@@ -24,7 +24,7 @@ class SlicedContact:
 
     knots: list[list[float]] = field(default_factory=list)
 
-    def table(self, misalignments: list[float], _distances: Any = ()) -> Any:
+    def table(self, misalignments: list[float]) -> Any:
         """Return the table over misalignments."""
         self.knots.append(list(misalignments))
         forces = (300.0, 1000.0, 3000.0, 9000.0)

@@ -154,12 +154,6 @@ def test_the_spectrum_of_the_driving_side_is_what_is_optimized(result: GearboxDe
     assert study.scatter.misalignment_um == pytest.approx(spread, rel=1e-6)
 
 
-def test_a_plane_model_is_optimized_aligned(result: GearboxDeflection) -> None:
-    plane = tuple(replace(part, face_load_factor=float("nan")) for part in result.flanks)
-    inputs = optimization_inputs(replace(result, flanks=plane), "first")
-    assert set(inputs) == {"torque_n_m", "objective"}
-
-
 def test_files_of_an_optimization_stand_beside_the_list_of_calls(
     result: GearboxDeflection, tmp_path: Path
 ) -> None:
