@@ -8,6 +8,7 @@ from datetime import date
 from pathlib import Path
 
 from benchmarks import (
+    bearing_rate,
     client_map,
     cold_start,
     corrected_plane,
@@ -62,6 +63,7 @@ SUBJECTS = (
     corrected_plane,
     dynamics_cost,
     step_cost,
+    bearing_rate,
     solvers_3d,
     housing_modes,
     predictions,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -265,17 +264,3 @@ def test_the_reference_load_of_an_aligned_bearing_is_its_load():
         assert rating_life(bearing, twice, 30000.0).revolutions == pytest.approx(
             life.revolutions / 2.0**exponent, rel=1e-6
         )
-
-
-def test_an_eight_ball_bearing_is_evaluated_1e5_times_a_second(record_figure):
-    loaded = LoadedBearing(replace(DEEP_GROOVE, count=8))
-    loaded.evaluate(PLACE["deep groove"])
-    count, seconds = 20000, []
-    for _ in range(3):
-        begin = time.process_time()
-        for _ in range(count):
-            loaded.evaluate(PLACE["deep groove"], ANGLE)
-        seconds.append(time.process_time() - begin)
-    rate = count / min(seconds)
-    record_figure("evaluations of an 8-ball bearing", rate, "at least 1e5", "1/s", "CPU time, one thread")
-    assert rate > 1e5
