@@ -12,10 +12,10 @@ from dynamics.assembly.phases import repeating_phases
 from dynamics.bodies.load_course import BySpeed, Orders
 from dynamics.effects.frame_term import frame_lever
 from dynamics.errors import InputError
-from dynamics.forces.applied_force import AppliedForce
 from dynamics.forces.force_course import ForceCourseLaws, pack_courses
 from dynamics.forces.law import Law
 from dynamics.forces.unbalance import UnbalanceLaws
+from dynamics.loads.applied_force import AppliedForce
 from dynamics.mechanism.columns import section_rows, turn_row
 from dynamics.mechanism.freedoms import ROTATION
 from dynamics.mechanism.kinematics import Kinematics

@@ -1,7 +1,6 @@
 """Forces between bodies and on them: gear mesh, torques by time and by speed, nonlinear bearings."""
 
 import host.analysis  # noqa: F401 (says what to install)
-from dynamics.forces.applied_force import AppliedForce
 from dynamics.forces.coast_flank import CoastFlank
 from dynamics.forces.gear_mesh import GearMesh
 from dynamics.forces.load_torque import LoadTorque
@@ -11,7 +10,8 @@ from dynamics.forces.speed_torque import SpeedTorque
 from dynamics.forces.spring_curve import SpringCurve
 from dynamics.forces.stiffness_table import PeriodicCurve, stiffness_table
 from dynamics.forces.straight_table import straight_table
-from dynamics.forces.unbalance import Unbalance
+from dynamics.loads.applied_force import AppliedForce
+from dynamics.loads.unbalance import Unbalance
 
 __all__ = [
     "AppliedForce",

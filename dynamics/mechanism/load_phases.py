@@ -8,8 +8,8 @@ from fractions import Fraction
 import numpy as np
 
 from dynamics.bodies.load_course import Orders
-from dynamics.forces.applied_force import AppliedForce
-from dynamics.forces.unbalance import Unbalance
+from dynamics.loads.applied_force import AppliedForce
+from dynamics.loads.unbalance import Unbalance
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from dynamics.bodies.time_law import TimeLaw
 from dynamics.checks import one_of
-from dynamics.forces.applied_force import AppliedForce
+from dynamics.loads.applied_force import AppliedForce
 
 
 def check_force_shafts(forces: Sequence[AppliedForce], shafts: Sequence[str]) -> None:

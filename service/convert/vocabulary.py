@@ -11,14 +11,14 @@ from dynamics.bodies.disc_body import DiscBody
 from dynamics.bodies.gear_body import GearBody
 from dynamics.bodies.inertia import Inertia
 from dynamics.bodies.shaft import Shaft as TurningShaft
-from dynamics.forces.applied_force import AppliedForce
-from dynamics.forces.unbalance import Unbalance
 from dynamics.joints.bushing import Bushing
 from dynamics.joints.coupling import Coupling
 from dynamics.joints.free_rotation import FreeRotation
 from dynamics.joints.imposed_rotation import ImposedRotation
 from dynamics.joints.planet_bearing import PlanetBearing
 from dynamics.joints.rolling_bearing import RollingBearing
+from dynamics.loads.applied_force import AppliedForce
+from dynamics.loads.unbalance import Unbalance
 from dynamics.settings.integration import Integration
 from dynamics.settings.outputs import Outputs
 from fe_contact.body.shaft import Shaft

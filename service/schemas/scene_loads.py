@@ -7,8 +7,8 @@ from typing import Annotated, Self
 
 from pydantic import ConfigDict, Field, Strict, model_validator
 
-from dynamics.forces.applied_force import AppliedForce
-from dynamics.forces.unbalance import Unbalance
+from dynamics.loads.applied_force import AppliedForce
+from dynamics.loads.unbalance import Unbalance
 from service.schemas.declared import declared_in, with_fields
 from service.schemas.model import BoundaryModel, refuse
 from service.schemas.rules import at_most_one_of, stated
