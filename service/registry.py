@@ -269,7 +269,7 @@ STUDIES: dict[str, Study] = {
             "examples/flexible_shafts_scene.toml -o deflect",
             kind="deflection",
             stages=(("analysis", 0.5), ("deflection", 0.2), ("flanks", 0.3)),
-            version="1",
+            version="2",
             folder="deflection",
             from_file=True,
             bare=True,

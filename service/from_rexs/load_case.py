@@ -20,6 +20,8 @@ class LoadCase:
     ----------
     name : str
         Its name.
+    number : int
+        Its place in the spectrum of the file, from 1.
     share : float
         Of the time, 0 to 1.
     torque_n_m : float
@@ -31,6 +33,7 @@ class LoadCase:
     """
 
     name: str
+    number: int
     share: float
     torque_n_m: float
     speed_rpm: float
@@ -64,6 +67,7 @@ def load_case(flow: PowerFlow, leader: AppliedTorque, torque: float, scene_torqu
     same = torque * scene_torque >= 0.0
     return LoadCase(
         flow.point.name,
+        flow.point.number,
         float(f"{flow.point.share:.{DIGITS}g}"),
         float(f"{abs(torque):.{DIGITS}g}"),
         float(f"{abs(speed) / RPM:.{DIGITS}g}"),

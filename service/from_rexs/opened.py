@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from service.from_rexs.account import Line
 from service.from_rexs.gear_unit import GearUnit
@@ -13,6 +13,7 @@ from service.from_rexs.operating_points import operating_points
 from service.from_rexs.power_flow import PowerFlow, power_flow
 from service.from_rexs.scene import SceneTable, scene_table
 from service.from_rexs.scene_loads import AppliedTorque
+from service.from_rexs.scene_parts import SceneParts
 from service.from_rexs.stage_case import StageCase, stage_cases
 from service.from_rexs.train import train_of
 from service.problems import BadInput
@@ -41,6 +42,8 @@ class OpenedUnit:
         What became of each component and value.
     changes : tuple of Change
         What the upgrade to the newest version of REXS changed.
+    parts : SceneParts
+        The components that the parts of the scene are; none without a scene.
     """
 
     cases: tuple[StageCase, ...]
@@ -48,6 +51,7 @@ class OpenedUnit:
     load_cases: tuple[LoadCase, ...]
     lines: tuple[Line, ...]
     changes: tuple[Change, ...]
+    parts: SceneParts = field(default_factory=SceneParts)
 
 
 def opened(document: Document) -> OpenedUnit:
@@ -74,7 +78,8 @@ def opened(document: Document) -> OpenedUnit:
     _say_missing(layout, flows, cases)
     scene = None if table is None else _scene(layout, table)
     loads = _load_cases(flows, table)
-    return OpenedUnit(cases, scene, loads, unit.account.lines(), tuple(changes))
+    parts = SceneParts() if table is None or scene is None else table.parts
+    return OpenedUnit(cases, scene, loads, unit.account.lines(), tuple(changes), parts)
 
 
 def _flows(layout: Layout) -> list[PowerFlow]:

@@ -24,6 +24,7 @@ from service.from_rexs.scene_loads import (
     slowest_mesh,
     trains_of,
 )
+from service.from_rexs.scene_parts import SceneParts, scene_parts
 from service.from_rexs.scene_shafts import scene_shafts
 from service.from_rexs.stage_case import StageCase
 
@@ -43,10 +44,13 @@ class SceneTable:
         Tables of a scene file; meshes name their case files.
     leader : AppliedTorque or None
         What drives it first.
+    parts : SceneParts
+        The components that its parts are.
     """
 
     table: dict[str, Any]
     leader: AppliedTorque | None
+    parts: SceneParts
 
 
 def scene_table(layout: Layout, flow: PowerFlow, cases: Sequence[StageCase]) -> SceneTable:
@@ -82,8 +86,13 @@ def scene_table(layout: Layout, flow: PowerFlow, cases: Sequence[StageCase]) -> 
         "meshes": meshes,
         **motion_tables(layout, flow, shafts, torques, drivers),
     }
+    named = [
+        (mesh["name"], by_stage[stage.stage.id]) for stage, mesh in zip(shafts.stages, meshes, strict=True)
+    ]
     return SceneTable(
-        {key: value for key, value in table.items() if value != []}, drivers[0] if drivers else None
+        {key: value for key, value in table.items() if value != []},
+        drivers[0] if drivers else None,
+        scene_parts(layout, flow, shafts, bearings.seats, named),
     )
 
 

@@ -42,7 +42,7 @@ def scene_gears(
         for gear, shaft in zip(stage.gears, stage.shafts, strict=True):
             if gear.id not in gears:
                 gears[gear.id] = _gear(layout, shafts, gear, shaft, names)
-        driver, driven = _driving(stage, case)
+        driver, driven = driving_gears(stage, case)
         mesh: dict[str, Any] = {
             "name": mesh_names.of(stage.stage),
             "driver": gears[driver.id]["name"],
@@ -55,7 +55,7 @@ def scene_gears(
     return list(gears.values()), meshes
 
 
-def _driving(stage: GearStage, case: StageCase) -> tuple[Part, Part]:
+def driving_gears(stage: GearStage, case: StageCase) -> tuple[Part, Part]:
     """Return driver and driven gear of a stage: as in its case, which may be that of an equal planet."""
     first = {gear.id: gear for gear in stage.gears}
     if case.driver in first:

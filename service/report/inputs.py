@@ -94,7 +94,7 @@ def read_result(file: Path) -> SteDatabase | RunResult:
 
 def _kind(file: Path) -> tuple[Study | None, str]:
     """Return the study that made a file, if one did, and the kind of the file."""
-    attributes = _attributes(file)
+    attributes = file_attributes(file)
     for kind, ((name, value), _) in _READERS.items():
         if attributes.get(name) == value:
             return None, kind
@@ -103,7 +103,7 @@ def _kind(file: Path) -> tuple[Study | None, str]:
     raise BadInput.of("file", str(file), _BOUND, "It is a netCDF file of another kind.")
 
 
-def _attributes(file: Path) -> dict[str, str]:
+def file_attributes(file: Path) -> dict[str, str]:
     """Return the attributes of a netCDF file as texts.
 
     Raises

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 from dynamics.errors import DynamicsError
 from fe_contact.errors import FeContactError
@@ -27,8 +28,27 @@ def study_page(study: Study, file: Path, database: SteDatabase | None = None) ->
     BadInput
         It is damaged.
     """
-    try:
+    with _undamaged(study, file):
         return page_beside(study, study.run.file.read(file), database)
+
+
+def read_stored(study: Study, file: Path) -> Any:
+    """Return the result in a study's file.
+
+    Raises
+    ------
+    BadInput
+        It is damaged.
+    """
+    with _undamaged(study, file):
+        return study.run.file.read(file)
+
+
+@contextmanager
+def _undamaged(study: Study, file: Path) -> Iterator[None]:
+    """Name the file in the libraries' errors of damaged files."""
+    try:
+        yield
     except (ValueError, FeContactError, DynamicsError) as error:
         advice = f"Something is missing or not as written ({type(error).__name__}: {error})."
         raise BadInput.of("file", str(file), f"an undamaged {study.kind}", advice) from None

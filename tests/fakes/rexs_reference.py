@@ -55,6 +55,14 @@ def attributes_of(version: str) -> dict[str, tuple[str, str, list[str]]]:
     }
 
 
+def owners(version: str) -> dict[str, set[str]]:
+    """Return the types of components that have each attribute of a version."""
+    found: dict[str, set[str]] = {}
+    for entry in parsed_schema(version).iter("componentAttributeMapping"):
+        found.setdefault(str(entry.get("attributeId")), set()).add(str(entry.get("componentId")))
+    return found
+
+
 @functools.cache
 def changelog(old: str, new: str) -> Element:
     """Return the changelog of a step."""

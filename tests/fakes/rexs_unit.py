@@ -16,6 +16,7 @@ from service.rexs import Attribute, Component, Document, LoadCase, LoadSpectrum,
 from tests.fakes.rexs_stage import relation
 
 Values = Mapping[int, Mapping[str, Any]]
+DATE = "2026-01-01T00:00:00+00:00"
 _TABLE = tomllib.loads(files("service.rexs").joinpath("quantities.toml").read_text(encoding="utf-8"))
 UNITS = {name: unit for unit, names in _TABLE.items() for name in names}
 
@@ -155,7 +156,42 @@ def two_stages(
     )
     spectra = (LoadSpectrum(1, loads),) if loads else ()
     joined = (*relations(), *further)
-    return Document(Model("2.0.0", "test", "1", "2026-01-01", joined, components, spectra))
+    return Document(Model("2.0.0", "test", "1", DATE, joined, components, spectra))
+
+
+def antiparallel(shaft: int, length: float) -> Document:
+    """Return the unit with one shaft described from its other end."""
+    parts = {INPUT: (11, 31, 32, 130, 131, MOTOR), MIDDLE: (12, 13, 33, 34, 140, 141)}
+    on_shaft, about_u = parts[shaft], ("rotational_speed", "torque_around_u_axis")
+
+    def each(number: int, _kind: str, values: dict[str, Any]) -> dict[str, Any]:
+        if number == shaft:
+            x, y, z = values["support_vector"]
+            values = values | {"support_vector": (x + length, y, z), "u_axis_vector": (-1.0, 0.0, 0.0)}
+        if number not in (shaft, *on_shaft):
+            return values
+        values = {item: -value if item in about_u else value for item, value in values.items()}
+        for item in ("u_coordinate_on_shaft", "u_coordinate_on_shaft_inner_side"):
+            if item in values:
+                values = values | {item: length - values[item] - values.get("length", 0.0)}
+        return values | ({"u_axis_vector": (-1.0, 0.0, 0.0)} if "u_axis_vector" in values else {})
+
+    return two_stages(each=each)
+
+
+def mirrored() -> Document:
+    """Return the mirror image in the plane v = 0: hands and senses of rotation are opposite."""
+    opposite = ("helix_angle_reference_diameter", "rotational_speed", "torque_around_u_axis")
+    opposite += ("rotating_angle_around_neg_u_axis",)
+
+    def each(_number: int, _kind: str, values: dict[str, Any]) -> dict[str, Any]:
+        values = {k: -v if k in opposite else v for k, v in values.items()}
+        if "support_vector" in values:
+            x, y, z = values["support_vector"]
+            values["support_vector"] = (x, -y, z)
+        return values
+
+    return two_stages(each=each)
 
 
 SUN, RING, CARRIER, PLANETS, SET = 3, 4, 5, (6, 7, 8), 20
@@ -217,4 +253,4 @@ def planetary(turned: float = 0.0) -> Document:
         rows.append(("side", {"assembly": bearing, "inner_part": shaft, "outer_part": CASING}))
     components = tuple(component(number, kind, values) for number, (kind, values) in built.items())
     joined = tuple(relation(1000 + number, kind, **roles) for number, (kind, roles) in enumerate(rows))
-    return Document(Model("2.0.0", "test", "1", "2026-01-01", joined, components))
+    return Document(Model("2.0.0", "test", "1", DATE, joined, components))

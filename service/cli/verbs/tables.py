@@ -112,7 +112,10 @@ class RunPart:
 @grouped
 def export(
     *,
-    case: Annotated[InputFile, file_argument("Case file; for an FMU an STE database, or a run", "CASE")],
+    case: Annotated[
+        InputFile,
+        file_argument("Case file; STE database for an FMU; a run; with --rexs a table or deflection", "CASE"),
+    ],
     output: Annotated[
         Path,
         typer.Option(
@@ -128,7 +131,8 @@ def export(
         int, typer.Option(min=0, max=100, help="Unloaded teeth to show on either side, in three dimensions.")
     ] = 1,
     rexs: Annotated[
-        Path | None, typer.Option(help="REXS file whose stage the table is of; results are added to it.")
+        Path | None,
+        typer.Option(help="REXS file of the unit to which the results are added."),
     ] = None,
     fmu: FmuOptions,
     part: RunPart,

@@ -112,6 +112,8 @@ class GearboxDeflection(Record):
         The cases of the meshes as they were written, by mesh.
     seconds : float
         CPU time.
+    scene : dict
+        The scene as it was written, without the cases; empty in files of versions that did not keep it.
     """
 
     deflection: Deflection
@@ -122,3 +124,4 @@ class GearboxDeflection(Record):
     outline: Outline
     cases: Json
     seconds: float
+    scene: Json = field(default_factory=dict)

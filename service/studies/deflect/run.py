@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from bounds import inside
+from bounds.types import Json
 from dynamics.deflection import CaseDeflection, MeshAlignment, deflect
 from dynamics.scene import Scene
 from dynamics.settings.load_case import LoadCase
@@ -18,6 +19,7 @@ from service.convert.case import boundary_errors
 from service.convert.declared import in_si
 from service.convert.scene import TabledScene
 from service.schemas import Case
+from service.schemas.scene import SceneInput
 from service.schemas.scene_meshes import MeshInput
 from service.studies.computation import Computation, Means
 from service.studies.deflect import Inputs
@@ -60,7 +62,14 @@ def deflection_of(tabled: TabledScene, inputs: Inputs, means: Means) -> GearboxD
         outline_of(scene),
         written,
         time.process_time() - began,
+        scene_of(tabled.inputs),
     )
+
+
+def scene_of(inputs: SceneInput) -> Json:
+    """Return a scene as it is kept with its deflection: without the cases of its meshes."""
+    kept: Json = inputs.model_dump(mode="json", exclude={"meshes": {"__all__": {"case", "case_file"}}})
+    return kept
 
 
 def load_cases(inputs: Inputs) -> tuple[LoadCase, ...]:

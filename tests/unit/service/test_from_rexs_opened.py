@@ -33,6 +33,8 @@ from tests.fakes.rexs_unit import (
     PLANETS,
     ROOT,
     STAGES,
+    antiparallel,
+    mirrored,
     planetary,
     two_stages,
 )
@@ -111,44 +113,9 @@ def test_shafts_turned_about_u_turn_the_scene_about_z() -> None:
     assert turned["drives"] == plain["drives"]
 
 
-def antiparallel(shaft: int, length: float) -> Document:
-    """Return the unit with one shaft described from its other end."""
-    parts = {INPUT: (11, 31, 32, 130, 131, MOTOR), MIDDLE: (12, 13, 33, 34, 140, 141)}
-    on_shaft, about_u = parts[shaft], ("rotational_speed", "torque_around_u_axis")
-
-    def each(number: int, _kind: str, values: dict[str, Any]) -> dict[str, Any]:
-        if number == shaft:
-            x, y, z = values["support_vector"]
-            values = values | {"support_vector": (x + length, y, z), "u_axis_vector": (-1.0, 0.0, 0.0)}
-        if number not in (shaft, *on_shaft):
-            return values
-        values = {item: -value if item in about_u else value for item, value in values.items()}
-        for item in ("u_coordinate_on_shaft", "u_coordinate_on_shaft_inner_side"):
-            if item in values:
-                values = values | {item: length - values[item] - values.get("length", 0.0)}
-        return values | ({"u_axis_vector": (-1.0, 0.0, 0.0)} if "u_axis_vector" in values else {})
-
-    return two_stages(each=each)
-
-
 @pytest.mark.parametrize("shaft", [INPUT, MIDDLE])
 def test_a_shaft_described_from_its_other_end_is_the_same_shaft(shaft: int) -> None:
     assert content(scene_of(antiparallel(shaft, 150.0))) == content(scene_of(two_stages()))
-
-
-def mirrored() -> Document:
-    """Return the mirror image in the plane v = 0: hands and senses of rotation are opposite."""
-    opposite = ("helix_angle_reference_diameter", "rotational_speed", "torque_around_u_axis")
-    opposite += ("rotating_angle_around_neg_u_axis",)
-
-    def each(_number: int, _kind: str, values: dict[str, Any]) -> dict[str, Any]:
-        values = {k: -v if k in opposite else v for k, v in values.items()}
-        if "support_vector" in values:
-            x, y, z = values["support_vector"]
-            values["support_vector"] = (x, -y, z)
-        return values
-
-    return two_stages(each=each)
 
 
 def test_a_mirrored_unit_is_the_mirrored_scene() -> None:

@@ -6,10 +6,12 @@ import json
 import re
 import time
 import tomllib
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import jsonschema
+import numpy as np
 import pytest
 from lxml import etree
 from rexs_reference import (
@@ -22,6 +24,7 @@ from rexs_reference import (
     names_at,
     needs_reference,
     other_changes,
+    owners,
     parsed_schema,
     reference,
     step_of,
@@ -30,14 +33,22 @@ from rexs_stage import STAGE, stage_unit
 from small_rexs import small_document, small_model
 from small_table import small_table
 
+from dynamics.deflection import BearingLoad
 from fe_contact.ste import Metadata
 from service.convert.case import case_json
+from service.from_rexs.connections import BEARINGS, COUPLINGS
 from service.from_rexs.gear_unit import GearUnit
+from service.from_rexs.opened import opened
+from service.from_rexs.scene_parts import BearingPart
 from service.from_rexs.stage_case import stage_cases
 from service.rexs import Document, parsed, read_rexs, serialized, upgrade
 from service.rexs.kinds import KINDS, kind_of
 from service.rexs.units import UNITS
+from service.to_rexs.bearing_results import bearing_results
+from service.to_rexs.deflected import deflected
 from service.to_rexs.exported import exported
+from tests.fakes.deflected_unit import deflection_of_unit
+from tests.fakes.rexs_unit import MOTOR, two_stages
 
 pytestmark = needs_reference
 PACKAGE = Path(__file__).parents[3] / "service" / "rexs"
@@ -166,6 +177,37 @@ def test_a_stage_with_results_is_valid() -> None:
         (entry.id, *known[entry.id][:2]) for entry in results
     }
     assert len(results) == 4
+
+
+def with_load_case() -> Document:
+    """Return the two-stage unit with one load case."""
+    return two_stages(cases=[{MOTOR: ("external_load", {"torque_around_u_axis": 50.0})}])
+
+
+@pytest.mark.parametrize("make", [two_stages, with_load_case])
+def test_a_deflection_is_valid_and_its_attributes_belong_to_their_components(
+    make: Callable[[], Document],
+) -> None:
+    document = make()
+    unit = opened(document)
+    written = deflected(document, unit, deflection_of_unit(unit))
+    _validate(written)
+    known, owned = attributes_of("2.0.0"), owners("2.0.0")
+    names = set()
+    for _, part in written.model.all_components():
+        for entry in part.attributes:
+            if entry.origin == "calculated" and not entry.id.startswith("custom_"):
+                assert (entry.kind, entry.unit) == known[entry.id][:2]
+                assert part.type in owned[entry.id]
+                names.add(entry.id)
+    assert len(names) == 25 + 5 + 4  # of bearings, shafts, stages
+
+
+def test_every_kind_of_bearing_has_the_attributes_of_results() -> None:
+    load = BearingLoad("", "", 0.0, np.ones(5), 1.0, np.ones(5), np.ones(5), np.ones(5))
+    owned = owners("2.0.0")
+    for entry in bearing_results(BearingPart(1, np.eye(3), shaft_inside=True), load):
+        assert {*BEARINGS, *COUPLINGS} <= owned[entry.id]
 
 
 def test_what_is_written_of_every_form_is_valid() -> None:

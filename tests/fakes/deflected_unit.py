@@ -1,0 +1,56 @@
+"""The deflection of a REXS unit on straight mesh tables, with flanks of a load that falls along the face."""
+
+from __future__ import annotations
+
+import tomllib
+
+import numpy as np
+
+from dynamics.deflection import CaseDeflection, MeshAlignment, deflect
+from dynamics.scene import Scene
+from service.convert.case import gear_pair
+from service.convert.scene import check_scene
+from service.convert.topology import facts_of
+from service.from_rexs.files import SCENE_FILE, load_case_tables, unit_files
+from service.from_rexs.opened import OpenedUnit
+from service.schemas import validated
+from service.schemas.scene import SceneInput
+from service.studies.deflect import Inputs
+from service.studies.deflect.outline import outline_of
+from service.studies.deflect.result import GearboxDeflection, MeshFlanks
+from service.studies.deflect.run import load_cases, scene_of
+
+HALF_FACE = 0.01
+POSITIONS = 3
+
+
+def scene_in_si(unit: OpenedUnit) -> Scene:
+    """Return the unit's scene for dynamics."""
+    assert unit.scene is not None
+    facts = {f"{case.name}.toml": facts_of(gear_pair(case.case)) for case in unit.cases}
+    return check_scene(unit.scene, {mesh.name: facts[str(mesh.case_file)] for mesh in unit.scene.meshes})
+
+
+def deflection_of_unit(unit: OpenedUnit) -> GearboxDeflection:
+    """Return the result as `loa deflect` keeps it, under all load cases of the unit."""
+    assert unit.scene is not None
+    scene = scene_in_si(unit)
+    inputs = validated(Inputs, load_case_tables(unit.load_cases))
+    found = deflect(scene, load_cases(inputs), POSITIONS)
+    flanks = tuple(_flanks(case, mesh) for case in found.cases for mesh in case.meshes)
+    cases = {case.name: case.case.model_dump(mode="json") for case in unit.cases}
+    by_mesh = {name: cases[part.case] for name, part in unit.parts.meshes.items()}
+    outline = outline_of(scene)
+    kept = scene_of(validated(SceneInput, tomllib.loads(unit_files(unit)[SCENE_FILE])))
+    return GearboxDeflection(found, flanks, 2, 1e-9, True, outline, by_mesh, 1.0, kept)
+
+
+def _flanks(case: CaseDeflection, mesh: MeshAlignment) -> MeshFlanks:
+    """Return flanks whose load falls towards positive face positions."""
+    along, roll = np.linspace(-HALF_FACE, HALF_FACE, 41), np.linspace(0.005, 0.02, 40)
+    load = mesh.force / (2.0 * HALF_FACE) * (1.0 - 0.5 * along / HALF_FACE)
+    stress = 1e9 * (1.0 - 0.3 * along / HALF_FACE) * (1.0 + roll[:, None])
+    numbers = (1e-5, float("nan"), 1e-6, float("nan"), np.full(5, 1e-7), np.full(5, 1e-9))
+    factor, largest = 1.5, float(stress.max())
+    name, torque = mesh.name, 0.02 * mesh.force
+    return MeshFlanks(name, case.name, torque, *numbers, factor, 0.0, largest, along, load, roll, stress)
