@@ -7,27 +7,15 @@ from dataclasses import dataclass, replace
 
 from bounds import above
 from dynamics.bodies import TimeLaw
+from dynamics.effects import EFFECTS
 from dynamics.errors import InputError
 from dynamics.joints import ImposedRotation
 from dynamics.mechanism.kinematics import Kinematics, solve_kinematics
 from dynamics.scene.scene import Scene
 from dynamics.settings.load_case import DRIVE, LoadCase
 
-FOLLOWED = (
-    "lateral",
-    "axial",
-    "tilt",
-    "bearing_clearance",
-    "flexible_shafts",
-    "dynamic_misalignment",
-    "dynamic_center_distance",
-    "moving_application_point",
-)
-"""Effects that statics takes wherever the scene has what they need, unless it switches them off."""
 STATIC = 1.0
 """Hz to which shafts are resolved: their deflections under forces at what is on them are exact anyway."""
-NEGLECTED = ("friction", "backlash")
-"""Effects of the run: flanks carry by their normal force alone, on the side that the load presses."""
 
 
 @dataclass(frozen=True)
@@ -76,9 +64,6 @@ def loaded_scene(scene: Scene, case: LoadCase) -> Scene:
     turned = 1.0 if case.direction == DRIVE else -1.0
     scale = turned * (speed / abs(leader.speed) if leader.speed else speed)
     factor = case.factor if case.torque is None else _factor(scene, leader, speed, case.torque)
-    effects = dict.fromkeys(FOLLOWED, "on") | dict.fromkeys(NEGLECTED, "off")
-    stated = scene.effects.items()
-    own = {name: choice for name, choice in stated if choice == "off" or name not in effects}
     return replace(
         scene,
         drives=(*_drives(scene, scale), *_held_trains(scene, leader, scale)),
@@ -95,10 +80,19 @@ def loaded_scene(scene: Scene, case: LoadCase) -> Scene:
             )
             for mesh in scene.meshes
         ),
-        effects={**effects, **own},
+        effects=_effects_at_rest(scene),
         tolerance=None,
         highest_frequency=STATIC,
     )
+
+
+def _effects_at_rest(scene: Scene) -> dict[str, str]:
+    """Return the choices of effects: those that act at rest are on unless the scene switches them off."""
+    known = {
+        effect.name: "on" if effect.at_rest else "off" for effect in EFFECTS if effect.at_rest is not None
+    }
+    stated = scene.effects.items()
+    return known | {name: choice for name, choice in stated if choice == "off" or name not in known}
 
 
 def _drives(scene: Scene, scale: float) -> Iterator[ImposedRotation]:

@@ -18,6 +18,7 @@ class Axial(RotorEffect):
     """One displacement along the axis."""
 
     name = "axial"
+    at_rest = True
     adds = ("z",)
     cost = "one freedom per shaft"
 

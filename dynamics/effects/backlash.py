@@ -25,6 +25,7 @@ class Backlash(MeshEffect):
     """One force element per mesh: the coast flank."""
 
     name = "backlash"
+    at_rest = False
     adds = (COAST_FLANKS,)
     cost = "one table look-up per mesh and stage"
     linear = False

@@ -54,12 +54,16 @@ class Effect:
         What it adds to the model: names of `FREEDOMS` that it gives a rotor, names of `additions`.
     linear : bool
         Whether linear theory estimates its influence; False: of impacts it says nothing.
+    at_rest : bool or None
+        Whether static deflections follow it. True: wherever the scene has what it needs; False: never, it is
+        one of motion; None: where the scene calls for it, as in a run.
     """
 
     name: ClassVar[str]
     cost: ClassVar[str]
     adds: ClassVar[tuple[str, ...]] = ()
     linear: ClassVar[bool] = True
+    at_rest: ClassVar[bool | None] = None
 
     def check(self, mechanism: Mechanism) -> None:
         """Refuse a mechanism that the effect, if it is not switched off, cannot do with.

@@ -39,6 +39,7 @@ class FlexibleShafts(RotorEffect):
     """Elastic coordinates of every shaft with sections, and the rigid freedoms that bending needs."""
 
     name = "flexible_shafts"
+    at_rest = True
     cost = "five to thirty freedoms per shaft, all in one block"
 
     def verdicts(self, rotors: Sequence[LoadedRotor]) -> Sequence[Verdict]:

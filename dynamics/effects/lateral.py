@@ -10,6 +10,7 @@ class Lateral(RotorEffect):
     """Two displacements across the axis."""
 
     name = "lateral"
+    at_rest = True
     adds = ("x", "y")
     cost = "two freedoms per shaft"
 

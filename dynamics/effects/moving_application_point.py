@@ -19,6 +19,7 @@ class MovingApplicationPoint(MeshEffect):
     """A moment of the mesh force in the plane of action."""
 
     name = "moving_application_point"
+    at_rest = True
     adds = (LOAD_CENTROID,)
     cost = "one more row per flank and four more values per look-up"
 
