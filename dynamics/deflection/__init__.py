@@ -1,6 +1,7 @@
 """Static deflection of a geared system under load cases, and the alignment of its meshes by cause."""
 
 import host.analysis  # noqa: F401 (says what to install)
+from dynamics.deflection.bearing_life import life_duration
 from dynamics.deflection.bearing_load import BearingLoad, equivalent_load
 from dynamics.deflection.causes import CAUSES
 from dynamics.deflection.deflect import CaseDeflection, Deflection, deflect
@@ -19,5 +20,6 @@ __all__ = [
     "ShaftLines",
     "deflect",
     "equivalent_load",
+    "life_duration",
     "loaded_scene",
 ]

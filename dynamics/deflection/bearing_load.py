@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from dynamics.assembly.assemble import System
+from dynamics.deflection.bearing_life import life_of
 from dynamics.deflection.bearing_strain import BearingStrain
 from dynamics.deflection.rest import Rest
 from dynamics.joints import PlanetBearing
@@ -34,6 +36,9 @@ class BearingLoad(Record):
         Over the cycle, N.
     elastic, clearance, seat : (5,) arrays
         Parts of the displacement of the shaft there, m and rad.
+    rating_life : float
+        Basic reference rating life L_10r at the mean displacement, revolutions; infinite where no element is
+        loaded, NaN if the bearing has no dynamic capacity.
     """
 
     name: str
@@ -44,6 +49,7 @@ class BearingLoad(Record):
     elastic: FloatArray = field(metadata=in_unit("m", "direction"))
     clearance: FloatArray = field(metadata=in_unit("m", "direction"))
     seat: FloatArray = field(metadata=in_unit("m", "direction"))
+    rating_life: float = math.nan
 
     @property
     def radial(self) -> float:
@@ -60,6 +66,7 @@ def bearing_loads(system: System, rest: Rest, strain: BearingStrain) -> tuple[Be
     """Return the loads of all bearings in the rest positions, `strain` that of their mean."""
     places, force = supports_by_name(system.rotors), rest.bearing_force
     speed = system.kinematics.float_ratio @ [drive.speed.extreme for drive in system.scene.drives]
+    rows = {bearing.name: bearing for bearing in system.scene.rolling_bearings}
     loads = []
     for k, name in enumerate(system.supports.name):
         index, part = places[name]
@@ -75,6 +82,7 @@ def bearing_loads(system: System, rest: Rest, strain: BearingStrain) -> tuple[Be
                 strain.elastic[k],
                 strain.clearance[k],
                 strain.seat[k],
+                life_of(rows[name], strain.elastic[k] + strain.clearance[k]) if name in rows else math.nan,
             )
         )
     return tuple(loads)

@@ -26,6 +26,14 @@ DAMPING_RATIO = Declared(
     "Damping ratio of the shaft bouncing on its bearings under the nominal mesh forces",
     0.05,
 )
+DYNAMIC_CAPACITY = Declared(
+    Kind.FORCE,
+    "N",
+    between(1.0, 1e9),
+    "Basic dynamic load rating C of the row (ISO 281), from which its rating life follows; default: no life",
+    22500.0,
+    later=True,
+)
 
 
 @described
@@ -47,6 +55,7 @@ class RollingBearing:
     position: float = required(seat.POSITION)
     axial_preload: float = declared(0.0, AXIAL_PRELOAD)
     damping_ratio: float = declared(0.05, DAMPING_RATIO)
+    dynamic_capacity: float | None = declared(None, DYNAMIC_CAPACITY)
 
     def __post_init__(self) -> None:
         declared_fields(self)

@@ -8,7 +8,8 @@ import { showFailure } from "./job.js";
 
 const WHAT = [
   ["simulate", "Run over time"], ["modes", "Modes over speed"], ["response", "Forced response over speed"],
-  ["steady", "Steady states over speed"], ["study", "Many runs, at constant speeds"],
+  ["steady", "Steady states over speed"], ["deflect", "Deflection under its loads"],
+  ["study", "Many runs, at constant speeds"],
 ];
 const FIELDS = [
   { name: "process", label: "Compute", choices: WHAT },
@@ -96,7 +97,7 @@ export class SceneEditor {
 
 /** What a process varies of a scene; a study runs it at each speed of its first drive. */
 function varied(process, scene, speeds) {
-  if (process === "simulate") return {};
+  if (process === "simulate" || process === "deflect") return {};
   if (process !== "study") return { speed_rpm: speeds };
   const path = `drives.${(scene.drives ?? [{ name: "?" }])[0].name}.speed_rpm`;
   return { factors: [{ path, levels: speeds }], responses: RESPONSES };

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from service.schemas.figures import Figures, Part
+
+RatingLife = Literal["limited", "unlimited", "none: no capacity"]
 
 
 class Agreement(Part):
@@ -44,7 +48,7 @@ class Mesh(Part):
 
 
 class Bearing(Part):
-    """A bearing under a load case, in the axes x, y, z."""
+    """A bearing under a load case, in the axes x, y, z; no life in hours: `rating_life` says why."""
 
     name: str
     shaft: str
@@ -58,6 +62,8 @@ class Bearing(Part):
     clearance_um: list[float]
     seat_um: list[float]
     tilt_mrad: list[float]
+    rating_life_hours: float | None
+    rating_life: RatingLife
 
 
 class LoadCase(Part):
@@ -86,13 +92,15 @@ class MeshOverCases(Part):
 
 
 class BearingOverCases(Part):
-    """A bearing over all load cases: constant loads of the same life, by kind of element."""
+    """A bearing over all load cases: its life, and constant loads of the same life by kind of element."""
 
     name: str
     mean_speed_rpm: float
     largest_radial_force_n: float
     equivalent_radial_force_n: dict[str, float]
     equivalent_axial_force_n: dict[str, float]
+    rating_life_hours: float | None
+    rating_life: RatingLife
 
 
 class DeflectionFigures(Figures):

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from bounds.types import Json
 from dynamics.deflection import CaseDeflection, MeshAlignment
 from service.drawing.figure import Table, number
 from service.studies.deflect.figures import facts, mesh_names
 from service.studies.deflect.result import GearboxDeflection, MeshFlanks
-from service.units import RPM, UM
-
-ROUNDING = 1e-9
-"""Of the radial force of a bearing: a smaller axial force is none."""
+from service.units import UM
 
 
 def meshes_worst_first(result: GearboxDeflection) -> list[str]:
@@ -95,30 +93,44 @@ def bearing_table(result: GearboxDeflection) -> Table:
         "elastic, µm",
         "clearance, µm",
         "seat, µm",
+        "life, h",
     )
-    rows = []
-    for index in range(len(result.outline.bearings)):
-        for case in result.deflection.cases:
-            load = case.bearings[index]
-            moved = [np.hypot(*part[:2]) / UM for part in (load.elastic, load.clearance, load.seat)]
-            rows.append(
-                (
-                    load.name,
-                    _titled(case),
-                    number(load.speed / RPM),
-                    number(load.radial),
-                    number(load.axial if abs(load.axial) > ROUNDING * load.radial else 0.0),
-                    *(number(float(value), 3) for value in moved),
-                )
-            )
-    return Table("Bearings under the load cases, means over the mesh cycle", head, tuple(rows))
+    cases = result.deflection.cases
+    figures = [case["bearings"] for case in facts(result)["load_cases"]]
+    rows = tuple(
+        _bearing_row(figures[k][index], case)
+        for index in range(len(result.outline.bearings))
+        for k, case in enumerate(cases)
+    )
+    return Table("Bearings under the load cases, means over the mesh cycle", head, rows)
+
+
+def _bearing_row(bearing: Json, case: CaseDeflection) -> tuple[str, ...]:
+    """One bearing under one load case."""
+    moved = (float(np.hypot(*bearing[f"{part}_um"][:2])) for part in ("elastic", "clearance", "seat"))
+    return (
+        bearing["name"],
+        _titled(case),
+        number(bearing["speed_rpm"]),
+        number(bearing["radial_force_n"]),
+        number(bearing["axial_force_n"]),
+        *(number(value, 3) for value in moved),
+        life_text(bearing),
+    )
+
+
+def life_text(bearing: Json) -> str:
+    """Write the life of a bearing in h, or why there is none."""
+    hours = bearing["rating_life_hours"]
+    return str(bearing["rating_life"]) if hours is None else number(hours, 3)
 
 
 def life_table(result: GearboxDeflection) -> Table:
-    """List the constant loads of the same life."""
+    """List the rating lives over all load cases and the constant loads of the same life."""
     head = (
         "bearing",
         "mean speed, rpm",
+        "life, h",
         "radial, ball, N",
         "radial, roller, N",
         "axial, ball, N",
@@ -128,6 +140,7 @@ def life_table(result: GearboxDeflection) -> Table:
         (
             part["name"],
             number(part["mean_speed_rpm"]),
+            life_text(part),
             *(
                 number(part[f"equivalent_{way}_force_n"][kind])
                 for way in ("radial", "axial")
@@ -136,4 +149,7 @@ def life_table(result: GearboxDeflection) -> Table:
         )
         for part in facts(result)["bearings"]
     )
-    return Table("Loads of equal life over all load cases (ISO 281, exponents 3 and 10/3)", head, rows)
+    title = (
+        "Basic reference rating life over all load cases (ISO/TS 16281), and loads of equal life (ISO 281)"
+    )
+    return Table(title, head, rows)

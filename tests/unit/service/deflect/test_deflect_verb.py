@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import tomllib
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,9 +16,10 @@ from scene_files import scene_file
 from two_stage_scenes import two_stages
 from typer.testing import CliRunner, Result
 
-from dynamics.deflection import deflect
+from dynamics.deflection import BearingLoad, deflect
 from dynamics.settings.load_case import LoadCase
 from service.cli.commands import app
+from service.drawing.figure import number
 from service.report import write_report
 from service.schemas import read_model
 from service.studies.deflect import Inputs
@@ -27,7 +29,7 @@ from service.studies.deflect.page import page
 from service.studies.deflect.result import GearboxDeflection, MeshFlanks
 from service.studies.deflect.run import RUN, failure, load_cases
 from service.studies.deflect.spectrum import optimization_inputs, write_spectrum
-from service.studies.deflect.tables import mesh_table, meshes_worst_first
+from service.studies.deflect.tables import bearing_table, life_table, mesh_table, meshes_worst_first
 from service.studies.optimize import Inputs as OptimizeInputs
 
 CASES = (
@@ -177,3 +179,49 @@ def test_deflections_are_drawn_a_round_number_of_times_enlarged(result: GearboxD
     factor = exaggeration(result.outline, case)
     largest = float(np.max(np.abs(case.shafts.motion[:, :2])))
     assert f"{factor:e}"[0] in "125" and 0.04 * 0.2 <= factor * largest <= 0.1 * 0.2 * (1.0 + 1e-9)
+
+
+def with_bearings(result: GearboxDeflection, change: Callable[[BearingLoad], BearingLoad]) -> Any:
+    """The result with other loads of its bearings."""
+    cases = tuple(
+        replace(case, bearings=tuple(change(load) for load in case.bearings))
+        for case in result.deflection.cases
+    )
+    return replace(result, deflection=replace(result.deflection, cases=cases))
+
+
+def test_lives_are_in_hours_and_damage_adds_over_the_cases(result: GearboxDeflection) -> None:
+    known = with_bearings(result, lambda load: replace(load, rating_life=1e12 / load.radial**3))
+    figures = RUN.facts(known)
+    check_declared("deflection", figures)
+    damage = np.zeros(len(result.outline.bearings))
+    for case in figures["load_cases"]:
+        for k, bearing in enumerate(case["bearings"]):
+            hours = 1e12 / bearing["radial_force_n"] ** 3 / (60.0 * bearing["speed_rpm"])
+            assert (
+                bearing["rating_life_hours"] == pytest.approx(hours) and bearing["rating_life"] == "limited"
+            )
+            damage[k] += case["share"] / 10.0 / hours
+    assert [part["rating_life_hours"] for part in figures["bearings"]] == pytest.approx(1.0 / damage)
+    assert life_table(known).rows[0][2] == number(1.0 / damage[0], 3)
+
+
+def test_no_life_is_said_with_its_reason(result: GearboxDeflection) -> None:
+    assert {row[2] for row in life_table(result).rows} == {"none: no capacity"}
+    idle = with_bearings(result, lambda load: replace(load, rating_life=float("inf")))
+    assert {row[-1] for row in bearing_table(idle).rows} == {"unlimited"}
+    part = RUN.facts(idle)["bearings"][0]
+    assert (part["rating_life_hours"], part["rating_life"]) == (None, "unlimited")
+
+
+def test_forces_within_rounding_are_zero(result: GearboxDeflection) -> None:
+    def axial(force: float) -> Callable[[BearingLoad], BearingLoad]:
+        def changed(load: BearingLoad) -> BearingLoad:
+            return replace(load, force=np.array([*load.force[:2], force, 0.0, 0.0]))
+
+        return changed
+
+    noisy, small = (with_bearings(result, axial(force)) for force in (6e-19, -1e-3))
+    assert {row[4] for row in bearing_table(noisy).rows} == {"0"}
+    assert {row[5] for row in life_table(noisy).rows} == {"0"}
+    assert {float(row[4]) for row in bearing_table(small).rows} == {-1e-3}
