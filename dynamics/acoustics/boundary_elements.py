@@ -19,6 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bounds import engineering
 from dynamics.acoustics.air import Air
 from dynamics.acoustics.boundary_operators import layer_operators
 from dynamics.acoustics.far_field import far_field_resistance
@@ -96,7 +97,8 @@ def surface_pressure(hull: Hull, frequency: float, shapes: ComplexArray, air: Ai
     slope = 1j * wavenumber * air.impedance * shapes.conj()  # dp/dn of e^{-i omega t}, as the kernel has it
     pressure, residual = _solve(hull, panels, wavenumber, slope)
     if not residual <= RESIDUAL:
-        raise SolveError(f"boundary elements: the relative residual {residual:.2g} is above {RESIDUAL:g}")
+        left = engineering(residual, 2)
+        raise SolveError(f"boundary elements: the relative residual {left} is above {RESIDUAL:g}")
     far = far_field_resistance(hull, wavenumber, pressure, slope) / air.impedance
     surface = shapes.T @ (hull.areas[:, None] * np.asarray(panels.mean @ pressure))
     return SurfacePressure(pressure.conj(), far.conj(), 0.5 * (surface.conj() + surface.T), residual)

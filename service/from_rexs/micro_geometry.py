@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any
 
+from bounds import engineering
 from fe_contact.geometry import Toothing
 from service.from_rexs.account import Fate
 from service.from_rexs.face_modifications import (
@@ -21,7 +22,7 @@ from service.from_rexs.gear_unit import GearUnit
 from service.from_rexs.part import Part
 from service.from_rexs.profile_modifications import profile_crowning, profile_slope, root_relief, tip_relief
 from service.from_rexs.topography import topography
-from service.units import MM
+from service.units import MM, UM
 
 Table = dict[str, Any]
 
@@ -82,7 +83,7 @@ def micro_geometry(unit: GearUnit, gear: Toothing, loaded: LoadedFlank) -> Table
         fields["flank_grid"] = raster.table
         lines = f"{raster.counts[0]} roll lengths by {raster.counts[1]} face positions"
         words = f"{', '.join(entry.part.name for entry in rest)} on {lines}; differs by at most"
-        loaded.flank.say("flank_grid", "derived", f"{words} {raster.difference / 1e-6:.2g} um")
+        loaded.flank.say("flank_grid", "derived", f"{words} {engineering(raster.difference / UM, 2)} um")
     return fields
 
 

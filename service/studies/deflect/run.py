@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from bounds import inside
+from bounds import engineering, inside
 from bounds.types import Json
 from dynamics.deflection import CaseDeflection, MeshAlignment, deflect
 from dynamics.scene import Scene
@@ -185,9 +185,10 @@ def failure(result: GearboxDeflection) -> str:
         names = ", ".join(f'"{case.name}" ({case.status.replace("_", " ")})' for case in lost)
         return f"No equilibrium under load case {names}. Check that bearings hold every shaft that is loaded."
     if not result.agreed:
+        change = engineering(result.change, 2)
         return (
-            f"Mesh loads and deflections disagree: misalignments still change by {result.change:.2g} of "
-            f"their size after {result.passes} passes."
+            f"Mesh loads and deflections disagree: misalignments still change by {change} of their size "
+            f"after {result.passes} passes."
         )
     return ""
 
