@@ -55,18 +55,6 @@ def test_many_runs_at_constant_speeds_are_drawn_over_speed(visit: Visit, analyze
     assert visit.complaints == []
 
 
-def test_a_scene_is_deflected_under_its_loads(visit: Visit) -> None:
-    page = visit.page
-    page.get_by_role("button", name="Write the scene of the pair").press("Enter")
-    expect(page.get_by_label("Scene, TOML")).to_have_value(re.compile("database_hash"))
-    page.get_by_label("Compute", exact=True).select_option("deflect")
-    page.get_by_role("button", name="Compute the scene").press("Enter")
-    for name in ("deflected_gearbox", "misalignment_by_cause"):
-        expect(page.locator(f"#scene-body [data-figure={name}] .plot")).to_have_attribute("data-drawn", "yes")
-    expect(page.locator("#scene-body")).to_contain_text("Rating life over all load cases")
-    assert visit.complaints == []
-
-
 def test_a_scene_that_cannot_be_used_is_refused_by_field(visit: Visit) -> None:
     page = visit.page
     refused = page.locator("#scene-body [role=alert]")
