@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,6 +27,7 @@ from dynamics.types import FloatArray
 
 TOLERANCE = 1e-12  # of the load
 STEPS = 500
+LEAST_DAMPING = 1.0  # N/m; a tangent of unloaded elements is singular without
 
 
 @dataclass(frozen=True)
@@ -101,12 +103,17 @@ class LoadedBearing:
         return Reaction(local.force.copy(), *matrices, energy, slope / (2.0 * math.pi), whole)
 
     def displacement(
-        self, load: ArrayLike, angle: float = 0.0, start: ArrayLike = (0.0, 0.0, 0.0, 0.0, 0.0)
+        self,
+        load: ArrayLike,
+        angle: float = 0.0,
+        start: ArrayLike = (0.0, 0.0, 0.0, 0.0, 0.0),
+        held: Sequence[int] = (),
     ) -> FloatArray:
         """Return the displacement (5,) at which the bearing carries `load` (5,), N and N m.
 
         Damped Newton steps reduce energy less work of the load. Where the bearing does not resist, it stays
-        at `start`.
+        at `start`, and so do the coordinates that are `held`, as (3, 4) by a shaft that does not tilt; their
+        load is of no account.
 
         Raises
         ------
@@ -114,21 +121,24 @@ class LoadedBearing:
             If no displacement carries the load.
         """
         wanted, d = np.asarray(load, dtype=float), np.array(start, dtype=float)
+        free = np.setdiff1d(np.arange(SEAT), held)
         lever = self.bearing.pitch_diameter / 2.0
         scale = np.array([1.0, 1.0, 1.0, lever, lever])
-        floor = TOLERANCE * float(np.linalg.norm(wanted / scale))
+        floor = TOLERANCE * float(np.linalg.norm((wanted / scale)[free]))
         damping, now = 1e9, self.evaluate(d, angle)  # N/m
         for _ in range(STEPS):
-            missing = wanted - now.force
-            if float(np.linalg.norm(missing / scale)) <= floor:
+            missing = (wanted - now.force)[free]
+            left = float(np.linalg.norm(missing / scale[free]))
+            if left <= floor:
                 return d
-            step = np.linalg.solve(now.tangent + damping * np.diag(scale**2), missing)
+            damped = now.tangent + damping * np.diag(scale**2)
+            step = np.zeros(SEAT)
+            step[free] = np.linalg.solve(damped[np.ix_(free, free)], missing)
             then = self.evaluate(d + step, angle)
             gained = float(wanted @ step) - (then.energy - now.energy)
-            closer = np.linalg.norm((wanted - then.force) / scale) < np.linalg.norm(missing / scale)
+            closer = np.linalg.norm(((wanted - then.force) / scale)[free]) < left
             if gained > 0.0 or closer:
-                d, now, damping = d + step, then, damping / 10.0
+                d, now, damping = d + step, then, max(damping / 10.0, LEAST_DAMPING)
             else:
                 damping *= 4.0
-        left = float(np.linalg.norm((wanted - now.force) / scale))
         raise SolveError(f"the bearing does not carry the load: {left:.3g} N are left after {STEPS} steps")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -25,7 +26,11 @@ USUAL = {"ball": 2e8, "roller": 1e9}
 AXIAL_SHARE = 0.5
 """Axial over radial stiffness where the file has neither a value nor the geometry."""
 RADIAL_LOAD, AXIAL_LOAD = 0.1, 0.025
-"""Load at which a bearing's tangent is taken, as shares of its static load rating."""
+"""Load at which a bearing's tangent is taken, as shares of its static load rating; axial is the least."""
+INDUCED = 1.25
+"""Axial over radial load, times cot(alpha): the thrust F_r / (2 Y) that a row of contact angle alpha itself
+induces, Y = 0.4 cot(alpha) (ISO 281). Half of its elements carry; with much less it slips off its raceway."""
+_TILTS = (3, 4)
 
 _FIXED = ("both_directions", "positive", "negative")
 _AXES = ("u", "v", "w")
@@ -137,12 +142,18 @@ def _by_geometry(unit: GearUnit, part: Part) -> FloatArray | None:
     if found is None:
         return None
     bearing, rating = found
-    load = np.array([RADIAL_LOAD, 0.0, AXIAL_LOAD, 0.0, 0.0]) * rating
+    load = rating * np.array([RADIAL_LOAD, 0.0, _axial_load(bearing.bearing.contact_angle), 0.0, 0.0])
     try:
-        return np.asarray(bearing.evaluate(bearing.displacement(load)).tangent)
+        return np.asarray(bearing.evaluate(bearing.displacement(load, held=_TILTS)).tangent)
     except DynamicsError as error:
         part.say("", "refused", f"its geometry carries no load of a tenth of its rating: {error}")
         return None
+
+
+def _axial_load(contact_angle: float) -> float:
+    """Return the usual axial load over the static load rating, with the sign of the contact angle."""
+    least = INDUCED * RADIAL_LOAD * math.tan(abs(contact_angle))
+    return math.copysign(max(AXIAL_LOAD, least), contact_angle)
 
 
 def _operating_point(part: Part) -> FloatArray | None:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from dynamics.errors import SolveError
 from dynamics.forces.ball_elements import pack_balls
 from dynamics.forces.row_placement import RowPlacement
 from dynamics.rolling_bearings import (
@@ -264,3 +265,29 @@ def test_the_reference_load_of_an_aligned_bearing_is_its_load():
         assert rating_life(bearing, twice, 30000.0).revolutions == pytest.approx(
             life.revolutions / 2.0**exponent, rel=1e-6
         )
+
+
+def test_half_of_a_row_carries_at_the_thrust_it_induces():
+    # straight tapered rollers without clearance, tilt held: epsilon = 0.5 at F_a = 1.26 F_r tan(alpha)
+    # (J_r = 0.2453, J_a = 0.3090 of line contact; ISO 281 takes 1.25)
+    row = RollerBearing(
+        count=17,
+        diameter=9e-3,
+        length=13.6e-3,
+        pitch_diameter=65e-3,
+        contact_angle=0.25,
+        profile="straight",
+    )
+    loaded = LoadedBearing(row, MANY)
+    d = loaded.displacement([5000.0, 0.0, 1.2596 * 5000.0 * math.tan(0.25), 0.0, 0.0], held=(3, 4))
+    carried = loaded.evaluate(d).load.sum(axis=-1) > 0.0
+    assert carried.mean() == pytest.approx(0.5, abs=0.005)
+    assert list(d[3:]) == [0.0, 0.0]
+
+
+def test_a_row_that_slips_off_says_so():
+    # below 0.75 of that thrust, or against the contact angle, nothing holds a ring that may tilt
+    row = RollerBearing(count=18, diameter=14e-3, length=16.5e-3, pitch_diameter=86e-3, contact_angle=0.26)
+    for thrust in (285.0, 2850.0, -2850.0):
+        with pytest.raises(SolveError, match="does not carry the load"):
+            LoadedBearing(row, 8).displacement([11400.0, 0.0, thrust, 0.0, 0.0])
