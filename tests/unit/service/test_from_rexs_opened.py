@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from service.convert.topology import facts_of
 from service.from_rexs.files import unit_files
 from service.from_rexs.opened import OpenedUnit, opened
 from service.problems import BadInput
-from service.rexs import Document
+from service.rexs import Document, read_rexs
 from service.schemas.scene import SceneInput
 from tests.fakes.rexs_stage import relation
 from tests.fakes.rexs_unit import (
@@ -403,3 +404,23 @@ def test_a_damaged_unit_is_opened_or_refused_with_one_error(make: Any) -> None:
 def test_a_stage_without_a_gear_leaves_the_other(stage: int) -> None:
     unit = opened(two_stages({11 if stage == STAGES[0] else 13: {"number_of_teeth": None}}))
     assert [case.stage for case in unit.cases] == [other for other in STAGES if other != stage]
+
+
+EXAMPLE = Path(__file__).parents[3] / "examples" / "two_stage" / "two_stage.rexs"
+
+
+def test_the_example_opens_with_bearings_by_geometry_on_its_housing() -> None:
+    document = read_rexs(EXAMPLE)
+    unit, scene = opened(document), scene_of(document)
+    assert not [line for line in unit.lines if line.fate == "refused"]
+    (housing,) = scene.housings
+    assert housing.bushings == tuple(bushing.name for bushing in scene.bushings) and len(scene.bushings) == 6
+    assert [case.torque_n_m for case in unit.load_cases] == [160.0, 120.0, 80.0, 40.0]
+    assert [case.share for case in unit.load_cases] == [0.05, 0.15, 0.5, 0.3]
+    (load,) = scene.loads
+    assert load.torque_n_m == pytest.approx((80.0 * 63.0 / 25.0 * 74.0 / 21.0,), rel=1e-12)
+    for number in (33, 35):  # tapered rollers hold their shaft in every direction, by their own tangent
+        fate, words = said(unit, number, "axial_stiffness")
+        assert fate == "derived" and "tangent of the bearing's geometry" in words
+    matrix = np.array(housing.stiffness_matrix)
+    assert np.linalg.eigvalsh(matrix)[0] > 0.0 and np.array_equal(matrix, matrix.T)
