@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import math
 
+from dynamics.bearing_rows import BallBearing, RollerBearing
 from dynamics.errors import InputError
-from dynamics.rolling_bearings import BallBearing, LoadedBearing, RollerBearing, from_catalog
 from service.from_rexs.gear_unit import GearUnit
 from service.from_rexs.part import Part
 
-COPIES = 8
-"""Of each element: stiffness as the average over the passing of an element."""
+Row = BallBearing | RollerBearing
+
 _RATING = "radial_static_load_rating"
 _CLEARANCE = "operating_radial_bearing_clearance"
 
 
-def catalog_bearing(unit: GearUnit, part: Part) -> tuple[LoadedBearing, float] | None:
+def catalog_bearing(unit: GearUnit, part: Part) -> tuple[Row, float] | None:
     """Return a deep groove ball bearing of a catalog line and its static load rating, N.
 
     None for other types, and where bore, outside diameter or rating are missing or fit no bearing.
@@ -29,16 +29,18 @@ def catalog_bearing(unit: GearUnit, part: Part) -> tuple[LoadedBearing, float] |
         return None
     if bore is None or outside is None or rating is None:
         return None
+    from dynamics.rolling_bearings import from_catalog  # noqa: PLC0415 (start-up time)
+
     try:
         bearing = from_catalog(bore, outside, rating, _clearance(part))
     except InputError as error:
         part.say(_RATING, "refused", f"no deep groove ball bearing has this line: {error}")
         return None
     part.say("bearing_type", "taken", f"{bearing.count} balls of {bearing.diameter * 1e3:.3g} mm, estimated")
-    return LoadedBearing(bearing, COPIES), rating
+    return bearing, rating
 
 
-def detailed_bearing(unit: GearUnit, part: Part) -> tuple[LoadedBearing, float] | None:
+def detailed_bearing(unit: GearUnit, part: Part) -> tuple[Row, float] | None:
     """Return a bearing of one row by its geometry, and its static load rating, N; None if some is missing."""
     rows = unit.children(part, "rolling_bearing_row")
     rating = part.number(_RATING, "static load rating, kN")
@@ -56,15 +58,13 @@ def detailed_bearing(unit: GearUnit, part: Part) -> tuple[LoadedBearing, float] 
         return None
     rows[0].say("number_of_rolling_elements", "taken", "number of elements")
     try:
-        return LoadedBearing(_row(part, rows[0], elements[0], count.value, (diameter, pitch)), COPIES), rating
+        return _row(part, rows[0], elements[0], count.value, (diameter, pitch)), rating
     except InputError as error:
         part.say("", "refused", f"no such bearing: {error}")
         return None
 
 
-def _row(
-    part: Part, row: Part, element: Part, count: int, sizes: tuple[float, float]
-) -> BallBearing | RollerBearing:
+def _row(part: Part, row: Part, element: Part, count: int, sizes: tuple[float, float]) -> Row:
     """Return a row of balls or rollers; grooves that are not stated are those of ISO/TS 16281."""
     diameter, pitch = sizes
     angle = row.number("pressure_angle", "contact angle, deg") or 0.0

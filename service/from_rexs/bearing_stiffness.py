@@ -10,8 +10,7 @@ import numpy as np
 
 from bounds.types import FloatArray
 from dynamics.errors import DynamicsError
-from dynamics.rolling_bearings import LoadedBearing
-from service.from_rexs.bearing_geometry import catalog_bearing, detailed_bearing
+from service.from_rexs.bearing_geometry import Row, catalog_bearing, detailed_bearing
 from service.from_rexs.gear_unit import GearUnit
 from service.from_rexs.part import Part
 
@@ -31,6 +30,9 @@ INDUCED = 1.25
 """Axial over radial load, times cot(alpha): the thrust F_r / (2 Y) that a row of contact angle alpha itself
 induces, Y = 0.4 cot(alpha) (ISO 281). Half of its elements carry; with much less it slips off its raceway."""
 _TILTS = (3, 4)
+
+COPIES = 8
+"""Of each element: stiffness as the average over the passing of an element."""
 
 _FIXED = ("both_directions", "positive", "negative")
 _AXES = ("u", "v", "w")
@@ -134,15 +136,18 @@ def _type(part: Part) -> str:
 
 def _by_geometry(unit: GearUnit, part: Part) -> FloatArray | None:
     """Return the tangent (5, 5) in x, y, z, tilts of a bearing whose geometry is known, at the usual load."""
-    readers: dict[str, Callable[[GearUnit, Part], tuple[LoadedBearing, float] | None]] = {
+    readers: dict[str, Callable[[GearUnit, Part], tuple[Row, float] | None]] = {
         "rolling_bearing_with_catalog_geometry": catalog_bearing,
         "rolling_bearing_with_detailed_geometry": detailed_bearing,
     }
     found = readers[part.type](unit, part) if part.type in readers else None
     if found is None:
         return None
-    bearing, rating = found
-    load = rating * np.array([RADIAL_LOAD, 0.0, _axial_load(bearing.bearing.contact_angle), 0.0, 0.0])
+    from dynamics.rolling_bearings import LoadedBearing  # noqa: PLC0415 (start-up time)
+
+    row, rating = found
+    bearing = LoadedBearing(row, COPIES)
+    load = rating * np.array([RADIAL_LOAD, 0.0, _axial_load(row.contact_angle), 0.0, 0.0])
     try:
         return np.asarray(bearing.evaluate(bearing.displacement(load, held=_TILTS)).tangent)
     except DynamicsError as error:

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from service.convert.checks import check_case
+from service.convert.checks import check_plain_case
 from service.from_rexs.flank_sides import LoadedFlank
 from service.from_rexs.gear_bodies import blank_of, elasticity, held_diameter, root_diameter
 from service.from_rexs.gear_unit import GearUnit
@@ -98,11 +98,11 @@ def case_of(unit: GearUnit, pair: PairData, pairs: Sequence[PairData], shifts: M
         "load": {"torque_n_m": _torques(pair)},
     }
     _say_axial_offset(pair)
-    plain = check_case(validated(Case, table))
+    plain = check_plain_case(validated(Case, table))
     first.update(micro_geometry(unit, plain.pinion, pair.loaded[0]))
     second.update(micro_geometry(unit, plain.wheel, pair.loaded[1]))
     case = validated(Case, table)
-    check_case(case)
+    check_plain_case(case)
     return case
 
 

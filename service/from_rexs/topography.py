@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.interpolate import RegularGridInterpolator
 
 from fe_contact.types import FloatArray
 from service.from_rexs.flank_place import FlankPlace, Modification
@@ -26,6 +25,8 @@ def topography(place: FlankPlace, part: Part) -> Modification:
     BadInput
         Lists of different lengths, nodes that are no grid, or a diameter inside the base circle.
     """
+    from scipy.interpolate import RegularGridInterpolator  # noqa: PLC0415 (start-up time)
+
     amounts = part.numbers(_AMOUNTS, "flank_grid")
     faces = part.numbers(_FACES, "flank_grid, from the datum face")
     rolls = _roll_lengths(place, part)
