@@ -95,11 +95,11 @@ def _within(outer: Frame, part: Part, origin: tuple[float, ...]) -> Frame:
 def _axes(part: Part, u: tuple[float, ...], w: tuple[float, ...]) -> Vector:
     """Return orthonormal axes: u as it is, w made square to it."""
     first, last = _vector(part, u), _vector(part, w)
-    length = math.sqrt(float(first @ first))
+    length = math.hypot(*first)
     if length > 0.0:
         first = first / length
         last = last - (last @ first) * first
-    height = math.sqrt(float(last @ last))
+    height = math.hypot(*last)
     if length == 0.0 or height <= 1e-6 * length:
         field = f"{part.place}, u_axis_vector"
         raise BadInput.of(field, [*u, *w], "a direction square to w_axis_vector")

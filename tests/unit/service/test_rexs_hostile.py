@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import random
+import re
 import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 import pytest
 from hostile_rexs import JSON, XML, ZIP, damaged_files, hostile_files
 
+from service.from_rexs.opened import OpenedUnit, opened
 from service.problems import BadInput
 from service.rexs import Document, parsed, serialized
 
@@ -72,3 +76,35 @@ def test_a_damaged_file_is_a_model_or_one_error(watched: Callable[[], Iterator[N
                 again = parsed(serialized(Document(document.model, document.files), "a.rexsz"))
                 assert again.model == document.model
     assert refusals > 105
+
+
+UNIT = Path(__file__).parents[3] / "examples" / "two_stage_gearbox.rexs"
+WRONG = (b"0", b"-1", b"1e300", b"1e-300", b"3", b"77", b"1e20")
+
+
+def wrong_units(count: int) -> Iterator[bytes]:
+    """Yield a whole unit with a wrong number in one place: a value, an id or a reference."""
+    text, chance = UNIT.read_bytes(), random.Random(3)
+    places = [found.span(1) for found in re.finditer(rb'(?:>| id=")([-0-9.e+]+)["<]', text)]
+    for _ in range(count):
+        begin, end = chance.choice(places)
+        yield text[:begin] + chance.choice(WRONG) + text[end:]
+
+
+@pytest.mark.filterwarnings("ignore::bounds.PlausibilityWarning")
+def test_a_unit_with_a_wrong_number_is_opened_or_refused_with_one_error() -> None:
+    """What is opened accounts for all; where it has no scene or lacks a case, a line says why."""
+    ends = [_end(data) for data in wrong_units(40)]
+    for unit in (end for end in ends if isinstance(end, OpenedUnit)):
+        refused = [line for line in unit.lines if line.fate == "refused"]
+        assert (unit.scene is not None and len(unit.cases) == 2) or refused
+    assert {type(end) for end in ends} == {OpenedUnit, str}
+
+
+def _end(data: bytes) -> OpenedUnit | str:
+    """Return the unit of a file, or the text of its one error."""
+    try:
+        return opened(parsed(data))
+    except BadInput as error:
+        assert len(str(error)) < 2_000
+        return str(error)
