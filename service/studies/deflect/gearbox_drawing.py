@@ -16,6 +16,8 @@ from service.units import MM, UM
 DRAWN = 0.1
 """Largest deflection as it is drawn, over the extent of the gearbox."""
 STEPS = (1.0, 2.0, 5.0, 10.0)
+SLOPE = math.radians(40.0)
+"""Of the radius at whose end the name of a gear stands."""
 CIRCLE = np.linspace(0.0, 2.0 * math.pi, 91)
 
 
@@ -67,9 +69,8 @@ def _along(outline: Outline, case: CaseDeflection, across: FloatArray, scale: fl
     """Draw the gearbox along its axes, `across` upwards."""
     heights = outline.origin @ across
     lines = [*_shafts(outline, heights), *_gears(outline, heights), *_bearings(outline, heights)]
-    notes = [
-        Note(outline.origin[k, 2] / MM, heights[k] / MM, name, row=1) for k, name in enumerate(outline.shafts)
-    ]
+    ends = outline.origin[:, 2] + outline.length
+    notes = [Note(ends[k] / MM, heights[k] / MM, name) for k, name in enumerate(outline.shafts)]
     moved = case.shafts.motion[:, :2] @ across[:2]
     for k in range(len(outline.shafts)):
         own = case.shafts.shaft == k
@@ -135,7 +136,14 @@ def _end_view(outline: Outline, case: CaseDeflection, scale: float) -> Panel:
         lines.append(
             Line("path of centers", ends[:, 0], ends[:, 1], palette.VERMILLION, width=2.4, markers=True)
         )
-        notes.append(Note(center[0] / MM, (center[1] + 0.5 * diameter) / MM, name))
+        notes.append(_name_outside(name, center, 0.5 * diameter, outline.origin[outline.gear_shaft, :2]))
     return Panel(
         Axis("x, mm"), Axis("y, mm"), tuple(lines), title="seen against z", notes=tuple(notes), equal=True
     )
+
+
+def _name_outside(name: str, center: FloatArray, radius: float, centers: FloatArray) -> Note:
+    """Write the name of a gear right of its circle, above or below, away from the other gears."""
+    side = 1.0 if center[1] >= centers[:, 1].mean() else -1.0
+    x, y = (center + radius * np.array([math.cos(SLOPE), side * math.sin(SLOPE)])) / MM
+    return Note(x, y, name, row=0 if side > 0.0 else -1)
