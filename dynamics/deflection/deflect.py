@@ -103,12 +103,12 @@ def deflect(
     """
     distinct("load_cases", [case.name for case in cases])
     integer("positions", positions, 1, MOST_POSITIONS)
-    found = []
+    deflections = []
     for number, case in enumerate(cases):
-        found.append(_deflected(scene, case, positions))
+        deflections.append(_deflected(scene, case, positions))
         if progress is not None:
             progress((number + 1) / len(cases))
-    return Deflection(leader_of(scene).shaft, tuple(found))
+    return Deflection(leader_of(scene).shaft, tuple(deflections))
 
 
 def _deflected(scene: Scene, case: LoadCase, positions: int) -> CaseDeflection:

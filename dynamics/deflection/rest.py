@@ -73,7 +73,7 @@ def rest_over(system: System, times: FloatArray) -> Rest:
 def _centroids(system: System, force: FloatArray) -> FloatArray:
     """Return where along the face the forces (R, K) of the driving flanks act, (m, K), m."""
     elements, scene = system.arrays.elements, system.scene
-    found = np.full((len(scene.meshes), force.shape[1]), np.nan)
+    centroid = np.full((len(scene.meshes), force.shape[1]), np.nan)
     for mesh in range(len(scene.meshes)):
         row, laws = elements.first[mesh], elements.laws.spatial_flank
         if elements.law[mesh] != Law.SPATIAL_FLANK or laws.per_face[elements.entry[mesh]] == 0.0:
@@ -81,5 +81,5 @@ def _centroids(system: System, force: FloatArray) -> FloatArray:
         tilting = force[row + laws.row[elements.entry[mesh], 0]]
         line, sense = system.lines[mesh], system.kinematics.mesh_sense[mesh]
         middle = middle_from_driver(scene, mesh, line, sense)
-        found[mesh] = middle - common_face_width(scene, mesh) * tilting / force[row]
-    return found
+        centroid[mesh] = middle - common_face_width(scene, mesh) * tilting / force[row]
+    return centroid

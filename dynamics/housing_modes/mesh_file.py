@@ -123,9 +123,9 @@ def _groups(content: Any) -> Iterator[tuple[str, IntArray]]:
 
 def _by_number(content: Any, key: str) -> dict[int, IntArray]:
     """Return the nodes of triangles by a number that the file has for each."""
-    found: dict[int, list[IntArray]] = {}
+    numbered: dict[int, list[IntArray]] = {}
     for cells, numbers in zip(content.cells, content.cell_data.get(key, []), strict=False):
         if cells.type in SURFACE_CELLS:
             for number in np.unique(numbers):
-                found.setdefault(int(number), []).append(cells.data[np.asarray(numbers) == number].ravel())
-    return {number: np.concatenate(nodes) for number, nodes in found.items()}
+                numbered.setdefault(int(number), []).append(cells.data[np.asarray(numbers) == number].ravel())
+    return {number: np.concatenate(nodes) for number, nodes in numbered.items()}

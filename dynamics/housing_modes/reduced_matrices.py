@@ -159,15 +159,15 @@ def _dmig(file: Path) -> Mapping[str, FloatArray]:
     return {name: np.asarray(frame.to_numpy(), dtype=float) for name, frame in frames.items()}
 
 
-def _named(file: Path, found: Mapping[str, FloatArray]) -> ReducedMatrices:
+def _named(file: Path, matrices: Mapping[str, FloatArray]) -> ReducedMatrices:
     """Return the matrices by their names."""
-    small = {name.lower(): matrix for name, matrix in found.items()}
+    small = {name.lower(): matrix for name, matrix in matrices.items()}
     chosen = {
         part: next((small[name] for name in names if name in small), None) for part, names in NAMES.items()
     }
     if chosen["stiffness"] is None:
         bound = f"a file with a matrix named {' or '.join(NAMES['stiffness'])}"
-        raise InputError(FIELD, str(file), bound, f"It has {list(found)}.")
+        raise InputError(FIELD, str(file), bound, f"It has {list(matrices)}.")
     return ReducedMatrices(chosen["stiffness"], chosen["mass"], chosen["damping"])
 
 

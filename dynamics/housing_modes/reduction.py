@@ -147,13 +147,13 @@ def _checks(housing: MeshedHousing, assembled: AssembledHousing, modes: FreeMode
 def _seat_rigid(housing: MeshedHousing, assembled: AssembledHousing) -> float:
     """Return how far the motion of seats is off in rigid motions of all nodes and rigid faces."""
     center = assembled.body.center
-    found = assembled.seats @ assembled.freedoms.rigid(housing.mesh.points, center)
+    mean = assembled.seats @ assembled.freedoms.rigid(housing.mesh.points, center)
     turned = np.hstack([np.zeros((3, 3)), np.eye(3)])
     bodies = (np.vstack([rigid_motions(frame.position[None], center), turned]) for frame in assembled.frames)
     expected = np.vstack(
         [in_axes(frame) @ body for frame, body in zip(assembled.frames, bodies, strict=True)]
     )
-    return float(np.abs(found - expected).max() / np.abs(expected).max())
+    return float(np.abs(mean - expected).max() / np.abs(expected).max())
 
 
 def _surface(housing: MeshedHousing, assembled: AssembledHousing, coordinates: Coordinates) -> SurfaceMotion:

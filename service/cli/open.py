@@ -7,7 +7,7 @@ from pathlib import Path
 
 from service.cli.output import console, print_json
 from service.cli.warned import warn
-from service.from_rexs.files import told, unit_files
+from service.from_rexs.files import report_lines, unit_files
 from service.from_rexs.opened import OpenedUnit, opened
 from service.problems import BadInput
 from service.rexs import read_rexs
@@ -31,7 +31,7 @@ def run_open(file: Path, out: Path | None, *, as_json: bool) -> None:
                 "scene": unit.scene is not None,
                 "load_cases": [case.table() for case in unit.load_cases],
                 "account": {fate: counts[fate] for fate in FATES},
-                "lines": list(told(unit.lines)),
+                "lines": list(report_lines(unit.lines)),
             }
         )
         return
@@ -57,7 +57,7 @@ def _show(unit: OpenedUnit, counts: Counter[str], written: list[Path]) -> None:
     out = console()
     values = ", ".join(f"{counts[fate]} {fate}" for fate in FATES if counts[fate])
     out.print(f"{len(unit.lines)} components and values: {values}", highlight=False, soft_wrap=True)
-    for line in told(unit.lines):
+    for line in report_lines(unit.lines):
         out.print(line, highlight=False, soft_wrap=True, markup=False)
     for case in unit.cases:
         others = f" (and {len(case.equal)} equal)" if case.equal else ""

@@ -140,12 +140,12 @@ def _by_geometry(unit: GearUnit, part: Part) -> FloatArray | None:
         "rolling_bearing_with_catalog_geometry": catalog_bearing,
         "rolling_bearing_with_detailed_geometry": detailed_bearing,
     }
-    found = readers[part.type](unit, part) if part.type in readers else None
-    if found is None:
+    geometry = readers[part.type](unit, part) if part.type in readers else None
+    if geometry is None:
         return None
     from dynamics.rolling_bearings import LoadedBearing  # noqa: PLC0415 (start-up time)
 
-    row, rating = found
+    row, rating = geometry
     bearing = LoadedBearing(row, COPIES)
     load = rating * np.array([RADIAL_LOAD, 0.0, _axial_load(row.contact_angle), 0.0, 0.0])
     try:
@@ -165,8 +165,8 @@ def _operating_point(part: Part) -> FloatArray | None:
     """Return the stated matrix (5, 5), None where the file has none or one that holds nothing."""
     names = [[f"operating_point_stiffness_{row}_{motion}" for motion in _MOTIONS] for row in _ROWS]
     values = [[part.number(name, "stiffness at the operating point") for name in row] for row in names]
-    given = [value for row in values for value in row if value is not None]
-    if not any(given):
+    stated = [value for row in values for value in row if value is not None]
+    if not any(stated):
         return None
     matrix = np.array([[0.0 if value is None else value for value in row] for row in values])
     matrix = 0.5 * (matrix + matrix.T)

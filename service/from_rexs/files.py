@@ -62,7 +62,7 @@ def _rounded(value: Any) -> Any:
     return float(f"{value:.{_DIGITS}g}") if isinstance(value, float) else value
 
 
-def told(
+def report_lines(
     lines: Iterable[Line], fates: tuple[str, ...] = ("refused", "defaulted", "derived")
 ) -> Iterator[str]:
     """Yield the lines of the account that an engineer reads, in order of the fates.
@@ -74,7 +74,7 @@ def told(
         if line.fate in fates:
             groups.setdefault((line.fate, line.kind, line.item, line.words), []).append(line)
     for fate, kind, item, words in sorted(groups, key=lambda key: fates.index(key[0])):
-        found = groups[fate, kind, item, words]
-        ids = ", ".join(dict.fromkeys(str(line.component) for line in found))
-        name = f' "{found[0].name}"' if len(found) == 1 and found[0].name else ""
+        group = groups[fate, kind, item, words]
+        ids = ", ".join(dict.fromkeys(str(line.component) for line in group))
+        name = f' "{group[0].name}"' if len(group) == 1 and group[0].name else ""
         yield f"{fate:9} {kind} {ids}{name}{', ' + item if item else ''}: {words}"

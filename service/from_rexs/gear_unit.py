@@ -41,9 +41,9 @@ class GearUnit:
 
         Relations with an order come in it, others in the order of the file.
         """
-        found = [entry for entry in self.relations(relation) if entry.of_role(own) == part.id]
-        found.sort(key=lambda entry: entry.order or 0)
-        numbers = (ref.id for entry in found for ref in entry.refs if ref.role == other)
+        entries = [entry for entry in self.relations(relation) if entry.of_role(own) == part.id]
+        entries.sort(key=lambda entry: entry.order or 0)
+        numbers = (ref.id for entry in entries for ref in entry.refs if ref.role == other)
         return tuple(self._parts[number] for number in numbers)
 
     def relations(self, *types: str) -> Iterator[Relation]:

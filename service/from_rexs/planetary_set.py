@@ -35,15 +35,15 @@ def planetary_sets(unit: GearUnit) -> tuple[PlanetarySet, ...]:
     """Return the planetary sets that have a carrier and planets; the account says what the others lack."""
     sets = []
     for stage in unit.of_type("planetary_stage"):
-        found = PlanetarySet(
+        planetary = PlanetarySet(
             stage,
             unit.related(stage, "planet_shaft", "planetary_stage", "shaft"),
             unit.related(stage, "central_shaft", "planetary_stage", "shaft"),
             _unique(_carrier(unit, stage)),
         )
-        if found.planets and found.carrier:
-            sets.append(found)
-            stage.say("", "taken", f"planetary set of {len(found.planets)} planets")
+        if planetary.planets and planetary.carrier:
+            sets.append(planetary)
+            stage.say("", "taken", f"planetary set of {len(planetary.planets)} planets")
         else:
             stage.say("", "refused", "relations `planet_shaft` and `planet_carrier_shaft` are needed")
     return tuple(sets)

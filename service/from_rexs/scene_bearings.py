@@ -42,35 +42,35 @@ class SceneBearings:
 
 def scene_bearings(layout: Layout, shafts: SceneShafts) -> SceneBearings:
     """Return bearings and couplings of the scene; the account says what is left out and why."""
-    found, names = SceneBearings(), Names()
+    tables, names = SceneBearings(), Names()
     for entry in bearings(layout.unit):
         _say_clearances(entry.part)
-        _enter(layout, shafts, found, names, entry)
+        _enter(layout, shafts, tables, names, entry)
     for entry in couplings(layout.unit):
         if entry.on_ground is not None and _rotor(layout, shafts, entry.held) is not None:
-            _enter(layout, shafts, found, names, entry)
+            _enter(layout, shafts, tables, names, entry)
     for entry in layout.rotors.couplings:
-        _enter_coupling(layout, shafts, found, names, entry)
-    return found
+        _enter_coupling(layout, shafts, tables, names, entry)
+    return tables
 
 
 def _enter(
-    layout: Layout, shafts: SceneShafts, found: SceneBearings, names: Names, entry: Connection
+    layout: Layout, shafts: SceneShafts, tables: SceneBearings, names: Names, entry: Connection
 ) -> None:
     """Enter a bearing, or a coupling on the ground, by what it joins."""
     ends = [_rotor(layout, shafts, side) for side in (entry.inner, entry.outer)]
     planets = {planets.planets[0].id: planets for planets in layout.rotors.sets}
     planet = next((side for side in (entry.inner, entry.outer) if side.id in planets), None)
     if entry.on_ground is not None and _rotor(layout, shafts, entry.held) is not None:
-        found.bushings.append(_table(layout, shafts, names, entry, entry.held))
-        found.seats[entry.part.id] = found.bushings[-1]["name"]
+        tables.bushings.append(_table(layout, shafts, names, entry, entry.held))
+        tables.seats[entry.part.id] = tables.bushings[-1]["name"]
     elif planet is not None and ends[0] is not None and ends[1] is not None:
         carrier = layout.rotor(planets[planet.id].carrier[0].id)
         if layout.rotor(entry.other(planet).id) == carrier:
             table = _table(layout, shafts, names, entry, planet)
-            found.planet_bearings.append(table | {"carrier": shafts.by_rotor[carrier].name})
+            tables.planet_bearings.append(table | {"carrier": shafts.by_rotor[carrier].name})
     elif ends[0] is not None and ends[1] is not None and ends[0] != ends[1]:
-        found.couplings.append(_between(layout, shafts, names, entry))
+        tables.couplings.append(_between(layout, shafts, names, entry))
     else:
         entry.part.say("", "ignored", "what it holds is not in the scene, or is that of an equal planet")
 
@@ -157,7 +157,7 @@ def _joint(layout: Layout, shafts: SceneShafts, names: Names, entry: Connection)
 
 
 def _enter_coupling(
-    layout: Layout, shafts: SceneShafts, found: SceneBearings, names: Names, entry: Connection
+    layout: Layout, shafts: SceneShafts, tables: SceneBearings, names: Names, entry: Connection
 ) -> None:
     """Enter a coupling between two shafts."""
     if any(_rotor(layout, shafts, side) is None for side in (entry.inner, entry.outer)):
@@ -167,7 +167,7 @@ def _enter_coupling(
     tilt = _limited(entry.part, "bending_stiffness", RIGID_TORSION)
     torsion = _limited(entry.part, "rotational_stiffness", RIGID_TORSION)
     entry.part.say("", "taken", "coupling")
-    found.couplings.append(
+    tables.couplings.append(
         _joint(layout, shafts, names, entry)
         | {
             "torsional_stiffness_n_m_per_rad": torsion or RIGID_TORSION,

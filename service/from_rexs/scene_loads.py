@@ -87,12 +87,12 @@ def driving(
     torques: Sequence[AppliedTorque], flow: PowerFlow, trains: Sequence[set[int]]
 ) -> list[AppliedTorque]:
     """Return the torque that drives each train: that of the most power into it; none acts on one without."""
-    found = []
+    driving = []
     for train in trains:
         acting = [torque for torque in torques if torque.rotor in train and flow.speed(torque.rotor) != 0.0]
         if acting:
-            found.append(max(acting, key=lambda torque: torque.torque * flow.speed(torque.rotor)))
-    return found
+            driving.append(max(acting, key=lambda torque: torque.torque * flow.speed(torque.rotor)))
+    return driving
 
 
 def motion_tables(

@@ -86,7 +86,7 @@ def scene_shafts(layout: Layout, stages: Sequence[GearStage], names: Names) -> S
     others = {shaft.id for planets in layout.rotors.sets for shaft in planets.planets} - first
     kept = tuple(s for s in stages if not others & {shaft.id for shaft in s.shafts})
     rotors = _joined(layout, kept)
-    found = SceneShafts({rotor: _shaft(layout, rotor, names) for rotor in sorted(rotors)}, kept)
+    bodies = SceneShafts({rotor: _shaft(layout, rotor, names) for rotor in sorted(rotors)}, kept)
     for placed in layout.shafts.values():
         if placed.part.id not in others and layout.rotor(placed.part.id) not in rotors:
             placed.part.say("", "refused", "no computed stage or coupling joins it to the train")
@@ -94,9 +94,9 @@ def scene_shafts(layout: Layout, stages: Sequence[GearStage], names: Names) -> S
         for gear, shaft in zip(stage.gears, stage.shafts, strict=True):
             carrier = layout.carrier(stage)
             if carrier is not None and _meshes_outside(layout, kept, shaft, carrier):
-                found.stubs[gear.id] = _stub(layout, shaft, gear, names)
-    _enter_frames(layout, found)
-    return found
+                bodies.stubs[gear.id] = _stub(layout, shaft, gear, names)
+    _enter_frames(layout, bodies)
+    return bodies
 
 
 def _joined(layout: Layout, stages: Sequence[GearStage]) -> set[int]:

@@ -58,7 +58,7 @@ class RollingBearingInput(BoundaryModel):
     @model_validator(mode="after")
     def _one_row(self) -> Self:
         """Exactly one row."""
-        given = [name for name in ROWS if getattr(self, name) is not None]
-        if len(given) != 1:
-            refuse("ball", given or None, f"given once, as one of {', '.join(ROWS)}", "Keep one of them.")
+        rows = [name for name in ROWS if getattr(self, name) is not None]
+        if len(rows) != 1:
+            refuse("ball", rows or None, f"given once, as one of {', '.join(ROWS)}", "Keep one of them.")
         return self

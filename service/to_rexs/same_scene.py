@@ -59,8 +59,8 @@ def first_difference(unit: Any, result: Any, path: str) -> tuple[str, Any, Any] 
     return None if _equal(unit, result) else (path, unit, result)
 
 
-def _first(found: Iterable[tuple[str, Any, Any] | None]) -> tuple[str, Any, Any] | None:
-    return next((difference for difference in found if difference is not None), None)
+def _first(differences: Iterable[tuple[str, Any, Any] | None]) -> tuple[str, Any, Any] | None:
+    return next((difference for difference in differences if difference is not None), None)
 
 
 def _equal(unit: Any, result: Any) -> bool:

@@ -70,17 +70,17 @@ def in_agreement(
     if not contacts:
         return Agreement(first, 1, 0.0)
     knots = {name: _first_knots(_misalignments(first, name)) for name in contacts}
-    last, found, change, passes = first, first, float("inf"), 0
+    last, deflection, change, passes = first, first, float("inf"), 0
     while passes < PASSES:
         passes += 1
         tables = {name: contact.table(knots[name]) for name, contact in contacts.items()}
-        found = deflect(_with_tables(scene, tables), cases, positions)
-        change = _change(last, found, contacts)
-        if change <= TOLERANCE or not found.converged:
+        deflection = deflect(_with_tables(scene, tables), cases, positions)
+        change = _change(last, deflection, contacts)
+        if change <= TOLERANCE or not deflection.converged:
             break
-        knots = {name: with_knots(own, _misalignments(found, name)) for name, own in knots.items()}
-        last = found
-    return Agreement(found, passes, change)
+        knots = {name: with_knots(own, _misalignments(deflection, name)) for name, own in knots.items()}
+        last = deflection
+    return Agreement(deflection, passes, change)
 
 
 def _with_tables(scene: Scene, tables: Mapping[str, MeshTable]) -> Scene:
@@ -111,10 +111,10 @@ def with_knots(knots: Sequence[float], further: Sequence[float], closest: float 
     return sorted(kept)
 
 
-def _change(last: Deflection, found: Deflection, contacts: Mapping[str, MeshContact]) -> float:
+def _change(last: Deflection, deflection: Deflection, contacts: Mapping[str, MeshContact]) -> float:
     """Return the largest change of a misalignment, over its size or `SMALL`."""
     changes = [0.0]
     for name in contacts:
-        before, now = (np.array(_misalignments(each, name)) for each in (last, found))
+        before, now = (np.array(_misalignments(each, name)) for each in (last, deflection))
         changes.append(float(np.max(np.abs(now - before) / np.maximum(np.abs(now), SMALL))))
     return max(changes)

@@ -107,8 +107,8 @@ def _across_face(database: SteDatabase) -> bool:
 
 def _distinct(torques: Sequence[float]) -> list[float]:
     """Return torques in order, those that are alike once."""
-    found: list[float] = []
+    torques_apart: list[float] = []
     for torque in sorted(torques):
-        if not found or torque > found[-1] * (1.0 + ALIKE):
-            found.append(torque)
-    return found
+        if not torques_apart or torque > torques_apart[-1] * (1.0 + ALIKE):
+            torques_apart.append(torque)
+    return torques_apart

@@ -48,10 +48,10 @@ def _pieces(shaft: Shaft) -> list[tuple[float, float, float, float]]:
 
 def _pitch_diameters(scene: Scene) -> dict[str, float]:
     """Return the operating pitch diameter of every gear in its first mesh, m; of others that of the base."""
-    found = {gear.name: 2.0 * gear.base_radius for gear in scene.gears}
+    diameter = {gear.name: 2.0 * gear.base_radius for gear in scene.gears}
     seen: set[str] = set()
     for mesh, line in zip(scene.meshes, mechanism_of(scene).lines, strict=True):
         for name in {mesh.driver, mesh.driven} - seen:
-            found[name] = 2.0 * scene.gear(name).base_radius / float(np.cos(line.working_pressure_angle))
+            diameter[name] = 2.0 * scene.gear(name).base_radius / float(np.cos(line.working_pressure_angle))
             seen.add(name)
-    return found
+    return diameter

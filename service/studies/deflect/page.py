@@ -31,7 +31,7 @@ def headlines(result: GearboxDeflection) -> tuple[Headline, ...]:
     case = worst_case(result, name)
     mesh = mesh_of(case, name)
     cause = CAUSES[int(np.argmax(np.abs(mesh.causes)))]
-    found = [
+    lines = [
         Headline(
             "largest misalignment",
             f"{number(mesh.misalignment / UM, 3)} µm",
@@ -41,10 +41,10 @@ def headlines(result: GearboxDeflection) -> tuple[Headline, ...]:
     factors = [part for part in result.flanks if np.isfinite(part.face_load_factor)]
     if factors:
         worst = max(factors, key=lambda part: part.face_load_factor)
-        found.append(
+        lines.append(
             Headline("largest K_Hbeta", number(worst.face_load_factor, 3), f"mesh {worst.mesh}, {worst.case}")
         )
-    return tuple(found)
+    return tuple(lines)
 
 
 def page(result: GearboxDeflection) -> Page:

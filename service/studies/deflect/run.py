@@ -91,11 +91,11 @@ def _with_case(tabled: TabledScene) -> Iterator[tuple[str, MeshInput]]:
             yield mesh.name, known
 
 
-def _contacts(tabled: TabledScene, found: tuple[CaseDeflection, ...], means: Means) -> dict[str, MeshContact]:
+def _contacts(tabled: TabledScene, cases: tuple[CaseDeflection, ...], means: Means) -> dict[str, MeshContact]:
     """Return the contacts of all meshes with a case, by name; equal ones are one."""
     torques: dict[str, list[float]] = {}
     inputs = dict(_with_case(tabled))
-    for case in found:
+    for case in cases:
         for mesh in case.meshes:
             if mesh.name in inputs:
                 torques.setdefault(inputs[mesh.name].name, []).append(_torque(tabled, inputs, mesh))
