@@ -230,7 +230,7 @@ def test_the_end_of_a_shaft_is_on_it() -> None:
 
 @pytest.mark.parametrize(
     "name",
-    ["palermo_scene", "flexible_shafts_scene", "planetary_scene", "wind_turbine_scene", "two_stage/scene"],
+    ["palermo_scene", "flexible_shafts_scene", "planetary_scene", "wind_turbine_scene"],
 )
 def test_examples_are_plausible(name: str) -> None:
     file = EXAMPLES / f"{name}.toml"
