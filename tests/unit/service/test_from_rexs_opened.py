@@ -386,9 +386,10 @@ def _without(document: Document, seed: int) -> Document:
 
 
 @pytest.mark.parametrize("make", [two_stages, planetary])
-def test_a_damaged_unit_is_opened_or_refused_with_one_error(make: Any) -> None:
+@pytest.mark.parametrize("seeds", [40, pytest.param(80, marks=pytest.mark.nightly)])
+def test_a_damaged_unit_is_opened_or_refused_with_one_error(make: Any, seeds: int) -> None:
     whole, refused, changed = opened(make()), 0, 0
-    for seed in range(80):
+    for seed in range(seeds):
         try:
             unit = opened(_without(make(), seed))
         except BadInput as error:
@@ -397,7 +398,7 @@ def test_a_damaged_unit_is_opened_or_refused_with_one_error(make: Any) -> None:
         else:
             changed += unit.lines != whole.lines
             json.dumps(unit_files(unit))
-    assert refused > 5 and changed > 30
+    assert refused >= seeds // 40 and changed > seeds // 3
 
 
 @pytest.mark.parametrize("stage", STAGES)
