@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -74,12 +75,13 @@ def begun(
     workspace = workspace_of(settings, claim)
     log = settings.data_directory / "log" / f"{claim.id}.log"
     workspace.mkdir(parents=True, exist_ok=True)
+    launched = time.time()  # before the worker can reach its first stage
     worker = Worker(_order(settings, process.entry, claim), log, launch)
     figures.started(claim.process)
     facts = {"computation": claim.id, "process": claim.process, "key": claim.key}
     facts |= trace_facts(claim.traceparent)
     logger.info("worker started", **facts, pid=worker.pid, attempt=claim.attempts)
-    trace = AttemptTrace(claim, worker.pid)
+    trace = AttemptTrace(claim, worker.pid, launched)
     return Attempt(claim, worker, workspace, log, figures, trace, PacedFraction(process.stages))
 
 

@@ -29,21 +29,22 @@ class AttemptTrace:
     claim : Claim
     pid : int
         Of the worker.
+    launched : float
+        When it was launched, s since the epoch: no stage of it begins before.
     """
 
-    def __init__(self, claim: Claim, pid: int) -> None:
-        now = time.time()
+    def __init__(self, claim: Claim, pid: int, launched: float) -> None:
         facts: dict[str, Fact] = {
             "loa.computation": claim.id,
             "loa.process": claim.process,
             "loa.attempt": claim.attempts,
         }
-        begun = datetime.fromisoformat(claim.waited_from).timestamp() if claim.waited_from else now
-        tracer().begin("queue", claim.traceparent, min(begun, now), facts).end(now, {})
+        begun = datetime.fromisoformat(claim.waited_from).timestamp() if claim.waited_from else launched
+        tracer().begin("queue", claim.traceparent, min(begun, launched), facts).end(launched, {})
         facts |= {"process.pid": pid}
-        self._attempt = tracer().begin(f"attempt {claim.process}", claim.traceparent, now, facts)
+        self._attempt = tracer().begin(f"attempt {claim.process}", claim.traceparent, launched, facts)
         self._name, self._cpu_s, self._left = "", 0.0, _MOST_STAGES
-        self._stage = self._begun(_START, now, 0.0)
+        self._stage = self._begun(_START, launched, 0.0)
 
     def _begun(self, name: str, at_s: float, cpu_s: float) -> Span:
         """Begin a stage."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
@@ -20,6 +21,7 @@ from trace_receiver import TraceReceiver, trace_receiver
 from service.app import create_app
 from service.cli.log import log_to_standard_error
 from service.client import LineOfActionClient
+from service.queue.worker_figures import WorkerFigures
 from service.settings import Settings
 from service.tracing.tracer import tracer
 
@@ -56,8 +58,10 @@ def lines(log: Path, text: str) -> list[dict[str, object]]:
 
 
 def test_one_trace_leads_from_the_client_to_the_stages_of_the_worker(
-    receiver: TraceReceiver, tmp_path: Path
+    receiver: TraceReceiver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """The scheduler is slow to note the worker it launched, as on a machine with other work."""
+    monkeypatch.setattr(WorkerFigures, "started", lambda *_: time.sleep(0.5))
     app = create_app(Settings(data_directory=tmp_path), REGISTRY)
     own = TracerProvider().get_tracer("test")
     with served(app) as port, LineOfActionClient(f"http://127.0.0.1:{port}") as client:
