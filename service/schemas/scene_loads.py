@@ -15,7 +15,7 @@ from service.schemas.rules import at_most_one_of, stated
 from service.schemas.scene_types import Course, Name, Number, Numbers, Times
 
 Orders = Annotated[tuple[Annotated[float, Field(gt=0.0, le=1e4)], ...], Strict(False)]
-Vector = Annotated[tuple[Number, Number, Number], Strict(False)]
+Vector = Annotated[tuple[Number, ...], Field(min_length=3, max_length=3), Strict(False)]
 BY = ("time_s", "speed_rpm", "orders", "turn_factor")
 
 

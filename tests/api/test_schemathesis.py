@@ -22,12 +22,12 @@ import cbor2
 import pytest
 import schemathesis
 from feasible_bodies import FeasibleBodies
+from generators_description import generators_description
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from schemathesis import GenerationMode
 from schemathesis.core import NotSet
 from schemathesis.hooks import HookDispatcher, HookScope
-from typed_events import with_typed_events
 from whole_service import WholeService, whole_service
 
 from service.app import create_app
@@ -60,7 +60,7 @@ def _service() -> WholeService:
 
 
 service = _service()
-schema = schemathesis.openapi.from_dict(with_typed_events(service.app.openapi()))
+schema = schemathesis.openapi.from_dict(generators_description(service.app.openapi()))
 schema.app = service.app
 feasible = FeasibleBodies(service.app.openapi(), EXAMPLES)
 right = HookDispatcher(scope=HookScope.TEST)

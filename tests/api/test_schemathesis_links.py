@@ -13,12 +13,12 @@ from typing import Any
 import pytest
 import schemathesis
 from feasible_bodies import FeasibleBodies
+from generators_description import generators_description
 from hypothesis import HealthCheck, Phase, settings
 from running_service import until
-from typed_events import with_typed_events
 from written_service import Service, written_service
 
-WALKS = max(int(os.environ.get("LOA_GENERATED_BODIES", "0")) // 100, 6)
+WALKS = max(int(os.environ.get("LOA_GENERATED_BODIES", "0")) // 100, 9)
 STEPS = 8
 FOLLOWED = ("status", "events", "results", "dismiss")
 
@@ -31,7 +31,7 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
 
 
 def test_every_link_leads_to_what_it_says(service: Service) -> None:
-    schema = schemathesis.openapi.from_dict(with_typed_events(service.description))
+    schema = schemathesis.openapi.from_dict(generators_description(service.description))
     schema.config.update(base_url=service.url)
     feasible = FeasibleBodies(service.description, {})
     walked: Counter[tuple[str, int]] = Counter()
