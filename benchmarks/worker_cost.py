@@ -78,6 +78,7 @@ def orders() -> Iterator[tuple[str, str, dict[str, Any]]]:
     yield "ablate, spur, all effects", "ablate", {"case": spur}
     yield "simulate, rigid shafts, 5 s", "simulate", scene
     yield "modes", "modes", scene
+    yield "deflect, the scene's own loads", "deflect", scene
     yield "response, 20 speeds", "response", scene | {"speed_rpm": _SPEEDS}
     yield "steady, 20 speeds", "steady", scene | {"speed_rpm": _SPEEDS}
     speeds = {"path": "drives.motor.speed_rpm", "levels": _SPEEDS}

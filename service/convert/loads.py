@@ -34,12 +34,13 @@ def speed_torque_of(index: int, torque: SpeedTorqueInput) -> SpeedTorque:
 
 def force_of(index: int, force: ForceInput) -> AppliedForce:
     """Return a force."""
+    (x, y, z), (about_x, about_y, about_z) = force.force_n, force.moment_n_m
     with named(f"forces[{index}]"):
         return AppliedForce(
             name=force.name,
             shaft=force.shaft,
-            force=force.force_n,
-            moment=force.moment_n_m,
+            force=(x, y, z),
+            moment=(about_x, about_y, about_z),
             course=_course(force),
             turns_with=force.turns_with,
             **in_si(AppliedForce, force),

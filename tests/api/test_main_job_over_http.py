@@ -14,11 +14,12 @@ import numpy as np
 import pytest
 from declared_figures import check_declared, document
 from fastapi.testclient import TestClient
+from running_service import until
 
 from dynamics.simulation import simulate
 from fe_contact.analysis import ste_database
 from service.app import create_app
-from service.client import JobState, LineOfActionClient
+from service.client import LineOfActionClient
 from service.convert.case import analysis_options, case_json, gear_pair, table_axes
 from service.problems import BadInput
 from service.schemas import Case, validated
@@ -64,8 +65,14 @@ def scene(case: dict[str, Any]) -> dict[str, Any]:
 
 
 def test_the_service_gives_what_python_gives(client: LineOfActionClient, case: dict[str, Any]) -> None:
-    seen: list[JobState] = []
-    served = client.analyze.submit(case).result(seen.append)
+    job, seen = client.analyze.submit(case), []
+
+    def ended() -> bool:
+        seen.append(client.status(job.id))
+        return seen[-1].status == "successful"
+
+    until(ended)
+    served = job.result()
     model = validated(Case, case)
     here = ste_database(gear_pair(model), table_axes(model), analysis_options(model), case=case_json(model))
     assert np.array_equal(served.static_transmission_error, here.static_transmission_error)

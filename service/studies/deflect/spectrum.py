@@ -21,7 +21,7 @@ def optimization_inputs(result: GearboxDeflection, mesh: str) -> Json:
     """Return torques with their weights, mean misalignment and its scatter over the spectrum of a mesh.
 
     Load cases of equal torque are one. Those on the coast side load the other flanks and are left aside,
-    unless all are.
+    unless all are. A plane model has no misalignment: there the inputs have none.
     """
     points = _points(result, mesh)
     torque = np.array([point[0] for point in points])
@@ -34,16 +34,23 @@ def optimization_inputs(result: GearboxDeflection, mesh: str) -> Json:
             merged[-1][1] += weight[k]
         else:
             merged.append([float(torque[k]), float(weight[k])])
-    mean = float(np.average(misalignment, weights=weight))
-    spread = float(np.sqrt(np.average((misalignment - mean) ** 2, weights=weight)))
     inputs: Json = {
         "torque_n_m": [_digits(point[0]) for point in merged],
-        "misalignment_um": _digits(mean / UM),
         "objective": {"kind": "weighted_mean", "weights": [_digits(point[1]) for point in merged]},
     }
+    if _in_plane(result, mesh):
+        return inputs
+    mean = float(np.average(misalignment, weights=weight))
+    spread = float(np.sqrt(np.average((misalignment - mean) ** 2, weights=weight)))
+    inputs["misalignment_um"] = _digits(mean / UM)
     if spread > ALIKE * max(abs(mean), UM):
         inputs["scatter"] = {"misalignment_um": _digits(spread / UM)}
     return inputs
+
+
+def _in_plane(result: GearboxDeflection, mesh: str) -> bool:
+    """Return whether the load was taken as even over the face."""
+    return all(np.isnan(flanks.face_load_factor) for flanks in result.flanks if flanks.mesh == mesh)
 
 
 def _points(result: GearboxDeflection, mesh: str) -> list[tuple[float, float, float]]:

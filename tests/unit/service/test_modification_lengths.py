@@ -36,7 +36,5 @@ def taken(case: dict[str, Any]) -> bool:
 def test_schema_and_model_ask_for_the_length(amount: str, given: dict[str, float], whole: bool) -> None:
     case = tomllib.loads(FILE.read_text("utf-8"))
     names = {"amount": amount, "length": LENGTH_OF[amount]}
-    case["pair"]["pinion"] |= {
-        names[part]: value for part, value in zip(given[::2], given[1::2], strict=True)
-    }
+    case["pair"]["pinion"] |= {names[part]: value for part, value in given.items()}
     assert jsonschema.Draft202012Validator(SCHEMA).is_valid(case) == taken(case) == whole

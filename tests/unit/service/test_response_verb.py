@@ -70,7 +70,7 @@ def test_the_table_and_every_kind_of_file_say_the_same(scene: Path, tmp_path: Pa
     assert width > 1000 and height > 1000
     page = tmp_path / "page.html"
     write_report(files["nc"], page)
-    assert "Forced response to the transmission error" in page.read_text()
+    assert "Forced response to transmission errors and loads" in page.read_text()
 
 
 def test_speeds_at_which_flanks_part_are_said(scene: Path) -> None:

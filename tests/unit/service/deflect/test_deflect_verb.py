@@ -156,6 +156,12 @@ def test_the_spectrum_of_the_driving_side_is_what_is_optimized(result: GearboxDe
     assert study.scatter.misalignment_um == pytest.approx(spread, rel=1e-6)
 
 
+def test_a_plane_model_gets_no_misalignment_to_optimize_for(result: GearboxDeflection) -> None:
+    plane = replace(result, flanks=tuple(replace(f, face_load_factor=np.nan) for f in result.flanks))
+    inputs, across_face = optimization_inputs(plane, "first"), optimization_inputs(result, "first")
+    assert across_face.keys() - inputs.keys() == {"misalignment_um", "scatter"}
+
+
 def test_files_of_an_optimization_stand_beside_the_list_of_calls(
     result: GearboxDeflection, tmp_path: Path
 ) -> None:
