@@ -36,7 +36,8 @@ class PowerFlow:
     speeds : (rotors,) array
         rad/s.
     loads : mapping of int to float
-        Torque from outside by external load, N m.
+        Torque from outside by external load, N m; by shaft where the train's open end has no load that states
+        or leaves open its torque.
     flow : Flow
         Torques of the stages on the rotors.
     remarks : tuple of str
@@ -94,6 +95,7 @@ def power_flow(point: OperatingPoint, layout: Layout, train: Train) -> PowerFlow
         flow = problem.balanced(loads, opened)
         if flow is not None:
             torques = loads | {load: flow.outside[problem.rotor(load)] for load in opened}
+            torques |= problem.at_open_ends(flow, opened)
             remarks = (*problem.remarks, *([remark] if remark else ()), *([SHARED] if flow.is_shared else ()))
             return PowerFlow(point, layout, train, speeds, torques, flow, remarks)
     return "the torques stated do not balance, or leave some open"
@@ -153,6 +155,20 @@ class _Problem:
             ends = self._ends(set(torques))
             return self._train.forces(torques, ends) if len(ends) == 1 else flow
         return self._train.forces(torques, rotors)
+
+    def at_open_ends(self, flow: Flow, opened: list[int]) -> dict[int, float]:
+        """Return the torques of the train's other end by the load that is there, else by the shaft."""
+        stated = set(map(self.rotor, opened))
+        return {self._at(rotor): torque for rotor, torque in flow.outside.items() if rotor not in stated}
+
+    def _at(self, rotor: int) -> int:
+        """Return the external load of a rotor that states no torque, else the rotor's shaft."""
+        unit = self._layout.unit
+        for load in unit.of_type("external_load"):
+            owner = unit.owner(load, "shaft")
+            if owner is not None and self._layout.rotor(owner.id) == rotor and load.id not in self.owner:
+                return load.id
+        return next(part.id for part in unit.of_type("shaft") if self._layout.rotor(part.id) == rotor)
 
     def _ends(self, loaded: set[int]) -> list[int]:
         """Return the rotors of a single stage that no load acts on and nothing holds."""

@@ -51,17 +51,17 @@ def applied_torques(
 
 
 def _external(layout: Layout, flow: PowerFlow, shafts: SceneShafts) -> Iterator[AppliedTorque]:
-    """Yield the external loads that pass torque on."""
+    """Yield the external loads that pass torque on, and what balances them at an end without one."""
     for load, torque in flow.loads.items():
         part = layout.unit.part(load)
-        shaft = layout.unit.owner(part, "shaft")
+        shaft = part if part.type == "shaft" else layout.unit.owner(part, "shaft")
         if shaft is None or layout.rotor(shaft.id) not in shafts.by_rotor or shaft.id not in layout.shafts:
             part.say("", "ignored", "acts on a shaft that the scene has not; its torque enters by the ratios")
             continue
         placed = layout.shafts[shaft.id]
         z = float(placed.start[2]) + placed.sense * layout.u_on(placed, part)
         item = "torque_around_u_axis"
-        if flow.point.torques[load] is None:
+        if flow.point.torques.get(load) is None:
             part.say(
                 item, "derived", f"{placed.sense * torque:.6g} N m in {flow.point.name}: statics of the train"
             )

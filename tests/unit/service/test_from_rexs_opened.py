@@ -143,6 +143,28 @@ def test_shafts_without_places_follow_from_the_angles_of_the_stages() -> None:
     assert said(opened(bare), OUTPUT, "support_vector")[0] == "derived"
 
 
+def test_a_load_that_states_nothing_balances_the_torques() -> None:
+    silent = {MACHINE: {"transmits_torque": None}}
+    assert content(scene_of(two_stages(silent))) == content(scene_of(two_stages()))
+    assert said(opened(two_stages(silent)), MACHINE, "torque_around_u_axis")[0] == "derived"
+    turned_about = {MOTOR: {"torque_around_u_axis": None}} | {
+        MACHINE: {"transmits_torque": None, "torque_around_u_axis": -RATIO * NORMAL_LOAD}
+    }
+    assert content(scene_of(two_stages(turned_about))) == content(scene_of(two_stages()))
+
+
+def test_a_train_without_a_load_at_its_other_end_is_loaded_at_the_shaft() -> None:
+    weight = {MACHINE: ("additional_mass", {"u_coordinate_on_shaft": 150.0, "mass_of_component": 1.0})}
+    cases = [{MOTOR: ("external_load", {"torque_around_u_axis": t * NORMAL_LOAD})} for t in (1.0, 0.5)]
+    document = two_stages(more=weight, cases=cases)
+    (load,) = scene_of(document).loads
+    assert (load.shaft, load.position_mm) == ("shaft 5", 0.0)
+    assert load.torque_n_m == (pytest.approx(RATIO * NORMAL_LOAD, rel=1e-11),)
+    assert said(opened(document), OUTPUT, "torque_around_u_axis")[0] == "derived"
+    torques = [case.torque_n_m for case in opened(document).load_cases]
+    assert torques == pytest.approx([NORMAL_LOAD, 0.5 * NORMAL_LOAD])
+
+
 def test_the_motor_drives_and_statics_gives_the_load() -> None:
     scene = scene_of(two_stages())
     (drive,), (load,) = scene.drives, scene.loads
