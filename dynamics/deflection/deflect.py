@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
+from bounds import inside
 from dynamics.assembly.assemble import assemble
 from dynamics.checks import distinct, integer
 from dynamics.deflection.bearing_load import BearingLoad, bearing_loads
@@ -105,15 +106,16 @@ def deflect(
     integer("positions", positions, 1, MOST_POSITIONS)
     deflections = []
     for number, case in enumerate(cases):
-        deflections.append(_deflected(scene, case, positions))
+        with inside(f"load_cases[{number}]"):
+            loaded = loaded_scene(scene, case)
+        deflections.append(_deflected(loaded, case, positions))
         if progress is not None:
             progress((number + 1) / len(cases))
     return Deflection(leader_of(scene).shaft, tuple(deflections))
 
 
-def _deflected(scene: Scene, case: LoadCase, positions: int) -> CaseDeflection:
-    """Return the deflection under one case."""
-    loaded = loaded_scene(scene, case)
+def _deflected(loaded: Scene, case: LoadCase, positions: int) -> CaseDeflection:
+    """Return the deflection of a scene under the loads of one case."""
     system = assemble(loaded)
     rest = rest_over(system, cycle_times(system, positions))
     motion = rest.motion.mean(axis=0)

@@ -188,6 +188,25 @@ class Figure:
     table: Table | None = None
 
 
+DRAWING_WIDTH, TALLEST = 3.3, 2.0
+"""Width of a panel over its usual height, and the height of the tallest drawing over that."""
+
+
+def panel_height(panel: Panel) -> float:
+    """Return the height of a panel over the usual one; a drawing is as tall as it needs to fill the width."""
+    if not panel.equal:
+        return 1.0
+    across, along = (_extent(panel, axis) for axis in ("x", "y"))
+    return min(max(DRAWING_WIDTH * along / max(across, 1e-12), 1.0), TALLEST)
+
+
+def _extent(panel: Panel, axis: Literal["x", "y"]) -> float:
+    """Return what an axis covers."""
+    own: Axis = getattr(panel, axis)
+    values = own.limits or np.concatenate([getattr(line, axis) for line in panel.lines])
+    return float(np.nanmax(values) - np.nanmin(values))
+
+
 def legend_names(panels: Sequence[Panel]) -> list[str]:
     """Return the names that a legend lists: of what neither labels nor notes nor axes of its panel name."""
     named = [

@@ -20,7 +20,17 @@ from matplotlib.ticker import (
 )
 
 from service.drawing import palette
-from service.drawing.figure import Axis, Bars, Figure, Line, Panel, Reference, legend_names, repeats_below
+from service.drawing.figure import (
+    Axis,
+    Bars,
+    Figure,
+    Line,
+    Panel,
+    Reference,
+    legend_names,
+    panel_height,
+    repeats_below,
+)
 from service.drawing.image_shade import draw_shade
 from service.drawing.line_labels import line_labels, vertical_limits
 
@@ -57,8 +67,9 @@ def _image(figure: Figure, form: str, metadata: dict[str, str | None]) -> bytes:
 
 def _panel_sheet(panels: tuple[Panel, ...]) -> Sheet:
     """Stack panels; curves of one name share one entry in the legend on top."""
-    sheet = Sheet(figsize=(_WIDTH, _PANEL_HEIGHT * len(panels) + 1.2), layout="constrained")
-    axes: list[Axes] = list(sheet.subplots(len(panels), 1, squeeze=False)[:, 0])
+    heights = [panel_height(panel) for panel in panels]
+    sheet = Sheet(figsize=(_WIDTH, _PANEL_HEIGHT * sum(heights) + 1.2), layout="constrained")
+    axes: list[Axes] = list(sheet.subplots(len(panels), 1, squeeze=False, height_ratios=heights)[:, 0])
     handles: dict[str, Any] = {}
     names = legend_names(panels)
     for index, (panel, ax) in enumerate(zip(panels, axes, strict=True)):

@@ -18,6 +18,7 @@ from service.drawing.figure import (
     Reference,
     legend_names,
     numbers,
+    panel_height,
     repeats_below,
 )
 from service.drawing.interactive_shade import shade_traces
@@ -42,7 +43,8 @@ def plotly_figure(figure: Figure) -> Json:
     names = legend_names(panels)
     above = (62 if panels[0].title else 44) + _LEGEND_ROW * (_legend_rows(names) - 1)
     gaps = [_BETWEEN if repeats_below(panels, i) else _BETWEEN + _LABEL for i in range(len(panels) - 1)]
-    inner = _PANEL_HEIGHT * len(panels) + sum(gaps)
+    heights = [round(_PANEL_HEIGHT * panel_height(panel)) for panel in panels]
+    inner = sum(heights) + sum(gaps)
     layout: Json = _layout(inner + above + _BELOW)
     layout |= {"shapes": [], "annotations": [], "showlegend": len(names) > 1}
     layout["margin"] = layout["margin"] | {"t": above, "r": _margin(panels)}
@@ -51,7 +53,7 @@ def plotly_figure(figure: Figure) -> Json:
     unnamed = set(names)
     for index, panel in enumerate(panels):
         suffix = str(index + 1) if index else ""
-        domain = _domain(_PANEL_HEIGHT * index + sum(gaps[:index]), inner)
+        domain = _domain(sum(heights[:index]) + sum(gaps[:index]), heights[index], inner)
         frame = {"domain": domain, "anchor": "x" + suffix}
         layout["xaxis" + suffix] = _axis(panel.x) | {"anchor": "y" + suffix}
         if repeats_below(panels, index):
@@ -123,10 +125,10 @@ def _bars(bars: Bars, suffix: str, *, show: bool) -> Json:
     }
 
 
-def _domain(above: int, inner: int) -> list[float]:
+def _domain(above: int, height: int, inner: int) -> list[float]:
     """Vertical extent of a panel as a fraction of the plot, with `above` pixels of it over the panel."""
     top = inner - above
-    return [round((top - _PANEL_HEIGHT) / inner, 6), round(top / inner, 6)]
+    return [round((top - height) / inner, 6), round(top / inner, 6)]
 
 
 def _layout(height: int) -> Json:

@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
-from bounds import engineering
 from dynamics.deflection import CaseDeflection
 from service.drawing import palette
-from service.drawing.figure import Axis, Figure, FloatArray, Line, Note, Panel
+from service.drawing.figure import Axis, Figure, FloatArray, Line, Note, Panel, number
+from service.studies.deflect.gear_names import GearName, gear_names
 from service.studies.deflect.result import GearboxDeflection, Outline
+from service.studies.deflect.tables import largest_motion
 from service.units import MM, UM
 
 DRAWN = 0.1
 """Largest deflection as it is drawn, over the extent of the gearbox."""
 STEPS = (1.0, 2.0, 5.0, 10.0)
-SLOPE = math.radians(40.0)
-"""Of the radius at whose end the name of a gear stands."""
+ALONG = (
+    "From the side: shafts outlined, gears as boxes of their operating pitch diameter, bearings as "
+    "triangles, the bent axes in red."
+)
+AGAINST = " Against z: operating pitch circles, and where the center of each gear moves."
+EDGE = 0.04
+"""Of an axis beyond what it holds."""
 CIRCLE = np.linspace(0.0, 2.0 * math.pi, 91)
 
 
@@ -25,25 +32,31 @@ def gearbox_drawing(result: GearboxDeflection, case: CaseDeflection) -> Figure:
     """Draw the gearbox and its axes as one load case bends them, exaggerated."""
     outline = result.outline
     scale = exaggeration(outline, case)
-    across, panels = view_axes(outline), []
-    panels.append(_along(outline, case, across[0], scale, f"{_named(outline, across[0])} over z"))
-    panels.append(_end_view(outline, case, scale))
-    worst = max(case.meshes, key=lambda mesh: abs(mesh.misalignment))
+    panels, words = [_along(outline, case, view_direction(outline), scale)], ALONG
+    if outline.gears:
+        panels.append(_end_view(outline, case, scale))
+        words += AGAINST
     return Figure(
         key="deflected_gearbox",
         title=f'The gearbox under the load case "{case.name}"',
-        caption=f"To scale; deflections {scale:.0f} times enlarged. Above: along the axes, shafts outlined, "
-        "gears as boxes of their operating pitch diameter, bearings as triangles, the bent axes in red. "
-        "Below: seen against z, operating pitch circles, and where the center of each gear moves.",
-        alternative=f"Mesh {worst.name} has the largest misalignment, "
-        f"{engineering(worst.misalignment / UM, 3)} µm over its face.",
+        caption=f"To scale; deflections {scale:g} times enlarged. {words}",
+        alternative=_finding(case),
         content=tuple(panels),
     )
 
 
+def _finding(case: CaseDeflection) -> str:
+    """Say which mesh is misaligned most; without meshes, how far the axes move."""
+    if not case.meshes:
+        return f"The axes move by up to {number(largest_motion(case) / UM, 3)} µm."
+    worst = max(case.meshes, key=lambda mesh: abs(mesh.misalignment))
+    size = number(worst.misalignment / UM, 3)
+    return f"Mesh {worst.name} has the largest misalignment, {size} µm over its face."
+
+
 def exaggeration(outline: Outline, case: CaseDeflection) -> float:
     """Return the round factor by which deflections are enlarged."""
-    largest = float(np.max(np.abs(case.shafts.motion[:, :2]), initial=0.0))
+    largest = largest_motion(case)
     if largest == 0.0:
         return 1.0
     wanted = DRAWN * float(np.max(outline.length)) / largest
@@ -51,21 +64,21 @@ def exaggeration(outline: Outline, case: CaseDeflection) -> float:
     return max(step * power for step in STEPS if step * power <= wanted)
 
 
-def view_axes(outline: Outline) -> tuple[FloatArray, FloatArray]:
-    """Return the directions (3,) across the view along the axes: in the plane of most axes, and out of it."""
+def view_direction(outline: Outline) -> FloatArray:
+    """Return the direction (3,) that is upwards in the view along the axes: in the plane of most axes."""
     spread = outline.origin[:, :2] - outline.origin[:, :2].mean(axis=0)
     direction = np.linalg.svd(spread)[2][0] if len(spread) > 1 and np.any(spread) else np.array([1.0, 0.0])
     direction = direction * (1.0 if direction[np.argmax(np.abs(direction))] > 0.0 else -1.0)
-    return np.array([*direction, 0.0]), np.array([-direction[1], direction[0], 0.0])
+    return np.array([*direction, 0.0])
 
 
-def _named(outline: Outline, direction: FloatArray) -> str:
-    """Name a direction across the axes."""
-    angle = math.degrees(math.atan2(direction[1], direction[0]))
-    return f"across the axes, {angle:.0f}° from x"
+def _label(direction: FloatArray) -> str:
+    """Label the axis of a direction across z."""
+    angle = round(math.degrees(math.atan2(direction[1], direction[0])))
+    return {0: "x, mm", 90: "y, mm"}.get(angle, f"across z, {angle}° from x, mm")
 
 
-def _along(outline: Outline, case: CaseDeflection, across: FloatArray, scale: float, title: str) -> Panel:
+def _along(outline: Outline, case: CaseDeflection, across: FloatArray, scale: float) -> Panel:
     """Draw the gearbox along its axes, `across` upwards."""
     heights = outline.origin @ across
     lines = [*_shafts(outline, heights), *_gears(outline, heights), *_bearings(outline, heights)]
@@ -77,7 +90,8 @@ def _along(outline: Outline, case: CaseDeflection, across: FloatArray, scale: fl
         z = (outline.origin[k, 2] + case.shafts.position[own]) / MM
         name = f"axis, {scale:.0f} times"
         lines.append(Line(name, z, (heights[k] + scale * moved[own]) / MM, palette.VERMILLION, width=2.4))
-    return Panel(Axis("z, mm"), Axis("mm"), tuple(lines), title=title, notes=tuple(notes), equal=True)
+    axes = Axis("z, mm"), Axis(_label(across))
+    return Panel(*axes, tuple(lines), title="From the side", notes=tuple(notes), equal=True)
 
 
 def _shafts(outline: Outline, heights: FloatArray) -> list[Line]:
@@ -123,8 +137,8 @@ def _radius(outline: Outline, shaft: int, position: float) -> float:
 
 def _end_view(outline: Outline, case: CaseDeflection, scale: float) -> Panel:
     """Draw the gears against z with the paths of their centers."""
-    lines, notes = [], []
-    for name, k, (position, _, diameter) in zip(outline.gears, outline.gear_shaft, outline.gear, strict=True):
+    lines = []
+    for k, (position, _, diameter) in zip(outline.gear_shaft, outline.gear, strict=True):
         center = outline.origin[k, :2]
         own = case.shafts.shaft == k
         path = [
@@ -136,14 +150,15 @@ def _end_view(outline: Outline, case: CaseDeflection, scale: float) -> Panel:
         lines.append(
             Line("path of centers", ends[:, 0], ends[:, 1], palette.VERMILLION, width=2.4, markers=True)
         )
-        notes.append(_name_outside(name, center, 0.5 * diameter, outline.origin[outline.gear_shaft, :2]))
-    return Panel(
-        Axis("x, mm"), Axis("y, mm"), tuple(lines), title="seen against z", notes=tuple(notes), equal=True
+    names = gear_names(outline)
+    axes = (Axis(f"{'xy'[k]}, mm", limits=_limits(lines, names, k)) for k in (0, 1))
+    return Panel(*axes, tuple(lines), title="Against z", notes=tuple(name.note for name in names), equal=True)
+
+
+def _limits(lines: Sequence[Line], names: Sequence[GearName], axis: int) -> tuple[float, float]:
+    """Return the ends of an axis that holds lines and names, mm."""
+    values = np.concatenate(
+        [*((line.x, line.y)[axis] for line in lines), *(n.points[:, axis] / MM for n in names)]
     )
-
-
-def _name_outside(name: str, center: FloatArray, radius: float, centers: FloatArray) -> Note:
-    """Write the name of a gear right of its circle, above or below, away from the other gears."""
-    side = 1.0 if center[1] >= centers[:, 1].mean() else -1.0
-    x, y = (center + radius * np.array([math.cos(SLOPE), side * math.sin(SLOPE)])) / MM
-    return Note(x, y, name, row=0 if side > 0.0 else -1)
+    low, high = float(values.min()), float(values.max())
+    return low - EDGE * (high - low), high + EDGE * (high - low)

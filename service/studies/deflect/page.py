@@ -10,25 +10,30 @@ from bounds import engineering
 from dynamics.deflection import CAUSES
 from service.drawing.figure import Figure, Table, number
 from service.drawing.page import Headline, Page, Section
+from service.studies.deflect.figures import mesh_names
 from service.studies.deflect.gearbox_drawing import gearbox_drawing
 from service.studies.deflect.plots import causes_figure, face_load_figure, pattern_figure
 from service.studies.deflect.result import GearboxDeflection
 from service.studies.deflect.tables import (
     bearing_table,
+    drawn_case,
+    largest_motion,
     life_table,
     mesh_of,
     mesh_table,
     meshes_worst_first,
-    worst_case,
 )
 from service.studies.presentation import Presentation
 from service.units import UM
 
 
 def headlines(result: GearboxDeflection) -> tuple[Headline, ...]:
-    """Return the worst mesh and how well bodies and meshes agree."""
+    """Return the worst mesh and the most uneven load; without meshes how far the axes move."""
+    case = drawn_case(result)
+    if not case.meshes:
+        size = f"{number(largest_motion(case) / UM, 3)} µm"
+        return (Headline("largest displacement of an axis", size, case.name),)
     name = meshes_worst_first(result)[0]
-    case = worst_case(result, name)
     mesh = mesh_of(case, name)
     cause = CAUSES[int(np.argmax(np.abs(mesh.causes)))]
     lines = [
@@ -49,23 +54,22 @@ def headlines(result: GearboxDeflection) -> tuple[Headline, ...]:
 
 def page(result: GearboxDeflection) -> Page:
     """Return the report: the gearbox under the worst load case, then its meshes and bearings."""
-    name = meshes_worst_first(result)[0]
-    drawing = gearbox_drawing(result, worst_case(result, name))
     contact = tuple(figure for figure in (face_load_figure(result), pattern_figure(result)) if figure)
     sections = [
-        Section("Gearbox", figures=(drawing,)),
-        Section("Meshes", figures=(causes_figure(result),)),
+        Section("Gearbox", figures=(figure(result),)),
+        *([Section("Meshes", figures=(causes_figure(result),))] if mesh_names(result) else []),
         *([Section("Flanks", figures=contact)] if contact else []),
         Section("Bearings", tables=(bearing_table(result), life_table(result))),
     ]
-    lead = (
-        f"{len(result.deflection.cases)} load cases on {result.deflection.leading_shaft}. {agreement(result)}"
-    )
+    count = len(result.deflection.cases)
+    lead = f"{count} load case{'s' * (count > 1)} on {result.deflection.leading_shaft}. {agreement(result)}"
     return Page("Deflection of the gearbox", lead, headlines(result), tuple(sections), _alarms(result))
 
 
 def agreement(result: GearboxDeflection) -> str:
     """Say how well mesh loads and deflections agree."""
+    if not mesh_names(result):
+        return "Nothing meshes."
     if not any(np.isfinite(part.face_load_factor) for part in result.flanks):
         return "The meshes press evenly over their faces: no table in three dimensions."
     change = engineering(result.change, 2)
@@ -89,8 +93,9 @@ def text(result: GearboxDeflection) -> Iterator[Table | str]:
     """Tables for the terminal, the worst mesh first."""
     yield from _alarms(result)
     yield agreement(result)
-    yield mesh_table(result)
-    yield ""
+    if mesh_names(result):
+        yield mesh_table(result)
+        yield ""
     yield bearing_table(result)
     yield ""
     yield life_table(result)
@@ -98,8 +103,8 @@ def text(result: GearboxDeflection) -> Iterator[Table | str]:
 
 
 def figure(result: GearboxDeflection) -> Figure:
-    """Return the gearbox under the load case that misaligns a mesh most."""
-    return gearbox_drawing(result, worst_case(result, meshes_worst_first(result)[0]))
+    """Return the gearbox under the load case of the largest misalignment, else of the largest motion."""
+    return gearbox_drawing(result, drawn_case(result))
 
 
 PAGE = Presentation(figure, page, text)

@@ -18,6 +18,7 @@ from fe_contact.types import FloatArray
 from service.convert.case import boundary_errors
 from service.convert.declared import in_si
 from service.convert.scene import TabledScene
+from service.problems import BadInput
 from service.schemas import Case
 from service.schemas.scene import SceneInput
 from service.schemas.scene_meshes import MeshInput
@@ -64,6 +65,24 @@ def deflection_of(tabled: TabledScene, inputs: Inputs, means: Means) -> GearboxD
         time.process_time() - began,
         scene_of(tabled.inputs),
     )
+
+
+def check(scene: SceneInput, inputs: Inputs) -> None:
+    """Refuse a torque in a scene without loads before tables are computed.
+
+    Raises
+    ------
+    BadInput
+        By the field of the load case.
+    """
+    for index, case in enumerate(inputs.load_cases):
+        if case.torque_n_m is not None and not scene.loads:
+            raise BadInput.of(
+                f"load_cases[{index}].torque_n_m",
+                case.torque_n_m,
+                "left out: the scene has no loads",
+                "A load case scales them. Add [[loads]] where the torque leaves the gearbox.",
+            )
 
 
 def scene_of(inputs: SceneInput) -> Json:
@@ -198,6 +217,7 @@ RUN = Computation(
     facts,
     record_file(("deflection", GearboxDeflection)),
     of_scene=lambda tabled: tabled,
+    check=check,
     writers={".toml": write_spectrum},
     failure=failure,
 )

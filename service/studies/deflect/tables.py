@@ -26,6 +26,17 @@ def worst_case(result: GearboxDeflection, mesh: str) -> CaseDeflection:
     return max(result.deflection.cases, key=lambda case: abs(mesh_of(case, mesh).misalignment))
 
 
+def drawn_case(result: GearboxDeflection) -> CaseDeflection:
+    """Return the load case that misaligns a mesh most; without meshes, that moves the axes most."""
+    names = meshes_worst_first(result)
+    return worst_case(result, names[0]) if names else max(result.deflection.cases, key=largest_motion)
+
+
+def largest_motion(case: CaseDeflection) -> float:
+    """Return the largest deflection of an axis in x or y, m."""
+    return float(np.max(np.abs(case.shafts.motion[:, :2]), initial=0.0))
+
+
 def mesh_of(case: CaseDeflection, name: str) -> MeshAlignment:
     """Return a mesh under a load case."""
     return next(mesh for mesh in case.meshes if mesh.name == name)

@@ -1,0 +1,63 @@
+"""The drawing of a gearbox: names of gears stand free, and the drawing holds them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from two_stage_scenes import two_stages
+
+from dynamics.deflection import deflect
+from service.drawing.figure import Axis, Figure, Line, Panel, panel_height
+from service.drawing.interactive import plotly_figure
+from service.studies.deflect.gear_names import gear_names
+from service.studies.deflect.gearbox_drawing import gearbox_drawing
+from service.studies.deflect.outline import outline_of
+from service.studies.deflect.result import GearboxDeflection, Outline
+
+
+@pytest.fixture(scope="module")
+def outline() -> Outline:
+    """The two stages, their gears with long names."""
+    found = outline_of(two_stages())
+    return replace(found, gears=("first pinion", "wheel of the first stage", "second pinion", "second wheel"))
+
+
+def test_no_name_of_a_gear_touches_a_circle_or_another_name(outline: Outline) -> None:
+    names = gear_names(outline)
+    center, radius = outline.origin[outline.gear_shaft, :2], 0.5 * outline.gear[:, 2]
+    size = float(np.ptp(center[:, 0]))
+    for k, name in enumerate(names):
+        assert name.note.text == outline.gears[k]
+        distance = np.linalg.norm(name.points[:, None] - center, axis=2)
+        assert np.min(np.abs(distance - radius)) > 0.01 * size
+        assert np.all(distance[:, k] > radius[k])
+        for other in names[:k]:
+            assert np.min(np.linalg.norm(name.points[:, None] - other.points, axis=2)) > 0.03 * size
+
+
+def test_the_end_view_holds_circles_and_names(outline: Outline) -> None:
+    found = deflect(two_stages(), positions=1)
+    result = GearboxDeflection(found, (), 1, 0.0, True, outline, {}, 0.0)
+    view = gearbox_drawing(result, found.cases[0]).content[1]
+    for axis, pick in ((view.x, 0), (view.y, 1)):
+        assert axis.limits is not None
+        low, high = axis.limits
+        texts = [1e3 * name.points[:, pick] for name in gear_names(outline)]
+        values = np.concatenate([*texts, *((line.x, line.y)[pick] for line in view.lines)])
+        assert low < values.min() and values.max() < high
+
+
+@pytest.mark.parametrize(
+    ("across", "along", "height"), [(330.0, 50.0, 1.0), (330.0, 150.0, 1.5), (1.0, 1.0, 2.0)]
+)
+def test_a_drawing_is_as_tall_as_it_needs_within_bounds(across: float, along: float, height: float) -> None:
+    box = Line("box", np.array([0.0, across]), np.array([0.0, along]), "#000000")
+    panel = Panel(Axis("mm"), Axis("mm"), (box,), equal=True)
+    assert panel_height(panel) == pytest.approx(height)
+    assert panel_height(replace(panel, equal=False)) == 1.0
+    panels = (replace(panel, equal=False), panel)
+    layout = plotly_figure(Figure("boxes", "", "", "", panels))["layout"]
+    curves, drawing = (np.diff(layout[axis]["domain"])[0] for axis in ("yaxis", "yaxis2"))
+    assert drawing / curves == pytest.approx(height, rel=1e-4)
