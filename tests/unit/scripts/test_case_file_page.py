@@ -49,3 +49,10 @@ def test_a_list_keeps_the_entries_of_others_and_renews_its_own(script: ModuleTyp
     before = "`seat`\n: How the bore sits.\n\n`tip_relief_um`\n: As it was."
     renewed = script.definitions(declared, before)
     assert renewed == f"`seat`\n: How the bore sits.\n\n{script.definitions(declared)}"
+
+
+def test_no_list_holds_what_another_declares(script: ModuleType) -> None:
+    entries = {name: set(map(script.definition, own)) for name, own in script.BY_NAME.items()}
+    declared = set().union(*entries.values())
+    for found in script.LIST.finditer(PAGE):
+        assert not (set(found[3].split("\n\n")) - entries[found[2]]) & declared, found[2]
