@@ -78,11 +78,11 @@ def _profile(name: str, pair: ParallelAxes) -> Panel:
     """Draw the K-chart of a gear: what is removed over its roll angle; at three places of a twisted flank."""
     gear: Toothing = getattr(pair, name)
     roll, half = _usable(gear), 0.5 * gear.face_width
-    faces: list[tuple[str, float, Dash]] = [
+    faces: tuple[tuple[str, float, Dash], ...] = (
         ("mid-face", 0.0, "solid"),
-        ("low end of the face", -half, "dash"),
-    ]
-    faces.append(("high end of the face", half, "dot"))
+        ("datum face", -half, "dash"),
+        ("non-datum face", half, "dot"),
+    )
     twisted = any(part.varies and part.along not in _AXES for part in gear.modification.parts)
     angle = roll / gear.base_radius / DEGREE
     lines = tuple(
@@ -109,7 +109,7 @@ def _lead(gears: dict[str, Toothing]) -> Panel:
         face = np.linspace(-0.5, 0.5, _POINTS) * gear.face_width
         removed = _removed(gear, np.full(_POINTS, _usable(gear).mean()), face)
         lines.append(Line(name, face / MM, removed, _SIDES[name]))
-    x = Axis("face position, mm (0 = mid-face)")
+    x = Axis("face position, mm (0 = mid-face; left: datum face)")
     return Panel(x, Axis("removed, µm"), tuple(lines), title="Lead at the middle of the profile")
 
 

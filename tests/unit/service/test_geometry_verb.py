@@ -194,3 +194,21 @@ def test_charts_show_what_is_removed_and_only_of_modified_flanks(tmp_path: Path)
     assert curve.x[-1] == pytest.approx(math.degrees(math.sqrt((88 / 75.17540966) ** 2 - 1.0)), rel=1e-7)
     (along,) = lead.lines
     assert along.y[[0, 100, 200]] == pytest.approx((8.0, 0.0, 8.0))
+
+
+@pytest.mark.parametrize(("hand", "corner"), [(1.0, "non-datum face"), (-1.0, "datum face")])
+def test_a_triangular_relief_is_drawn_at_the_face_that_lines_of_contact_leave_last(
+    hand: float, corner: str
+) -> None:
+    """At the tip of a right-hand driver they leave at the non-datum face, at that of a left-hand one."""
+    case = read_model(Case, HELICAL).model_dump(exclude_unset=True)
+    case["pair"]["helix_angle_deg"] = hand * abs(case["pair"]["helix_angle_deg"])
+    relief = {"triangular_tip_relief_um": 20.0, "triangular_tip_relief_length_mm": 0.8}
+    plain = {key: case["pair"]["pinion"][key] for key in ("teeth", "face_width_mm", "bore_diameter_mm")}
+    shift = case["pair"]["pinion"].get("profile_shift_coefficient", 0.0)
+    case["pair"]["pinion"] = plain | relief | {"profile_shift_coefficient": shift}
+    panel = pair_drawing(gear_pair(Case.model_validate(case))).content[1]
+    at_tip = {line.name: line.y[-1] for line in panel.lines}
+    other = next(name for name in ("datum face", "non-datum face") if name != corner)
+    assert at_tip[f"pinion, {corner}"] == pytest.approx(20.0)
+    assert at_tip[f"pinion, {other}"] == 0.0
