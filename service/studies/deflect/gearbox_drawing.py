@@ -32,7 +32,7 @@ def gearbox_drawing(result: GearboxDeflection, case: CaseDeflection) -> Figure:
     """Draw the gearbox and its axes as one load case bends them, exaggerated."""
     outline = result.outline
     scale = exaggeration(outline, case)
-    panels, words = [_along(outline, case, view_direction(outline), scale)], ALONG
+    panels, words = [_along(outline, case, view_direction(outline, case), scale)], ALONG
     if outline.gears:
         panels.append(_end_view(outline, case, scale))
         words += AGAINST
@@ -64,10 +64,15 @@ def exaggeration(outline: Outline, case: CaseDeflection) -> float:
     return max(step * power for step in STEPS if step * power <= wanted)
 
 
-def view_direction(outline: Outline) -> FloatArray:
-    """Return the direction (3,) that is upwards in the view along the axes: in the plane of most axes."""
+def view_direction(outline: Outline, case: CaseDeflection) -> FloatArray:
+    """Return the direction (3,) upwards in the view from the side: in the plane of most axes.
+
+    Coaxial shafts are seen as they bend most.
+    """
     spread = outline.origin[:, :2] - outline.origin[:, :2].mean(axis=0)
-    direction = np.linalg.svd(spread)[2][0] if len(spread) > 1 and np.any(spread) else np.array([1.0, 0.0])
+    if not np.any(spread):
+        spread = case.shafts.motion[:, :2]
+    direction = np.linalg.svd(spread)[2][0] if np.any(spread) else np.array([1.0, 0.0])
     direction = direction * (1.0 if direction[np.argmax(np.abs(direction))] > 0.0 else -1.0)
     return np.array([*direction, 0.0])
 

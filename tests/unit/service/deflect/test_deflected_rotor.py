@@ -27,7 +27,9 @@ def test_a_rotor_under_its_weight_hangs_in_its_bearings(tmp_path: Path) -> None:
         assert (result.exit_code, result.stderr) == (0, "")
     (case,) = json.loads(files[0].read_text("utf-8"))["load_cases"]
     assert [bearing["force_n"][1] for bearing in case["bearings"]] == pytest.approx([-0.5 * WEIGHT] * 2)
-    assert "The axes move by up to 49.1 µm." in files[2].read_text("utf-8")  # half of the weight on 1e6 N/m
+    html = files[2].read_text("utf-8")
+    assert "The axes move by up to 49.1 µm." in html  # half of the weight on 1e6 N/m
+    assert '"y, mm"' in html and '"x, mm"' not in html  # seen as it bends
 
 
 def test_a_torque_in_a_scene_without_loads_is_refused_by_its_field() -> None:
