@@ -39,7 +39,9 @@ def helix_crowning(place: FlankPlace, part: Part) -> Modification:
     highest = part.number("helix_highest_point", "highest point")
     highest = 0.5 * (ends[0] + ends[1]) if highest is None else highest
     if not ends[0] < highest < ends[1]:
-        raise BadInput.of(f"{part.place}, helix_highest_point", 1e3 * highest, "between the stated amounts")
+        raise BadInput.of(
+            f"{part.place}, helix_highest_point", mm(1e3 * highest), "between the stated amounts"
+        )
     part.text("shape_of_helix_crowning", "a parabola; an arc is one to (amount / length)^2")
     return Modification(
         part,
@@ -91,7 +93,9 @@ def _slope_length(place: FlankPlace, part: Part) -> float:
         end = part.number("helix_evaluation_end", "length of the amount")
     start, end = start or 0.0, place.width if end is None else end
     if not end > start:
-        raise BadInput.of(f"{part.place}, helix_evaluation_end", 1e3 * end, "above helix_evaluation_start")
+        raise BadInput.of(
+            f"{part.place}, helix_evaluation_end", mm(1e3 * end), "above helix_evaluation_start"
+        )
     return end - start
 
 
@@ -113,7 +117,9 @@ def end_relief(place: FlankPlace, part: Part) -> Modification:
     stated = part.number(f"end_relief_evaluation_reference_{side}", "where the amount is stated")
     stated = end if stated is None else stated
     if not 0.0 < length <= place.width or not (start - stated) * inwards > 0.0:
-        raise BadInput.of(f"{part.place}, end_relief_length_{side}", 1e3 * length, "above 0, within the face")
+        raise BadInput.of(
+            f"{part.place}, end_relief_length_{side}", mm(1e3 * length), "above 0, within the face"
+        )
     fields: dict[str, Any] = {}
     if shape in SCALABLE or place.same(stated, end):
         at_end = depth * float(relative_depth(shape, np.asarray((end - start) / (stated - start))))

@@ -59,7 +59,7 @@ def _stages(unit: GearUnit) -> Iterator[GearStage]:
             reason = "relation `stage` needs two gears with teeth, on two shafts that carry them"
             stage.say("", "refused", reason)
             continue
-        internal = any(teeth < 0 for teeth in signed) or any(gear.type == "ring_gear" for gear in gears)
+        internal = any(gear.type == "ring_gear" for gear in gears)
         first, second = (abs(teeth) for teeth in signed)
         yield GearStage(stage, (gears[0], gears[1]), (shafts[0], shafts[1]), (first, second), internal)
 

@@ -90,7 +90,7 @@ def _flows(layout: Layout) -> list[PowerFlow]:
     for point in points:
         flow = power_flow(point, layout, train)
         if isinstance(flow, str):
-            _say(layout, f"load case {point.name}", "refused", flow)
+            _say(layout, point.name, "refused", flow)
             continue
         for remark in flow.remarks:
             _say(layout, "torque", "derived", remark)
@@ -128,7 +128,7 @@ def _scene(layout: Layout, table: SceneTable) -> SceneInput | None:
     try:
         return validated(SceneInput, table.table)
     except BadInput as error:
-        _say(layout, "scene", "refused", f"no scene: {error}")
+        _say(layout, "scene", "refused", str(error))
         return None
 
 
@@ -150,9 +150,9 @@ def _torque(flow: PowerFlow, leader: AppliedTorque) -> float:
 def _say_missing(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[StageCase]) -> None:
     """State why there is no scene."""
     if not flows:
-        _say(layout, "scene", "refused", "no scene: no load case fits the train")
+        _say(layout, "scene", "refused", "no load case fits the train")
     elif not cases:
-        _say(layout, "scene", "refused", "no scene: no stage has a case")
+        _say(layout, "scene", "refused", "no stage has a case")
 
 
 def _say(layout: Layout, item: str, fate: str, words: str) -> None:

@@ -10,6 +10,7 @@ from fe_contact.flank.involute import involute_function
 from service.from_rexs.part import Part
 from service.from_rexs.toothing import ToothingData
 from service.problems import BadInput
+from service.units import MM, as_typed
 
 _ITEM = "addendum_modification_coefficient"
 
@@ -38,7 +39,7 @@ class ToothedPair:
         if not 0.0 < cosine < 1.0:
             least = 1e3 * reference * math.cos(pinion.transverse_pressure_angle)
             field = f"{self.stage.place}, center_distance"
-            raise BadInput.of(field, 1e3 * self.center_distance, f"above {least:.7g} mm")
+            raise BadInput.of(field, as_typed(self.center_distance, MM), f"above {least:.7g} mm")
         return math.acos(cosine)
 
     @property

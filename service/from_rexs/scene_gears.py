@@ -101,7 +101,7 @@ def _body(gear: Part, shaft_diameter: float, *, is_shaft_massless: bool) -> dict
     helix = gear.number("helix_angle_reference_diameter", "pitch cylinder, deg") or 0.0
     count = teeth_of(gear) or 0
     pitch = abs(count) * (module or 0.0) / math.cos(helix)
-    if gear.type == "ring_gear" or count < 0:
+    if gear.type == "ring_gear":
         return {"inertia": inertia_table(_ring(gear, pitch, module or 0.0, is_shaft_massless))}
     if shaft_diameter >= INTEGRAL * pitch:
         words = f"0: the section of its shaft is {shaft_diameter / MM:.6g} mm, the gear's own body"

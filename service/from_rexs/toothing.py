@@ -54,11 +54,14 @@ def toothing_of(gear: Part, loaded: LoadedFlank) -> ToothingData:
         A number that every gear has is missing or impossible, named by component and attribute.
     """
     teeth = required(gear, "number_of_teeth", "teeth")
-    if teeth != round(teeth) or teeth == 0.0:
-        raise BadInput.of(f"{gear.place}, number_of_teeth", teeth, "a whole number other than 0")
+    ring = gear.type == "ring_gear"
+    if teeth != round(teeth) or teeth == 0.0 or (teeth < 0.0 and not ring):
+        bound = f"a whole number {'other than' if ring else 'above'} 0"
+        advice = "" if teeth > 0.0 else "A ring gear is a component of the type ring_gear."
+        raise BadInput.of(f"{gear.place}, number_of_teeth", teeth, bound, advice)
     return ToothingData(
         part=gear,
-        sign=-1 if gear.type == "ring_gear" else 1,
+        sign=-1 if ring else 1,
         teeth=abs(round(teeth)),
         normal_module=positive(gear, "normal_module", "normal_module_mm"),
         pressure_angle=_pressure_angle(gear, loaded),

@@ -8,6 +8,9 @@ from xml.parsers import expat
 
 from service.rexs.refusal import MOST_DEPTH, MOST_ENTRIES, refused
 
+_SHOWN = 60
+"""Characters of a line that is not well-formed."""
+
 
 @dataclass(slots=True)
 class Element:
@@ -38,10 +41,19 @@ def element_of(data: bytes) -> Element:
         builder.parser.Parse(data, True)
     except expat.ExpatError as error:
         words = expat.errors.messages.get(error.code, "unknown")
-        raise refused(f"line {error.lineno}", words, "well-formed XML") from None
+        bound = f"well-formed XML, which line {error.lineno} is not ({words})"
+        raise refused(
+            "file", _line(data, error.lineno), bound, "REXS is XML, JSON or a ZIP of them."
+        ) from None
     except (LookupError, ValueError) as error:
         raise refused("encoding", str(error), "one that XML readers know, as UTF-8") from None
     return builder.root.parts[0]
+
+
+def _line(data: bytes, number: int) -> str:
+    """Return the beginning of a line, from 1."""
+    lines = data.splitlines()[number - 1 : number]
+    return lines[0].strip()[:_SHOWN].decode(errors="replace") if lines else ""
 
 
 class _Builder:

@@ -24,6 +24,7 @@ from tests.fakes.rexs_unit import (
     CARRIER,
     CASING,
     CENTER_DISTANCES,
+    GEARS,
     INPUT,
     MACHINE,
     MIDDLE,
@@ -163,6 +164,15 @@ def test_a_train_without_a_load_at_its_other_end_is_loaded_at_the_shaft() -> Non
     assert said(opened(document), OUTPUT, "torque_around_u_axis")[0] == "derived"
     torques = [case.torque_n_m for case in opened(document).load_cases]
     assert torques == pytest.approx([NORMAL_LOAD, 0.5 * NORMAL_LOAD])
+
+
+def test_teeth_below_zero_make_no_ring_of_an_external_gear() -> None:
+    unit = opened(two_stages({GEARS[0]: {"number_of_teeth": -20}}))
+    fate, words = said(unit, STAGES[0], "")
+    assert fate == "refused" and "number_of_teeth = -20" in words and "above 0" in words
+    assert unit.scene is not None
+    (drive,) = unit.scene.drives  # of the second stage, which turns against the motor
+    assert drive.speed_rpm == (pytest.approx(-NORMAL_SPEED / 3.0),)
 
 
 def test_the_motor_drives_and_statics_gives_the_load() -> None:

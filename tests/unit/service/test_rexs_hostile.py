@@ -108,3 +108,10 @@ def _end(data: bytes) -> OpenedUnit | str:
     except BadInput as error:
         assert len(str(error)) < 2_000
         return str(error)
+
+
+def test_a_file_that_breaks_off_is_refused_by_its_last_line() -> None:
+    with pytest.raises(BadInput, match=r"which line 2 is not") as caught:
+        parsed(b'<model version="2.0.0">\n  <relations>')
+    (fault,) = caught.value.faults
+    assert (fault.field, fault.value) == ("file", "<relations>")
