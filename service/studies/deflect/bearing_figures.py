@@ -14,28 +14,42 @@ from service.units import MRAD, RPM, UM
 
 HOUR = 3600.0  # s
 ROUNDING, ROUNDING_OF_ALL = 1e-9, 1e-12
-"""Parts of the largest force of a bearing, and of all bearings: smaller ones are zero. Moments: times 1 m."""
+"""Parts of the largest force of a bearing, and of all bearings: smaller ones are zero. Moments: times 1 m.
+Displacements as forces of all bearings."""
+PARTS = ("elastic", "clearance", "seat")
 
 
 def loads_by_case(cases: Sequence[CaseDeflection]) -> list[list[BearingLoad]]:
-    """Return the loads of all bearings in every case, forces and moments within rounding zero."""
+    """Return the loads of all bearings in every case, forces and displacements within rounding zero."""
     largest = [
         max(float(np.max(np.abs(load.force[:3]))) for load in loads)
         for loads in zip(*(case.bearings for case in cases), strict=True)
     ]
     of_all = ROUNDING_OF_ALL * max(largest, default=0.0)
     least = [max(ROUNDING * own, of_all) for own in largest]
+    loads = [load for case in cases for load in case.bearings]
+    moved = max((_largest_part(load) for load in loads), default=0.0)
     return [
-        [_without_rounding(load, each) for load, each in zip(case.bearings, least, strict=True)]
+        [
+            _without_rounding(load, each, ROUNDING_OF_ALL * moved)
+            for load, each in zip(case.bearings, least, strict=True)
+        ]
         for case in cases
     ]
 
 
-def _without_rounding(load: BearingLoad, least: float) -> BearingLoad:
-    """Return a load whose forces below `least` are zero."""
+def _largest_part(load: BearingLoad) -> float:
+    """Return the largest displacement in x, y, z, m."""
+    return max(float(np.max(np.abs(getattr(load, part)[:3]))) for part in PARTS)
+
+
+def _without_rounding(load: BearingLoad, least: float, moved: float) -> BearingLoad:
+    """Return a load whose forces below `least`, N, and displacements below `moved`, m and rad, are zero."""
     force: FloatArray = np.where(np.abs(load.force) < least, 0.0, load.force)
+    own = {part: getattr(load, part) for part in PARTS}
+    parts = {part: np.where(np.abs(value) < moved, 0.0, value) for part, value in own.items()}
     radial = load.largest_radial if load.largest_radial >= least else 0.0
-    return replace(load, force=force, largest_radial=radial)
+    return replace(load, force=force, largest_radial=radial, **parts)
 
 
 def bearing_in_case(load: BearingLoad) -> Json:

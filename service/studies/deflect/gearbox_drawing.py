@@ -23,6 +23,8 @@ ALONG = (
     "triangles, the bent axes in red."
 )
 AGAINST = " Against z: operating pitch circles, and where the center of each gear moves."
+NEAR = 0.04
+"""Of the size of the drawing: names at less than this cover each other."""
 EDGE = 0.04
 """Of an axis beyond what it holds."""
 CIRCLE = np.linspace(0.0, 2.0 * math.pi, 91)
@@ -59,9 +61,14 @@ def exaggeration(outline: Outline, case: CaseDeflection) -> float:
     largest = largest_motion(case)
     if largest == 0.0:
         return 1.0
-    wanted = DRAWN * float(np.max(outline.length)) / largest
+    wanted = DRAWN * _extent(outline) / largest
     power = 10.0 ** math.floor(math.log10(wanted))
     return max(step * power for step in STEPS if step * power <= wanted)
+
+
+def _extent(outline: Outline) -> float:
+    """Return the length of the longest shaft or the distance of the axes, m, whichever is larger."""
+    return max(float(np.max(outline.length)), float(np.max(np.ptp(outline.origin[:, :2], axis=0))))
 
 
 def view_direction(outline: Outline, case: CaseDeflection) -> FloatArray:
@@ -87,8 +94,6 @@ def _along(outline: Outline, case: CaseDeflection, across: FloatArray, scale: fl
     """Draw the gearbox along its axes, `across` upwards."""
     heights = outline.origin @ across
     lines = [*_shafts(outline, heights), *_gears(outline, heights), *_bearings(outline, heights)]
-    ends = outline.origin[:, 2] + outline.length
-    notes = [Note(ends[k] / MM, heights[k] / MM, name) for k, name in enumerate(outline.shafts)]
     moved = case.shafts.motion[:, :2] @ across[:2]
     for k in range(len(outline.shafts)):
         own = case.shafts.shaft == k
@@ -96,7 +101,22 @@ def _along(outline: Outline, case: CaseDeflection, across: FloatArray, scale: fl
         name = f"axis, {scale:.0f} times"
         lines.append(Line(name, z, (heights[k] + scale * moved[own]) / MM, palette.VERMILLION, width=2.4))
     axes = Axis("z, mm"), Axis(_label(across))
-    return Panel(*axes, tuple(lines), title="From the side", notes=tuple(notes), equal=True)
+    return Panel(*axes, tuple(lines), title="From the side", notes=_shaft_names(outline, heights), equal=True)
+
+
+def _shaft_names(outline: Outline, heights: FloatArray) -> tuple[Note, ...]:
+    """Write the names of shafts at their right ends; those that would cover each other in one row."""
+    ends = outline.origin[:, 2] + outline.length
+    row = NEAR * max(float(np.max(outline.length)), float(np.ptp(heights)))
+    rows: list[tuple[float, float, list[str]]] = []
+    for end, height, name in zip(ends, heights, outline.shafts, strict=True):
+        near = (names for z, y, names in rows if abs(z - end) < row and abs(y - height) < row)
+        own = next(near, None)
+        if own is None:
+            rows.append((end, height, [name]))
+        else:
+            own.append(name)
+    return tuple(Note(z / MM, y / MM, ", ".join(names)) for z, y, names in rows)
 
 
 def _shafts(outline: Outline, heights: FloatArray) -> list[Line]:

@@ -35,14 +35,9 @@ def headlines(result: GearboxDeflection) -> tuple[Headline, ...]:
         return (Headline("largest displacement of an axis", size, case.name),)
     name = meshes_worst_first(result)[0]
     mesh = mesh_of(case, name)
-    cause = CAUSES[int(np.argmax(np.abs(mesh.causes)))]
-    lines = [
-        Headline(
-            "largest misalignment",
-            f"{number(mesh.misalignment / UM, 3)} µm",
-            f"mesh {name}, {case.name}; most by the {cause}",
-        )
-    ]
+    most = f"; most by the {CAUSES[int(np.argmax(np.abs(mesh.causes)))]}" if np.any(mesh.causes) else ""
+    size = f"{number(mesh.misalignment / UM, 3)} µm"
+    lines = [Headline("largest misalignment", size, f"mesh {name}, {case.name}{most}")]
     factors = [part for part in result.flanks if np.isfinite(part.face_load_factor)]
     if factors:
         worst = max(factors, key=lambda part: part.face_load_factor)

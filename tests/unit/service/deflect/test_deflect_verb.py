@@ -184,7 +184,9 @@ def test_deflections_are_drawn_a_round_number_of_times_enlarged(result: GearboxD
     case = result.deflection.cases[0]
     factor = exaggeration(result.outline, case)
     largest = float(np.max(np.abs(case.shafts.motion[:, :2])))
-    assert f"{factor:e}"[0] in "125" and 0.04 * 0.2 <= factor * largest <= 0.1 * 0.2 * (1.0 + 1e-9)
+    extent = float(np.ptp(result.outline.origin[:, 0]))
+    assert extent > 0.2  # the length of the shafts
+    assert f"{factor:e}"[0] in "125" and 0.04 * extent <= factor * largest <= 0.1 * extent * (1.0 + 1e-9)
 
 
 def with_bearings(result: GearboxDeflection, change: Callable[[BearingLoad], BearingLoad]) -> Any:
@@ -231,3 +233,12 @@ def test_forces_within_rounding_are_zero(result: GearboxDeflection) -> None:
     assert {row[4] for row in bearing_table(noisy).rows} == {"0"}
     assert {row[5] for row in life_table(noisy).rows} == {"0"}
     assert {float(row[4]) for row in bearing_table(small).rows} == {-1e-3}
+
+
+def test_displacements_within_rounding_are_zero(result: GearboxDeflection) -> None:
+    def clear(play: float) -> Callable[[BearingLoad], BearingLoad]:
+        return lambda load: replace(load, clearance=np.full(5, play))
+
+    noisy, small = (with_bearings(result, clear(play)) for play in (1e-19, 1e-12))
+    assert {row[6] for row in bearing_table(noisy).rows} == {"0"}
+    assert {float(row[6]) for row in bearing_table(small).rows} == {1.41e-6}

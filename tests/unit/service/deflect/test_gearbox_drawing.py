@@ -61,3 +61,12 @@ def test_a_drawing_is_as_tall_as_it_needs_within_bounds(across: float, along: fl
     layout = plotly_figure(Figure("boxes", "", "", "", panels))["layout"]
     curves, drawing = (np.diff(layout[axis]["domain"])[0] for axis in ("yaxis", "yaxis2"))
     assert drawing / curves == pytest.approx(height, rel=1e-4)
+
+
+def test_shafts_that_end_in_one_place_are_named_in_one_row(outline: Outline) -> None:
+    origin = outline.origin.copy()
+    origin[1] = origin[0] + [0.0, 0.001, 0.0]
+    found = deflect(two_stages(), positions=1)
+    result = GearboxDeflection(found, (), 1, 0.0, True, replace(outline, origin=origin), {}, 0.0)
+    notes = gearbox_drawing(result, found.cases[0]).content[0].notes
+    assert [note.text for note in notes] == ["in, mid", "out"]
