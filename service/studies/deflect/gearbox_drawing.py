@@ -25,6 +25,10 @@ ALONG = (
 AGAINST = " Against z: operating pitch circles, and where the center of each gear moves."
 NEAR = 0.04
 """Of the size of the drawing: names at less than this cover each other."""
+VIEWS = np.array([(math.cos(a), math.sin(a)) for a in np.radians(sorted(range(-89, 91), key=abs))])
+"""Directions across z, those near x first."""
+COAXIAL = 1e-6
+"""m; axes at less than this are one."""
 EDGE = 0.04
 """Of an axis beyond what it holds."""
 CIRCLE = np.linspace(0.0, 2.0 * math.pi, 91)
@@ -72,16 +76,17 @@ def _extent(outline: Outline) -> float:
 
 
 def view_direction(outline: Outline, case: CaseDeflection) -> FloatArray:
-    """Return the direction (3,) upwards in the view from the side: in the plane of most axes.
+    """Return the direction (3,) upwards in the view from the side: axes lie farthest apart along it.
 
-    Coaxial shafts are seen as they bend most.
+    Of what leaves two axes closest, the distance is largest. Coaxial shafts are seen as they bend most.
     """
-    spread = outline.origin[:, :2] - outline.origin[:, :2].mean(axis=0)
-    if not np.any(spread):
-        spread = case.shafts.motion[:, :2]
-    direction = np.linalg.svd(spread)[2][0] if np.any(spread) else np.array([1.0, 0.0])
-    direction = direction * (1.0 if direction[np.argmax(np.abs(direction))] > 0.0 else -1.0)
-    return np.array([*direction, 0.0])
+    axes = np.unique(np.round(outline.origin[:, :2] / COAXIAL), axis=0) * COAXIAL
+    if len(axes) == 1:
+        axes = np.vstack([np.zeros(2), case.shafts.motion[:, :2]])
+        apart = np.ptp(axes @ VIEWS.T, axis=0)
+    else:
+        apart = np.diff(np.sort(axes @ VIEWS.T, axis=0), axis=0).min(axis=0)
+    return np.array([*VIEWS[np.argmax(apart > (1.0 - 1e-9) * apart.max())], 0.0])
 
 
 def _label(direction: FloatArray) -> str:

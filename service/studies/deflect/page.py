@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from bounds import engineering
+from bounds import engineering, leftover
 from dynamics.deflection import CAUSES
 from service.drawing.figure import Figure, Table, number
 from service.drawing.page import Headline, Page, Section
@@ -52,7 +52,11 @@ def page(result: GearboxDeflection) -> Page:
     contact = tuple(figure for figure in (face_load_figure(result), pattern_figure(result)) if figure)
     sections = [
         Section("Gearbox", figures=(figure(result),)),
-        *([Section("Meshes", figures=(causes_figure(result),))] if mesh_names(result) else []),
+        *(
+            [Section("Meshes", figures=(causes_figure(result),), tables=(mesh_table(result),))]
+            if mesh_names(result)
+            else []
+        ),
         *([Section("Flanks", figures=contact)] if contact else []),
         Section("Bearings", tables=(bearing_table(result), life_table(result))),
     ]
@@ -67,7 +71,7 @@ def agreement(result: GearboxDeflection) -> str:
         return "Nothing meshes."
     if not any(np.isfinite(part.face_load_factor) for part in result.flanks):
         return "The meshes press evenly over their faces: no table in three dimensions."
-    change = engineering(result.change, 2)
+    change = leftover(result.change)
     return f"Mesh loads and deflections agree to {change} of the misalignments after {result.passes} passes."
 
 

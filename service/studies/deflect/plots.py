@@ -8,7 +8,7 @@ from dynamics.deflection import CAUSES, CaseDeflection
 from service.drawing import palette
 from service.drawing.figure import Axis, Bars, Figure, HeatMap, Line, Panel, number
 from service.studies.deflect.result import GearboxDeflection
-from service.studies.deflect.tables import mesh_of, mesh_table, meshes_worst_first, worst_case
+from service.studies.deflect.tables import mesh_of, meshes_worst_first, worst_case
 from service.units import MM, UM
 
 COLORS = (palette.BLUE, palette.VERMILLION, palette.GREEN, palette.PURPLE, palette.MUTED, palette.INK)
@@ -23,11 +23,10 @@ def causes_figure(result: GearboxDeflection) -> Figure:
     return Figure(
         key="misalignment_by_cause",
         title="Misalignment of each mesh by cause",
-        caption="Growth of the gap over the common face in the plane of action, towards positive z of the "
-        "driving gear of the table; parts of either sign are stacked from zero, points are their sum.",
+        caption="Growth of the gap over the common face in the plane of action, positive along z of the "
+        "pinion. Parts of either sign are stacked from zero, points are their sum.",
         alternative=f'Mesh {names[0]} runs at up to {largest} µm, under the load case "{worst.name}".',
         content=tuple(_causes_panel(name, cases) for name in names),
-        table=mesh_table(result),
     )
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from bounds import engineering, inside
+from bounds import inside, leftover
 from bounds.types import Json
 from dynamics.deflection import CaseDeflection, MeshAlignment, deflect
 from dynamics.scene import Scene
@@ -189,12 +189,15 @@ def _along_face(flanks: LoadDistribution) -> tuple[FloatArray, FloatArray]:
 def _pattern(
     flanks: LoadDistribution, roll: FloatArray, pressure: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the contact pattern at evenly spaced roll lengths and face positions."""
-    rows = np.linspace(roll[0], roll[-1], ALONG_PROFILE)
-    nearest = np.abs(roll[:, None] - rows).argmin(axis=0)
-    face = _along_face(flanks)[0]
-    columns = np.abs(flanks.face_position[:, None] - face).argmin(axis=0)
-    return rows, pressure[np.ix_(nearest, columns)]
+    """Return the contact pattern in cells about evenly spaced roll lengths and face positions.
+
+    A cell has the largest pressure of what lies in it, of its nearest point where nothing does.
+    """
+    rows, face = np.linspace(roll[0], roll[-1], ALONG_PROFILE), _along_face(flanks)[0]
+    along, across = np.abs(roll[:, None] - rows), np.abs(flanks.face_position[:, None] - face)
+    pattern = pressure[np.ix_(along.argmin(axis=0), across.argmin(axis=0))]
+    np.maximum.at(pattern, np.ix_(along.argmin(axis=1), across.argmin(axis=1)), pressure)
+    return rows, pattern
 
 
 def failure(result: GearboxDeflection) -> str:
@@ -204,7 +207,7 @@ def failure(result: GearboxDeflection) -> str:
         names = ", ".join(f'"{case.name}" ({case.status.replace("_", " ")})' for case in lost)
         return f"No equilibrium under load case {names}. Check that bearings hold every shaft that is loaded."
     if not result.agreed:
-        change = engineering(result.change, 2)
+        change = leftover(result.change)
         return (
             f"Mesh loads and deflections disagree: misalignments still change by {change} of their size "
             f"after {result.passes} passes."

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from bounds.types import Json
+from bounds.types import BoolArray, Json
 from dynamics.deflection import CaseDeflection, MeshAlignment
 from service.drawing.figure import Table, number
 from service.studies.deflect.figures import facts, mesh_names
 from service.studies.deflect.result import GearboxDeflection, MeshFlanks
 from service.units import UM
+
+CAUSE_WORDS = ("of shafts", "bearings", "clearance", "housing", "couplings", "set")
 
 
 def meshes_worst_first(result: GearboxDeflection) -> list[str]:
@@ -43,36 +45,32 @@ def mesh_of(case: CaseDeflection, name: str) -> MeshAlignment:
 
 
 def mesh_table(result: GearboxDeflection) -> Table:
-    """List every mesh under every load case, the worst mesh first."""
+    """List every mesh under every load case, the worst mesh first; of the causes those that act."""
+    acting = np.any([mesh.causes for case in result.deflection.cases for mesh in case.meshes], axis=0)
     flanks = {(own.mesh, own.case): own for own in result.flanks}
     head = (
         "mesh",
         "load case",
         "torque, N m",
         "misalignment, µm",
-        "of shafts",
-        "bearings",
-        "clearance",
-        "housing",
-        "couplings",
-        "set",
+        *(words for words, acts in zip(CAUSE_WORDS, acting, strict=True) if acts),
         "K_Hbeta",
         "STE peak-to-peak, µm",
         "largest pressure, MPa",
     )
     rows = tuple(
-        _row(name, case, flanks.get((name, case.name)))
+        _row(name, case, flanks.get((name, case.name)), acting)
         for name in meshes_worst_first(result)
         for case in result.deflection.cases
     )
     return Table("Meshes under the load cases: misalignment over the face by cause", head, rows)
 
 
-def _row(name: str, case: CaseDeflection, flanks: MeshFlanks | None) -> tuple[str, ...]:
+def _row(name: str, case: CaseDeflection, flanks: MeshFlanks | None, acting: BoolArray) -> tuple[str, ...]:
     """One mesh under one load case."""
     mesh = mesh_of(case, name)
     own = (name, _titled(case), number(case.torque), number(mesh.misalignment / UM, 3))
-    parts = tuple("0" if part == 0.0 else number(float(part) / UM, 3) for part in mesh.causes)
+    parts = tuple("0" if part == 0.0 else number(float(part) / UM, 3) for part in mesh.causes[acting])
     if flanks is None:
         return (*own, *parts, "none", "none", "none")
     ripple = number(flanks.peak_to_peak / UM, 3)
@@ -101,7 +99,7 @@ def bearing_table(result: GearboxDeflection) -> Table:
         "speed, rpm",
         "radial, N",
         "axial, N",
-        "elastic, µm",
+        "radial: elastic, µm",
         "clearance, µm",
         "seat, µm",
         "life, h",

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,9 +14,10 @@ from dynamics.deflection import deflect
 from service.drawing.figure import Axis, Figure, Line, Panel, panel_height
 from service.drawing.interactive import plotly_figure
 from service.studies.deflect.gear_names import gear_names
-from service.studies.deflect.gearbox_drawing import gearbox_drawing
+from service.studies.deflect.gearbox_drawing import gearbox_drawing, view_direction
 from service.studies.deflect.outline import outline_of
 from service.studies.deflect.result import GearboxDeflection, Outline
+from service.studies.deflect.run import _pattern
 
 
 @pytest.fixture(scope="module")
@@ -70,3 +73,27 @@ def test_shafts_that_end_in_one_place_are_named_in_one_row(outline: Outline) -> 
     result = GearboxDeflection(found, (), 1, 0.0, True, replace(outline, origin=origin), {}, 0.0)
     notes = gearbox_drawing(result, found.cases[0]).content[0].notes
     assert [note.text for note in notes] == ["in, mid", "out"]
+
+
+def test_a_bent_train_is_seen_from_where_its_axes_lie_apart(outline: Outline) -> None:
+    origin = np.array([[0.0, 0.0, 0.0], [0.1, 0.04, 0.0], [0.14, -0.09, 0.0]])
+    across = np.array([0.17, -0.06, 0.0])  # as far from the first to the second as to the third
+    case = deflect(two_stages(), positions=1).cases[0]
+    seen = view_direction(replace(outline, origin=origin), case)
+    assert seen == pytest.approx(across / np.linalg.norm(across), abs=np.radians(1.0))
+
+
+@pytest.mark.parametrize(("rows", "slices"), [(96, 90), (10, 7)])
+def test_a_contact_pattern_keeps_the_largest_pressure(rows: int, slices: int) -> None:
+    face = np.linspace(-0.01, 0.01, slices)
+    flanks: Any = SimpleNamespace(
+        face_position=face, slice_width=face[1] - face[0], face_load=np.ones((1, slices))
+    )
+    roll, peak = np.linspace(0.004, 0.019, rows), np.zeros((rows, slices))
+    for row, column in ((3, 2), (rows - 2, slices // 2)):
+        pressure = peak.copy()
+        pressure[row, column] = 1e9
+        along, pattern = _pattern(flanks, roll, pressure)
+        assert pattern.shape == (40, 41) and pattern.max() == 1e9
+        at = np.unravel_index(pattern.argmax(), pattern.shape)
+        assert abs(along[at[0]] - roll[row]) <= 0.5 * max(np.diff(along)[0], np.diff(roll)[0]) * 1.001
