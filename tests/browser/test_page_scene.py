@@ -6,11 +6,13 @@ import re
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from page_visit import Visit, shown
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import Browser, Route, expect
 
+UNIT = Path(__file__).parents[2] / "examples" / "two_stage_gearbox.rexs"
 EXAMPLE = Path(__file__).parents[2] / "examples" / "planetary_scene.toml"
 
 
@@ -70,3 +72,34 @@ def test_a_scene_file_is_opened_and_what_it_names_by_file_is_refused(visit: Visi
     page.get_by_role("button", name="Compute the scene").press("Enter")
     expect(page.locator("#scene-body [role=alert]")).to_contain_text("meshes[0]")
     assert visit.complaints == []
+
+
+def test_a_gear_unit_is_deflected_under_the_load_cases_of_its_file(visit: Visit) -> None:
+    page = visit.page
+    sent: list[Any] = []
+
+    def refuse(route: Route) -> None:
+        sent.append(route.request.post_data_json["inputs"])
+        route.fulfill(status=422, json={"title": "Not now", "status": 422})
+
+    page.route("**/processes/deflect/execution", refuse)
+    page.locator("#import-file").set_input_files(UNIT)
+    page.get_by_role("button", name="Open scene", exact=True).press("Enter")
+    text, cases = page.get_by_label("Scene, TOML"), page.get_by_text("A deflection takes the load cases")
+    expect(text).to_have_value(re.compile(r'\[\[bushings\]\]\nname = "concept_bearing 31"'))
+    expect(cases).to_contain_text("of two_stage_gearbox.rexs: load case 1, load case 2, load case 3.")
+    page.get_by_label("Compute", exact=True).select_option("deflect")
+    compute, refused = (
+        page.get_by_role("button", name="Compute the scene"),
+        page.locator("#scene-body [role=alert]"),
+    )
+    compute.press("Enter")
+    expect(refused).to_contain_text("Not now")
+    page.get_by_role("button", name="Leave them out").press("Enter")
+    expect(cases).to_have_count(0)
+    with page.expect_response("**/processes/deflect/execution"):
+        compute.press("Enter")
+    page.unroute("**/processes/deflect/execution")
+    assert [case["torque_n_m"] for case in sent[0]["load_cases"]] == [50.0, 80.0, 30.0]
+    assert len(sent[0]["scene"]["bushings"]) == 6
+    assert "load_cases" not in sent[1]

@@ -6,10 +6,13 @@ import { byId, save } from "./elements.js";
 import { OpenedUnit, isUnit } from "./unit.js";
 
 export class CaseFiles {
-  /** @param {import("./design.js").Design} design */
-  constructor(design) {
+  /**
+   * @param {import("./design.js").Design} design
+   * @param {(name: string, unit: object) => Promise<void>} openScene of a gear unit
+   */
+  constructor(design, openScene) {
     this.design = design;
-    this.unit = new OpenedUnit(design);
+    this.unit = new OpenedUnit(design, openScene);
     byId("export-json").addEventListener("click", () => {
       save(`${JSON.stringify(design.case, null, 2)}\n`, "case.json", "application/json");
     });

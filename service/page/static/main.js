@@ -36,7 +36,7 @@ class Page {
     this.address = new Address([...PLACES, ...studies.map(({ process }) => process)], () => this.typed);
     this.caller = `page-${Math.random().toString(36).slice(2, 12)}`;
     this.design = new Design(analyze.inputs.case.schema, effects, examples, this);
-    this.files = new CaseFiles(this.design);
+    this.files = new CaseFiles(this.design, (name, unit) => this.scenes.take(name, unit));
     /** @type {Map<string, Slot>} */
     this.slots = new Map();
     this.parts(studies);
@@ -58,10 +58,10 @@ class Page {
     const show = (this.show = (target, reference, signal) => showResult(target, reference, { take, signal }));
     showStudies(studies, { design: this.design, slot, show });
     const dynamics = new Dynamics({ slot, show });
-    const scenes = new SceneEditor({ slot, show });
+    this.scenes = new SceneEditor({ slot, show });
     const live = new Live(this, { take, inThreeDimensions: () => this.inThreeDimensions() });
     this.glance = new Glance();
-    this.results = new Results(this, this.glance, live, [dynamics, scenes]);
+    this.results = new Results(this, this.glance, live, [dynamics, this.scenes]);
     const button = byId("analyze");
     this.analysis = slot("analyze", { progress: byId("analyze-job"), result: byId("analyze-result"), button },
       (target, reference) => this.analyzed(reference));

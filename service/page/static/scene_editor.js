@@ -25,6 +25,8 @@ export class SceneEditor {
       id: "scene-text", rows: 16, spellcheck: "false", autocomplete: "off", wrap: "off",
     });
     this.refusal = make("div");
+    this.spectrum = make("p", { class: "hint", role: "status" });
+    this.cases = [];
     this.fromPair = make("button", { type: "button", disabled: true, onclick: () => this.write() }, "Write the scene of the pair above");
     byId("scene-body").replaceChildren(card(
       { title: "A scene of your own", action: "Compute the scene", text: HELP, fields: FIELDS, more: this.parts() },
@@ -49,23 +51,50 @@ export class SceneEditor {
       chosen, make("label", { class: "button", for: "scene-file" }, "Open scene file…"), this.fromPair,
       make("button", { type: "button", onclick: () => save(this.text.value, "scene.toml", "application/toml") }, "Save scene"),
     );
-    return [row, make("label", { for: "scene-text", class: "above" }, "Scene, TOML"), this.text, this.refusal];
+    const label = make("label", { for: "scene-text", class: "above" }, "Scene, TOML");
+    return [row, label, this.text, this.spectrum, this.refusal];
+  }
+
+  /**
+   * Take the scene of a gear unit with its load cases, under which it is deflected.
+   * @param {string} name of its file
+   * @param {{scene: object, load_cases: object[]}} unit
+   */
+  async take(name, { scene, load_cases: cases }) {
+    await this.put(scene, name, cases);
+    byId("scene-text").closest("section").focus();
+    this.text.scrollIntoView({ block: "center" });
+  }
+
+  /** Put a scene into the text. */
+  async put(scene, name = "", cases = []) {
+    await this.careful(async () => {
+      this.text.value = (await post("/v1/scenes/to-toml", { inputs: { scene } })).toml;
+      this.under(name, cases);
+      document.dispatchEvent(new Event("typed"));
+    });
+  }
+
+  /** Say under which load cases the scene is deflected; none: under its own loads. */
+  under(name, cases) {
+    this.cases = cases;
+    const leave = make("button", { type: "button", onclick: () => this.under("", []) }, "Leave them out");
+    const words = `A deflection takes the load cases of ${name}: ${cases.map((load) => load.name).join(", ")}. `;
+    this.spectrum.replaceChildren(...(cases.length ? [words, leave] : []));
   }
 
   async opened(chosen) {
     const [given] = chosen.files;
     if (!given) return;
     this.text.value = await given.text();
+    this.under("", []);
     chosen.value = "";
     document.dispatchEvent(new Event("typed"));
     await this.careful(() => this.read());
   }
 
   async write() {
-    await this.careful(async () => {
-      this.text.value = (await post("/v1/scenes/to-toml", { inputs: { scene: usualScene(this.known) } })).toml;
-      document.dispatchEvent(new Event("typed"));
-    });
+    await this.put(usualScene(this.known));
   }
 
   async read() {
@@ -89,18 +118,19 @@ export class SceneEditor {
       process,
       inputs: async () => {
         const scene = await this.read();
-        return { scene, ...varied(process, scene, evenly(from, to, count)) };
+        return { scene, ...this.varied(process, scene, evenly(from, to, count)) };
       },
     };
   }
-}
 
-/** What a process varies of a scene; a study runs it at each speed of its first drive. */
-function varied(process, scene, speeds) {
-  if (process === "simulate" || process === "deflect") return {};
-  if (process !== "study") return { speed_rpm: speeds };
-  const path = `drives.${(scene.drives ?? [{ name: "?" }])[0].name}.speed_rpm`;
-  return { factors: [{ path, levels: speeds }], responses: RESPONSES };
+  /** What a process varies of a scene; a study runs it at each speed of its first drive. */
+  varied(process, scene, speeds) {
+    if (process === "simulate") return {};
+    if (process === "deflect") return this.cases.length ? { load_cases: this.cases } : {};
+    if (process !== "study") return { speed_rpm: speeds };
+    const path = `drives.${(scene.drives ?? [{ name: "?" }])[0].name}.speed_rpm`;
+    return { factors: [{ path, levels: speeds }], responses: RESPONSES };
+  }
 }
 
 const RESPONSES = [

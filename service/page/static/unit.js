@@ -4,15 +4,20 @@
 import { post } from "./api.js";
 import { byId, dataTable, folded, make, number, save } from "./elements.js";
 
+const FATES = ["taken", "derived", "defaulted", "ignored", "refused"];
 const ENDINGS = /\.(rexs|rexsj|rexsz|zip)$/i;
 
 /** @param {string} name of a file */
 export const isUnit = (name) => ENDINGS.test(name);
 
 export class OpenedUnit {
-  /** @param {import("./design.js").Design} design */
-  constructor(design) {
+  /**
+   * @param {import("./design.js").Design} design
+   * @param {(name: string, unit: {scene: object, load_cases: object[]}) => Promise<void>} openScene
+   */
+  constructor(design, openScene) {
     this.design = design;
+    this.openScene = openScene;
     this.place = byId("unit");
   }
 
@@ -27,15 +32,16 @@ export class OpenedUnit {
     const stages = unit.cases.map((stage) => make(
       "button", { type: "button", onclick: () => this.design.goTo(stage.case, `${name}, ${stage.name}`) }, stage.name,
     ));
-    const scene = unit.scene && make(
-      "button", { type: "button", onclick: () => this.saveScene(unit.scene) }, "Save scene",
-    );
+    const scene = unit.scene ? [
+      make("button", { type: "button", onclick: () => this.openScene(name, unit) }, "Open scene"),
+      make("button", { type: "button", onclick: () => this.saveScene(unit.scene) }, "Save scene"),
+    ] : [];
     const account = make("button", {
       type: "button", onclick: () => save(`${JSON.stringify(unit.lines, null, 1)}\n`, "import.json", "application/json"),
     }, "Save report");
     this.place.replaceChildren(
       make("p", { role: "status" }, summary(name, unit)),
-      make("p", { class: "buttons" }, ...stages, scene, account),
+      make("p", { class: "buttons" }, ...stages, ...scene, account),
       ...(unit.scene ? [shafts(unit.scene)] : []),
       ...(unit.load_cases.length ? [loads(unit.load_cases)] : []),
       folded("What was refused, defaulted and derived", make(
@@ -53,9 +59,8 @@ export class OpenedUnit {
 
 /** How many stages, and what became of the values. */
 function summary(name, unit) {
-  const counts = {};
-  for (const line of unit.lines) counts[line.fate] = (counts[line.fate] ?? 0) + 1;
-  const fates = Object.entries(counts).map(([fate, count]) => `${count} ${fate}`).join(", ");
+  const count = (fate) => unit.lines.filter((line) => line.fate === fate).length;
+  const fates = FATES.filter(count).map((fate) => `${count(fate)} ${fate}`).join(", ");
   const scene = unit.scene ? "" : " There is no scene: the report says why.";
   return `${name}: ${unit.cases.length} different stages; open one below. Values: ${fates}.${scene}`;
 }
