@@ -131,7 +131,7 @@ def _bearing_row(bearing: Json, case: CaseDeflection) -> tuple[str, ...]:
 def life_text(bearing: Json) -> str:
     """Write the life of a bearing in h, or why there is none."""
     hours = bearing["rating_life_hours"]
-    return str(bearing["rating_life"]) if hours is None else number(hours, 3)
+    return str(bearing["rating_life"]) if hours is None else number(float(f"{hours:.3g}"), 3)
 
 
 def life_table(result: GearboxDeflection) -> Table:
