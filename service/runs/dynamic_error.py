@@ -7,13 +7,13 @@ import numpy as np
 from service.drawing import palette
 from service.drawing.figure import Axis, Figure, Line, Panel, Table, number
 from service.runs.run_series import RunSeries
-from service.runs.speed_window import PITCHES, speed_window, window_speeds
+from service.runs.speed_window import PITCHES, is_steady, speed_window, window_speeds
 
 _X = Axis("travel of the driving gear within the window, base pitches", limits=(0, PITCHES))
 
 
 def dynamic_error(run: RunSeries) -> Figure:
-    """Draw three base pitches of both errors at each of several speeds."""
+    """Draw three base pitches of both errors at each of several speeds that the run passes."""
     speeds = window_speeds(run.speed_rpm)
     windows = [speed_window(run.position, run.speed_rpm, speed) for speed in speeds]
     return Figure(
@@ -34,7 +34,8 @@ def _panel(run: RunSeries, speed: float, window: slice) -> Panel:
         Line("dynamic", position, 1e6 * run.dynamic_error[window], palette.BLUE),
         Line("static", position, 1e6 * run.static_error[window], palette.VERMILLION, "dash"),
     )
-    title = f"{number(speed, 3)} rpm, passed at {number(float(run.time[window].mean()), 3)} s"
+    passed = "" if is_steady(run.speed_rpm) else "passed "
+    title = f"{number(speed, 3)} rpm, {passed}at {number(float(run.time[window].mean()), 3)} s"
     return Panel(_X, Axis("transmission error, µm"), lines, title=title)
 
 

@@ -82,9 +82,10 @@ def _words(signal: Signal, frequency: FloatArray, amplitude: FloatArray, mesh: F
     """Name the largest line and where the frequency of the orders is."""
     peak = int(np.argmax(amplitude))
     low, high = number(float(mesh.min()), 3), number(float(mesh.max()), 3)
+    runs = f"is {low} Hz" if low == high else f"runs from {low} to {high} Hz"
     return (
         f"The largest line is {number(float(amplitude[peak]), 3)} {signal.unit} at "
-        f"{number(float(frequency[peak]), 4)} Hz; the {of} frequency runs from {low} to {high} Hz."
+        f"{number(float(frequency[peak]), 4)} Hz; the {of} frequency {runs}."
     )
 
 

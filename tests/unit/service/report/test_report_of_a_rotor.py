@@ -13,7 +13,9 @@ from dynamics.orders import highest_valid_order, order_frequency
 from dynamics.results import RunResult
 from service.cli.commands import app
 from service.report import write_report
+from service.runs.run_series import run_series
 from service.runs.run_view import RunView, shown_signal
+from service.runs.signal_over_time import signal_over_time
 from service.runs.signal_spectrum import order_amplitudes, signal_spectrum, spectrum_window
 
 ROTOR = Path(__file__).parents[4] / "examples" / "jeffcott_scene.toml"
@@ -35,6 +37,8 @@ def test_the_spectrum_of_a_run_has_order_1(run: Path, tmp_path: Path) -> None:
     figure = signal_spectrum(result, shown_signal(result, RunView(scale="peak")))
     assert "shaft frequency" in figure.caption
     (line,) = figure.content[0].lines
+    history = signal_over_time(result, run_series(result), shown_signal(result, RunView()))
+    assert history.content[1].title == "three turns at 3844 rpm"
     window = order_frequency(result)[spectrum_window(result.time)]
     first, second = order_amplitudes(line.x, line.y, window)[:2]
     assert first[1] > 1e3 * second[1]

@@ -49,6 +49,22 @@ def test_a_window_at_the_end_of_the_run_stays_inside() -> None:
     assert np.ptp(10 * time[chosen]) >= 2.9
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_run_at_one_speed_is_shown_at_that_speed_at_its_end(sign: float) -> None:
+    time = np.linspace(0.0, 1.0, 1001)
+    speed = sign * (3000.0 + np.cos(400.0 * time))
+    (shown,) = window_speeds(speed)
+    assert shown == pytest.approx(3000.0, abs=1.0)
+    chosen = speed_window(sign * 50.0 * time, speed, shown)
+    assert 50.0 * time[chosen][0] == pytest.approx(47.0) and chosen.stop == time.size
+
+
+def test_speeds_that_a_run_does_not_pass_are_not_shown() -> None:
+    assert window_speeds(np.array([500.0, 1000.0])) == (900.0,)
+    assert window_speeds(np.array([350.0, 1000.0])) == (400.0, 900.0)
+    assert window_speeds(np.array([940.0, 820.0])) == (820.0,)  # 846 is rounded to 800
+
+
 def test_speeds_are_round() -> None:
     assert window_speeds(np.array([0.0, 955.0])) == (100.0, 400.0, 900.0)
     assert window_speeds(np.array([-167.0, 0.0])) == (20.0, 70.0, 150.0)
