@@ -43,13 +43,24 @@ def run_export_rexs(
     if as_json:
         print_json(facts)
         return
-    for number, names in facts["calculated"].items():
-        console().print(f"component {number}: {', '.join(names)}", highlight=False)
+    for line in _lines(facts["calculated"]):
+        console().print(line, highlight=False, soft_wrap=True)
     if facts.get("left_out"):
         console().print(
             f"left out, no component of their own: {', '.join(facts['left_out'])}", highlight=False
         )
     console().print(f"written to {output}", highlight=False)
+
+
+def _lines(calculated: dict[str, list[str]]) -> list[str]:
+    """Return a line for components with the same results."""
+    alike: dict[tuple[str, ...], list[str]] = {}
+    for number, names in calculated.items():
+        alike.setdefault(tuple(names), []).append(number)
+    return [
+        f"component{'s' * (len(numbers) > 1)} {', '.join(numbers)}: {', '.join(names)}"
+        for names, numbers in alike.items()
+    ]
 
 
 def _study(file: Path) -> Study | None:

@@ -335,5 +335,8 @@ def test_the_verb_writes_what_it_names(exported: tuple[Document, GearboxDeflecti
     assert set(facts["calculated"]) == {str(n) for n in (INPUT, MIDDLE, OUTPUT, *STAGES, *BEARINGS)}
     found = results(parsed(output.read_bytes()), 2)
     assert set(facts["calculated"]["31"]) == set(found[31])
+    printed = CliRunner().invoke(app, arguments[:-1]).stdout.splitlines()
+    alike = [line.partition(":")[0] for line in printed[:-1]]  # as many lines as lists of results
+    assert alike == ["components 3, 4, 5", "components 21, 22", "components 31, 32, 33, 34, 35, 36"]
     refused = CliRunner().invoke(app, [*arguments, "--torque", "10"])
     assert refused.exit_code == 2 and "--torque" in refused.stderr
