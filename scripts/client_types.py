@@ -17,7 +17,7 @@ from service.registry import STUDIES, Study
 HEAD = """# Written by scripts/client_types.py from service.registry: do not edit.
 # fmt: off
 # ruff: noqa: E501 (a line for each parameter)
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Concatenate, Literal, ParamSpec, TypeVar
 
 {imports}
@@ -37,7 +37,7 @@ class Processes(Surface):
 OWN = {
     "from dynamics.results import RunResult",
     "from fe_contact.ste import SteDatabase",
-    "from service.client.portable import CaseLike, SceneLike",
+    "from service.client.portable import CaseLike, SceneLike, StudyLike",
     "from service.client.process import Offered",
     "from service.client.surface import Surface",
     "from service.schemas.figures import Figures, RunFigures, TableFigures",
@@ -71,7 +71,7 @@ def classes(kind: Any) -> list[type]:
 def method(study: Study) -> str:
     """Return the declaration of a study."""
     parts = ["self", f"{study.argument}: {SUBJECTS[study.subject]}"]
-    parts += [f"study: Mapping[str, Any]{' = ...' if study.bare else ''}"] if study.from_file else []
+    parts += [f"study: StudyLike{' = ...' if study.bare else ''}"] if study.from_file else []
     if study.inputs.model_fields and not study.from_file:
         parts += ["*", *(option(name, field) for name, field in study.inputs.model_fields.items())]
     lines = "".join(f"        {part},\n" for part in parts)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache, partial
 from inspect import Parameter, Signature
@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from service.client.libraries import libraries
-from service.client.portable import case_inputs, inputs_of, scene_inputs
+from service.client.portable import case_inputs, inputs_of, scene_inputs, study_inputs
 from service.registry import FORMER, STUDIES, Study
 
 
@@ -50,7 +50,7 @@ class Offer:
             raise TypeError(f"{self.attribute}{self.signature}: {error}") from None
         subject = self.to_inputs(bound[next(iter(self.signature.parameters))])
         varied = bound.get("study", bound.get("options", {}))
-        return subject | {name: _plain(value) for name, value in varied.items()}
+        return subject | study_inputs(varied)
 
 
 def _read_database(file: Path) -> Any:
@@ -109,9 +109,3 @@ def reader_of(process: str) -> Callable[[Path], Any]:
     """Return how results of a process are read; those of an unknown one stay files."""
     name = FORMER.get(process, process)
     return offers()[name].read if name in offers() else lambda file: file
-
-
-def _plain(value: Any) -> Any:
-    """Return a value of JSON: any sequence as a list."""
-    is_sequence = isinstance(value, Iterable) and not isinstance(value, str | Mapping)
-    return list(value) if is_sequence else value

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
+
+from pydantic import BaseModel
 
 from service import schemas
 from service.input_file import InputFile
@@ -15,6 +17,7 @@ if TYPE_CHECKING:
 
 CaseLike: TypeAlias = "schemas.Case | Mapping[str, Any] | Path | InputFile"
 SceneLike: TypeAlias = "schemas.SceneInput | Mapping[str, Any] | Path | InputFile"
+StudyLike: TypeAlias = "Mapping[str, Any] | Path | InputFile"
 
 
 def case_of(case: CaseLike) -> schemas.Case:
@@ -53,6 +56,22 @@ def inputs_of(source: CaseLike | SceneLike) -> dict[str, Any]:
         return scene_inputs(source)
     table = schemas.read_table(source) if isinstance(source, Path | InputFile) else _table("case", source)
     return scene_inputs(source) if "shafts" in table else case_inputs(source)
+
+
+def study_inputs(study: StudyLike) -> dict[str, Any]:
+    """Return the inputs of a study from a table or a file, as JSON; raises `BadInput`."""
+    table = schemas.read_table(study) if isinstance(study, Path | InputFile) else _table("study", study)
+    return {name: _plain(value) for name, value in table.items()}
+
+
+def _plain(value: Any) -> Any:
+    """Return a value of JSON: any sequence as a list, any model as a table."""
+    if isinstance(value, BaseModel):
+        return value.model_dump(mode="json")
+    if isinstance(value, Mapping):
+        return {name: _plain(part) for name, part in value.items()}
+    is_sequence = isinstance(value, Iterable) and not isinstance(value, str)
+    return [_plain(part) for part in value] if is_sequence else value
 
 
 def _table(field: str, source: object) -> dict[str, Any]:

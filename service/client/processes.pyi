@@ -1,7 +1,7 @@
 # Written by scripts/client_types.py from service.registry: do not edit.
 # fmt: off
 # ruff: noqa: E501 (a line for each parameter)
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Concatenate, Literal, ParamSpec, TypeVar
 
 from dynamics.ablation.ablate import Ablation as DynamicsAblation
@@ -17,7 +17,7 @@ from fe_contact.analysis.studies.frontier import Frontier as FeContactFrontier
 from fe_contact.microgeometry.optimization import Optimization as FeContactOptimization
 from fe_contact.microgeometry.tolerance_study import ToleranceStudy as FeContactToleranceStudy
 from fe_contact.ste import SteDatabase
-from service.client.portable import CaseLike, SceneLike
+from service.client.portable import CaseLike, SceneLike, StudyLike
 from service.client.process import Offered
 from service.client.surface import Surface
 from service.schemas.figures import Figures, RunFigures, TableFigures
@@ -98,7 +98,7 @@ class Processes(Surface):
     def optimize(
         self,
         case: CaseLike,
-        study: Mapping[str, Any],
+        study: StudyLike,
     ) -> FeContactOptimization: ...
     @_offered(ServiceScatterFigures)
     def scatter(
@@ -150,11 +150,11 @@ class Processes(Surface):
     def deflect(
         self,
         scene: SceneLike,
-        study: Mapping[str, Any] = ...,
+        study: StudyLike = ...,
     ) -> ServiceGearboxDeflection: ...
     @_offered(ServiceStudyFigures)
     def study(
         self,
         scene: SceneLike,
-        study: Mapping[str, Any],
+        study: StudyLike,
     ) -> DynamicsStudy: ...
