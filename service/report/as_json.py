@@ -38,6 +38,7 @@ def _section(section: Section) -> Json:
     """One part with its figures and tables."""
     return {
         "title": section.title,
+        "part": section.part.name.lower(),
         "text": section.text,
         "figures": [_figure(figure) for figure in section.figures],
         "tables": _tables(section.tables),

@@ -102,7 +102,16 @@ _REPORT: Json = {
     "lead": "20/20 teeth, module 4 mm",
     "alarms": [],
     "headlines": [{"name": "peak to peak at 100 N m", "value": "2.80 um"}],
-    "sections": [{"title": "Transmission error", "text": "", "figures": [], "tables": [], "folded": []}],
+    "sections": [
+        {
+            "title": "Transmission error",
+            "part": "results",
+            "text": "",
+            "figures": [],
+            "tables": [],
+            "folded": [],
+        }
+    ],
 }
 _COST = {
     "stages": {"compliance": 2.1, "contact": 0.4},

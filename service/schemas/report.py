@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, Field
 
@@ -39,6 +39,9 @@ class ReportSection(BaseModel):
     """A part with its figures and tables."""
 
     title: str
+    part: Literal["results", "effects", "accuracy", "input", "receipt"] = Field(
+        description="Results, or how they were made"
+    )
     text: str
     figures: list[ReportFigure]
     tables: list[ReportTable]

@@ -103,3 +103,15 @@ def test_a_gear_unit_is_deflected_under_the_load_cases_of_its_file(visit: Visit)
     assert [case["torque_n_m"] for case in sent[0]["load_cases"]] == [50.0, 80.0, 30.0]
     assert len(sent[0]["scene"]["bushings"]) == 6
     assert "load_cases" not in sent[1]
+
+
+def test_a_deflection_shows_its_tables_of_bearings(visit: Visit) -> None:
+    page = visit.page
+    page.locator("#scene-file").set_input_files(EXAMPLE.with_name("jeffcott_scene.toml"))
+    page.get_by_label("Compute", exact=True).select_option("deflect")
+    page.get_by_role("button", name="Compute the scene").press("Enter")
+    table = page.locator("#scene-body table", has_text="Bearings under the load cases")
+    expect(table).to_be_visible()
+    assert table.locator("tbody tr").count() == 2
+    expect(page.locator("#scene-body .lead")).to_have_text(re.compile(r"Nothing meshes\.$"))
+    assert visit.complaints == []

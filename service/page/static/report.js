@@ -21,8 +21,9 @@ export async function showReport(target, result, { making = false, signal, first
   figures(head, report.headlines.map(({ name, value, remark }) => [name, value, remark]));
   const alarms = report.alarms.map((text) => make("p", { class: "alarm", role: "alert" }, text));
   const drawn = [];
-  const sections = report.sections.filter((one) => making || one.figures.length).map((one) => sectionBlock(one, drawn));
-  const lead = report.lead ? `${report.title}: ${report.lead}.` : `${report.title}.`;
+  const shown = report.sections.filter((one) => making || one.part === "results" || one.figures.length);
+  const sections = shown.map((one) => sectionBlock(one, drawn));
+  const lead = report.lead ? `${report.title}: ${report.lead.replace(/\.$/, "")}.` : `${report.title}.`;
   target.replaceChildren(
     make("p", { class: "lead" }, lead), ...alarms, head, files(result, figuresAt), ...sections,
   );
@@ -44,7 +45,7 @@ function sectionBlock(section, drawn) {
   const tables = section.tables.map((table) => dataTable(table));
   const more = section.folded.map((table) => folded(table.caption, dataTable(table)));
   const text = section.text ? make("p", {}, section.text) : null;
-  if (!parts.length) return folded(section.title, ...(text ? [text] : []), ...tables, ...more);
+  if (!parts.length && section.part !== "results") return folded(section.title, ...(text ? [text] : []), ...tables, ...more);
   return make("div", {}, make("h3", {}, section.title), text ?? "", ...parts, ...tables, ...more);
 }
 
