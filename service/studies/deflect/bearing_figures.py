@@ -16,7 +16,6 @@ HOUR = 3600.0  # s
 ROUNDING, ROUNDING_OF_ALL = 1e-9, 1e-12
 """Parts of the largest force of a bearing, and of all bearings: smaller ones are zero. Moments: times 1 m.
 Displacements as forces of all bearings."""
-PARTS = ("elastic", "clearance", "seat")
 
 
 def loads_by_case(cases: Sequence[CaseDeflection]) -> list[list[BearingLoad]]:
@@ -40,16 +39,24 @@ def loads_by_case(cases: Sequence[CaseDeflection]) -> list[list[BearingLoad]]:
 
 def _largest_part(load: BearingLoad) -> float:
     """Return the largest displacement in x, y, z, m."""
-    return max(float(np.max(np.abs(getattr(load, part)[:3]))) for part in PARTS)
+    return max(float(np.max(np.abs(part[:3]))) for part in (load.elastic, load.clearance, load.seat))
 
 
 def _without_rounding(load: BearingLoad, least: float, moved: float) -> BearingLoad:
     """Return a load whose forces below `least`, N, and displacements below `moved`, m and rad, are zero."""
-    force: FloatArray = np.where(np.abs(load.force) < least, 0.0, load.force)
-    own = {part: getattr(load, part) for part in PARTS}
-    parts = {part: np.where(np.abs(value) < moved, 0.0, value) for part, value in own.items()}
-    radial = load.largest_radial if load.largest_radial >= least else 0.0
-    return replace(load, force=force, largest_radial=radial, **parts)
+    return replace(
+        load,
+        force=_at_least(load.force, least),
+        largest_radial=load.largest_radial if load.largest_radial >= least else 0.0,
+        elastic=_at_least(load.elastic, moved),
+        clearance=_at_least(load.clearance, moved),
+        seat=_at_least(load.seat, moved),
+    )
+
+
+def _at_least(values: FloatArray, least: float) -> FloatArray:
+    """Return values, zero where they are smaller than `least`."""
+    return np.asarray(np.where(np.abs(values) < least, 0.0, values))
 
 
 def bearing_in_case(load: BearingLoad) -> Json:

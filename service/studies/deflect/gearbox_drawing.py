@@ -181,8 +181,8 @@ def _end_view(outline: Outline, case: CaseDeflection, scale: float) -> Panel:
             Line("path of centers", ends[:, 0], ends[:, 1], palette.VERMILLION, width=2.4, markers=True)
         )
     names = gear_names(outline)
-    axes = (Axis(f"{'xy'[k]}, mm", limits=_limits(lines, names, k)) for k in (0, 1))
-    return Panel(*axes, tuple(lines), title="Against z", notes=tuple(name.note for name in names), equal=True)
+    x, y = (Axis(f"{'xy'[k]}, mm", limits=_limits(lines, names, k)) for k in (0, 1))
+    return Panel(x, y, tuple(lines), title="Against z", notes=tuple(name.note for name in names), equal=True)
 
 
 def _limits(lines: Sequence[Line], names: Sequence[GearName], axis: int) -> tuple[float, float]:

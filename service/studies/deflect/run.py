@@ -75,11 +75,13 @@ def check(scene: SceneInput, inputs: Inputs) -> None:
     BadInput
         By the field of the load case.
     """
-    for index, case in enumerate(inputs.load_cases):
-        if case.torque_n_m is not None and not scene.loads:
+    with boundary_errors():
+        cases = load_cases(inputs)
+    for index, case in enumerate(cases):
+        if case.torque is not None and not scene.loads:
             raise BadInput.of(
                 f"load_cases[{index}].torque_n_m",
-                case.torque_n_m,
+                case.torque,
                 "left out: the scene has no loads",
                 "A load case scales them. Add [[loads]] where the torque leaves the gearbox.",
             )
