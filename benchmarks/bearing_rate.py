@@ -10,9 +10,12 @@ from dynamics.rolling_bearings import BallBearing, LoadedBearing, RollerBearing
 TARGET = 10.0
 """Microseconds of CPU time: 1e5 evaluations a second of a bearing of eight balls."""
 EVALUATIONS, REPEATS = 20_000, 3
-_BEARINGS: dict[str, tuple[BallBearing | RollerBearing, float | None]] = {
-    "8 balls": (BallBearing(count=8, diameter=11.5e-3, pitch_diameter=43.5e-3), TARGET),
-    "14 rollers": (RollerBearing(count=14, diameter=9e-3, length=13.6e-3, pitch_diameter=53.5e-3), None),
+_BALLS = BallBearing(count=8, diameter=11.5e-3, pitch_diameter=43.5e-3)
+_ROLLERS = RollerBearing(count=14, diameter=9e-3, length=13.6e-3, pitch_diameter=53.5e-3)
+_BEARINGS: dict[str, tuple[BallBearing | RollerBearing, str, float | None]] = {
+    "8 balls": (_BALLS, "both", TARGET),
+    "8 balls, floating": (_BALLS, "none", TARGET),
+    "14 rollers": (_ROLLERS, "both", None),
 }
 _DISPLACEMENT = (2e-5, 1e-5, 1e-4, 4e-4, -3e-4)
 
@@ -20,8 +23,10 @@ _DISPLACEMENT = (2e-5, 1e-5, 1e-4, 4e-4, -3e-4)
 def figures() -> list[Figure]:
     """Return the shortest time of an evaluation of each bearing."""
     return [
-        Figure("rolling bearing: force, tangent", name, _microseconds(LoadedBearing(bearing)), "us", target)
-        for name, (bearing, target) in _BEARINGS.items()
+        Figure(
+            "rolling bearing: force, tangent", name, _microseconds(LoadedBearing(row, 1, seat)), "us", target
+        )
+        for name, (row, seat, target) in _BEARINGS.items()
     ]
 
 

@@ -1,7 +1,8 @@
 """Balls between the grooves of two rings: forces, derivatives and energy from five displacements, compiled.
 
 A ball without mass lies on the line through the centers of curvature of both grooves. That line is v long and
-longer than A by the approach of the grooves, which the ball carries with Q = c (|v| - A)^1.5.
+longer than A by the approach of the grooves, which the ball carries with Q = c (|v| - A)^1.5. A ring that its
+seat does not hold along the axis slides to where it carries no axial force, see `axial_seat`.
 
 References
 ----------
@@ -12,82 +13,16 @@ References
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import NamedTuple
 
-import numpy as np
-
-from dynamics.bearing_rows import BallBearing
+from dynamics.forces.axial_seat import HOLDS, axial_seat
+from dynamics.forces.ball_grooves import BallElements, grooves
 from dynamics.forces.cage_angle import cage_angle
 from dynamics.forces.compiled import compiled, inner
 from dynamics.forces.local_state import LocalState
 from dynamics.forces.routine import routine
-from dynamics.forces.row_placement import RowPlacement
-from dynamics.types import FloatArray, IntArray
+from dynamics.types import FloatArray
 
-DIRECTIONS = 5
-
-
-class BallElements(NamedTuple):
-    """Balls of l bearings.
-
-    Attributes
-    ----------
-    balls : (l,) int array
-        Their number.
-    stiffness : (l,) array
-        c of a ball between both grooves, N/m^1.5.
-    damping : (l,) array
-        Damping of a ball over its load, s/m.
-    reach : (l,) array
-        A: distance of the centers of curvature of both grooves where the ball just touches, m.
-    radial, axial : (l,) arrays
-        Center of the inner groove seen from that of the outer at no displacement, m.
-    arm_radius, arm_axial : (l,) arrays
-        Center of the inner groove seen from the bearing's center, over the lever of tilts.
-    """
-
-    balls: IntArray
-    stiffness: FloatArray
-    damping: FloatArray
-    reach: FloatArray
-    radial: FloatArray
-    axial: FloatArray
-    arm_radius: FloatArray
-    arm_axial: FloatArray
-
-
-def pack_balls(rows: Sequence[tuple[BallBearing, RowPlacement]]) -> BallElements:
-    """Lay out `rows` and how they are placed."""
-    values = np.array([_values(bearing, place) for bearing, place in rows], dtype=float).reshape(-1, 7)
-    balls = np.array([bearing.count * place.copies for bearing, place in rows], dtype=np.int64)
-    return BallElements(balls, *(np.ascontiguousarray(column) for column in values.T))
-
-
-def _values(bearing: BallBearing, place: RowPlacement) -> tuple[float, ...]:
-    """Return the figures of a row in the order of `BallElements`; clearance leaves it in its middle."""
-    angle, reach = bearing.free_contact_angle, bearing.groove_distance
-    offset = (bearing.inner_groove - 0.5) * bearing.diameter
-    radial, axial, height = reach - bearing.clearance / 2.0, 0.0, 0.0
-    if bearing.contact_angle != 0.0:
-        toward = math.copysign(1.0, angle)
-        radial, axial = reach * math.cos(angle), reach * math.sin(angle) - toward * bearing.clearance
-        height = offset * math.sin(angle)
-    arm = bearing.pitch_diameter / 2.0 + offset * math.cos(angle)
-    stiffness = bearing.element_stiffness / place.copies
-    arms = arm / place.lever, height / place.lever
-    return stiffness, place.damping, reach, radial, axial + place.shift, *arms
-
-
-@inner
-def _grooves(
-    laws: BallElements, entry: int, c: float, s: float, y: FloatArray, row: int
-) -> tuple[float, float, float]:
-    """Return radial and axial part of v of the ball at the cosine and sine `c`, `s`, and its length."""
-    turn = y[row + 4] * c - y[row + 3] * s
-    v_r = laws.radial[entry] + y[row] * c + y[row + 1] * s + laws.arm_axial[entry] * turn
-    v_z = laws.axial[entry] + y[row + 2] - laws.arm_radius[entry] * turn
-    return v_r, v_z, math.sqrt(v_r * v_r + v_z * v_z)
+DIRECTIONS, AXIAL = 5, 2
 
 
 @routine
@@ -101,18 +36,23 @@ def balls(laws: BallElements, entry: int, local: LocalState, row: int, turned: i
         df/dy = sum dF/dp g g^T + F/|v| h h^T + Q d (h y')/|v| g h^T,    h = e_r b_z - e_z b_r,
         df/dy' = sum Q d g g^T.
 
-    The first ball stands at the cage's angle from x towards y, position `turned`, the others behind it.
+    Where a ring may slide in its seat, balls are damped by the other four rates alone. The first ball stands
+    at the cage's angle from x towards y, position `turned`, the others behind it.
     """
     for i in range(DIRECTIONS):
         local.force[row + i], local.elastic[row + i] = 0.0, 0.0
         for j in range(DIRECTIONS):
             local.tangent[row + i, j], local.viscous[row + i, j] = 0.0, 0.0
-    y, angle = local.coordinate, cage_angle(local, turned)
+    y, angle, loose = local.coordinate, cage_angle(local, turned), laws.held[entry] != HOLDS
+    z, axial_rate = y[row + AXIAL], 0.0 if loose else local.rate[row + AXIAL]
+    held, thrust, kx, ky, kz, ktx, kty = 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    if loose:
+        held, z, thrust, kx, ky, kz, ktx, kty = axial_seat(laws, entry, local, row, turned)
     radius, height = laws.arm_radius[entry], laws.arm_axial[entry]
     step = 2.0 * math.pi / laws.balls[entry]
     for ball in range(laws.balls[entry]):
         c, s = math.cos(angle + ball * step), math.sin(angle + ball * step)
-        v_r, v_z, length = _grooves(laws, entry, c, s, y, row)
+        v_r, v_z, length = grooves(laws, entry, c, s, y, row, z)
         press = length - laws.reach[entry]
         if press <= 0.0:
             continue
@@ -121,7 +61,11 @@ def balls(laws: BallElements, entry: int, local: LocalState, row: int, turned: i
         along, across = height * e_r - radius * e_z, -height * e_z - radius * e_r
         g = (e_r * c, e_r * s, e_z, -s * along, c * along)
         h = (-e_z * c, -e_z * s, e_r, -s * across, c * across)
-        _add(local, row, g, h, rigid, press, laws.damping[entry], length)
+        _add(local, row, g, h, rigid, press, laws.damping[entry], length, axial_rate)
+    if loose and held > 0.0:
+        _press_seat(local, row, thrust, (kx, ky, kz, ktx, kty), laws.damping[entry])
+    elif loose:
+        _condense(local, row, (kx, ky, kz, ktx, kty))
 
 
 @inner
@@ -134,12 +78,14 @@ def _add(
     press: float,
     damping: float,
     length: float,
+    axial_rate: float,
 ) -> None:
     """Add what a ball of the elastic force `rigid` `press` does along g and across it."""
     load, closing, sliding = rigid * press, 0.0, 0.0
     for i in range(DIRECTIONS):
-        closing += g[i] * local.rate[row + i]
-        sliding += h[i] * local.rate[row + i]
+        rate = axial_rate if i == AXIAL else local.rate[row + i]
+        closing += g[i] * rate
+        sliding += h[i] * rate
         local.elastic[row + i] += load * g[i]
     factor = 1.0 + damping * closing
     if factor <= 0.0:
@@ -153,17 +99,62 @@ def _add(
             local.viscous[row + i, j] += viscous * g[i] * g[j]
 
 
+@inner
+def _press_seat(local: LocalState, row: int, thrust: float, slope: tuple[float, ...], damping: float) -> None:
+    """Write the axial row of a ring that presses its seat with `thrust`, of derivatives `slope`.
+
+    The seat is damped in proportion to its thrust and never pulls, as the balls are.
+    """
+    axial = row + AXIAL
+    factor = max(0.0, 1.0 + damping * math.copysign(1.0, thrust) * local.rate[axial])
+    for i in range(DIRECTIONS):
+        local.tangent[axial, i] = factor * slope[i]
+        local.viscous[axial, i], local.viscous[row + i, AXIAL] = 0.0, 0.0
+    local.force[axial], local.elastic[axial] = thrust * factor, thrust
+    if factor > 0.0:
+        local.viscous[axial, AXIAL] = abs(thrust) * damping
+
+
+@inner
+def _condense(local: LocalState, row: int, slope: tuple[float, ...]) -> None:
+    """Let a ring slide so that the thrust, of derivatives `slope`, stays 0: static condensation of z."""
+    axial = row + AXIAL
+    for i in range(DIRECTIONS):
+        follows = -local.tangent[row + i, AXIAL] / slope[AXIAL] if slope[AXIAL] > 0.0 else 0.0
+        for j in range(DIRECTIONS):
+            local.tangent[row + i, j] += follows * slope[j]
+        local.tangent[row + i, AXIAL], local.viscous[row + i, AXIAL] = 0.0, 0.0
+    for j in range(DIRECTIONS):
+        local.tangent[axial, j], local.viscous[axial, j] = 0.0, 0.0
+    local.force[axial], local.elastic[axial] = 0.0, 0.0
+
+
 @routine
 def balls_energy(
     laws: BallElements, entry: int, local: LocalState, row: int, turned: int
 ) -> tuple[float, float]:
     """Return the energy stored at the displacement in `row` and on, J, and its derivative, J/revolution."""
+    return _energy(laws, entry, local, row, turned, _axial(laws, entry, local, row, turned))
+
+
+@inner
+def _axial(laws: BallElements, entry: int, local: LocalState, row: int, turned: int) -> float:
+    """Return the axial displacement of the rings against each other."""
+    if laws.held[entry] == HOLDS:
+        return float(local.coordinate[row + AXIAL])
+    return float(axial_seat(laws, entry, local, row, turned)[1])
+
+
+@inner
+def _energy(
+    laws: BallElements, entry: int, local: LocalState, row: int, turned: int, z: float
+) -> tuple[float, float]:
+    """Return energy and derivative at the axial displacement `z` of the rings."""
     y, angle = local.coordinate, cage_angle(local, turned)
-    step = 2.0 * math.pi / laws.balls[entry]
-    energy, slope = 0.0, 0.0
+    step, energy, slope = 2.0 * math.pi / laws.balls[entry], 0.0, 0.0
     for ball in range(laws.balls[entry]):
         c, s = math.cos(angle + ball * step), math.sin(angle + ball * step)
-        v_r, v_z, length = _grooves(laws, entry, c, s, y, row)
+        v_r, v_z, length = grooves(laws, entry, c, s, y, row, z)
         press = length - laws.reach[entry]
         if press <= 0.0:
             continue
@@ -182,10 +173,10 @@ def ball_reaction(laws: BallElements, local: LocalState, load: FloatArray) -> tu
     `load` (Z, 1): the elastic load of every ball, N.
     """
     balls(laws, 0, local, 0, 0)
-    angle, step = cage_angle(local, 0), 2.0 * math.pi / laws.balls[0]
+    y, angle, step = local.coordinate, cage_angle(local, 0), 2.0 * math.pi / laws.balls[0]
+    z = _axial(laws, 0, local, 0, 0)
     for ball in range(laws.balls[0]):
         c, s = math.cos(angle + ball * step), math.sin(angle + ball * step)
-        press = max(_grooves(laws, 0, c, s, local.coordinate, 0)[2] - laws.reach[0], 0.0)
+        press = max(grooves(laws, 0, c, s, y, 0, z)[2] - laws.reach[0], 0.0)
         load[ball, 0] = laws.stiffness[0] * math.sqrt(press) * press
-    energy, slope = balls_energy(laws, 0, local, 0, 0)
-    return energy, slope
+    return _energy(laws, 0, local, 0, 0, z)

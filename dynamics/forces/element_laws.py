@@ -11,7 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dynamics.forces.ball_elements import BallElements, balls, balls_energy
+from dynamics.forces.axial_seat import axial_seat
+from dynamics.forces.ball_elements import balls, balls_energy
+from dynamics.forces.ball_grooves import BallElements
 from dynamics.forces.by_address import by_address
 from dynamics.forces.compiled import inner
 from dynamics.forces.flank_force import FlankLaws, flank_force
@@ -128,7 +130,7 @@ ROUTINES = {
     Law.SPATIAL_FLANK: (spatial_flank, spatial_energy),
     Law.ROTATING_FRAME: (rotating_frame, rotating_frame_energy),
     Law.FRAME_COUPLING: (frame_coupling, frame_coupling_energy),
-    Law.BALLS: (balls, balls_energy),
+    Law.BALLS: (axial_seat, balls, balls_energy),
     Law.ROLLERS: (rollers, rollers_energy),
     Law.APPLIED_FORCE: (applied_force,),
     Law.UNBALANCE: (unbalance, unbalance_energy),

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from dynamics.bearing_rows.locating import BOTH
+
 
 @dataclass(frozen=True)
 class RowPlacement:
@@ -19,9 +21,12 @@ class RowPlacement:
         Displacement of the inner ring along z, less that of the outer, at which the coordinates are 0, m.
     damping : float
         Damping of an element over its load, s/m.
+    locating : str
+        Directions in which the rings are held in their seats, see `dynamics.bearing_rows.locating`.
     """
 
     copies: int = 1
     lever: float = 1.0
     shift: float = 0.0
     damping: float = 0.0
+    locating: str = BOTH

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from bounds import Declared, Kind, between, declared, described, required
 from dynamics.bearing_rows import BallBearing, RollerBearing
+from dynamics.bearing_rows.locating import BOTH, LOCATING, check_locating
 from dynamics.checks import declared_fields
 from dynamics.errors import InputError
 from dynamics.joints import seat
@@ -44,6 +45,9 @@ class RollingBearing:
     Its five displacements are those of the shaft's section; force and moment are about the row's center. Rows
     of one bearing, or bearings side by side, are several of these, each at its own position.
 
+    Its rings are held in their seats along the axis, or one slides: a non-locating ball bearing carries no
+    axial force (`locating`). Of cylindrical rollers it changes nothing.
+
     An element of load Q pushes back with ``Q (1 + d p')``, p' the rate at which it is pressed, and never
     pulls (Hunt and Crossley); d follows from `damping_ratio` with the mass of the shaft and its gears divided
     by the number of its bearings.
@@ -56,6 +60,7 @@ class RollingBearing:
     axial_preload: float = declared(0.0, AXIAL_PRELOAD)
     damping_ratio: float = declared(0.05, DAMPING_RATIO)
     dynamic_capacity: float | None = declared(None, DYNAMIC_CAPACITY)
+    locating: str = declared(BOTH, LOCATING)
 
     def __post_init__(self) -> None:
         declared_fields(self)
@@ -66,6 +71,10 @@ class RollingBearing:
         if preload * angle < 0.0:
             bound = f"{'positive' if angle > 0.0 else 'negative'}, as the contact angle is"
             raise InputError("axial_preload", preload, bound, "The row carries no other axial force.")
+        check_locating(self.row, self.locating)
+        if preload != 0.0 and self.locating != BOTH:
+            bound = f'0 where a ring slides (locating = "{self.locating}")'
+            raise InputError("axial_preload", preload, bound, f'State locating = "{BOTH}", or no preload.')
 
     @property
     def bushing(self) -> str:

@@ -11,8 +11,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dynamics.bearing_rows import BallBearing, RollerBearing
+from dynamics.bearing_rows.locating import BOTH, check_locating
 from dynamics.errors import SolveError
-from dynamics.forces.ball_elements import ball_reaction, balls, balls_energy, pack_balls
+from dynamics.forces.axial_seat import axial_seat
+from dynamics.forces.ball_elements import ball_reaction, balls, balls_energy
+from dynamics.forces.ball_grooves import pack_balls
 from dynamics.forces.by_address import by_address
 from dynamics.forces.local_state import alone
 from dynamics.forces.roller_elements import (
@@ -21,6 +24,7 @@ from dynamics.forces.roller_elements import (
     rollers,
     rollers_energy,
 )
+from dynamics.forces.routine import Routine
 from dynamics.forces.row_placement import RowPlacement
 from dynamics.joints.seat import SEAT
 from dynamics.types import FloatArray
@@ -67,17 +71,26 @@ class LoadedBearing:
     copies : int
         Each element as so many that share its stiffness, evenly spaced. 1: the elements as they are, whose
         force varies as the cage turns (element passing). More: its average over the passing of an element.
+    locating : str
+        Directions along z in which the rings are held in their seats: both, positive, negative, none. A ring
+        that is not held slides to where it carries no axial force.
+
+    Raises
+    ------
+    InputError
+        If a ring of a row with a contact angle slides.
     """
 
-    def __init__(self, bearing: BallBearing | RollerBearing, copies: int = 1) -> None:
+    def __init__(self, bearing: BallBearing | RollerBearing, copies: int = 1, locating: str = BOTH) -> None:
+        check_locating(bearing, locating)
         self.bearing, self.copies = bearing, copies
         self._local = by_address(alone(SEAT))
         self._load = np.zeros((bearing.count * copies, bearing.laminae))
-        place = RowPlacement(copies, damping=1.0)
+        place = RowPlacement(copies, damping=1.0, locating=locating)
         if isinstance(bearing, BallBearing):
             self._laws: Any = by_address(pack_balls([(bearing, place)]))
             self._react: Any = ball_reaction
-            routines = balls, balls_energy
+            routines: tuple[Routine, ...] = (axial_seat, balls, balls_energy)
         else:
             self._laws = by_address(pack_rollers([(bearing, place)]))
             self._react = roller_reaction

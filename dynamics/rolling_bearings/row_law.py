@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from dynamics.bearing_rows import BallBearing, RollerBearing
-from dynamics.forces.ball_elements import BallElements, pack_balls
+from dynamics.forces.ball_grooves import BallElements, pack_balls
 from dynamics.forces.bearing_law import BearingDuty
 from dynamics.forces.law import Law
 from dynamics.forces.roller_elements import EXPONENT, RollerElements, pack_rollers
@@ -40,7 +40,7 @@ class RowLaw:
     def __init__(self, bearing: RollingBearing, passing: bool = False) -> None:
         self.bearing, self.row, self.passing = bearing, bearing.row, passing
         self.copies = math.ceil(AVERAGED / bearing.row.count)
-        self.loaded = LoadedBearing(bearing.row, self.copies)
+        self.loaded = LoadedBearing(bearing.row, self.copies, bearing.locating)
 
     @property
     def law(self) -> Law:
@@ -88,11 +88,12 @@ class RowLaw:
         at = self._under(duty)[1]
         critical = 2.0 * math.sqrt(float(at.tangent[0, 0]) * duty.mass)
         damping = self.bearing.damping_ratio * critical / float(at.viscous[0, 0])
-        return RowPlacement(1 if self.passing else self.copies, self.lever, self.shift, damping)
+        copies = 1 if self.passing else self.copies
+        return RowPlacement(copies, self.lever, self.shift, damping, self.bearing.locating)
 
     def passing_motion(self, duty: BearingDuty) -> float:
         """Return how far the shaft moves as an element passes, from peak to peak along the load, m."""
-        whole, pitch = LoadedBearing(self.row), 2.0 * math.pi / self.row.count
+        whole, pitch = LoadedBearing(self.row, 1, self.bearing.locating), 2.0 * math.pi / self.row.count
         angles = np.arange(PASSING_ANGLES) * pitch / PASSING_ANGLES
         return float(np.ptp([self._under(duty, whole, float(angle))[0] for angle in angles]))
 

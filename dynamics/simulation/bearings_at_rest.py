@@ -51,7 +51,7 @@ def _carried(
     moved = local.coordinate[own] / np.diag(at.own)
     moved[2] += law.shift
     angle = 2.0 * np.pi * float(local.position[turned]) if turned >= 0 else 0.0
-    loaded = LoadedBearing(bearing.row) if turned >= 0 else law.loaded
+    loaded = LoadedBearing(bearing.row, 1, bearing.locating) if turned >= 0 else law.loaded
     load = loaded.evaluate(moved, angle).load
     return {
         "displacement": moved.tolist(),

@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import quad
 
 from dynamics.errors import SolveError
-from dynamics.forces.ball_elements import pack_balls
+from dynamics.forces.ball_grooves import pack_balls
 from dynamics.forces.row_placement import RowPlacement
 from dynamics.rolling_bearings import (
     BallBearing,

@@ -29,6 +29,8 @@ ANGULAR = BallBearing(8, 11.5e-3, 43.5e-3, contact_angle=0.6)
 CYLINDRICAL = RollerBearing(14, 9e-3, 13.6e-3, 53.5e-3, clearance=1e-5, laminae=10)
 TAPERED = RollerBearing(17, 9e-3, 13.6e-3, 65e-3, contact_angle=-0.25, laminae=10)
 KINDS = {"deep groove": DEEP_GROOVE, "angular": ANGULAR, "cylindrical": CYLINDRICAL, "tapered": TAPERED}
+KINDS |= {"floating": DEEP_GROOVE, "cross-located": DEEP_GROOVE}
+SEATS = {"floating": ("both", "none"), "cross-located": ("negative", "positive")}
 PRELOAD = 400.0  # N
 EVERY = pytest.mark.parametrize("kind", KINDS)
 MIRROR = np.array([1.0, 1.0, -1.0, -1.0, -1.0])
@@ -38,13 +40,15 @@ def mirrored(row):
     return replace(row, contact_angle=-row.contact_angle)
 
 
-def rotor(rows, preload=0.0, positions=(0.02, 0.18), gravity=(0.0, 0.0, 0.0), mass=40.0, **changes):
+def rotor(rows, preload=0.0, positions=(0.02, 0.18), gravity=(0.0, 0.0, 0.0), mass=40.0, kind="", **changes):
     """A shaft of 0.2 m on rolling bearings, turned through a torsional coupling by a gear pair's driver."""
     scene = gear_pair_scene(spring_table(4e8), speed=TimeLaw.constant(10.0), effects=ON)
     shaft = Shaft("rotor", 0.2, (0.0, 0.0, 0.4), Inertia(mass, 0.05, 0.1))
     bearings = tuple(
-        RollingBearing(f"seat {i}", "rotor", row, z, np.sign(row.contact_angle) * preload)
-        for i, (row, z) in enumerate(zip(rows, positions, strict=True))
+        RollingBearing(f"seat {i}", "rotor", row, z, np.sign(row.contact_angle) * preload, locating=seat)
+        for i, (row, z, seat) in enumerate(
+            zip(rows, positions, SEATS.get(kind, ("both", "both")), strict=True)
+        )
     )
     fields = {"rolling_bearings": bearings, "gravity": gravity} | changes
     return replace(
@@ -81,7 +85,9 @@ def forces(system, q):
 
 @EVERY
 def test_derivatives_are_those_of_the_forces(kind):
-    system = assemble(rotor(pair_of(KINDS[kind]), PRELOAD if kind in ("angular", "tapered") else 0.0))
+    system = assemble(
+        rotor(pair_of(KINDS[kind]), PRELOAD if kind in ("angular", "tapered") else 0.0, kind=kind)
+    )
     arrays, rows = system.arrays, bearing_rows(system.arrays)
     blocks = [
         slice(arrays.elements.first[e], arrays.elements.first[e + 1])
@@ -91,6 +97,8 @@ def test_derivatives_are_those_of_the_forces(kind):
     rng = np.random.default_rng(1)
     for _ in range(3):
         q = 3e-5 * rng.normal(size=arrays.mass.shape[0]) / arrays.scale
+        if kind == "cross-located":  # so far that the one or the other seat is pressed
+            q[system.freedoms.name.index("rotor.z")] *= 10.0
         v = 2e-3 * rng.normal(size=q.size) / arrays.scale
         local = local_state(arrays, 0.0, q, v)
         assert np.all(np.abs([local.force[block] - local.elastic[block] for block in blocks]).max(axis=1) > 0)
@@ -114,7 +122,7 @@ def test_derivatives_are_those_of_the_forces(kind):
 
 @EVERY
 def test_elastic_forces_are_the_slopes_of_the_energy_stored(kind):
-    system = assemble(rotor(pair_of(KINDS[kind])))
+    system = assemble(rotor(pair_of(KINDS[kind]), kind=kind))
     arrays, rows = system.arrays, bearing_rows(system.arrays)
     rng = np.random.default_rng(2)
     q = 3e-5 * rng.normal(size=arrays.mass.shape[0]) / arrays.scale
@@ -131,7 +139,7 @@ def test_elastic_forces_are_the_slopes_of_the_energy_stored(kind):
 @EVERY
 def test_the_elements_never_pull_and_damping_takes_energy(kind):
     """Each presses outwards along its own normal: no rate makes its force negative."""
-    system = assemble(rotor(pair_of(KINDS[kind])))
+    system = assemble(rotor(pair_of(KINDS[kind]), kind=kind))
     arrays = system.arrays
     rng, lost = np.random.default_rng(3), 0.0
     rows = bearing_rows(arrays)
@@ -163,6 +171,26 @@ def test_a_rotor_sags_as_far_as_its_bearings_alone(kind):
     np.testing.assert_allclose(
         on_ground[:, :3].sum(axis=0), [0.0, -weight, 0.0], atol=1e-6
     )  # action = reaction
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+@pytest.mark.parametrize("kind", SEATS)
+def test_the_seat_that_holds_carries_all_of_the_axial_force(kind, sense):
+    """A floating bearing never, of a cross-located pair the one on the side to which the shaft is pushed."""
+    thrust = 400.0 * sense
+    scene = rotor((DEEP_GROOVE, DEEP_GROOVE), gravity=(2.0, -5.0, thrust / 40.0), kind=kind)
+    system = assemble(scene)
+    found = static_equilibrium(system)
+    assert found.status.usable
+    axial = forces(system, found.displacement)[-2:, 2]
+    holding = 0 if kind == "floating" or sense < 0.0 else 1
+    assert axial[holding] == pytest.approx(thrust, rel=1e-9)
+    assert abs(axial[1 - holding]) < 1e-9 * abs(thrust)
+    assert sense * moved(system, found.displacement, 0.1)[2] > 1e-5
+    tangent = row_law(scene.rolling_bearings[1 - holding]).loaded.evaluate(
+        moved(system, found.displacement, scene.rolling_bearings[1 - holding].position)
+    )
+    assert not tangent.tangent[2].any()
 
 
 @pytest.mark.parametrize("kind", ["angular", "tapered"])
@@ -246,8 +274,10 @@ def test_preload_is_the_force_at_no_displacement():
     np.testing.assert_allclose(pressed[:, :2], 0.0, atol=1e-9)
 
 
-def test_modes_are_those_of_tangent_bushings_at_the_same_place():
-    scene = rotor(pair_of(ANGULAR), PRELOAD, gravity=(0.0, -9.81, 0.0))
+@pytest.mark.parametrize("kind", ["angular", "floating", "cross-located"])
+def test_modes_are_those_of_tangent_bushings_at_the_same_place(kind):
+    preload = PRELOAD if kind == "angular" else 0.0
+    scene = rotor(pair_of(KINDS[kind]), preload, gravity=(0.0, -9.81, 3.0), kind=kind)
     system = assemble(scene)
     q = static_equilibrium(system).displacement
     seats = []
@@ -273,33 +303,43 @@ def test_off_is_the_tangent_at_rest():
     np.testing.assert_allclose(on_modes.frequency, off_modes.frequency, rtol=1e-6, atol=1e-3)
 
 
-def thrown(method, row, preload, tolerance=1e-11):
+def thrown(method, kind, tolerance=1e-11):
     """A rotor at rest thrown upwards and tilting: its path, and the run."""
-    scene = rotor(pair_of(row), preload, gravity=(0.0, -9.81, 0.0), duration=0.01)
+    preload = 0.0 if kind in SEATS else PRELOAD
+    scene = rotor(pair_of(KINDS[kind]), preload, gravity=(0.0, -9.81, 3.0), duration=0.01, kind=kind)
     system = assemble(scene)
     start = static_equilibrium(system)
     velocity = np.zeros(start.displacement.size)
-    for kind, rate in (("y", 0.02), ("z", 0.005), ("tilt_x", 0.05)):
-        velocity[system.freedoms.name.index(f"rotor.{kind}")] = rate
+    for freedom, rate in (("y", 0.02), ("z", 0.005), ("tilt_x", 0.05)):
+        velocity[system.freedoms.name.index(f"rotor.{freedom}")] = rate
     run = integrate(system, start, Integration(method=method, tolerance=tolerance), velocity=velocity)
     assert run.status.usable
     return np.array([q for q, name in zip(run.q.T, system.freedoms.name, strict=True) if "rotor." in name])
 
 
-@pytest.mark.parametrize("kind", ["angular", "tapered"])
+@pytest.mark.parametrize("kind", ["angular", "tapered", "floating", "cross-located"])
 def test_both_integrators_take_the_same_path(kind):
-    explicit, implicit = (thrown(method, KINDS[kind], PRELOAD) for method in ("explicit", "implicit"))
+    explicit, implicit = (thrown(method, kind) for method in ("explicit", "implicit"))
     largest = np.max(np.abs(explicit[:3]))
     for path, other, scale in zip(explicit, implicit, (1.0, 1.0, 1.0, 0.1, 0.1, 0.1), strict=True):
         np.testing.assert_allclose(scale * other, scale * path, atol=1e-4 * largest)
     assert np.max(np.abs(explicit[1])) > 1e-6
 
 
-def test_a_run_closes_its_energy_balance():
+@pytest.mark.parametrize("kind", ["angular", "floating", "cross-located"])
+def test_a_run_closes_its_energy_balance(kind):
     scene = gear_pair_scene(effects=ON, duration=0.02)
+    seats = SEATS.get(kind, ("both", "both"))
     bearings = tuple(
-        RollingBearing(bushing.name, bushing.shaft, row, bushing.position, np.sign(row.contact_angle) * 200.0)
-        for bushing, row in zip(scene.bushings, 2 * pair_of(ANGULAR), strict=True)
+        RollingBearing(
+            bushing.name,
+            bushing.shaft,
+            row,
+            bushing.position,
+            np.sign(row.contact_angle) * 200.0,
+            locating=seat,
+        )
+        for bushing, row, seat in zip(scene.bushings, 2 * pair_of(KINDS[kind]), 2 * seats, strict=True)
     )
     scene = replace(scene, bushings=(), rolling_bearings=bearings, integration=Integration(tolerance=1e-10))
     result = simulate(scene)
