@@ -2,52 +2,90 @@
 
 from __future__ import annotations
 
-import math
+from dataclasses import dataclass
 
-from dynamics.bearing_rows import BallBearing, RollerBearing
+from dynamics.bearing_rows import BallBearing, CatalogLine, RollerBearing
 from dynamics.errors import InputError
+from service.from_rexs.bearing_clearance import axial_clearance, radial_clearance
 from service.from_rexs.gear_unit import GearUnit
 from service.from_rexs.part import Part
 
 Row = BallBearing | RollerBearing
 
+DEEP_GROOVE = "radial_grooved_ball_bearing"
+BALLS = (DEEP_GROOVE, "angular_contact_ball_bearing")
+ROLLERS = ("radial_roller_bearing", "radial_needle_roller_bearing", "radial_tapered_roller_bearing")
+GROOVES = {"inner": 0.52, "outer": 0.53}
 _RATING = "radial_static_load_rating"
-_CLEARANCE = "operating_radial_bearing_clearance"
 
 
-def catalog_bearing(unit: GearUnit, part: Part) -> tuple[Row, float] | None:
-    """Return a deep groove ball bearing of a catalog line and its static load rating, N.
+@dataclass(frozen=True)
+class BearingGeometry:
+    """A bearing of one row whose geometry is known.
 
-    None for other types, and where bore, outside diameter or rating are missing or fit no bearing.
+    Attributes
+    ----------
+    row : BallBearing or RollerBearing
+        Its contact angle is not negative: which direction it holds is not in it.
+    rating : float
+        Static load rating C_0, N.
+    line : CatalogLine or None
+        The line in a catalog that the row is estimated from.
     """
-    del unit
+
+    row: Row
+    rating: float
+    line: CatalogLine | None = None
+
+
+def bearing_geometry(unit: GearUnit, part: Part) -> BearingGeometry | str:
+    """Return the geometry of a bearing, or the reason why it is not known."""
+    if part.type == "rolling_bearing_with_catalog_geometry":
+        return _catalog_bearing(part)
+    if part.type == "rolling_bearing_with_detailed_geometry":
+        return _detailed_bearing(unit, part)
+    return f"a {part.type} has no geometry"
+
+
+def bearing_type(part: Part) -> str:
+    """Return the type of a rolling bearing."""
+    return part.text("bearing_type", "type of the bearing") or ""
+
+
+def _catalog_bearing(part: Part) -> BearingGeometry | str:
+    """Return a deep groove ball bearing by its line in a catalog."""
     names = ("inner_diameter", "outer_diameter", _RATING)
     words = ("bore, mm", "outside diameter, mm", "static load rating, kN")
     bore, outside, rating = (part.number(name, word) for name, word in zip(names, words, strict=True))
-    attribute = part.attribute("bearing_type")
-    if attribute is None or attribute.value != "radial_grooved_ball_bearing":
-        return None
+    kind = bearing_type(part)
+    if kind != DEEP_GROOVE:
+        return f"no geometry follows from the catalog line of a {kind or 'bearing without bearing_type'}"
     if bore is None or outside is None or rating is None:
-        return None
+        return "bore, outside diameter or static load rating are missing"
     from dynamics.rolling_bearings import from_catalog  # noqa: PLC0415 (start-up time)
+    from dynamics.rolling_bearings.catalog import BAND  # noqa: PLC0415 (start-up time)
 
     try:
-        bearing = from_catalog(bore, outside, rating, _clearance(part))
+        line = CatalogLine(bore, outside, rating, radial_clearance(part))
+        row = from_catalog(line.bore, line.outside_diameter, line.static_rating, line.clearance)
     except InputError as error:
         part.say(_RATING, "refused", f"no deep groove ball bearing has this line: {error}")
-        return None
-    part.say("bearing_type", "taken", f"{bearing.count} balls of {bearing.diameter * 1e3:.3g} mm, estimated")
-    return bearing, rating
+        return "no deep groove ball bearing has its catalog line"
+    estimate = f"{row.count} balls of {row.diameter * 1e3:.3g} mm, estimated"
+    part.say(
+        "bearing_type", "derived", f"{estimate}; displacements within {100.0 * BAND['displacement']:g} %"
+    )
+    return BearingGeometry(row, rating, line)
 
 
-def detailed_bearing(unit: GearUnit, part: Part) -> tuple[Row, float] | None:
-    """Return a bearing of one row by its geometry, and its static load rating, N; None if some is missing."""
-    rows = unit.children(part, "rolling_bearing_row")
+def _detailed_bearing(unit: GearUnit, part: Part) -> BearingGeometry | str:
+    """Return a bearing of one row by its internal geometry."""
+    kind, rows = bearing_type(part), unit.children(part, "rolling_bearing_row")
     rating = part.number(_RATING, "static load rating, kN")
+    if kind not in (*BALLS, *ROLLERS):
+        return f"{kind or 'a bearing without bearing_type'} is not computed"
     if len(rows) != 1 or rating is None:
-        reason = f"{len(rows)} rows; one is computed" if len(rows) != 1 else "no static load rating"
-        part.say("", "taken", f"stiffness not from its geometry: {reason}")
-        return None
+        return f"{len(rows)} rows; one is computed" if len(rows) != 1 else "no static load rating"
     elements = unit.children(rows[0], "rolling_element")
     count = rows[0].attribute("number_of_rolling_elements")
     pitch = rows[0].number("reference_diameter_rolling_bearing", "pitch diameter, mm")
@@ -55,44 +93,37 @@ def detailed_bearing(unit: GearUnit, part: Part) -> tuple[Row, float] | None:
         elements[0].number("diameter_of_rolling_element", "diameter of the element, mm") if elements else None
     )
     if count is None or not isinstance(count.value, int) or pitch is None or diameter is None:
-        return None
+        return "number or diameter of the elements, or their pitch diameter, are missing"
     rows[0].say("number_of_rolling_elements", "taken", "number of elements")
     try:
-        return _row(part, rows[0], elements[0], count.value, (diameter, pitch)), rating
+        return BearingGeometry(_row(part, rows[0], elements[0], count.value, (diameter, pitch)), rating)
     except InputError as error:
-        part.say("", "refused", f"no such bearing: {error}")
-        return None
+        part.say("bearing_type", "refused", f"no such bearing: {error}")
+        return "its geometry is that of no bearing"
 
 
 def _row(part: Part, row: Part, element: Part, count: int, sizes: tuple[float, float]) -> Row:
-    """Return a row of balls or rollers; grooves that are not stated are those of ISO/TS 16281."""
+    """Return a row of balls or rollers."""
     diameter, pitch = sizes
-    angle = row.number("pressure_angle", "contact angle, deg") or 0.0
-    clearance = _clearance(part)
-    length = row.number("significant_contact_length_inner_ring", "effective length of the roller, mm")
-    length = length or element.number("length_of_rolling_element", "length of the roller, mm")
-    kind = part.attribute("bearing_type")
-    if kind is not None and "roller" in str(kind.value):
+    angle = abs(row.number("pressure_angle", "contact angle, deg") or 0.0)
+    clearance = axial_clearance(part, angle) if angle else radial_clearance(part)
+    if bearing_type(part) in ROLLERS:
+        length = row.number("significant_contact_length_inner_ring", "effective length of the roller, mm")
+        length = length or element.number("length_of_rolling_element", "length of the roller, mm")
+        if length is None:
+            element.say("length_of_rolling_element", "defaulted", "its diameter: the file gives none")
         return RollerBearing(
             count, diameter, length or diameter, pitch, contact_angle=angle, clearance=clearance
         )
-    grooves = [
-        row.number(f"raceway_radius_of_{ring}_ring", "radius of the groove, mm")
-        for ring in ("inner", "outer")
-    ]
-    inner, outer = (None if radius is None else radius / diameter for radius in grooves)
-    return BallBearing(
-        count, diameter, pitch, inner or 0.52, outer or 0.53, contact_angle=angle, clearance=clearance
-    )
+    inner, outer = (_groove(row, ring, diameter, usual) for ring, usual in GROOVES.items())
+    return BallBearing(count, diameter, pitch, inner, outer, contact_angle=angle, clearance=clearance)
 
 
-def _clearance(part: Part) -> float:
-    """Return the radial clearance in operation, m; 0 where the file gives none or a preload."""
-    value = part.number(_CLEARANCE, "radial clearance in operation, um")
-    if value is None:
-        part.say(_CLEARANCE, "defaulted", "0 um: the file gives none")
-        return 0.0
-    if value < 0.0 or not math.isfinite(value):
-        part.say(_CLEARANCE, "refused", f"{value * 1e6:g} um is a preload, which the bearing's row has not")
-        return 0.0
-    return value
+def _groove(row: Part, ring: str, diameter: float, usual: float) -> float:
+    """Return the radius of a groove over the ball diameter."""
+    item = f"raceway_radius_of_{ring}_ring"
+    radius = row.number(item, "radius of the groove, mm")
+    if radius:
+        return radius / diameter
+    row.say(item, "defaulted", f"{usual:g} of the ball diameter (ISO/TS 16281)")
+    return usual

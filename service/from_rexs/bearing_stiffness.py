@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from bounds.types import FloatArray
 from dynamics.errors import DynamicsError
-from service.from_rexs.bearing_geometry import Row, catalog_bearing, detailed_bearing
+from service.from_rexs.bearing_geometry import bearing_geometry, bearing_type
 from service.from_rexs.gear_unit import GearUnit
 from service.from_rexs.part import Part
 
@@ -66,7 +65,7 @@ def bearing_stiffness(unit: GearUnit, part: Part) -> BearingStiffness:
     The stiffness at an operating point counts first, then finite stated values, then the tangent of the
     bearing by its geometry or its catalog line, then what the file calls rigid, then a default.
     """
-    matrix = _operating_point(part)
+    matrix = operating_point(part)
     if matrix is not None:
         return BearingStiffness(0.0, 0.0, 0.0, matrix)
     tangent = _by_geometry(unit, part)
@@ -82,10 +81,10 @@ def _radial(part: Part, tangent: FloatArray | None) -> float:
         part.say("radial_force_absorption", "taken", "no radial stiffness")
         return 0.0
     derived = None if tangent is None else 0.5 * (tangent[0, 0] + tangent[1, 1])
-    value = _stated(part, item, RIGID_FROM, RIGID, derived)
+    value = _stated(part, item, derived)
     if value:
         return value
-    kind = "roller" if "roller" in _type(part) else "ball"
+    kind = "roller" if "roller" in bearing_type(part) else "ball"
     reason = "neither stiffness nor geometry is stated"
     part.say(item, "defaulted", f"{USUAL[kind]:g} N/m, as of {kind} bearings of about 50 mm bore: {reason}")
     return USUAL[kind]
@@ -98,7 +97,7 @@ def _axial(part: Part, tangent: FloatArray | None, radial: float) -> float:
     if absorption == "no_direction":
         part.say(item, "derived", "0 N/m: a floating bearing (axial_force_absorption)")
         return 0.0
-    value = _stated(part, item, RIGID_FROM, RIGID, None if tangent is None else tangent[2, 2])
+    value = _stated(part, item, None if tangent is None else tangent[2, 2])
     if absorption in _FIXED[1:]:
         part.say("axial_force_absorption", "derived", f"{absorption} alone; the linear spring acts both ways")
     if value or absorption not in _FIXED:
@@ -110,14 +109,25 @@ def _axial(part: Part, tangent: FloatArray | None, radial: float) -> float:
 def _tilt(part: Part, tangent: FloatArray | None) -> float:
     """Return the tilt stiffness; 0 where the bearing is free to tilt."""
     derived = None if tangent is None else 0.5 * (tangent[3, 3] + tangent[4, 4])
-    return _stated(part, "bending_stiffness", RIGID_TILT_FROM, RIGID_TILT, derived) or 0.0
+    return _stated(part, "bending_stiffness", derived) or 0.0
 
 
-def _stated(part: Part, item: str, rigid_from: float, rigid: float, derived: float | None) -> float | None:
-    """Return a stiffness: a finite stated one, else the derived one, else a rigid one, else None."""
+def stated_stiffness(part: Part, item: str) -> float | None:
+    """Return a stated stiffness of a bearing, None where there is none, or none that is finite."""
     value = part.number(item, "stiffness of the bearing")
-    unit = "N m/rad" if item == "bending_stiffness" else "N/m"
-    if value is not None and 0.0 < value < rigid_from:
+    return value if value is not None and 0.0 < value < _rigid(item)[0] else None
+
+
+def _rigid(item: str) -> tuple[float, float, str]:
+    """Return from where on a stiffness means rigid, the stiffness of a rigid seat, and their unit."""
+    tilt = item == "bending_stiffness"
+    return (RIGID_TILT_FROM, RIGID_TILT, "N m/rad") if tilt else (RIGID_FROM, RIGID, "N/m")
+
+
+def _stated(part: Part, item: str, derived: float | None) -> float | None:
+    """Return a stiffness: a finite stated one, else the derived one, else a rigid one, else None."""
+    value, (rigid_from, rigid, unit) = part.number(item, "stiffness of the bearing"), _rigid(item)
+    if stated_stiffness(part, item) is not None:
         return value
     if derived is not None:
         of = f"{derived:.3g} {unit}, tangent of the bearing's geometry at {RADIAL_LOAD:g} C0 radially"
@@ -129,29 +139,19 @@ def _stated(part: Part, item: str, rigid_from: float, rigid: float, derived: flo
     return None
 
 
-def _type(part: Part) -> str:
-    """Return the type of a rolling bearing."""
-    return part.text("bearing_type", "type of the bearing") or ""
-
-
 def _by_geometry(unit: GearUnit, part: Part) -> FloatArray | None:
     """Return the tangent (5, 5) in x, y, z, tilts of a bearing whose geometry is known, at the usual load."""
-    readers: dict[str, Callable[[GearUnit, Part], tuple[Row, float] | None]] = {
-        "rolling_bearing_with_catalog_geometry": catalog_bearing,
-        "rolling_bearing_with_detailed_geometry": detailed_bearing,
-    }
-    geometry = readers[part.type](unit, part) if part.type in readers else None
-    if geometry is None:
+    geometry = bearing_geometry(unit, part)
+    if isinstance(geometry, str):
         return None
     from dynamics.rolling_bearings import LoadedBearing  # noqa: PLC0415 (start-up time)
 
-    row, rating = geometry
-    bearing = LoadedBearing(row, COPIES)
-    load = rating * np.array([RADIAL_LOAD, 0.0, _axial_load(row.contact_angle), 0.0, 0.0])
+    bearing = LoadedBearing(geometry.row, COPIES)
+    load = geometry.rating * np.array([RADIAL_LOAD, 0.0, _axial_load(geometry.row.contact_angle), 0.0, 0.0])
     try:
         return np.asarray(bearing.evaluate(bearing.displacement(load, held=_TILTS)).tangent)
     except DynamicsError as error:
-        part.say("", "refused", f"its geometry carries no load of a tenth of its rating: {error}")
+        part.say("bearing_type", "refused", f"its geometry carries no load of a tenth of its rating: {error}")
         return None
 
 
@@ -161,7 +161,7 @@ def _axial_load(contact_angle: float) -> float:
     return math.copysign(max(AXIAL_LOAD, least), contact_angle)
 
 
-def _operating_point(part: Part) -> FloatArray | None:
+def operating_point(part: Part) -> FloatArray | None:
     """Return the stated matrix (5, 5), None where the file has none or one that holds nothing."""
     names = [[f"operating_point_stiffness_{row}_{motion}" for motion in _MOTIONS] for row in _ROWS]
     values = [[part.number(name, "stiffness at the operating point") for name in row] for row in names]

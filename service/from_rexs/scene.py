@@ -79,6 +79,7 @@ def scene_table(layout: Layout, flow: PowerFlow, cases: Sequence[StageCase]) -> 
         "gears": gears,
         "discs": scene_discs(layout, shafts),
         "bushings": bearings.bushings,
+        "rolling_bearings": bearings.rolling_bearings,
         "planet_bearings": bearings.planet_bearings,
         "couplings": [*bearings.couplings, *stub_couplings(shafts, names)],
         "housings": scene_housings(layout, bearings.seats),

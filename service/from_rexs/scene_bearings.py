@@ -1,4 +1,4 @@
-"""The bearings of the scene: bushings on the ground, planet bearings, and couplings between shafts."""
+"""The bearings of the scene: rolling bearings and bushings, planet bearings, couplings between shafts."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ from service.from_rexs.layout import Layout
 from service.from_rexs.names import Names
 from service.from_rexs.part import Part
 from service.from_rexs.placement import placement
+from service.from_rexs.rolling_bearing import rolling_bearing
+from service.from_rexs.scene_housing import housed_bearings
 from service.from_rexs.scene_shafts import SceneShafts
 
 RIGID_COUPLING, RIGID_TORSION = 1e9, 1e7
@@ -28,23 +30,26 @@ class SceneBearings:
 
     Attributes
     ----------
-    bushings, planet_bearings, couplings : list of dict
+    bushings, rolling_bearings, planet_bearings, couplings : list of dict
         Tables of a scene file.
     seats : dict of int to str
-        The bushing of each bearing on the ground, by its component.
+        The bushing or rolling bearing of each bearing on the ground, by its component.
+    housed : frozenset of int
+        The components in an elastic housing.
     """
 
     bushings: list[dict[str, Any]] = field(default_factory=list)
+    rolling_bearings: list[dict[str, Any]] = field(default_factory=list)
     planet_bearings: list[dict[str, Any]] = field(default_factory=list)
     couplings: list[dict[str, Any]] = field(default_factory=list)
     seats: dict[int, str] = field(default_factory=dict)
+    housed: frozenset[int] = frozenset()
 
 
 def scene_bearings(layout: Layout, shafts: SceneShafts) -> SceneBearings:
     """Return bearings and couplings of the scene; the account says what is left out and why."""
-    tables, names = SceneBearings(), Names()
+    tables, names = SceneBearings(housed=frozenset(housed_bearings(layout))), Names()
     for entry in bearings(layout.unit):
-        _say_clearances(entry.part)
         _enter(layout, shafts, tables, names, entry)
     for entry in couplings(layout.unit):
         if entry.on_ground is not None and _rotor(layout, shafts, entry.held) is not None:
@@ -62,17 +67,35 @@ def _enter(
     planets = {planets.planets[0].id: planets for planets in layout.rotors.sets}
     planet = next((side for side in (entry.inner, entry.outer) if side.id in planets), None)
     if entry.on_ground is not None and _rotor(layout, shafts, entry.held) is not None:
-        tables.bushings.append(_table(layout, shafts, names, entry, entry.held))
-        tables.seats[entry.part.id] = tables.bushings[-1]["name"]
+        _enter_on_ground(layout, shafts, tables, names, entry)
     elif planet is not None and ends[0] is not None and ends[1] is not None:
         carrier = layout.rotor(planets[planet.id].carrier[0].id)
         if layout.rotor(entry.other(planet).id) == carrier:
-            table = _table(layout, shafts, names, entry, planet)
+            table = _seat(layout, shafts, names, entry, planet) | _bushing(layout, entry, planet)
             tables.planet_bearings.append(table | {"carrier": shafts.by_rotor[carrier].name})
+            _say_clearances(entry.part)
+            entry.part.say("", "taken", f"bearing of shaft {table['shaft']}")
     elif ends[0] is not None and ends[1] is not None and ends[0] != ends[1]:
+        _say_clearances(entry.part)
         tables.couplings.append(_between(layout, shafts, names, entry))
     else:
         entry.part.say("", "ignored", "what it holds is not in the scene, or is that of an equal planet")
+
+
+def _enter_on_ground(
+    layout: Layout, shafts: SceneShafts, tables: SceneBearings, names: Names, entry: Connection
+) -> None:
+    """Enter a bearing by its geometry, or as a bushing for the reason that the account has."""
+    rolling = rolling_bearing(layout, entry, tables.housed)
+    seat = _seat(layout, shafts, names, entry, entry.held)
+    if isinstance(rolling, str):
+        _say_clearances(entry.part)
+        tables.bushings.append(seat | _bushing(layout, entry, entry.held))
+        entry.part.say("", "taken", f"bushing on shaft {seat['shaft']}: {rolling}")
+    else:
+        tables.rolling_bearings.append(seat | rolling)
+        entry.part.say("", "taken", f"rolling bearing on shaft {seat['shaft']}, by its geometry")
+    tables.seats[entry.part.id] = seat["name"]
 
 
 def _rotor(layout: Layout, shafts: SceneShafts, side: Part) -> int | None:
@@ -81,27 +104,25 @@ def _rotor(layout: Layout, shafts: SceneShafts, side: Part) -> int | None:
     return rotor if rotor in shafts.by_rotor else None
 
 
-def _table(
-    layout: Layout, shafts: SceneShafts, names: Names, entry: Connection, held: Part
-) -> dict[str, Any]:
-    """Return a bushing on a shaft."""
-    stiffness = bearing_stiffness(layout.unit, entry.part)
+def _seat(layout: Layout, shafts: SceneShafts, names: Names, entry: Connection, held: Part) -> dict[str, Any]:
+    """Return name, shaft and position of a bearing on a shaft."""
     shaft = shafts.by_rotor[layout.rotor(held.id)]
     side = "inner" if held.id == entry.inner.id else "outer"
-    table: dict[str, Any] = {
+    return {
         "name": names.of(entry.part),
         "shaft": shaft.name,
         "position_mm": shaft.position_mm(_z(layout, entry.part, held, side)),
     }
+
+
+def _bushing(layout: Layout, entry: Connection, held: Part) -> dict[str, Any]:
+    """Return the stiffness of a bearing on a shaft as a bushing states it."""
+    stiffness = bearing_stiffness(layout.unit, entry.part)
     matrix = _matrix(layout, entry.part, held, stiffness)
-    entry.part.say("", "taken", f"bearing of shaft {shaft.name}")
     if stiffness.matrix is not None:
-        return table | {"stiffness_matrix": matrix.tolist()}
-    table |= {
-        "radial_stiffness_n_per_m": stiffness.radial,
-        "axial_stiffness_n_per_m": stiffness.axial,
-    }
-    return table | ({"stiffness_matrix": matrix.tolist()} if stiffness.tilt > 0.0 else {})
+        return {"stiffness_matrix": matrix.tolist()}
+    linear = {"radial_stiffness_n_per_m": stiffness.radial, "axial_stiffness_n_per_m": stiffness.axial}
+    return linear | ({"stiffness_matrix": matrix.tolist()} if stiffness.tilt > 0.0 else {})
 
 
 def _matrix(layout: Layout, part: Part, held: Part, stiffness: BearingStiffness) -> FloatArray:

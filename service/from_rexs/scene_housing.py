@@ -32,12 +32,34 @@ def scene_housings(layout: Layout, seats: dict[int, str]) -> list[dict[str, Any]
         Names of the bushings by component.
     """
     names, tables = Names(), []
-    for casing in layout.unit.of_type("gear_casing"):
-        for group in layout.unit.related(casing, "reference", "origin", "referenced"):
-            if group.type == "assembly_group":
-                table = _housing(layout, group, seats, names)
-                tables += [] if table is None else [table]
+    for group in _groups(layout):
+        table = _housing(layout, group, seats, names)
+        tables += [] if table is None else [table]
     return tables
+
+
+def housed_bearings(layout: Layout) -> set[int]:
+    """Return the components that an elastic housing holds: those at the points of a matrix that is read.
+
+    A scene takes bushings alone on a housing, so that these bearings are bushings.
+    """
+    housed: set[int] = set()
+    for group in _groups(layout):
+        points = layout.unit.children(group, "reduction_point")
+        if _stiffness(group, len(points)) is not None:
+            seats = (layout.unit.related(point, "reference", "origin", "referenced") for point in points)
+            housed |= {part.id for parts in seats for part in parts}
+    return housed
+
+
+def _groups(layout: Layout) -> list[Part]:
+    """Return the assembly groups of the casings."""
+    return [
+        group
+        for casing in layout.unit.of_type("gear_casing")
+        for group in layout.unit.related(casing, "reference", "origin", "referenced")
+        if group.type == "assembly_group"
+    ]
 
 
 def _housing(layout: Layout, group: Part, seats: dict[int, str], names: Names) -> dict[str, Any] | None:

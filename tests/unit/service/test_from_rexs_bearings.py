@@ -1,0 +1,358 @@
+"""Bearings of a REXS file by their geometry: sides, seats, clearances, and why some are bushings."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from rexs_reference import needs_reference, reference
+
+from dynamics.rolling_bearings import LoadedBearing
+from service.convert.bearings import rolling_bearing_of
+from service.from_rexs.opened import OpenedUnit, opened
+from service.rexs import Document, read_rexs
+from service.schemas.scene_bearings import BallRowInput, RollerRowInput, RollingBearingInput
+from tests.fakes.deflected_unit import deflection_of_unit
+from tests.fakes.rexs_stage import relation
+from tests.fakes.rexs_unit import CASING, INPUT, MOTOR, NORMAL_LOAD, place, two_stages
+
+LEFT, RIGHT = 31, 32  # of the input shaft, at u = 15 and 140 mm
+LINE = {
+    "bearing_type": "radial_grooved_ball_bearing",
+    "inner_diameter": 25.0,
+    "outer_diameter": 62.0,
+    "radial_static_load_rating": 11.6,
+    "radial_dynamic_load_rating": 23.4,
+    "operating_radial_bearing_clearance": 10.0,
+}
+INSIDE = {"bearing_type": "radial_tapered_roller_bearing", "radial_static_load_rating": 56.0}
+ROW = {"number_of_rolling_elements": 17, "reference_diameter_rolling_bearing": 54.0, "pressure_angle": 14.0}
+ROLLER = {"diameter_of_rolling_element": 9.0, "length_of_rolling_element": 12.5}
+BALL = {"diameter_of_rolling_element": 9.0}
+STATED = {"u_coordinate_on_shaft_inner_side", "axial_force_absorption"}
+Values = Mapping[str, Any]
+
+
+def at(number: int, kind: str, values: Values) -> dict[int, tuple[str, dict[str, Any]]]:
+    """Return a bearing of the input shaft in place of the usual one."""
+    u = 15.0 if number == LEFT else 140.0
+    stands = place(u, 0.0, 0.0) | {"u_coordinate_on_shaft_inner_side": u}
+    return {number: (f"rolling_bearing_with_{kind}_geometry", {**stands, **values})}
+
+
+def on_lines(left: Values, right: Values | None = None, torques: Sequence[float] = ()) -> Document:
+    """Return the unit with deep groove ball bearings by catalog lines on its input shaft.
+
+    `torques` of the motor about u, N m, make load cases.
+    """
+    lines = at(LEFT, "catalog", LINE | left) | at(RIGHT, "catalog", LINE | (left if right is None else right))
+    cases = [{MOTOR: ("external_load", {"torque_around_u_axis": torque})} for torque in torques]
+    return two_stages(more=lines, cases=cases)
+
+
+def inside(left: Values, right: Values, row: Values = ROW, element: Values = ROLLER) -> Document:
+    """Return the unit with bearings of a row by their internal geometry on its input shaft."""
+    more, further = {}, []
+    for number, own in ((LEFT, left), (RIGHT, right)):
+        of_row = {name: value for name, value in own.items() if name.endswith("_of_row")}
+        more |= at(number, "detailed", INSIDE | {k: v for k, v in own.items() if k not in of_row})
+        more[10 * number] = ("rolling_bearing_row", {**row, **of_row})
+        more[10 * number + 1] = ("rolling_element", dict(element))
+        further += [
+            relation(10 * number, "assembly", assembly=number, part=10 * number),
+            relation(10 * number + 1, "assembly", assembly=10 * number, part=10 * number + 1),
+        ]
+    return two_stages(more=more, further=further)
+
+
+def by_name(unit: OpenedUnit) -> dict[int, RollingBearingInput]:
+    """Return the rolling bearings of a unit's scene by component."""
+    assert unit.scene is not None, [line for line in unit.lines if line.fate == "refused"]
+    return {int(bearing.name.split()[-1]): bearing for bearing in unit.scene.rolling_bearings}
+
+
+def why(unit: OpenedUnit, number: int) -> str:
+    """Return what the account says of a bearing, which is a bushing."""
+    assert unit.scene is not None and number not in by_name(unit)
+    assert any(bushing.name.endswith(str(number)) for bushing in unit.scene.bushings)
+    (line,) = [line for line in unit.lines if (line.component, line.item) == (number, "")]
+    return line.words
+
+
+def said(unit: OpenedUnit, number: int, item: str) -> tuple[str, str]:
+    """Return fate and words of a value."""
+    (line,) = [line for line in unit.lines if (line.component, line.item) == (number, item)]
+    return line.fate, line.words
+
+
+def thrusts(bearing: RollingBearingInput) -> tuple[float, float]:
+    """Return the axial force of a bearing on a shaft that is pushed by 100 um along z, and against it."""
+    made = rolling_bearing_of(0, bearing)
+    loaded = LoadedBearing(made.row, locating=made.locating)
+    moved = ((2e-5, 0.0, z, 0.0, 0.0) for z in (1e-4, -1e-4))
+    force = [float(loaded.evaluate(d).force[2]) for d in moved]
+    return force[0], force[1]
+
+
+@pytest.mark.parametrize("arrangement", ["located", "cross-located"])
+def test_the_thrust_of_drive_and_coast_goes_where_the_file_says(arrangement: str) -> None:
+    """Of a cross-located pair the bearing to which the mesh pushes the shaft; always the locating one."""
+    crossed = arrangement == "cross-located"
+    sides = ("negative", "positive") if crossed else ("both_directions", "no_direction")
+    own = [{"axial_force_absorption": side} for side in sides]
+    unit = opened(on_lines(*own, torques=(NORMAL_LOAD, -NORMAL_LOAD)))
+    thrust = {}
+    for case in deflection_of_unit(unit).deflection.cases:
+        loads = {int(load.name.split()[-1]): load for load in case.bearings}
+        axial = [loads[number].axial for number in (LEFT, RIGHT)]
+        held = int(np.argmax(np.abs(axial)))
+        assert abs(axial[1 - held]) < 1e-9 * abs(axial[held])
+        thrust[np.sign(axial[held])] = axial[held]
+        assert held == (int(axial[held] > 0.0) if crossed else 0)
+    # tangential force on the pitch circle of 20 teeth, module 2, times the tangent of the helix angle
+    axial_force = NORMAL_LOAD / (0.02 / np.cos(np.radians(15.0))) * np.tan(np.radians(15.0))
+    assert sorted(thrust.values()) == pytest.approx([-axial_force, axial_force], rel=1e-6)
+
+
+def test_a_catalog_line_is_stated_as_it_is() -> None:
+    (bearing, *_) = by_name(opened(on_lines({"axial_force_absorption": "both_directions"}))).values()
+    assert bearing.catalog is not None
+    stated = {"bore_mm": 25.0, "outside_diameter_mm": 62.0, "static_rating_n": 11600.0, "clearance_um": 10.0}
+    assert bearing.catalog.model_dump() == stated
+    assert (bearing.position_mm, bearing.dynamic_capacity_n) == (pytest.approx(15.0), 23400.0)  # type: ignore[attr-defined]
+    assert (bearing.locating, bearing.axial_preload_n) == ("both", 0.0)  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("u", [1.0, -1.0])
+@pytest.mark.parametrize(
+    ("stated", "held"),
+    [
+        ("both_directions", (True, True)),
+        ("no_direction", (False, False)),
+        ("positive", (True, False)),
+        ("negative", (False, True)),
+    ],
+)
+def test_a_deep_groove_bearing_holds_the_shaft_in_the_directions_of_its_own_u(
+    stated: str, held: tuple[bool, bool], u: float
+) -> None:
+    turned = {"axial_force_absorption": stated, "u_axis_vector": (u, 0.0, 0.0)}
+    along, against = thrusts(by_name(opened(on_lines(turned)))[LEFT])
+    assert (along > 100.0, against < -100.0) == (held if u > 0.0 else held[::-1])
+    assert all(force == 0.0 or abs(force) > 100.0 for force in (along, against))
+
+
+def test_a_bearing_without_a_place_has_the_u_of_its_shaft() -> None:
+    shaft = {"support_vector": (150.0, 0.0, 0.0), "u_axis_vector": (-1.0, 0.0, 0.0)}
+    more = at(LEFT, "catalog", LINE | {"axial_force_absorption": "positive"})
+    values = {k: v for k, v in more[LEFT][1].items() if k not in ROLES}
+    bearing = by_name(opened(two_stages({INPUT: shaft}, more={LEFT: (more[LEFT][0], values)})))[LEFT]
+    assert bearing.position_mm == pytest.approx(135.0)  # type: ignore[attr-defined]
+    along, against = thrusts(bearing)
+    assert along == 0.0 and against < -100.0
+
+
+@pytest.mark.parametrize("u", [1.0, -1.0])
+@pytest.mark.parametrize("kind", ["radial_tapered_roller_bearing", "angular_contact_ball_bearing"])
+@pytest.mark.parametrize("arrangement", ["X", "O"])
+@pytest.mark.parametrize("of", ["", "_of_row"])
+def test_rows_with_a_contact_angle_hold_the_side_that_the_file_states(
+    arrangement: str, kind: str, u: float, of: str
+) -> None:
+    """X: the bearing to the right holds a shaft that is pushed to the right; O: the other one.
+
+    `u` turns the axes of both bearings against the shaft's.
+    """
+    sides = ("negative", "positive") if arrangement == "X" else ("positive", "negative")
+    own = [{f"axial_force_absorption{of}": side, "bearing_type": kind} for side in sides]
+    own = [values | {"u_axis_vector": (u, 0.0, 0.0)} for values in own]
+    element = ROLLER if "roller" in kind else BALL
+    found = by_name(opened(inside(*own, element=element)))
+    row = "roller" if "roller" in kind else "ball"
+    angles = [getattr(found[number], row).contact_angle_deg for number in (LEFT, RIGHT)]
+    assert np.sign(u) * np.array(angles) == pytest.approx(
+        [-14.0, 14.0] if arrangement == "X" else [14.0, -14.0]
+    )
+    for number, angle in zip((LEFT, RIGHT), angles, strict=True):
+        force = thrusts(found[number])
+        assert force[0 if angle > 0.0 else 1] * angle > 100.0
+        assert force[1 if angle > 0.0 else 0] == 0.0 or "ball" in kind
+
+
+@pytest.mark.parametrize(
+    ("left", "words"),
+    [
+        ({"axial_force_absorption": "both_directions"}, "does not say which direction its contact angle"),
+        ({}, "does not say which direction its contact angle"),
+        (
+            {"axial_force_absorption": "positive", "axial_force_absorption_of_row": "negative"},
+            "of the bearing and of its row are opposite",
+        ),
+    ],
+)
+def test_a_contact_angle_without_a_side_is_a_bushing(left: Values, words: str) -> None:
+    unit = opened(inside(left, {"axial_force_absorption": "positive"}))
+    assert words in why(unit, LEFT)
+    assert list(by_name(unit)) == [RIGHT]
+
+
+@pytest.mark.parametrize(
+    ("values", "clearance", "fate"),
+    [
+        ({"operating_radial_bearing_clearance": 12.0, "radial_bearing_clearance": 20.0}, 12.0, "taken"),
+        ({"mounted_radial_bearing_clearance": 15.0, "radial_bearing_clearance": 20.0}, 15.0, None),
+        ({"radial_bearing_clearance": 20.0}, 20.0, None),
+        (
+            {"minimum_radial_bearing_clearance": 5.0, "maximum_radial_bearing_clearance": 20.0},
+            12.5,
+            "derived",
+        ),
+        ({}, 0.0, "defaulted"),
+        ({"operating_radial_bearing_clearance": -4.0}, -4.0, "taken"),
+        ({"operating_radial_bearing_clearance": 5e4}, 0.0, "defaulted"),
+    ],
+)
+def test_the_clearance_nearest_to_operation_counts(
+    values: Values, clearance: float, fate: str | None
+) -> None:
+    unit = opened(on_lines({"operating_radial_bearing_clearance": None} | dict(values)))
+    catalog = by_name(unit)[LEFT].catalog
+    assert catalog is not None and catalog.clearance_um == pytest.approx(clearance, abs=1e-9)  # type: ignore[attr-defined]
+    if fate is not None:
+        assert said(unit, LEFT, "operating_radial_bearing_clearance")[0] == fate
+
+
+@pytest.mark.parametrize(
+    ("values", "clearance", "preload"),
+    [
+        ({}, 0.0, 0.0),
+        ({"operating_axial_bearing_clearance": 30.0, "operating_radial_bearing_clearance": 1.0}, 30.0, 0.0),
+        ({"operating_radial_bearing_clearance": 10.0}, 5.0 / np.tan(np.radians(14.0)), 0.0),
+        ({"preload_distance": 8.0}, -8.0, 0.0),
+        ({"preload_force": 500.0}, 0.0, 500.0),
+        ({"preload_force": 500.0, "preload_distance": 8.0}, 0.0, 500.0),
+    ],
+)
+def test_clearance_and_preload_of_a_contact_angle_are_along_the_axis(
+    values: Values, clearance: float, preload: float
+) -> None:
+    own = [dict(values) | {"axial_force_absorption": side} for side in ("negative", "positive")]
+    found = by_name(opened(inside(*own)))
+    for number, sign in ((LEFT, -1.0), (RIGHT, 1.0)):
+        bearing = found[number]
+        assert bearing.roller is not None
+        assert bearing.roller.clearance_um == pytest.approx(clearance, abs=1e-9)  # type: ignore[attr-defined]
+        assert bearing.axial_preload_n == sign * preload  # type: ignore[attr-defined]
+
+
+def test_cylindrical_rollers_hold_nothing_and_ribs_are_a_bushing() -> None:
+    own = {"bearing_type": "radial_roller_bearing"}
+    sides = [own | {"axial_force_absorption": side} for side in ("no_direction", "both_directions")]
+    unit = opened(inside(*sides, row=ROW | {"pressure_angle": 0.0}))
+    (bearing,) = by_name(unit).values()
+    assert thrusts(bearing) == (0.0, 0.0) and bearing.roller is not None
+    assert "ribs carry axial force" in why(unit, RIGHT)
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({"radial_stiffness": 2e8}, "its stiffness is stated"),
+        ({"operating_point_stiffness_f_v_d_v": 2e8}, "its stiffness is stated"),
+        ({"radial_force_absorption": False}, "no radial force"),
+        ({"radial_static_load_rating": None}, "missing"),
+        ({"radial_static_load_rating": 1e6}, "no deep groove ball bearing has its catalog line"),
+        ({"bearing_type": "radial_tapered_roller_bearing"}, "catalog line of a radial_tapered"),
+        ({"bearing_type": None}, "without bearing_type"),
+    ],
+)
+def test_a_bushing_says_why(values: Values, words: str) -> None:
+    unit = opened(on_lines(values, {}))
+    assert words in why(unit, LEFT)
+    assert list(by_name(unit)) == [RIGHT]
+
+
+def test_a_stiffness_without_end_is_ignored_beside_the_geometry() -> None:
+    unit = opened(on_lines({"radial_stiffness": 1e23, "axial_stiffness": 0.0}))
+    assert LEFT in by_name(unit)
+    assert said(unit, LEFT, "radial_stiffness") == ("ignored", "the stiffness follows from the geometry")
+
+
+def test_a_direction_that_the_file_lacks_is_defaulted_and_said() -> None:
+    unit = opened(on_lines({}))
+    assert by_name(unit)[LEFT].locating == "both"  # type: ignore[attr-defined]
+    assert said(unit, LEFT, "axial_force_absorption")[0] == "defaulted"
+
+
+def test_a_shaft_in_the_outer_ring_is_on_a_bushing() -> None:
+    number = 37
+    more = {number: ("rolling_bearing_with_catalog_geometry", LINE | place(70.0, 0.0, 0.0))}
+    side = relation(2000, "side", assembly=number, inner_part=CASING, outer_part=INPUT)
+    assert "outer side" in why(opened(two_stages(more=more, further=[side])), number)
+
+
+def test_bearings_of_an_elastic_casing_are_bushings_and_say_so() -> None:
+    matrix = tuple(map(tuple, (1e6 * np.eye(6)).tolist()))
+    group = place(0.0, 0.0, 0.0) | {"reduced_static_stiffness_matrix": matrix}
+    more = at(LEFT, "catalog", LINE) | at(RIGHT, "catalog", LINE)
+    more |= {50: ("assembly_group", group), 51: ("reduction_point", {})}
+    rows = [
+        ("reference", {"origin": CASING, "referenced": 50}),
+        ("assembly", {"assembly": 50, "part": 51}),
+        ("reference", {"origin": 51, "referenced": LEFT}),
+    ]
+    further = [relation(2000 + n, kind, **roles) for n, (kind, roles) in enumerate(rows)]
+    unit = opened(two_stages(more=more, further=further))
+    assert "the casing is elastic" in why(unit, LEFT)
+    assert list(by_name(unit)) == [RIGHT]
+
+
+ROLES = {"support_vector", "u_axis_vector", "w_axis_vector", "reference_component_for_position"}
+PAGE = Path(__file__).parents[3] / "docs" / "reference" / "rexs-bearings.md"
+
+
+def read_attributes() -> set[str]:
+    """Return the attributes of bearings, rows and elements that units of every kind are read by."""
+    stages = ("operating_", "mounted_", "")
+    clearances = [{f"{stage}radial_bearing_clearance": 10.0} for stage in stages]
+    limits = {f"{end}_radial_bearing_clearance": 10.0 for end in ("minimum", "maximum")}
+    missing = {"operating_radial_bearing_clearance": None}
+    units = [on_lines(missing | own) for own in (*clearances, limits)]
+    sides = [{f"axial_force_absorption{of}": "positive" for of in ("", "_of_row")}] * 2
+    along = [{f"{stage}axial_bearing_clearance": 10.0} for stage in stages]
+    along += [{"preload_distance": 8.0}, {"preload_force": 100.0}]
+    units += [inside(*(side | own for side in sides)) for own in along]
+    lengths, grooves = ROW | {"significant_contact_length_inner_ring": 12.0}, dict(ROW)
+    grooves |= {f"raceway_radius_of_{ring}_ring": 4.7 for ring in ("inner", "outer")}
+    ball = {"bearing_type": "angular_contact_ball_bearing"}
+    units += [inside(*sides, row=lengths), inside(*(side | ball for side in sides), grooves, BALL)]
+    lines = [line for unit in units for line in opened(unit).lines if "rolling" in line.kind]
+    stated = {line.item for line in lines if line.item and line.fate in ("taken", "derived")}
+    return stated - ROLES - {"u_coordinate_on_shaft_inner_side"}
+
+
+def test_the_page_lists_the_attributes_that_are_read() -> None:
+    rows = [row.split("|") for row in PAGE.read_text("utf-8").splitlines() if row.startswith("| ")]
+    listed = {name for row in rows[1:] for name in re.findall(r"`([a-z_]+)`", row[2])}
+    assert listed == read_attributes()
+    fields = {name for row in rows[1:] for name in re.findall(r"`([a-z_]+)`", row[3])}
+    models = (RollingBearingInput, BallRowInput, RollerRowInput)
+    assert fields <= {name for model in models for name in model.model_fields}
+
+
+@needs_reference
+def test_cross_located_pairs_of_a_real_unit_hold_outwards() -> None:
+    unit = opened(read_rexs(reference("examples/SEW_3-stage_cylindrical_gearbox_1.0.rexs")))
+    assert unit.scene is not None
+    found = [(b.shaft, b.position_mm, b.locating) for b in unit.scene.rolling_bearings]  # type: ignore[attr-defined]
+    shafts = {shaft for shaft, *_ in found}
+    arranged = {shaft: [seat for _, _, seat in sorted(b for b in found if b[0] == shaft)] for shaft in shafts}
+    assert sorted(arranged.values()) == sorted(
+        [["both", "none"], ["negative", "positive"], ["negative", "positive"], ["none", "both"]]
+    )
+    (bushing,) = unit.scene.bushings
+    assert "NUP204E" in bushing.name
