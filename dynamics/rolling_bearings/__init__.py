@@ -2,7 +2,7 @@
 
 import host.analysis  # noqa: F401 (says what to install)
 from dynamics.bearing_rows import BallBearing, EllipticContact, RollerBearing
-from dynamics.rolling_bearings.catalog import from_catalog
+from dynamics.bearing_rows.catalog import from_catalog
 from dynamics.rolling_bearings.element_passing import ElementPassing, element_passing
 from dynamics.rolling_bearings.loaded_bearing import LoadedBearing, Reaction
 from dynamics.rolling_bearings.rating_life import RatingLife, rating_life

@@ -62,8 +62,7 @@ def _catalog_bearing(part: Part) -> BearingGeometry | str:
         return f"no geometry follows from the catalog line of a {kind or 'bearing without bearing_type'}"
     if bore is None or outside is None or rating is None:
         return "bore, outside diameter or static load rating are missing"
-    from dynamics.rolling_bearings import from_catalog  # noqa: PLC0415 (start-up time)
-    from dynamics.rolling_bearings.catalog import BAND  # noqa: PLC0415 (start-up time)
+    from dynamics.bearing_rows.catalog import BAND, from_catalog  # noqa: PLC0415 (start-up time)
 
     try:
         line = CatalogLine(bore, outside, rating, radial_clearance(part))

@@ -8,6 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from service.rexs import serialized
+from tests.fakes.rexs_unit import place, two_stages
+
 ROOT = Path(__file__).parents[2]
 COMPUTING = ("numba", "gmsh", "skfem", "scipy.optimize", "scipy.interpolate", "xarray")
 UNIT = "examples/two_stage_gearbox.rexs"
@@ -18,14 +21,40 @@ def test_a_unit_without_catalog_bearings_is_opened_without(name: str, loaded: se
     assert name not in loaded
 
 
+@pytest.mark.parametrize("name", [name for name in COMPUTING if name != "scipy.optimize"])
+def test_catalog_bearings_on_a_rigid_casing_are_opened_without(
+    name: str, loaded_with_lines: set[str]
+) -> None:
+    assert name not in loaded_with_lines
+
+
 @pytest.fixture(scope="module")
 def loaded(tmp_path_factory: pytest.TempPathFactory) -> set[str]:
+    """Return what is loaded for the example, whose bearings have stiffnesses."""
+    return modules_after(UNIT, tmp_path_factory.mktemp("unit"))
+
+
+@pytest.fixture(scope="module")
+def loaded_with_lines(tmp_path_factory: pytest.TempPathFactory) -> set[str]:
+    """Return what is loaded for bearings by their catalog line."""
+    folder = tmp_path_factory.mktemp("lines")
+    line = {"bearing_type": "radial_grooved_ball_bearing", "radial_static_load_rating": 11.6}
+    line |= {"inner_diameter": 25.0, "outer_diameter": 62.0, "u_coordinate_on_shaft_inner_side": 15.0}
+    bearing = ("rolling_bearing_with_catalog_geometry", line | place(15.0, 0.0, 0.0))
+    unit = folder / "unit.rexs"
+    unit.write_bytes(serialized(two_stages(more={31: bearing}), unit.name))
+    loaded = modules_after(str(unit), folder / "opened")
+    assert "[[rolling_bearings]]" in (folder / "opened" / "scene.toml").read_text("utf-8")
+    return loaded
+
+
+def modules_after(unit: str, out: Path) -> set[str]:
     """Return the names of the modules that ``loa open`` has loaded when it ends."""
     code = f"""
 import sys
 from pathlib import Path
 from service.cli.open import run_open
-run_open(Path({UNIT!r}), Path({str(tmp_path_factory.mktemp("unit"))!r}), as_json=True)
+run_open(Path({unit!r}), Path({str(out)!r}), as_json=True)
 print(*sys.modules, file=sys.stderr)
 """
     done = subprocess.run(

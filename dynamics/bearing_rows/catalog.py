@@ -19,7 +19,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from bounds import between
-from dynamics.bearing_rows import BallBearing, CatalogLine
+from dynamics.bearing_rows.ball_bearing import BallBearing
+from dynamics.bearing_rows.catalog_line import CatalogLine
 from dynamics.errors import InputError
 
 SLENDERNESS = (0.0, 0.09, 0.1, 0.11, 0.12, 0.15, 0.2, 0.25, 0.3)
