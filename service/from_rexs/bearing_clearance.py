@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from bounds import Bound
 from dynamics.bearing_rows.row import CLEARANCE
+from service.from_rexs.bounded_number import bounded_number
 from service.from_rexs.part import Part
 
 _STAGES = (
@@ -69,8 +69,4 @@ def _way_to_contact(part: Part, contact_angle: float) -> float:
 
 def _stated(part: Part, item: str, words: str) -> float | None:
     """Return a stated clearance, m; None where there is none or none that a bearing can have."""
-    value = part.number(item, f"clearance {words}")
-    if value is not None and not (isinstance(CLEARANCE.bound, Bound) and CLEARANCE.bound.holds(value)):
-        part.say(item, "refused", f"{1e6 * value:g} um is no clearance of a bearing")
-        return None
-    return value
+    return bounded_number(part, item, f"clearance {words}", CLEARANCE)

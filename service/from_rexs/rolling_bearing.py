@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection
 from dataclasses import replace
 from typing import Any
 
 from dynamics.bearing_rows import BallBearing, CatalogLine, RollerBearing
 from dynamics.bearing_rows.locating import BOTH, NONE
+from dynamics.joints.rolling_bearing import AXIAL_PRELOAD, DYNAMIC_CAPACITY
 from service.from_rexs.axial_location import ITEM, axial_location, contact_side
 from service.from_rexs.bearing_geometry import BearingGeometry, bearing_geometry
 from service.from_rexs.bearing_stiffness import operating_point, stated_stiffness
+from service.from_rexs.bounded_number import bounded_number
 from service.from_rexs.connections import Connection
 from service.from_rexs.layout import Layout
 from service.from_rexs.part import Part
@@ -82,8 +83,8 @@ def _without_angle(part: Part, geometry: BearingGeometry, sense: int) -> dict[st
 
 def _preload(part: Part, side: int) -> dict[str, Any]:
     """Return the axial preload of a row with a contact angle."""
-    force = part.number("preload_force", "axial preload, N")
-    return {"axial_preload_n": side * abs(force)} if force and math.isfinite(force) else {}
+    force = bounded_number(part, "preload_force", "axial preload, N", AXIAL_PRELOAD)
+    return {"axial_preload_n": side * abs(force)} if force else {}
 
 
 def _further(part: Part, geometry: BearingGeometry) -> dict[str, Any]:
@@ -91,7 +92,8 @@ def _further(part: Part, geometry: BearingGeometry) -> dict[str, Any]:
     for item in _STIFFNESSES:
         if part.number(item, "stiffness of the bearing") is not None:
             part.say(item, "ignored", "the stiffness follows from the geometry")
-    rating = part.number("radial_dynamic_load_rating", "dynamic load rating, kN: the rating life")
+    words = "dynamic load rating, kN: the rating life"
+    rating = bounded_number(part, "radial_dynamic_load_rating", words, DYNAMIC_CAPACITY)
     return {"dynamic_capacity_n": float(f"{rating:.12g}")} if rating else {}
 
 

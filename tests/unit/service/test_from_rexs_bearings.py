@@ -282,6 +282,15 @@ def test_a_stiffness_without_end_is_ignored_beside_the_geometry() -> None:
     assert said(unit, LEFT, "radial_stiffness") == ("ignored", "the stiffness follows from the geometry")
 
 
+def test_a_rating_or_preload_that_no_bearing_has_is_left_out_and_said() -> None:
+    unit = opened(on_lines({"radial_dynamic_load_rating": 1e9}))
+    assert by_name(unit)[LEFT].dynamic_capacity_n is None  # type: ignore[attr-defined]
+    words = "1000000000.0 kN is not from 1 to 1e+09 N"
+    assert said(unit, LEFT, "radial_dynamic_load_rating") == ("refused", words)
+    own = [{"axial_force_absorption": side, "preload_force": 1e12} for side in ("negative", "positive")]
+    assert by_name(opened(inside(*own)))[LEFT].axial_preload_n == 0.0  # type: ignore[attr-defined]
+
+
 def test_a_direction_that_the_file_lacks_is_defaulted_and_said() -> None:
     unit = opened(on_lines({}))
     assert by_name(unit)[LEFT].locating == "both"  # type: ignore[attr-defined]
