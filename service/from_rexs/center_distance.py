@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from service.from_rexs.axes import frame_of
 from service.from_rexs.gear_unit import GearUnit
 from service.from_rexs.meshing import Meshing
 from service.from_rexs.part import Part
+from service.from_rexs.placement import frame_of
 from service.problems import BadInput
 from service.units import MM
 

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from service.from_rexs.axes import frame_of
 from service.from_rexs.gear_unit import GearUnit
 from service.from_rexs.meshing import Meshing
 from service.from_rexs.part import Part
+from service.from_rexs.placement import frame_of
 
 _DIRECTIONS = {"positive": 1.0, "negative": -1.0}
 

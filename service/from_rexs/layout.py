@@ -58,10 +58,7 @@ class Layout:
         return stage.is_cylindrical and all(shaft.id in self.shafts for shaft in stage.shafts)
 
     def u_on(self, shaft: PlacedShaft, part: Part, item: str = "u_coordinate_on_shaft") -> float:
-        """Return u of a part on a shaft, m: by its place, else by its coordinate, else 0.
-
-        One writer gives the begin of a gear as its coordinate: its place, that of its middle, counts.
-        """
+        """Return u of a part on a shaft, m: by its place, else by its coordinate, else 0."""
         place = placement(self.unit, part)
         stated = part.number(item, "place along the shaft, mm")
         if place is None:
@@ -71,6 +68,10 @@ class Layout:
         u = shaft.along(place.origin)
         _compare(part, item, stated, u, shaft.off_axis(place.origin))
         return u
+
+    def z_on(self, shaft: PlacedShaft, part: Part, item: str = "u_coordinate_on_shaft") -> float:
+        """Return z of a part on a shaft in the scene, m: see `u_on`."""
+        return float(shaft.start[2]) + shaft.sense * self.u_on(shaft, part, item)
 
 
 def _compare(part: Part, item: str, stated: float | None, u: float, off_axis: float) -> None:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from service.from_rexs.axes import Vector, frame_of
+from bounds.types import FloatArray
 from service.from_rexs.gear_unit import GearUnit
 from service.from_rexs.part import Part
+from service.from_rexs.placement import frame_of
 from service.from_rexs.rotation import rotations, stage_gears
 from service.problems import BadInput
 
@@ -35,7 +36,7 @@ class Meshing:
     pinion: Part
     wheel: Part
     wheel_drives: bool
-    z: Vector
+    z: FloatArray
 
     @property
     def internal(self) -> bool:

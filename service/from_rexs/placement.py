@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,6 +33,15 @@ class Placement:
     origin: FloatArray
     axes: FloatArray
 
+    @property
+    def u(self) -> FloatArray:
+        """Direction of the axis of rotation."""
+        return np.asarray(self.axes[0])
+
+    def along(self, point: FloatArray) -> float:
+        """Return u of a point, m."""
+        return float(self.u @ (point - self.origin))
+
     def within(self, outer: Placement) -> Placement:
         """Return the place of what is stated in the frame of `outer`."""
         return Placement(outer.origin + self.origin @ outer.axes, self.axes @ outer.axes)
@@ -40,8 +50,22 @@ class Placement:
 FIXED = Placement(np.zeros(3), np.eye(3))
 
 
-def placement(unit: GearUnit, part: Part, inner: tuple[int, ...] = ()) -> Placement | None:
+def placement(unit: GearUnit, part: Part) -> Placement | None:
     """Return where a component stands, None where the file does not say.
+
+    Raises
+    ------
+    BadInput
+        A vector has not three numbers, an axis has no direction, or places refer to each other in a ring.
+    """
+    return _stated(unit, part, ())
+
+
+def frame_of(unit: GearUnit, part: Part, inner: tuple[int, ...] = ()) -> Placement:
+    """Return where a component stands: as the file says, else by what carries it.
+
+    On a shaft it stands at its u coordinate, along the shaft's axes; without one it has the origin of the
+    component that its place refers to.
 
     Parameters
     ----------
@@ -53,16 +77,44 @@ def placement(unit: GearUnit, part: Part, inner: tuple[int, ...] = ()) -> Placem
     Raises
     ------
     BadInput
-        A vector has not three numbers, an axis has no direction, or places refer to each other in a ring.
+        As of `placement`.
     """
     if part.id in inner or len(inner) > _MOST_REFERENCES:
         bound = "a component that is not placed by this one itself"
         raise BadInput.of(f"{part.place}, {_REFERENCE}", inner[-1], bound, "Refer to the gear unit.")
-    own = _own(part)
-    outer = None if own is None else _reference(unit, part)
-    if own is None or outer is None:
-        return own
-    return own.within(placement(unit, outer, (*inner, part.id)) or FIXED)
+    stated, shaft = _stated(unit, part, inner), unit.owner(part, "shaft")
+    if stated is not None:
+        return stated
+    if shaft is None or shaft.id == part.id:
+        return _in_reference(unit, part, np.zeros(3), inner)
+    base = frame_of(unit, shaft, (*inner, part.id))
+    along = part.number("u_coordinate_on_shaft", "place along the shaft") or 0.0
+    return Placement(base.origin + along * base.u, base.axes)
+
+
+def u_on_shaft(unit: GearUnit, part: Part) -> float | None:
+    """Return u of a component on its shaft, m: by the places of both, else by its coordinate.
+
+    One writer gives the begin of a gear as its coordinate: its place, that of its middle, counts.
+    """
+    shaft, place = unit.owner(part, "shaft"), placement(unit, part)
+    base = None if shaft is None else placement(unit, shaft)
+    stated = part.number("u_coordinate_on_shaft", "place along the shaft")
+    return stated if place is None or base is None else base.along(place.origin)
+
+
+def _stated(unit: GearUnit, part: Part, inner: tuple[int, ...]) -> Placement | None:
+    """Return a place as stated, None for none."""
+    origin = _vector(part, "support_vector", "place")
+    return None if origin is None else _in_reference(unit, part, origin, inner)
+
+
+def _in_reference(unit: GearUnit, part: Part, origin: FloatArray, inner: tuple[int, ...]) -> Placement:
+    """Return a place whose origin is stated in the frame of its reference."""
+    u = _unit(part, "u_axis_vector", np.array([1.0, 0.0, 0.0]))
+    w = _across(part, u)
+    own, outer = Placement(origin, np.array([u, np.cross(w, u), w])), _reference(unit, part)
+    return own if outer is None else own.within(frame_of(unit, outer, (*inner, part.id)))
 
 
 def _reference(unit: GearUnit, part: Part) -> Part | None:
@@ -72,16 +124,6 @@ def _reference(unit: GearUnit, part: Part) -> Part | None:
         return None
     part.say(_REFERENCE, "taken", f"its place refers to component {attribute.value}")
     return None if attribute.value == part.id else unit.part(attribute.value)
-
-
-def _own(part: Part) -> Placement | None:
-    """Return the place as stated, in the frame of its reference."""
-    origin = _vector(part, "support_vector", "place")
-    if origin is None:
-        return None
-    u = _unit(part, "u_axis_vector", np.array([1.0, 0.0, 0.0]))
-    w = _across(part, u)
-    return Placement(origin, np.array([u, np.cross(w, u), w]))
 
 
 def _across(part: Part, u: FloatArray) -> FloatArray:
@@ -98,9 +140,11 @@ def _unit(part: Part, item: str, usual: FloatArray) -> FloatArray:
     """Return a stated direction of length 1."""
     vector = _vector(part, item, "axis")
     if vector is None:
-        part.say(item, "defaulted", f"{usual.tolist()}")
+        attribute = part.attribute(item)
+        if attribute is None or attribute.value is None:
+            part.say(item, "defaulted", f"{usual.tolist()}")
         return usual
-    length = float(np.linalg.norm(vector))
+    length = math.hypot(*vector)
     if length == 0.0:
         raise BadInput.of(f"{part.place}, {item}", vector.tolist(), "a vector that has a direction")
     return np.asarray(vector / length)

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from service.from_rexs.axes import frame_of
 from service.from_rexs.gear_unit import GearUnit
 from service.from_rexs.part import Part
+from service.from_rexs.placement import frame_of
 
 
 @dataclass(frozen=True)

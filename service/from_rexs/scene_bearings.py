@@ -143,10 +143,7 @@ def _z(layout: Layout, part: Part, held: Part, side: str) -> float:
     if held.id not in layout.shafts:
         place = placement(layout.unit, part)
         return 0.0 if place is None else float(layout.axes.point(place.origin)[2])
-    shaft = layout.shafts[held.id]
-    return float(shaft.start[2]) + shaft.sense * layout.u_on(
-        shaft, part, f"u_coordinate_on_shaft_{side}_side"
-    )
+    return layout.z_on(layout.shafts[held.id], part, f"u_coordinate_on_shaft_{side}_side")
 
 
 def _between(layout: Layout, shafts: SceneShafts, names: Names, entry: Connection) -> dict[str, Any]:

@@ -131,7 +131,7 @@ def scene_discs(layout: Layout, shafts: SceneShafts) -> list[dict[str, Any]]:
             part.say("", "refused", "on no shaft of the scene")
             continue
         placed = layout.shafts[owner.id]
-        z = float(placed.start[2]) + placed.sense * layout.u_on(placed, part)
+        z = layout.z_on(placed, part)
         table = _disc(part, on, z, names)
         discs += [] if table is None else [table]
     return discs

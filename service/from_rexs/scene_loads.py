@@ -59,7 +59,7 @@ def _external(layout: Layout, flow: PowerFlow, shafts: SceneShafts) -> Iterator[
             part.say("", "ignored", "acts on a shaft that the scene has not; its torque enters by the ratios")
             continue
         placed = layout.shafts[shaft.id]
-        z = float(placed.start[2]) + placed.sense * layout.u_on(placed, part)
+        z = layout.z_on(placed, part)
         item = "torque_around_u_axis"
         if flow.point.torques.get(load) is None:
             part.say(
@@ -79,8 +79,7 @@ def _of_stages(
                 torque = flow.on_gear(stage, number)
                 words = f"cut off: its torque of {placed.sense * torque:.6g} N m by the ratio is a load; "
                 gear.say("", "derived", words + "its forces across and along the axis are left out")
-                z = float(placed.start[2]) + placed.sense * layout.u_on(placed, gear)
-                yield AppliedTorque(gear, layout.rotor(shaft.id), z, torque)
+                yield AppliedTorque(gear, layout.rotor(shaft.id), layout.z_on(placed, gear), torque)
 
 
 def driving(

@@ -181,7 +181,7 @@ def _carrier(layout: Layout, rotor: int, names: Names) -> SceneShaft:
 def _stub(layout: Layout, shaft: Part, gear: Part, names: Names) -> SceneShaft:
     """Return a stub at a gear."""
     placed = layout.shafts[shaft.id]
-    z = float(placed.start[2]) + placed.sense * layout.u_on(placed, gear)
+    z = layout.z_on(placed, gear)
     x, y = (float(value) / MM for value in placed.origin[:2])
     name = names.of(shaft, " stub")
     gear.say("", "derived", f"on a stub of its shaft in the carrier's frame, {name}")

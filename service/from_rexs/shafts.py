@@ -66,7 +66,7 @@ class PlacedShaft:
 
     def along(self, point: FloatArray) -> float:
         """Return u of a point of the model, m."""
-        return float(self.place.axes[0] @ (point - self.place.origin))
+        return self.place.along(point)
 
     def off_axis(self, point: FloatArray) -> float:
         """Return the distance of a point of the model from the axis, m."""

@@ -82,6 +82,8 @@ def attribute(name: str, value: Any) -> Attribute:
         return Attribute(name, "boolean", value, "none")
     if isinstance(value, str):
         return Attribute(name, "enum", value, "none")
+    if name == "reference_component_for_position":
+        return Attribute(name, "reference_component", value, "none")
     kind = "floating_point_array" if isinstance(value, tuple) else "floating_point"
     return Attribute(name, kind, value, unit)
 

@@ -105,7 +105,7 @@ def whole_units() -> Iterator[GearUnit]:
                     "lower_backlash_allowance_referenced_to_span": -60.0,
                     "datum_face_orientation": "negative",
                     "u_coordinate_on_shaft": 30.0,
-                    "reference_component_for_position": 1.0,
+                    "reference_component_for_position": 1,
                     "u_axis_vector": (1.0, 0.0, 0.0),
                     "w_axis_vector": (0.0, 0.0, 1.0),
                 },

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from rexs_stage import PINION, stage_unit
 
-from service.from_rexs.axes import frame_of
+from service.from_rexs.placement import frame_of
 from service.problems import BadInput
 
 
@@ -48,8 +48,7 @@ def test_a_vector_that_is_none_is_left_out_and_said() -> None:
     ("values", "words"),
     [
         ({"u_axis_vector": (0.0, 0.0, 0.0)}, "a direction"),
-        ({"u_axis_vector": (0.0, 0.0, 2.0)}, "square to w_axis_vector"),
-        ({"reference_component_for_position": 99.0}, "the id of a component"),
+        ({"u_axis_vector": (0.0, 0.0, 2.0), "w_axis_vector": (0.0, 0.0, 1.0)}, "not along u_axis_vector"),
     ],
 )
 def test_a_frame_that_is_none_is_refused(values: dict[str, Any], words: str) -> None:
@@ -60,9 +59,19 @@ def test_a_frame_that_is_none_is_refused(values: dict[str, Any], words: str) -> 
 def test_frames_in_a_circle_are_refused() -> None:
     unit = stage_unit(
         {
-            PINION: {"reference_component_for_position": 1.0},
-            1: {"reference_component_for_position": float(PINION)},
+            PINION: {"reference_component_for_position": 1},
+            1: {"reference_component_for_position": PINION},
         }
     )
-    with pytest.raises(BadInput, match="frames away"):
+    with pytest.raises(BadInput, match="not placed by this one itself"):
         frame_of(unit, unit.part(PINION))
+
+
+def test_a_part_of_a_shaft_that_another_refers_to_carries_it() -> None:
+    """The pinion has no place but its coordinate; what refers to it stands there too."""
+    changes = {
+        PINION: {"support_vector": None, "u_coordinate_on_shaft": 12.0},
+        2: {"support_vector": (0.0, 0.0, 80.0), "reference_component_for_position": PINION},
+    }
+    unit = stage_unit(changes)
+    assert frame_of(unit, unit.part(2)).origin == pytest.approx([12e-3, 0.0, 80e-3], rel=1e-12)
