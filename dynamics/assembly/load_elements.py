@@ -37,7 +37,7 @@ def force_course_elements(mechanism: Mechanism) -> tuple[tuple[Element, ...], Fo
     for entry, force in enumerate(scene.forces):
         frame = frame_phase(scene, kinematics, force)
         rows = _wrench_rows(scene, rotors, force, frame is not None)
-        size.append(math.hypot(*force.force, *(moment / lever for moment in force.moment)))
+        size.append(math.hypot(*force.force, *(moment / lever for moment in force.moment)) or 1.0)
         carrying.append(len(rows))
         rows = rows / size[-1]
         sense = 1

@@ -8,12 +8,14 @@ from dynamics.deflection.deflect import CaseDeflection, Deflection, deflect
 from dynamics.deflection.loaded_scene import loaded_scene
 from dynamics.deflection.mesh_alignment import MeshAlignment
 from dynamics.deflection.shaft_line import ShaftLines
+from dynamics.settings.case_force import CaseForce
 from dynamics.settings.load_case import LoadCase
 
 __all__ = [
     "CAUSES",
     "BearingLoad",
     "CaseDeflection",
+    "CaseForce",
     "Deflection",
     "LoadCase",
     "MeshAlignment",

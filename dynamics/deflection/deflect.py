@@ -16,7 +16,7 @@ from dynamics.deflection.mesh_cycle import cycle_times
 from dynamics.deflection.rest import rest_over
 from dynamics.deflection.shaft_line import ShaftLines, shaft_lines
 from dynamics.scene.scene import Scene
-from dynamics.settings.load_case import LoadCase
+from dynamics.settings.load_case import LoadCase, check_forces
 from model_studies import Record, in_unit
 
 MOST_POSITIONS = 512
@@ -103,6 +103,7 @@ def deflect(
         By field name: a case that the scene cannot have, meshes that it does not press, no common period.
     """
     distinct("load_cases", [case.name for case in cases])
+    check_forces(cases, [force.name for force in scene.forces])
     integer("positions", positions, 1, MOST_POSITIONS)
     deflections = []
     for number, case in enumerate(cases):

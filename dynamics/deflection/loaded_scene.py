@@ -6,7 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from bounds import above
-from dynamics.bodies import TimeLaw
+from dynamics.bodies import BySpeed, TimeLaw
+from dynamics.bodies.load_course import mean_factor
+from dynamics.deflection.case_forces import forces_under
 from dynamics.effects import EFFECTS
 from dynamics.errors import InputError
 from dynamics.joints import ImposedRotation
@@ -63,11 +65,15 @@ def loaded_scene(scene: Scene, case: LoadCase) -> Scene:
         raise InputError("speed", 0.0, above(0.0, "rad/s"), "The scene starts from rest: give the speed.")
     turned = 1.0 if case.direction == DRIVE else -1.0
     scale = turned * (speed / abs(leader.speed) if leader.speed else speed)
-    factor = case.factor if case.torque is None else _factor(scene, leader, speed, case.torque)
-    return replace(
+    driven = replace(
         scene,
         drives=(*_drives(scene, scale), *_held_trains(scene, leader, scale)),
         free_rotations=(),
+        forces=forces_under(scene.forces, case.forces),
+    )
+    factor = case.factor if case.torque is None else _factor(driven, speed, case.torque)
+    return replace(
+        driven,
         loads=tuple(
             replace(load, torque=TimeLaw.constant(factor * float(load.torque(0.0)))) for load in scene.loads
         ),
@@ -112,9 +118,10 @@ def _held_trains(scene: Scene, leader: Leader, scale: float) -> Iterator[Imposed
 
 
 def leading_torque(scene: Scene, leader: Leader, speed: float) -> tuple[float, float]:
-    """Return what loads at t = 0, and torques by speed, ask of the leading shaft at a speed, N m.
+    """Return what loads at t = 0, and all other torques, ask of the leading shaft at a speed, N m.
 
-    By virtual power: a load T on a shaft that turns at `ratio` times the leader takes T times that.
+    By virtual power: a load T on a shaft that turns at `ratio` times the leader takes T times that. The
+    others are torques by speed, and moments of forces about the axis, which are torques about +z.
     """
     kinematics = solve_kinematics(scene)
     loads = sum(
@@ -125,7 +132,18 @@ def leading_torque(scene: Scene, leader: Leader, speed: float) -> tuple[float, f
     for part in scene.speed_torques:
         toward = _toward(kinematics, scene.shaft_index(part.shaft), leader)
         by_speed += float(part.curve(abs(toward) * speed)) * toward
-    return loads, by_speed
+    return loads, by_speed + sum(_of_moments(scene, kinematics, leader, speed))
+
+
+def _of_moments(scene: Scene, kinematics: Kinematics, leader: Leader, speed: float) -> Iterator[float]:
+    """Yield what the moments of forces about the axis ask of the leading shaft at a speed, N m."""
+    for force in scene.forces:
+        if force.moment[2] != 0.0:
+            shaft = scene.shaft_index(force.shaft)
+            read = force.course.shaft if isinstance(force.course, BySpeed) else force.shaft
+            at = abs(_toward(kinematics, scene.shaft_index(read), leader)) * speed
+            resists = -kinematics.sense[shaft] * force.moment[2] * float(mean_factor(force.course, 0.0, at))
+            yield resists * _toward(kinematics, shaft, leader)
 
 
 def _toward(kinematics: Kinematics, shaft: int, leader: Leader) -> float:
@@ -133,11 +151,11 @@ def _toward(kinematics: Kinematics, shaft: int, leader: Leader) -> float:
     return kinematics.sense[shaft] * leader.forward * float(kinematics.ratio[shaft][leader.law])
 
 
-def _factor(scene: Scene, leader: Leader, speed: float, torque: float) -> float:
+def _factor(scene: Scene, speed: float, torque: float) -> float:
     """Return the factor on the loads with which the leading shaft carries `torque`, N m."""
-    loads, by_speed = leading_torque(scene, leader, speed)
-    wanted = torque - by_speed
+    loads, further = leading_torque(scene, leader_of(scene), speed)
+    wanted = torque - further
     if loads == 0.0 or wanted / loads <= 0.0:
-        bound = above(by_speed, "N m", "what the torques by speed take,") if loads else "left out"
+        bound = above(further, "N m", "what torques by speed and of forces take,") if loads else "left out"
         raise InputError("torque", torque, bound, "The scene's loads at t = 0 must resist the leading shaft.")
     return wanted / loads

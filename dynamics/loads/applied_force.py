@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from bounds import Declared, Kind, between, described, required
 from dynamics.bodies.load_course import CONSTANT, Course
 from dynamics.checks import declared_fields, finite
-from dynamics.errors import InputError
 
 Vector = tuple[float, float, float]
 
@@ -23,7 +22,8 @@ class AppliedForce:
 
     `force` (N) and `moment` (N m; about x, y, and about +z, the axis) act on the shaft, along the fixed axes,
     times the factor of the `course`. With `turns_with` they are those at t = 0 and turn with the rotation of
-    that shaft, its vibration included: a carrier or the shaft itself. `name` is unique among the forces.
+    that shaft, its vibration included: a carrier or the shaft itself. `name` is unique among the forces. Both
+    may be zero: a load case then says what they are.
     """
 
     name: str
@@ -39,5 +39,3 @@ class AppliedForce:
         for name in ("force", "moment"):
             for axis, value in zip("xyz", getattr(self, name), strict=True):
                 finite(f"{name}.{axis}", value)
-        if not any((*self.force, *self.moment)):
-            raise InputError("force", 0.0, "not zero, or a moment given", "Leave it out if nothing acts.")

@@ -1,18 +1,20 @@
-"""A load case of a geared system: its share of the duration, speed, torque and the flanks that carry."""
+"""A load case of a geared system: share of the duration, speed, torque, forces and the flanks that carry."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from bounds import Declared, Kind, declared, described, one_of, up_to
-from dynamics.checks import declared_fields
+from dynamics.checks import declared_fields, distinct
 from dynamics.errors import InputError
+from dynamics.settings.case_force import CaseForce
 
 DRIVE, COAST = "drive", "coast"
 
 _SHARE = Declared(Kind.RATIO, "", up_to(1e9), "Share of the duration, relative to the other load cases", 1.0)
-_FACTOR = Declared(Kind.RATIO, "", up_to(1e6), "Factor on the scene's loads", 1.0)
+_FACTOR = Declared(Kind.RATIO, "", up_to(1e6), "Factor on the scene's loads, not on its forces", 1.0)
 _TORQUE = Declared(
     Kind.LOAD, "N m", up_to(1e9), "Torque on the leading shaft, in place of a factor on the loads", 100.0
 )
@@ -36,8 +38,11 @@ class LoadCase:
 
     The leading shaft is that of the first drive that turns, or of the first free rotation if none does. A
     factor scales all loads of the scene at t = 0; a torque on the leading shaft gives this factor. Torques
-    that depend on speed follow the speed alone. On the coast side all torques are reversed and the other
-    flanks carry: turned end for end, the same pair driven in the other sense.
+    that depend on speed follow the speed alone. On the coast side all torques of loads and drives are
+    reversed and the other flanks carry: turned end for end, the same pair driven in the other sense.
+
+    Forces of the scene act as it states them, whatever the factor and on either side, but for those of which
+    `forces` says otherwise: belt pull and weight do not follow the torque.
     """
 
     name: str
@@ -46,8 +51,27 @@ class LoadCase:
     torque: float | None = declared(None, _TORQUE)
     speed: float | None = declared(None, _SPEED)
     direction: str = declared(DRIVE, _DIRECTION)
+    forces: tuple[CaseForce, ...] = ()
 
     def __post_init__(self) -> None:
         declared_fields(self)
+        distinct("forces", [part.name for part in self.forces])
         if self.torque is not None and self.factor != 1.0:
             raise InputError("factor", self.factor, "left out if a torque is given", "Give one of them.")
+
+
+def check_forces(cases: Iterable[LoadCase], names: Sequence[str]) -> None:
+    """Refuse load cases that state a force which is not one of the scene's, by their names.
+
+    Raises
+    ------
+    InputError
+        Naming the load case and its force.
+    """
+    for number, case in enumerate(cases):
+        for index, part in enumerate(case.forces):
+            if part.name not in names:
+                known = ", ".join(f'"{name}"' for name in names)
+                bound = f"a force of the scene: {known}" if names else "a force of the scene, which has none"
+                advice = "Add it to the scene's forces, where it acts; its values there may be 0."
+                raise InputError(f"load_cases[{number}].forces[{index}].name", part.name, bound, advice)

@@ -91,6 +91,8 @@ _LAST = _fields_of(*_ANYWHERE) | {
     "fade": "speed_rpm",
     "speed": "speed_rpm",
     "torque": "torque_n_m",
+    "force": "force_n",
+    "moment": "moment_n_m",
     "highest_frequency": "highest_frequency_hz",
     "radial_clearance": "radial_clearance_um",
     "backlash": "backlash_um",

@@ -25,6 +25,17 @@ def at_most_one_of(*names: str) -> Json:
     return {"oneOf": [left_out(*names), *(_with(name, *names) for name in names)]}
 
 
+def at_least_one_of(*names: str) -> Json:
+    """Return the rule that one or more of some fields are given."""
+    return {"anyOf": [given(name) for name in names]}
+
+
+def own_or_factor(*names: str) -> Json:
+    """Return the rule that one or more of some fields are given, or a factor on all of them."""
+    of_factor = both(given("factor"), left_out(*names))
+    return {"oneOf": [of_factor, at_least_one_of(*names) | left_out("factor")]}
+
+
 def given(*names: str) -> Json:
     """Return the schema of tables that have some fields."""
     return {"required": list(names), "properties": dict.fromkeys(names, _GIVEN)}

@@ -11,11 +11,12 @@ from dynamics.loads.applied_force import AppliedForce
 from dynamics.loads.unbalance import Unbalance
 from service.schemas.declared import declared_in, with_fields
 from service.schemas.model import BoundaryModel, refuse
-from service.schemas.rules import at_most_one_of, stated
+from service.schemas.rules import at_least_one_of, at_most_one_of, stated
 from service.schemas.scene_types import Course, Name, Number, Numbers, Times
 
 Orders = Annotated[tuple[Annotated[float, Field(gt=0.0, le=1e4)], ...], Strict(False)]
 Vector = Annotated[tuple[Number, ...], Field(min_length=3, max_length=3), Strict(False)]
+ACTING = ("force_n", "moment_n_m")
 BY = ("time_s", "speed_rpm", "orders", "turn_factor")
 
 
@@ -23,13 +24,13 @@ BY = ("time_s", "speed_rpm", "orders", "turn_factor")
 class ForceInput(BoundaryModel):
     """A force and moment on a shaft: constant, by time, by a shaft's speed, or by a shaft's angle."""
 
-    model_config = ConfigDict(json_schema_extra=stated(at_most_one_of(*BY)))
+    model_config = ConfigDict(json_schema_extra=stated(at_most_one_of(*BY), at_least_one_of(*ACTING)))
 
     name: Name = Field(description="Name of the force", examples=["belt"])
     shaft: Name = Field(description="The shaft it acts on", examples=["input"])
     force_n: Vector = Field(
         default=(0.0, 0.0, 0.0),
-        description="Force in x, y, z in N, times the factor",
+        description="Force in x, y, z in N, times the factor; 0 where load cases alone state it",
         examples=[[0.0, 500.0, 0.0]],
     )
     moment_n_m: Vector = Field(
@@ -94,6 +95,14 @@ class ForceInput(BoundaryModel):
         description="Factor by angle: values at equal steps over one turn, the first at t = 0",
         examples=[[1.0, 0.5, 0.0, 0.5]],
     )
+
+    @model_validator(mode="after")
+    def _acts(self) -> Self:
+        """State what acts; 0 where load cases alone do."""
+        if not self.model_fields_set.intersection(ACTING):
+            advice = "If it acts under load cases alone, give 0."
+            refuse("force_n", None, "given, or moment_n_m", advice)
+        return self
 
     @model_validator(mode="after")
     def _one_course(self) -> Self:

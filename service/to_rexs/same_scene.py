@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from bounds.types import Json
@@ -42,7 +42,7 @@ def check_same_scene(unit: OpenedUnit, result: GearboxDeflection) -> None:
     for name, part in unit.parts.meshes.items():
         own = pairs[part.case]
         _refuse(first_difference(own, result.cases.get(name, {}).get("pair"), f'case of mesh "{name}", pair'))
-    _check_load_cases(unit, result.deflection.cases)
+    _check_load_cases(unit, result)
 
 
 def first_difference(unit: Any, result: Any, path: str) -> tuple[str, Any, Any] | None:
@@ -86,10 +86,10 @@ def _shown(value: Any) -> Any:
     return float(f"{value:.10g}") if isinstance(value, float) else value
 
 
-def _check_load_cases(unit: OpenedUnit, cases: Sequence[CaseDeflection]) -> None:
+def _check_load_cases(unit: OpenedUnit, result: GearboxDeflection) -> None:
     """Refuse load cases that the unit has not, and those that were not found."""
     known = {case.name: case for case in unit.load_cases}
-    for case in cases:
+    for case in result.deflection.cases:
         if case.name not in known:
             names = ", ".join(known) or "none"
             raise BadInput.of("load_cases", case.name, f"a load case of the unit: {names}", _ADVICE)
@@ -99,6 +99,9 @@ def _check_load_cases(unit: OpenedUnit, cases: Sequence[CaseDeflection]) -> None
             )
         own = known[case.name]
         _check_load(own, case)
+        stated = own.table().get("forces", [])
+        path = f'load case "{case.name}", forces'
+        _refuse(first_difference(stated, result.case_forces.get(case.name, []), path))
 
 
 def _check_load(own: LoadCase, case: CaseDeflection) -> None:

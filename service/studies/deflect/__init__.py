@@ -4,14 +4,40 @@ from __future__ import annotations
 
 from typing import Annotated, Self
 
-from pydantic import Field, Strict, model_validator
+from pydantic import ConfigDict, Field, Strict, model_validator
 
+from dynamics.settings.case_force import CaseForce
 from dynamics.settings.load_case import LoadCase
 from service.schemas.declared import declared_in, with_fields
 from service.schemas.model import BoundaryModel, refuse
+from service.schemas.rules import own_or_factor, stated
+from service.schemas.scene_loads import ACTING, Vector
 from service.schemas.scene_types import Name
 
 MOST_CASES = 64
+MOST_FORCES = 256
+
+
+@with_fields(declared_in(CaseForce))
+class CaseForceInput(BoundaryModel):
+    """A force of the scene under a load case: its own force and moment, or a factor on the scene's."""
+
+    model_config = ConfigDict(json_schema_extra=stated(own_or_factor(*ACTING)))
+
+    name: Name = Field(description="Name of the force in the scene", examples=["belt"])
+    force_n: Vector | None = Field(
+        default=None,
+        description="Force in x, y, z in N; left out: the scene's",
+        examples=[[0.0, 800.0, 0.0]],
+    )
+    moment_n_m: Vector | None = Field(
+        default=None,
+        description="Moment about x, y and +z in N m; left out: the scene's",
+        examples=[[0.0, 0.0, 20.0]],
+    )
+
+
+CaseForces = Annotated[tuple[CaseForceInput, ...], Strict(False), Field(max_length=MOST_FORCES)]
 
 
 @with_fields(declared_in(LoadCase))
@@ -19,6 +45,12 @@ class LoadCaseInput(BoundaryModel):
     """A load of the scene and the share of its duration."""
 
     name: Name = Field(description="Name of the load case", examples=["cruise"])
+    forces: CaseForces = Field(
+        default=(),
+        description="Forces of the scene that differ under this load case; the others act as in the scene",
+        examples=[[{"name": "belt", "force_n": [0.0, 800.0, 0.0]}]],
+        exclude_if=lambda forces: not forces,
+    )
 
 
 LoadCases = Annotated[tuple[LoadCaseInput, ...], Strict(False), Field(min_length=1, max_length=MOST_CASES)]

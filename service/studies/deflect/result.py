@@ -114,6 +114,8 @@ class GearboxDeflection(Record):
         CPU time.
     scene : dict
         The scene as it was written, without the cases; empty in files of versions that did not keep it.
+    case_forces : dict
+        The forces that load cases state as they were written, by load case.
     """
 
     deflection: Deflection
@@ -125,3 +127,4 @@ class GearboxDeflection(Record):
     cases: Json
     seconds: float
     scene: Json = field(default_factory=dict)
+    case_forces: Json = field(default_factory=dict)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -11,19 +12,21 @@ from bounds import inside, leftover
 from bounds.types import Json
 from dynamics.deflection import CaseDeflection, MeshAlignment, deflect
 from dynamics.scene import Scene
-from dynamics.settings.load_case import LoadCase
+from dynamics.settings.case_force import CaseForce
+from dynamics.settings.load_case import LoadCase, check_forces
 from fe_contact.analysis import pressure_map
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.types import FloatArray
 from service.convert.case import boundary_errors
 from service.convert.declared import in_si
+from service.convert.errors import named
 from service.convert.scene import TabledScene
 from service.problems import BadInput
 from service.schemas import Case
 from service.schemas.scene import SceneInput
 from service.schemas.scene_meshes import MeshInput
 from service.studies.computation import Computation, Means
-from service.studies.deflect import Inputs
+from service.studies.deflect import CaseForceInput, Inputs
 from service.studies.deflect.agreement import Agreement, in_agreement
 from service.studies.deflect.figures import facts
 from service.studies.deflect.mesh_contact import MeshContact, mesh_contact
@@ -64,27 +67,8 @@ def deflection_of(tabled: TabledScene, inputs: Inputs, means: Means) -> GearboxD
         written,
         time.process_time() - began,
         scene_of(tabled.inputs),
+        forces_of(inputs),
     )
-
-
-def check(scene: SceneInput, inputs: Inputs) -> None:
-    """Refuse a torque in a scene without loads before tables are computed.
-
-    Raises
-    ------
-    BadInput
-        By the field of the load case.
-    """
-    with boundary_errors():
-        cases = load_cases(inputs)
-    for index, case in enumerate(cases):
-        if case.torque is not None and not scene.loads:
-            raise BadInput.of(
-                f"load_cases[{index}].torque_n_m",
-                case.torque,
-                "left out: the scene has no loads",
-                "A load case scales them. Add [[loads]] where the torque leaves the gearbox.",
-            )
 
 
 def scene_of(inputs: SceneInput) -> Json:
@@ -93,13 +77,48 @@ def scene_of(inputs: SceneInput) -> Json:
     return kept
 
 
+def forces_of(inputs: Inputs) -> Json:
+    """Return the forces that load cases state as they are kept with a deflection, by case."""
+    kept = inputs.model_dump(mode="json", exclude_none=True)["load_cases"]
+    return {case["name"]: case["forces"] for case in kept if "forces" in case}
+
+
 def load_cases(inputs: Inputs) -> tuple[LoadCase, ...]:
     """Return the load cases in SI."""
     cases = []
     for index, case in enumerate(inputs.load_cases):
         with inside(f"load_cases[{index}]"):
-            cases.append(LoadCase(case.name, **in_si(LoadCase, case)))
+            forces = tuple(_force(k, force) for k, force in enumerate(case.forces))
+            cases.append(LoadCase(case.name, forces=forces, **in_si(LoadCase, case)))
     return tuple(cases)
+
+
+def _force(index: int, force: CaseForceInput) -> CaseForce:
+    """Return a force under a load case."""
+    with inside(f"forces[{index}]"):
+        own: Any = {"force": force.force_n, "moment": force.moment_n_m}
+        return CaseForce(force.name, **own, **in_si(CaseForce, force))
+
+
+def check_cases(scene: SceneInput, inputs: Inputs) -> None:
+    """Refuse load cases that cannot be, and forces and loads that the scene has not, before tables are computed.
+
+    Raises
+    ------
+    BadInput
+        By the field of the load case.
+    """
+    with named(""):
+        cases = load_cases(inputs)
+        check_forces(cases, [force.name for force in scene.forces])
+    for index, case in enumerate(cases):
+        if case.torque is not None and not scene.loads:
+            raise BadInput.of(
+                f"load_cases[{index}].torque_n_m",
+                case.torque,
+                "left out: the scene has no loads",
+                "A load case scales them. Add [[loads]] where the torque leaves the gearbox.",
+            )
 
 
 def _with_case(tabled: TabledScene) -> Iterator[tuple[str, MeshInput]]:
@@ -222,7 +241,7 @@ RUN = Computation(
     facts,
     record_file(("deflection", GearboxDeflection)),
     of_scene=lambda tabled: tabled,
-    check=check,
+    check=check_cases,
     writers={".toml": write_spectrum},
     failure=failure,
 )

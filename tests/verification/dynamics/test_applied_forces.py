@@ -197,5 +197,3 @@ def test_shafts_that_a_load_names_exist_and_turn() -> None:
         with pytest.raises(InputError) as refused:
             rotor(force)
         assert refused.value.field == field
-    with pytest.raises(InputError):
-        AppliedForce("f", "rotor", 0.1)
