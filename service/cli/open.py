@@ -8,6 +8,7 @@ from pathlib import Path
 from service.cli.output import console, print_json
 from service.cli.warned import warn
 from service.from_rexs.files import report_lines, unit_files
+from service.from_rexs.load_case import LoadCase
 from service.from_rexs.opened import OpenedUnit, opened
 from service.problems import BadInput
 from service.rexs import read_rexs
@@ -38,6 +39,14 @@ def run_open(file: Path, out: Path | None, *, as_json: bool) -> None:
     _show(unit, counts, written)
 
 
+def _others(load: LoadCase) -> str:
+    """Return the forces that are not as in the scene."""
+    return "".join(
+        f", {force['name']} {force['force_n']} N and {force['moment_n_m']} N m in x, y, z"
+        for force in load.forces
+    )
+
+
 def _write(unit: OpenedUnit, folder: Path) -> list[Path]:
     """Write the files into a folder, which is made."""
     try:
@@ -65,5 +74,5 @@ def _show(unit: OpenedUnit, counts: Counter[str], written: list[Path]) -> None:
         out.print(f"stage {case.stage}{others}: {case.name}.toml, {gears}", highlight=False, markup=False)
     for load in unit.load_cases:
         words = f"{load.torque_n_m:g} N m at {load.speed_rpm:g} rpm, {load.direction}, share {load.share:g}"
-        out.print(f"{load.name}: {words}", highlight=False, markup=False)
+        out.print(f"{load.name}: {words}{_others(load)}", highlight=False, markup=False, soft_wrap=True)
     out.print(f"written to {', '.join(map(str, written))}", highlight=False, soft_wrap=True, markup=False)

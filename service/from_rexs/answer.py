@@ -8,7 +8,7 @@ from dataclasses import asdict
 from typing import Any
 
 from service.convert.case import case_json
-from service.from_rexs.files import load_case_tables, report_lines
+from service.from_rexs.files import report_lines
 from service.from_rexs.opened import OpenedUnit, opened
 from service.problems import BadInput
 from service.rexs import parsed
@@ -45,7 +45,7 @@ def unit_json(unit: OpenedUnit) -> Json:
             for case in unit.cases
         ],
         "scene": None if unit.scene is None else _whole(unit, cases),
-        "load_cases": load_case_tables(unit.load_cases)["load_cases"],
+        "load_cases": [{"forces": [], **case.table()} for case in unit.load_cases],
         "lines": [asdict(line) for line in unit.lines],
         "summary": list(report_lines(unit.lines)),
     }

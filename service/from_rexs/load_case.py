@@ -1,7 +1,8 @@
-"""Load cases of a scene: torque and speed of its driving shaft, and the share of the time."""
+"""Load cases of a scene: torque and speed of its driving shaft, its forces, and the share of the time."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -30,6 +31,8 @@ class LoadCase:
         Speed of that shaft, positive.
     direction : "drive" or "coast"
         Whether the flanks that carry are those of the scene.
+    forces : tuple of mapping
+        Tables of the scene's forces that differ under it.
     """
 
     name: str
@@ -38,19 +41,27 @@ class LoadCase:
     torque_n_m: float
     speed_rpm: float
     direction: Literal["drive", "coast"]
+    forces: tuple[Mapping[str, Any], ...] = ()
 
     def table(self) -> dict[str, Any]:
         """Return its table in a file."""
-        return {
+        table = {
             "name": self.name,
             "share": self.share,
             "torque_n_m": self.torque_n_m,
             "speed_rpm": self.speed_rpm,
             "direction": self.direction,
         }
+        return table | ({"forces": [dict(force) for force in self.forces]} if self.forces else {})
 
 
-def load_case(flow: PowerFlow, leader: AppliedTorque, torque: float, scene_torque: float) -> LoadCase:
+def load_case(
+    flow: PowerFlow,
+    leader: AppliedTorque,
+    torque: float,
+    scene_torque: float,
+    forces: tuple[Mapping[str, Any], ...],
+) -> LoadCase:
     """Return the load case of an operating point.
 
     Parameters
@@ -62,6 +73,8 @@ def load_case(flow: PowerFlow, leader: AppliedTorque, torque: float, scene_torqu
     torque, scene_torque : float
         Torque on the leader at the operating point and in the scene, N m about z: of opposite signs, the
         other flanks carry, in whichever sense the shafts turn.
+    forces : tuple of mapping
+        Tables of the forces that are not those of the scene at the operating point.
     """
     speed = flow.speed(leader.rotor)
     same = torque * scene_torque >= 0.0
@@ -72,4 +85,5 @@ def load_case(flow: PowerFlow, leader: AppliedTorque, torque: float, scene_torqu
         float(f"{abs(torque):.{DIGITS}g}"),
         float(f"{abs(speed) / RPM:.{DIGITS}g}"),
         "drive" if same else "coast",
+        forces,
     )

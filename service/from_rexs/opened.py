@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from service.from_rexs.account import Line
 from service.from_rexs.gear_unit import GearUnit
@@ -74,7 +75,7 @@ def opened(document: Document) -> OpenedUnit:
     layout = layout_of(unit)
     flows = _flows(layout)
     cases = stage_cases(unit, _torques(layout, flows), _drivers(layout, flows))
-    table = scene_table(layout, flows[0], cases) if flows and cases else None
+    table = scene_table(layout, flows, cases) if flows and cases else None
     _say_missing(layout, flows, cases)
     scene = None if table is None else _scene(layout, table)
     loads = _load_cases(flows, table)
@@ -137,9 +138,18 @@ def _load_cases(flows: Sequence[PowerFlow], table: SceneTable | None) -> tuple[L
     if table is None or table.leader is None:
         return ()
     leader: AppliedTorque = table.leader
-    cases = [load_case(flow, leader, _torque(flow, leader), leader.torque) for flow in flows]
+    cases = [
+        load_case(flow, leader, _torque(flow, leader), leader.torque, _forces(flow, flows[0], table))
+        for flow in flows
+    ]
     order = sorted(range(len(flows)), key=lambda index: flows[index].point.number)
     return tuple(cases[index] for index in order)
+
+
+def _forces(flow: PowerFlow, scene: PowerFlow, table: SceneTable) -> tuple[dict[str, Any], ...]:
+    """Return the tables of the forces that are others at an operating point than at the scene's."""
+    both = [(force.stated(flow.point), force.stated(scene.point)) for force in table.forces]
+    return tuple(own for own, of_scene in both if own != of_scene)
 
 
 def _torque(flow: PowerFlow, leader: AppliedTorque) -> float:

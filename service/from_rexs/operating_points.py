@@ -5,21 +5,24 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from service.from_rexs.account import Fate
 from service.from_rexs.gear_unit import GearUnit
 from service.from_rexs.part import Part
+from service.problems import BadInput
 
 _SPEED, _TORQUE, _POWER = "rotational_speed", "torque_around_u_axis", "power"
-FORCES_REFUSED = "a scene has no forces on shafts"
 _SHARES = ("operating_time_fraction", "load_duration_fraction")
 """As REXS has it, and as one writer names it."""
-_FORCES = (
-    "force_u_direction",
-    "force_v_direction",
-    "force_w_direction",
-    "torque_around_v_axis",
-    "torque_around_w_axis",
-)
+FORCES: Mapping[str, str] = {
+    "force_u_direction": "force along u of the shaft, N",
+    "force_v_direction": "force along v of the shaft, N",
+    "force_w_direction": "force along w of the shaft, N",
+    "torque_around_u_axis": "",
+    "torque_around_v_axis": "moment about v of the shaft, N m",
+    "torque_around_w_axis": "moment about w of the shaft, N m",
+}
+"""Force and moment of an external load, in words; the torque about u is none of them, and stays 0."""
+LARGEST = 1e9
+"""N or N m, of a force in a scene."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +43,9 @@ class OperatingPoint:
         N m about u from outside, by external load; None where it follows from the others.
     powers : mapping of int to float
         W into the unit, by external load whose torque is not stated.
+    forces : mapping of int to tuple of six floats
+        Force along and moment about u, v, w of its shaft, N and N m, by external load that states any; the
+        moment about u is 0.
     """
 
     name: str
@@ -48,6 +54,7 @@ class OperatingPoint:
     speeds: Mapping[int, float]
     torques: Mapping[int, float | None]
     powers: Mapping[int, float]
+    forces: Mapping[int, tuple[float, ...]]
 
 
 def operating_points(unit: GearUnit) -> tuple[OperatingPoint, ...]:
@@ -98,18 +105,31 @@ def _point(
     }
     torques: dict[int, float | None] = {}
     powers: dict[int, float] = {}
+    forces: dict[int, tuple[float, ...]] = {}
     for part in loads:
         _enter_torque(part, torques, powers)
-        _refuse_forces(part)
-    return OperatingPoint(name, *place, speeds, torques, powers)
+        _enter_forces(part, forces)
+    return OperatingPoint(name, *place, speeds, torques, powers, forces)
 
 
-def _refuse_forces(part: Part) -> None:
-    """State that forces and moments across the axis are left out; none of 0 is missed."""
-    for item in _FORCES:
-        if (value := part.number(item, "load on the shaft")) is not None:
-            fate: Fate = "refused" if value else "ignored"
-            part.say(item, fate, FORCES_REFUSED if value else "0")
+def _enter_forces(part: Part, forces: dict[int, tuple[float, ...]]) -> None:
+    """Enter the force and moment that a load states, each component in place of one entered before."""
+    former = forces.get(part.id, (0.0,) * len(FORCES))
+    stated = [_component(part, item, words) for item, words in FORCES.items()]
+    for item, value, before in zip(FORCES, stated, former, strict=True):
+        if value == 0.0 == before:
+            part.say(item, "ignored", "0")
+    if any(value is not None for value in stated):
+        wrench = (before if value is None else value for value, before in zip(stated, former, strict=True))
+        forces[part.id] = tuple(wrench)
+
+
+def _component(part: Part, item: str, words: str) -> float | None:
+    """Return a component of a force or moment, None where the file gives none, or it is the torque."""
+    value = part.number(item, words) if words else None
+    if value is not None and not abs(value) <= LARGEST:
+        raise BadInput.of(f"{part.place}, {item}", value, f"from {-LARGEST:g} to {LARGEST:g} N or N m")
+    return value
 
 
 def _enter_torque(part: Part, torques: dict[int, float | None], powers: dict[int, float]) -> None:

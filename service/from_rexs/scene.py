@@ -14,6 +14,7 @@ from service.from_rexs.names import Names
 from service.from_rexs.placement import FIXED, placement
 from service.from_rexs.power_flow import PowerFlow
 from service.from_rexs.scene_bearings import scene_bearings, stub_couplings
+from service.from_rexs.scene_forces import SceneForce, scene_forces
 from service.from_rexs.scene_gears import cases_by_stage, scene_discs, scene_gears
 from service.from_rexs.scene_housing import scene_housings
 from service.from_rexs.scene_loads import (
@@ -44,26 +45,30 @@ class SceneTable:
         Tables of a scene file; meshes name their case files.
     leader : AppliedTorque or None
         What drives it first.
+    forces : tuple of SceneForce
+        The external loads that its forces are.
     parts : SceneParts
         The components that its parts are.
     """
 
     table: dict[str, Any]
     leader: AppliedTorque | None
+    forces: tuple[SceneForce, ...]
     parts: SceneParts
 
 
-def scene_table(layout: Layout, flow: PowerFlow, cases: Sequence[StageCase]) -> SceneTable:
+def scene_table(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[StageCase]) -> SceneTable:
     """Return the scene at an operating point.
 
     Parameters
     ----------
     layout : Layout
-    flow : PowerFlow
-        Speeds and torques of the operating point.
+    flows : sequence of PowerFlow
+        Speeds and torques of the scene's operating point, then those of the others.
     cases : sequence of StageCase
         Of the stages; those without are cut off.
     """
+    flow = flows[0]
     by_stage, names = cases_by_stage(cases), Names()
     computed = [s for s in layout.stages if s.stage.id in by_stage and layout.is_computed(s)]
     cut = [stage for stage in layout.stages if stage not in computed]
@@ -72,6 +77,7 @@ def scene_table(layout: Layout, flow: PowerFlow, cases: Sequence[StageCase]) -> 
     gears, meshes = scene_gears(layout, shafts, by_stage, Names())
     torques = applied_torques(layout, flow, shafts, cut)
     drivers = driving(torques, flow, trains_of(layout, shafts))
+    forces = scene_forces(layout, [each.point for each in flows], shafts)
     table: dict[str, Any] = {
         "run": {"duration_s": _duration(layout, slowest_mesh(layout, flow, shafts))},
         "gravity_m_per_s2": _gravity(layout),
@@ -86,6 +92,7 @@ def scene_table(layout: Layout, flow: PowerFlow, cases: Sequence[StageCase]) -> 
         "planets": _planets(layout, {shaft.rotor: shaft.name for shaft in shafts.by_rotor.values()}),
         "meshes": meshes,
         **motion_tables(layout, flow, shafts, torques, drivers),
+        "forces": [force.table(flow.point) for force in forces],
     }
     named = [
         (mesh["name"], by_stage[stage.stage.id]) for stage, mesh in zip(shafts.stages, meshes, strict=True)
@@ -93,6 +100,7 @@ def scene_table(layout: Layout, flow: PowerFlow, cases: Sequence[StageCase]) -> 
     return SceneTable(
         {key: value for key, value in table.items() if value != []},
         drivers[0] if drivers else None,
+        forces,
         scene_parts(layout, flow, shafts, bearings.seats, named),
     )
 

@@ -30,6 +30,14 @@ class StageBody(BaseModel):
     case: Annotated[dict[str, Any], Named("Case")]
 
 
+class CaseForceBody(BaseModel):
+    """A force of the scene that differs under a load case."""
+
+    name: str
+    force_n: list[float] = Field(description="In x, y, z")
+    moment_n_m: list[float] = Field(description="About x, y, +z")
+
+
 class LoadCaseBody(BaseModel):
     """A load case of the scene."""
 
@@ -38,6 +46,7 @@ class LoadCaseBody(BaseModel):
     torque_n_m: float = Field(description="On the shaft of the scene's first drive")
     speed_rpm: float = Field(description="Of that shaft")
     direction: str = Field(description="Flanks that carry: drive, as in the scene, or coast")
+    forces: list[CaseForceBody] = Field(description="Forces that are not as in the scene")
 
 
 class UnitLine(BaseModel):

@@ -23,7 +23,7 @@ UNITS = {name: unit for unit, names in _TABLE.items() for name in names}
 ROOT, CASING, INPUT, MIDDLE, OUTPUT = 1, 2, 3, 4, 5
 GEARS = (11, 12, 13, 14)
 STAGES = (21, 22)
-MOTOR, MACHINE = 41, 42
+MOTOR, MACHINE, BELT = 41, 42, 44
 CENTER_DISTANCES = (80.0 / math.cos(math.radians(15.0)), 90.0 / math.cos(math.radians(10.0)))
 ANGLES = (30.0, 200.0)
 NORMAL_LOAD, NORMAL_SPEED = 100.0, 1500.0
@@ -159,10 +159,20 @@ def two_stages(
     return Document(Model("2.0.0", "test", "1", DATE, joined, components, spectra))
 
 
-def antiparallel(shaft: int, length: float) -> Document:
+def pulled(shaft: int = INPUT, cases: Iterable[Mapping[str, float]] = (), **values: Any) -> dict[str, Any]:
+    """Return what adds an external load of these values to a unit; `cases` are its values by load case."""
+    return {
+        "more": {BELT: ("external_load", values)},
+        "further": [relation(2900, "assembly", assembly=shaft, part=BELT)],
+        "cases": [{BELT: ("external_load", case)} for case in cases],
+    }
+
+
+def antiparallel(shaft: int, length: float, **further: Any) -> Document:
     """Return the unit with one shaft described from its other end."""
-    parts = {INPUT: (11, 31, 32, 130, 131, MOTOR), MIDDLE: (12, 13, 33, 34, 140, 141)}
-    on_shaft, about_u = parts[shaft], ("rotational_speed", "torque_around_u_axis")
+    parts = {INPUT: (11, 31, 32, 130, 131, MOTOR, BELT), MIDDLE: (12, 13, 33, 34, 140, 141)}
+    on_shaft, turned = parts[shaft], ["rotational_speed"]
+    turned += [item for axis in "uv" for item in (f"force_{axis}_direction", f"torque_around_{axis}_axis")]
 
     def each(number: int, _kind: str, values: dict[str, Any]) -> dict[str, Any]:
         if number == shaft:
@@ -170,19 +180,19 @@ def antiparallel(shaft: int, length: float) -> Document:
             values = values | {"support_vector": (x + length, y, z), "u_axis_vector": (-1.0, 0.0, 0.0)}
         if number not in (shaft, *on_shaft):
             return values
-        values = {item: -value if item in about_u else value for item, value in values.items()}
+        values = {item: -value if item in turned else value for item, value in values.items()}
         for item in ("u_coordinate_on_shaft", "u_coordinate_on_shaft_inner_side"):
             if item in values:
                 values = values | {item: length - values[item] - values.get("length", 0.0)}
         return values | ({"u_axis_vector": (-1.0, 0.0, 0.0)} if "u_axis_vector" in values else {})
 
-    return two_stages(each=each)
+    return two_stages(each=each, **further)
 
 
-def mirrored() -> Document:
+def mirrored(**further: Any) -> Document:
     """Return the mirror image in the plane v = 0: hands and senses of rotation are opposite."""
     opposite = ("helix_angle_reference_diameter", "rotational_speed", "torque_around_u_axis")
-    opposite += ("rotating_angle_around_neg_u_axis",)
+    opposite += ("rotating_angle_around_neg_u_axis", "force_v_direction", "torque_around_w_axis")
 
     def each(_number: int, _kind: str, values: dict[str, Any]) -> dict[str, Any]:
         values = {k: -v if k in opposite else v for k, v in values.items()}
@@ -191,7 +201,7 @@ def mirrored() -> Document:
             values["support_vector"] = (x, -y, z)
         return values
 
-    return two_stages(each=each)
+    return two_stages(each=each, **further)
 
 
 SUN, RING, CARRIER, PLANETS, SET = 3, 4, 5, (6, 7, 8), 20

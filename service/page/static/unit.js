@@ -76,9 +76,15 @@ function shafts(scene) {
 function loads(cases) {
   const rows = cases.map((load) => [
     load.name, number(load.torque_n_m), number(load.speed_rpm), number(100 * load.share), load.direction,
+    load.forces.map((force) => `${force.name}: ${vector(force.force_n)}; ${vector(force.moment_n_m)}`).join(" | "),
   ]);
-  return dataTable({ caption: "Load cases", head: ["case", "torque, N m", "speed, rpm", "share, %", "flanks"], rows });
+  const forces = "forces that differ: x, y, z, N; about x, y, z, N m";
+  const head = ["case", "torque, N m", "speed, rpm", "share, %", "flanks", forces];
+  return dataTable({ caption: "Load cases", head, rows });
 }
+
+/** @param {number[]} values */
+const vector = (values) => values.map((value) => number(value)).join(", ");
 
 /** @param {File} file */
 async function base64(file) {

@@ -217,22 +217,6 @@ def test_the_scene_runs_at_the_load_case_of_the_largest_share() -> None:
     assert unit.cases[0].case.load.torque_n_m == (50.0, 80.0)
 
 
-def test_forces_of_every_load_case_are_refused_and_torques_taken() -> None:
-    def case(force: float) -> dict[int, tuple[str, dict[str, Any]]]:
-        values = {"torque_around_u_axis": 80.0, "force_v_direction": force, "force_w_direction": 0.0}
-        return {MOTOR: ("external_load", values)}
-
-    lines = [
-        line for line in opened(two_stages(cases=(case(5.0), case(6.0)))).lines if line.component == MOTOR
-    ]
-    fates = {
-        item: [line.fate for line in lines if line.item == item] for item in {line.item for line in lines}
-    }
-    assert fates["force_v_direction"] == ["refused", "refused"]
-    assert fates["force_w_direction"] == ["ignored", "ignored"]
-    assert fates["torque_around_u_axis"] == ["taken", "taken", "taken"]
-
-
 def test_sections_without_a_place_are_summed_in_order() -> None:
     unit = opened(two_stages({130: {"u_coordinate_on_shaft": None}, 131: {"u_coordinate_on_shaft": None}}))
     assert unit.scene is not None

@@ -43,6 +43,8 @@ BEARINGS = range(31, 37)
 RADIAL, AXIAL = 2e8, 1e8
 """N/m, of the bearings of the unit."""
 SHARES, TORQUES = (20.0, 70.0, 10.0), (50.0, 80.0, -30.0)
+FORCES = (0.0, 300.0, -200.0)
+"""Of the motor along v, N."""
 SIDES = (1, 1, -1)
 """The face counts the other way on the coast side, where the train turns the other way."""
 Values = Mapping[str, Any]
@@ -54,9 +56,9 @@ def spectrum() -> Document:
         cases=[
             {
                 ROOT: ("gear_unit", {"operating_time_fraction": share}),
-                MOTOR: ("external_load", {"torque_around_u_axis": torque}),
+                MOTOR: ("external_load", {"torque_around_u_axis": torque, "force_v_direction": force}),
             }
-            for share, torque in zip(SHARES, TORQUES, strict=True)
+            for share, torque, force in zip(SHARES, TORQUES, FORCES, strict=True)
         ]
     )
 
@@ -161,7 +163,8 @@ def test_a_bearing_pulls_its_outer_side_after_the_inner(exchanged: int | None) -
         moved = vector(own, "displacement_inner_side_{}") - vector(own, "displacement_outer_side_{}")
         assert moved == pytest.approx(deflection, rel=1e-12, abs=1e-20)
         on_casing += inner if number == exchanged else outer
-    assert np.linalg.norm(on_casing) < 1e-6 * NORMAL_LOAD
+    pulled = np.array([0.0, FORCES[1], 0.0])
+    assert on_casing == pytest.approx(pulled, abs=1e-6 * NORMAL_LOAD)
 
 
 @pytest.mark.parametrize("shaft", [INPUT, MIDDLE])
@@ -319,6 +322,11 @@ def test_other_load_cases_and_lost_ones_are_refused(exported: tuple[Document, Ge
     ):
         with pytest.raises(BadInput, match=words):
             deflected(spectrum(), unit, with_case(**changes))
+    last = unit.load_cases[2].name
+    for forces in ({}, {last: [{"name": f"external_load {MOTOR}", "factor": -1.0}]}):
+        other = replace(result, case_forces=result.case_forces | {last: []} | forces)
+        with pytest.raises(BadInput, match=f'length of load case "{last}", forces|{last}.*force_n'):
+            deflected(spectrum(), unit, other)
     with pytest.raises(BadInput, match="older version"):
         deflected(spectrum(), unit, replace(result, scene={}))
 
