@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from service.from_rexs.gear_unit import GearUnit
 from service.from_rexs.part import Part
+from service.from_rexs.placement import u_on_shaft
 from service.from_rexs.tooth_depth import ToothDepth
 from service.from_rexs.toothing import ToothingData
 from service.units import GPA, MM
@@ -73,9 +74,8 @@ def _bore(unit: GearUnit, gear: ToothingData, root: float) -> float:
 
 
 def _shaft_diameter(unit: GearUnit, gear: Part) -> float | None:
-    """Return the outer diameter of the shaft's section at the gear, m."""
-    shaft = unit.owner(gear, "shaft")
-    place = gear.number("u_coordinate_on_shaft", "place along the shaft")
+    """Return the outer diameter of the shaft's section at the gear's middle, m."""
+    shaft, place = unit.owner(gear, "shaft"), u_on_shaft(unit, gear)
     if shaft is None or place is None:
         return None
     start = 0.0

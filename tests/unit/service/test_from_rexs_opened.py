@@ -224,6 +224,16 @@ def test_sections_without_a_place_are_summed_in_order() -> None:
     assert said(unit, 131, "u_coordinate_on_shaft") == ("derived", "50 mm, the sum of the lengths before it")
 
 
+def test_the_bore_is_the_diameter_of_the_shaft_under_the_middle_of_the_gear() -> None:
+    """One writer gives the begin of a gear as its coordinate: there the shaft is thinner."""
+    unit = opened(two_stages({11: {"u_coordinate_on_shaft": 45.0}}))
+    assert unit.cases[0].case.pair.pinion.bore_diameter_mm == 30.0
+    assert said(unit, 11, "inner_diameter") == (
+        "derived",
+        "bore_diameter_mm 30: the shaft's outer diameter there",
+    )
+
+
 def test_a_rigid_bearing_is_stiff_and_a_floating_one_free_along_the_axis() -> None:
     document = two_stages(
         {31: {"radial_stiffness": 1e23, "axial_stiffness": 1e23, "bending_stiffness": 1e15}}
