@@ -13,6 +13,7 @@ from dynamics.assembly.assemble import assemble
 from dynamics.bodies import Inertia
 from dynamics.effects import EFFECTS, LEFT_OUT, RotorEffect
 from dynamics.errors import InputError
+from dynamics.forces import AppliedForce
 
 
 def kinds(scene, shaft="output"):
@@ -41,6 +42,16 @@ def test_a_gear_off_the_middle_tilts_its_shaft_only():
 def test_a_helical_pair_moves_along_and_tilts():
     scene = with_gear(with_gear(gear_pair_scene(), 0, base_helix_angle=0.2), 1, base_helix_angle=-0.2)
     assert kinds(scene) == ["x", "y", "z", "tilt_x", "tilt_y", "rotation"]
+
+
+def test_a_force_along_the_axis_moves_its_shaft_along():
+    held = with_bushings(gear_pair_scene(), axial_stiffness=1e8)
+    assert kinds(held) == ["x", "y", "rotation"]
+    pushed = replace(held, forces=(AppliedForce("thrust", "output", 0.1, (0.0, 0.0, 70.0)),))
+    assert kinds(pushed) == ["x", "y", "z", "rotation"]
+    assert kinds(pushed, "input") == ["x", "y"]
+    across = replace(held, forces=(AppliedForce("belt", "output", 0.1, (70.0, 0.0, 0.0)),))
+    assert kinds(across) == ["x", "y", "rotation"]
 
 
 def test_without_bushings_a_shaft_only_turns():
