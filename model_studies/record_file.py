@@ -115,7 +115,7 @@ def _together(kind: Any, plain: Any, place: _Place, taken: Any) -> Any:
         values = {
             field.name: _together(of, plain[field.name], place.of(field), taken)
             for field, of in _stored_fields(kind)
-            if field.name in plain or field.default is MISSING
+            if field.name in plain or (field.default is MISSING and field.default_factory is MISSING)
         }
         return kind(**values)  # type: ignore[operator]  # is_dataclass says instances are types too
     if get_origin(kind) is tuple:

@@ -3,6 +3,7 @@
 import host.analysis  # noqa: F401 (says what to install)
 from dynamics.deflection.bearing_life import life_duration
 from dynamics.deflection.bearing_load import BearingLoad, equivalent_load
+from dynamics.deflection.case_forces import ForceUnderCase
 from dynamics.deflection.causes import CAUSES
 from dynamics.deflection.deflect import CaseDeflection, Deflection, deflect
 from dynamics.deflection.loaded_scene import loaded_scene
@@ -17,6 +18,7 @@ __all__ = [
     "CaseDeflection",
     "CaseForce",
     "Deflection",
+    "ForceUnderCase",
     "LoadCase",
     "MeshAlignment",
     "ShaftLines",

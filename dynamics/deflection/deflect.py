@@ -10,6 +10,7 @@ from dynamics.assembly.assemble import assemble
 from dynamics.checks import distinct, integer
 from dynamics.deflection.bearing_load import BearingLoad, bearing_loads
 from dynamics.deflection.bearing_strain import bearing_strain
+from dynamics.deflection.case_forces import ForceUnderCase, as_records
 from dynamics.deflection.loaded_scene import leader_of, leading_torque, loaded_scene
 from dynamics.deflection.mesh_alignment import MeshAlignment, mesh_alignment
 from dynamics.deflection.mesh_cycle import cycle_times
@@ -42,6 +43,8 @@ class CaseDeflection(Record):
     meshes : tuple of MeshAlignment
     bearings : tuple of BearingLoad
     shafts : ShaftLines
+    forces : tuple of ForceUnderCase
+        Of the scene; none in files of versions that did not keep them.
     """
 
     name: str
@@ -54,6 +57,7 @@ class CaseDeflection(Record):
     meshes: tuple[MeshAlignment, ...]
     bearings: tuple[BearingLoad, ...]
     shafts: ShaftLines
+    forces: tuple[ForceUnderCase, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -134,4 +138,5 @@ def _deflected(loaded: Scene, case: LoadCase, positions: int) -> CaseDeflection:
         tuple(mesh_alignment(system, k, rest, strain) for k in range(len(loaded.meshes))),
         bearing_loads(system, rest, strain),
         shaft_lines(system, motion),
+        as_records(loaded.forces),
     )

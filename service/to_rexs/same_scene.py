@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from bounds.types import Json
@@ -42,7 +42,7 @@ def check_same_scene(unit: OpenedUnit, result: GearboxDeflection) -> None:
     for name, part in unit.parts.meshes.items():
         own = pairs[part.case]
         _refuse(first_difference(own, result.cases.get(name, {}).get("pair"), f'case of mesh "{name}", pair'))
-    _check_load_cases(unit, result)
+    _check_load_cases(unit, result.deflection.cases)
 
 
 def first_difference(unit: Any, result: Any, path: str) -> tuple[str, Any, Any] | None:
@@ -86,10 +86,10 @@ def _shown(value: Any) -> Any:
     return float(f"{value:.10g}") if isinstance(value, float) else value
 
 
-def _check_load_cases(unit: OpenedUnit, result: GearboxDeflection) -> None:
+def _check_load_cases(unit: OpenedUnit, cases: Sequence[CaseDeflection]) -> None:
     """Refuse load cases that the unit has not, and those that were not found."""
     known = {case.name: case for case in unit.load_cases}
-    for case in result.deflection.cases:
+    for case in cases:
         if case.name not in known:
             names = ", ".join(known) or "none"
             raise BadInput.of("load_cases", case.name, f"a load case of the unit: {names}", _ADVICE)
@@ -99,9 +99,21 @@ def _check_load_cases(unit: OpenedUnit, result: GearboxDeflection) -> None:
             )
         own = known[case.name]
         _check_load(own, case)
-        stated = own.table().get("forces", [])
+        forces = {part.name: _vectors(part.force.tolist(), part.moment.tolist()) for part in case.forces}
         path = f'load case "{case.name}", forces'
-        _refuse(first_difference(stated, result.case_forces.get(case.name, []), path))
+        _refuse(first_difference(_forces_under(unit, own), forces, path))
+
+
+def _forces_under(unit: OpenedUnit, case: LoadCase) -> Json:
+    """Return the forces of a unit's scene under a load case by name."""
+    forces = () if unit.scene is None else unit.scene.forces
+    of_scene = {part.name: _vectors(part.force_n, part.moment_n_m) for part in forces}
+    return of_scene | {part["name"]: _vectors(part["force_n"], part["moment_n_m"]) for part in case.forces}
+
+
+def _vectors(force: Iterable[float], moment: Iterable[float]) -> Json:
+    """Return a force and a moment as they are compared."""
+    return {"force_n": list(force), "moment_n_m": list(moment)}
 
 
 def _check_load(own: LoadCase, case: CaseDeflection) -> None:

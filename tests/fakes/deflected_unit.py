@@ -18,7 +18,7 @@ from service.schemas.scene import SceneInput
 from service.studies.deflect import Inputs
 from service.studies.deflect.outline import outline_of
 from service.studies.deflect.result import GearboxDeflection, MeshFlanks
-from service.studies.deflect.run import forces_of, load_cases, scene_of
+from service.studies.deflect.run import load_cases, scene_of
 
 HALF_FACE = 0.01
 POSITIONS = 3
@@ -42,7 +42,7 @@ def deflection_of_unit(unit: OpenedUnit) -> GearboxDeflection:
     by_mesh = {name: cases[part.case] for name, part in unit.parts.meshes.items()}
     outline = outline_of(scene)
     kept = scene_of(validated(SceneInput, tomllib.loads(unit_files(unit)[SCENE_FILE])))
-    return GearboxDeflection(found, flanks, 2, 1e-9, True, outline, by_mesh, 1.0, kept, forces_of(inputs))
+    return GearboxDeflection(found, flanks, 2, 1e-9, True, outline, by_mesh, 1.0, kept)
 
 
 def _flanks(case: CaseDeflection, mesh: MeshAlignment) -> MeshFlanks:

@@ -66,6 +66,15 @@ class Bearing(Part):
     rating_life: RatingLife
 
 
+class Force(Part):
+    """A force of the scene under a load case in the axes x, y, z, before the factor of its course."""
+
+    name: str
+    shaft: str
+    force_n: list[float]
+    moment_n_m: list[float]
+
+
 class LoadCase(Part):
     """A load case."""
 
@@ -76,6 +85,7 @@ class LoadCase(Part):
     speed_rpm: float
     status: str
     residual: float | None
+    forces: list[Force]
     meshes: list[Mesh]
     bearings: list[Bearing]
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from bounds.types import Json
-from dynamics.deflection import CAUSES, BearingLoad, CaseDeflection, MeshAlignment
+from dynamics.deflection import CAUSES, BearingLoad, CaseDeflection, ForceUnderCase, MeshAlignment
 from service.studies.deflect.bearing_figures import bearing_in_case, bearing_over_cases, known, loads_by_case
 from service.studies.deflect.result import GearboxDeflection, MeshFlanks
 from service.units import MM, RPM, UM
@@ -59,8 +59,19 @@ def _case(
         "speed_rpm": case.speed / RPM,
         "status": case.status,
         "residual": known(case.residual),
+        "forces": [_force(force) for force in case.forces],
         "meshes": [_mesh(mesh, flanks.get((case.name, mesh.name))) for mesh in case.meshes],
         "bearings": [bearing_in_case(load) for load in loads],
+    }
+
+
+def _force(force: ForceUnderCase) -> Json:
+    """Return one force of the scene under one load case."""
+    return {
+        "name": force.name,
+        "shaft": force.shaft,
+        "force_n": force.force.tolist(),
+        "moment_n_m": force.moment.tolist(),
     }
 
 

@@ -17,6 +17,7 @@ from service.studies.deflect.result import GearboxDeflection
 from service.studies.deflect.tables import (
     bearing_table,
     drawn_case,
+    force_table,
     largest_motion,
     life_table,
     mesh_of,
@@ -59,6 +60,7 @@ def page(result: GearboxDeflection) -> Page:
         ),
         *([Section("Flanks", figures=contact)] if contact else []),
         Section("Bearings", tables=(bearing_table(result), life_table(result))),
+        *([Section("Forces", tables=(forces,))] if (forces := force_table(result)) else []),
     ]
     count = len(result.deflection.cases)
     lead = f"{count} load case{'s' * (count > 1)} on {result.deflection.leading_shaft}. {agreement(result)}"

@@ -114,8 +114,6 @@ class GearboxDeflection(Record):
         CPU time.
     scene : dict
         The scene as it was written, without the cases; empty in files of versions that did not keep it.
-    case_forces : dict
-        The forces that load cases state as they were written, by load case.
     """
 
     deflection: Deflection
@@ -127,4 +125,3 @@ class GearboxDeflection(Record):
     cases: Json
     seconds: float
     scene: Json = field(default_factory=dict)
-    case_forces: Json = field(default_factory=dict)

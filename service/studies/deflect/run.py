@@ -67,7 +67,6 @@ def deflection_of(tabled: TabledScene, inputs: Inputs, means: Means) -> GearboxD
         written,
         time.process_time() - began,
         scene_of(tabled.inputs),
-        forces_of(inputs),
     )
 
 
@@ -75,12 +74,6 @@ def scene_of(inputs: SceneInput) -> Json:
     """Return a scene as it is kept with its deflection: without the cases of its meshes."""
     kept: Json = inputs.model_dump(mode="json", exclude={"meshes": {"__all__": {"case", "case_file"}}})
     return kept
-
-
-def forces_of(inputs: Inputs) -> Json:
-    """Return the forces that load cases state as they are kept with a deflection, by case."""
-    kept = inputs.model_dump(mode="json", exclude_none=True)["load_cases"]
-    return {case["name"]: case["forces"] for case in kept if "forces" in case}
 
 
 def load_cases(inputs: Inputs) -> tuple[LoadCase, ...]:
@@ -101,7 +94,7 @@ def _force(index: int, force: CaseForceInput) -> CaseForce:
 
 
 def check_cases(scene: SceneInput, inputs: Inputs) -> None:
-    """Refuse load cases that cannot be, and forces and loads that the scene has not, before tables are computed.
+    """Refuse load cases that cannot be, and what they state of a scene that lacks it, before tables are computed.
 
     Raises
     ------

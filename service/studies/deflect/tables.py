@@ -66,6 +66,34 @@ def mesh_table(result: GearboxDeflection) -> Table:
     return Table("Meshes under the load cases: misalignment over the face by cause", head, rows)
 
 
+def force_table(result: GearboxDeflection) -> Table | None:
+    """List the forces of the scene under the load cases; None without forces."""
+    head = (
+        "force",
+        "shaft",
+        "load case",
+        "x, N",
+        "y, N",
+        "z, N",
+        "about x, N m",
+        "about y, N m",
+        "about z, N m",
+    )
+    rows = tuple(
+        (force.name, force.shaft, _titled(case), *map(_component, (*force.force, *force.moment)))
+        for case in result.deflection.cases
+        for force in case.forces
+    )
+    return (
+        Table("Forces under the load cases, before the factor of their course", head, rows) if rows else None
+    )
+
+
+def _component(value: float) -> str:
+    """Write a component of a force."""
+    return "0" if value == 0.0 else number(float(value), 4)
+
+
 def _row(name: str, case: CaseDeflection, flanks: MeshFlanks | None, acting: BoolArray) -> tuple[str, ...]:
     """One mesh under one load case."""
     mesh = mesh_of(case, name)

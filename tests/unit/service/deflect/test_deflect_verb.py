@@ -16,7 +16,7 @@ from scene_files import scene_file
 from two_stage_scenes import two_stages
 from typer.testing import CliRunner, Result
 
-from dynamics.deflection import BearingLoad, deflect
+from dynamics.deflection import BearingLoad, ForceUnderCase, deflect
 from dynamics.settings.load_case import LoadCase
 from service.cli.commands import app
 from service.drawing.figure import number
@@ -31,7 +31,13 @@ from service.studies.deflect.page import page
 from service.studies.deflect.result import GearboxDeflection, MeshFlanks
 from service.studies.deflect.run import RUN, failure, load_cases
 from service.studies.deflect.spectrum import optimization_inputs, write_spectrum
-from service.studies.deflect.tables import bearing_table, life_table, mesh_table, meshes_worst_first
+from service.studies.deflect.tables import (
+    bearing_table,
+    force_table,
+    life_table,
+    mesh_table,
+    meshes_worst_first,
+)
 from service.studies.optimize import Inputs as OptimizeInputs
 
 CASES = (
@@ -150,6 +156,10 @@ def test_a_case_states_forces_of_the_scene(tmp_path: Path) -> None:
     file.write_text(PULLED)
     cases = json.loads(loa(scene, file, "--json").stdout)["load_cases"]
     across = [np.array(case["bearings"][0]["force_n"][:2]) for case in cases]
+    assert cases[1]["forces"] == [
+        {"name": "belt", "shaft": "input", "force_n": [0.0, -300.0, 50.0], "moment_n_m": [0.0, 0.0, 0.0]}
+    ]
+    assert [case["forces"][0]["force_n"][1] for case in cases] == [100.0, -300.0, 200.0, 200.0, 100.0]
     assert across[1] - across[0] == pytest.approx([0.0, -400.0], rel=1e-9, abs=1e-6)
     assert across[2] - across[0] == pytest.approx([0.0, 100.0], rel=1e-9, abs=1e-6)
     assert across[3] - across[4] == pytest.approx([0.0, 100.0], rel=1e-9, abs=1e-6)
@@ -184,6 +194,19 @@ def test_the_file_gives_back_the_result_bit_by_bit(result: GearboxDeflection, tm
     assert np.array_equal(back.deflection.cases[1].shafts.motion, result.deflection.cases[1].shafts.motion)
     write_report([file], tmp_path / "page.html")
     assert "Misalignment of each mesh by cause" in (tmp_path / "page.html").read_text("utf-8")
+
+
+def test_forces_of_all_cases_are_kept_and_shown(result: GearboxDeflection, tmp_path: Path) -> None:
+    pull = ForceUnderCase("belt", "in", np.array([0.0, 800.0, -1.5]), np.array([0.0, 0.0, 20.0]))
+    cases = tuple(replace(case, forces=(pull,)) for case in result.deflection.cases)
+    pulled = replace(result, deflection=replace(result.deflection, cases=cases))
+    table = force_table(pulled)
+    assert table is not None and force_table(result) is None
+    assert table.rows[3] == ("belt", "in", "back (coast)", "0", "800.0", "-1.500", "0", "0", "20.00")
+    assert [section.title for section in page(pulled).sections][-1] == "Forces"
+    RUN.file.write(pulled, tmp_path / "d.nc")
+    back = RUN.file.read(tmp_path / "d.nc").deflection.cases[1].forces[0]
+    assert np.array_equal(back.force, pull.force) and np.array_equal(back.moment, pull.moment)
 
 
 def test_the_worst_mesh_comes_first(result: GearboxDeflection) -> None:
