@@ -17,13 +17,13 @@ from dynamics.effects import EFFECTS, EffectLedger
 from dynamics.mechanism.additions import BEARING_LAWS
 from dynamics.mechanism.base_pitches import Corrections
 from dynamics.mechanism.bearing_elements import BearingElement
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.connections import forces_on_ground
 from dynamics.mechanism.coupling_rows import CouplingRows
 from dynamics.mechanism.flanks import Flanks
 from dynamics.mechanism.freedoms import Freedoms
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.line_of_action import LineOfAction
-from dynamics.mechanism.rotor import Rotor
 from dynamics.mechanism.sampling import Sampling, choose_sampling, top_mode
 from dynamics.mechanism.seats import Seats
 from dynamics.mechanism.supports import Supports
@@ -48,8 +48,8 @@ class System:
         Force laws as resolved: nominal forces, damping, tables.
     elements : tuple of Element
         The driving flanks of all meshes, then everything else.
-    rotors : tuple of Rotor
-        One per shaft.
+    rotors : Bodies
+        A rotor per shaft.
     supports : Supports
         Bushings, then planet bearings.
     seats : Seats
@@ -76,7 +76,7 @@ class System:
     lines: tuple[LineOfAction, ...]
     flanks: Flanks
     elements: tuple[Element, ...]
-    rotors: tuple[Rotor, ...]
+    rotors: Bodies
     supports: Supports
     seats: Seats
     bearings: tuple[BearingElement, ...]

@@ -8,16 +8,16 @@ import numpy as np
 
 from dynamics.arrays.elements import Element
 from dynamics.forces.law import Law
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.flank_gradients import approach
 from dynamics.mechanism.flanks import Flanks
 from dynamics.mechanism.line_of_action import LineOfAction, line_of_action
-from dynamics.mechanism.rotor import Rotor
 from dynamics.scene.scene import Scene
 
 
 def flank_elements(
     scene: Scene,
-    rotors: Sequence[Rotor],
+    rotors: Bodies,
     senses: Sequence[int],
     lines: Sequence[LineOfAction],
     flanks: Flanks,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -13,10 +12,10 @@ from dynamics.arrays.elements import Element
 from dynamics.forces.frame_coupling import FrameCouplingLaws
 from dynamics.forces.law import Law
 from dynamics.joints.seat import SEAT
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import section_rows
 from dynamics.mechanism.coupling_rows import ACROSS, full_matrix
 from dynamics.mechanism.kinematics import Kinematics
-from dynamics.mechanism.rotor import Rotor
 from dynamics.motion.observation import local_state
 from dynamics.scene.frame_check import crosses_frames
 from dynamics.scene.scene import Scene
@@ -77,7 +76,7 @@ def frame_turns(scene: Scene, kinematics: Kinematics) -> tuple[tuple[Fraction, .
 
 
 def frame_coupling_elements(
-    scene: Scene, rotors: Sequence[Rotor], lever: float
+    scene: Scene, rotors: Bodies, lever: float
 ) -> tuple[tuple[Element, ...], FrameCouplingLaws]:
     """Return the elements of all couplings across frames, and their laws; `lever` (m) makes lengths of tilts.
 
@@ -116,7 +115,7 @@ def stiffness_across(arrays: SystemArrays, time: float) -> FloatArray:
 
 
 def frame_joint(
-    scene: Scene, rotors: Sequence[Rotor], part: FrameCoupling, angle: float
+    scene: Scene, rotors: Bodies, part: FrameCoupling, angle: float
 ) -> tuple[FloatArray, FloatArray]:
     """Return strain (5, N) and stiffness (5, 5) with the second frame turned by `angle` in rad."""
     c, s = np.cos(angle), np.sin(angle)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
@@ -16,12 +15,12 @@ from dynamics.forces.force_course import ForceCourseLaws, pack_courses
 from dynamics.forces.law import Law
 from dynamics.forces.unbalance import UnbalanceLaws
 from dynamics.loads.applied_force import AppliedForce
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import section_rows, turn_row
 from dynamics.mechanism.freedoms import ROTATION
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.load_phases import LoadPhase, angle_phase, frame_phase, unbalance_phase
 from dynamics.mechanism.mechanism import Mechanism
-from dynamics.mechanism.rotor import Rotor
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
@@ -97,7 +96,7 @@ def unbalance_elements(mechanism: Mechanism) -> tuple[tuple[Element, ...], Unbal
     return tuple(elements), laws
 
 
-def _wrench_rows(scene: Scene, rotors: Sequence[Rotor], force: AppliedForce, turning: bool) -> FloatArray:
+def _wrench_rows(scene: Scene, rotors: Bodies, force: AppliedForce, turning: bool) -> FloatArray:
     """Return the generalized force of the whole, or where it turns of its part across and along, (p, N)."""
     index = scene.shaft_index(force.shaft)
     moves = section_rows(rotors, index, rotors[index].shaft.origin[2] + force.position)

@@ -11,12 +11,12 @@ from dynamics.effects.loaded_meshes import LoadedTrain
 from dynamics.effects.loaded_rotors import loaded_rotors
 from dynamics.effects.mechanism_of import mechanism_of
 from dynamics.errors import InputError
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import mass_terms
 from dynamics.mechanism.connections import gather_connections
 from dynamics.mechanism.flanks import Flanks, flank_laws
 from dynamics.mechanism.freedoms import Freedoms, find_freedoms
 from dynamics.mechanism.mechanism import GIVE_INERTIA, Mechanism
-from dynamics.mechanism.rotor import Rotor
 from dynamics.scene.scene import Scene
 
 
@@ -87,7 +87,7 @@ def _on_meshes(
     return flanks, ledger
 
 
-def _check_mass(freedoms: Freedoms, rotors: Sequence[Rotor]) -> None:
+def _check_mass(freedoms: Freedoms, rotors: Bodies) -> None:
     """Every free direction needs inertia."""
     for name, value in zip(freedoms.name, mass_terms(rotors)[0][freedoms.column], strict=True):
         if value <= 0.0:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
@@ -11,6 +10,7 @@ from dynamics.arrays.arrays import Drives, Loads, Reference
 from dynamics.arrays.law_arrays import pack_laws, revolutions
 from dynamics.assembly.phases import phases
 from dynamics.joints import ImposedRotation
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count, elastic_columns, elastic_terms, times_mass, turn_row
 from dynamics.mechanism.connections import Connections
 from dynamics.mechanism.freedoms import ROTATION, Freedoms
@@ -18,7 +18,6 @@ from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.mechanism.motion_check import check_loads
 from dynamics.mechanism.planets import carried_motion
-from dynamics.mechanism.rotor import Rotor
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
@@ -136,7 +135,7 @@ def _own_motions(mechanism: Mechanism) -> FloatArray:
 
 
 def drive_springs(
-    scene: Scene, kinematics: Kinematics, rotors: Sequence[Rotor], freedoms: Freedoms
+    scene: Scene, kinematics: Kinematics, rotors: Bodies, freedoms: Freedoms
 ) -> list[tuple[int, ImposedRotation, FloatArray]]:
     """Return the law of each drive with a spring, the drive, and the rotation it strains per freedom (n,)."""
     springs = []

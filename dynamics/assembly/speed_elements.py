@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from dynamics.arrays.elements import Element
 from dynamics.errors import InputError
 from dynamics.forces.law import Law
 from dynamics.forces.speed_torque import SpeedTorqueLaws, pack_speed_torques
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count, turn_row
 from dynamics.mechanism.kinematics import Kinematics
-from dynamics.mechanism.rotor import Rotor
 from dynamics.scene.scene import Scene
 
 
 def speed_elements(
-    scene: Scene, rotors: Sequence[Rotor], kinematics: Kinematics
+    scene: Scene, rotors: Bodies, kinematics: Kinematics
 ) -> tuple[tuple[Element, ...], SpeedTorqueLaws]:
     """Return one element per speed torque, and their laws.
 

@@ -15,12 +15,12 @@ from dynamics.assembly.phases import phases
 from dynamics.assembly.references import drive_springs, lay_out_drives, lay_out_loads, lay_out_reference
 from dynamics.forces.by_address import by_address
 from dynamics.forces.element_laws import ElementLaws
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count, times_mass, turn_row
 from dynamics.mechanism.connections import elastic_matrices, linear_matrices
 from dynamics.mechanism.freedoms import FREEDOMS, ROTATION, Freedoms
 from dynamics.mechanism.kinematics import mesh_shafts
 from dynamics.mechanism.mechanism import Mechanism
-from dynamics.mechanism.rotor import Rotor
 from dynamics.mechanism.weight import weight
 from dynamics.scene.scene import LEAST_RATE, Scene
 from dynamics.types import FloatArray
@@ -97,7 +97,7 @@ def _reach(mass: FloatArray, held: FloatArray) -> FloatArray:
     return np.where(bound, own, np.max(own[bound], initial=1.0 / LEAST_RATE))
 
 
-def _scales(scene: Scene, rotors: Sequence[Rotor], freedoms: Freedoms) -> FloatArray:
+def _scales(scene: Scene, rotors: Bodies, freedoms: Freedoms) -> FloatArray:
     """Meters per unit of each freedom, (n,): for rotations the largest base or pin radius on the shaft."""
     largest = max((gear.base_radius for gear in scene.gears), default=1.0)
     radius = np.zeros(len(rotors))

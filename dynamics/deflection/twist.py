@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from dynamics.assembly.assemble import System
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import elastic_columns
 from dynamics.mechanism.flank_gradients import common_face_width, table_sense
-from dynamics.mechanism.rotor import Rotor
 from dynamics.types import FloatArray
 
 
-def twist(rotors: tuple[Rotor, ...], index: int, position: FloatArray, motion: FloatArray) -> FloatArray:
+def twist(rotors: Bodies, index: int, position: FloatArray, motion: FloatArray) -> FloatArray:
     """Return the elastic rotation (P,) of sections at `position` (P,) along a shaft, rad.
 
     Linear between nodes: exact where torques act at nodes alone.

@@ -68,7 +68,8 @@ class FlexibleShafts(RotorEffect):
 def _with_elastic(mechanism: Mechanism, elastic: Sequence[ElasticShaft | None]) -> Mechanism:
     """Return the mechanism with its rotors' elastic coordinates."""
     pairs = zip(mechanism.rotors, elastic, strict=True)
-    return replace(mechanism, rotors=tuple(replace(rotor, elastic=part) for rotor, part in pairs))
+    rotors = tuple(replace(rotor, elastic=part) for rotor, part in pairs)
+    return replace(mechanism, rotors=replace(mechanism.rotors, rotors=rotors))
 
 
 def _influence(

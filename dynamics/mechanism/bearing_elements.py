@@ -14,6 +14,7 @@ from dynamics.forces.law import Law
 from dynamics.forces.rolling_contact import pack_rolling_contacts
 from dynamics.forces.spring_curve import pack_spring_curves
 from dynamics.joints import Bushing, PlanetBearing
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.rotor import Rotor
 from dynamics.mechanism.seat_motion import seat_axes, seat_error, seat_motion
 from dynamics.rolling_bearings.row_law import pack_ball_laws, pack_roller_laws
@@ -112,7 +113,7 @@ def bearing_locations(
 
 def bearing_elements(
     laws: Sequence[BearingLaw],
-    rotors: Sequence[Rotor],
+    rotors: Bodies,
     bearings: Sequence[BearingElement],
     duties: Mapping[str, BearingDuty],
     phases: Mapping[str, int],

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.rotor import Rotor
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
@@ -14,14 +15,14 @@ Wrench = Callable[[FloatArray], FloatArray]
 """Force and moment (6,) about a point (3,) of the axis: a row of the motion of a body about that point."""
 
 
-def column_count(rotors: Sequence[Rotor]) -> int:
+def column_count(rotors: Bodies) -> int:
     """Return N, the number of freedoms of all rotors."""
     return 6 * len(rotors) + sum(rotor.elastic_count for rotor in rotors)
 
 
-def elastic_columns(rotors: Sequence[Rotor], index: int) -> slice:
+def elastic_columns(rotors: Bodies, index: int) -> slice:
     """Return where the elastic coordinates of the rotor `index` are among the freedoms."""
-    first = column_count(rotors[:index]) + 6 * (len(rotors) - index)
+    first = 6 * len(rotors) + sum(rotor.elastic_count for rotor in rotors[:index])
     return slice(first, first + rotors[index].elastic_count)
 
 
@@ -41,7 +42,7 @@ def section(rotor: Rotor, point: FloatArray) -> FloatArray:
     return np.vstack([moves, np.eye(6)[3:]])
 
 
-def section_rows(rotors: Sequence[Rotor], index: int, z: float) -> FloatArray:
+def section_rows(rotors: Bodies, index: int, z: float) -> FloatArray:
     """Return the motion of the section at the height z of the rotor `index` per freedom, (6, N)."""
     rotor, rows = rotors[index], np.zeros((6, column_count(rotors)))
     rows[:, 6 * index : 6 * index + 6] = section(rotor, np.array([*rotor.center[:2], z]))
@@ -51,7 +52,7 @@ def section_rows(rotors: Sequence[Rotor], index: int, z: float) -> FloatArray:
     return rows
 
 
-def gear_row(scene: Scene, rotors: Sequence[Rotor], parts: Sequence[tuple[str, Wrench]]) -> FloatArray:
+def gear_row(scene: Scene, rotors: Bodies, parts: Sequence[tuple[str, Wrench]]) -> FloatArray:
     """Return the sum over gears, by name, of the row their wrenches are, (N,).
 
     A gear is rigid and moves as the section of its shaft at mid-face.
@@ -69,13 +70,13 @@ def gear_row(scene: Scene, rotors: Sequence[Rotor], parts: Sequence[tuple[str, W
     return row
 
 
-def turn_row(rotors: Sequence[Rotor], index: int, position: float) -> FloatArray:
+def turn_row(rotors: Bodies, index: int, position: float) -> FloatArray:
     """Return the rotation of the rotor `index` at `position` (m) along its shaft per freedom, (N,)."""
     rows = section_rows(rotors, index, rotors[index].shaft.origin[2] + position)
     return np.asarray(rows[5], dtype=float)
 
 
-def elastic_terms(rotors: Sequence[Rotor]) -> tuple[FloatArray, FloatArray]:
+def elastic_terms(rotors: Bodies) -> tuple[FloatArray, FloatArray]:
     """Return stiffness and damping per freedom, (N,) each: zero but for elastic coordinates."""
     stiffness, damping = np.zeros(column_count(rotors)), np.zeros(column_count(rotors))
     for index, rotor in enumerate(rotors):
@@ -85,7 +86,7 @@ def elastic_terms(rotors: Sequence[Rotor]) -> tuple[FloatArray, FloatArray]:
     return stiffness, damping
 
 
-def mass_terms(rotors: Sequence[Rotor]) -> tuple[FloatArray, FloatArray]:
+def mass_terms(rotors: Bodies) -> tuple[FloatArray, FloatArray]:
     """Return the diagonal of the mass matrix, (N,), and how rotations couple with all freedoms, (N, r).
 
     Rigid freedoms are those of the centers of mass, which elastic coordinates leave at rest. Only where a
@@ -103,7 +104,7 @@ def mass_terms(rotors: Sequence[Rotor]) -> tuple[FloatArray, FloatArray]:
     return diagonal, turned
 
 
-def times_mass(rotors: Sequence[Rotor], rows: FloatArray) -> FloatArray:
+def times_mass(rotors: Bodies, rows: FloatArray) -> FloatArray:
     """Return `rows` (k, N) times the mass matrix."""
     diagonal, turned = mass_terms(rotors)
     product = rows * diagonal

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from dynamics.joints.seat import SEAT
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import elastic_terms
 from dynamics.mechanism.coupling_rows import CouplingRows, gather_couplings
 from dynamics.mechanism.freedoms import Freedoms
-from dynamics.mechanism.rotor import Rotor
 from dynamics.mechanism.seats import Seats, gather_seats, seated
 from dynamics.mechanism.supports import Supports, gather_supports
 from dynamics.scene.scene import Scene
@@ -36,7 +35,7 @@ class Connections:
     couplings: CouplingRows
 
 
-def gather_connections(scene: Scene, rotors: Sequence[Rotor]) -> Connections:
+def gather_connections(scene: Scene, rotors: Bodies) -> Connections:
     """Lay out what joins the rotors of `scene`."""
     supports = gather_supports(rotors, seated(scene))
     couplings = gather_couplings(scene, rotors)
@@ -64,7 +63,7 @@ def linear_matrices(
     return stiffness, damping, constant
 
 
-def elastic_matrices(rotors: Sequence[Rotor], freedoms: Freedoms) -> tuple[FloatArray, FloatArray]:
+def elastic_matrices(rotors: Bodies, freedoms: Freedoms) -> tuple[FloatArray, FloatArray]:
     """Return stiffness and damping (n, n) of the shafts themselves."""
     springs, dampers = elastic_terms(rotors)
     motion = freedoms.motion

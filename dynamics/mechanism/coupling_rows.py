@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from dynamics.joints import Coupling
 from dynamics.joints.matrix import Matrix
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count, section_rows
-from dynamics.mechanism.rotor import Rotor
 from dynamics.scene.frame_check import crosses_frames
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
@@ -44,7 +43,7 @@ class CouplingRows:
         return np.asarray(np.einsum("cki,ckl,clj->ij", left, coefficient, right))
 
 
-def gather_couplings(scene: Scene, rotors: Sequence[Rotor]) -> CouplingRows:
+def gather_couplings(scene: Scene, rotors: Bodies) -> CouplingRows:
     """Lay out the couplings of `scene`."""
     motion = np.zeros((len(scene.couplings), 6, column_count(rotors)))
     for index, coupling in enumerate(scene.couplings):

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import Wrench, gear_row
 from dynamics.mechanism.line_of_action import LineOfAction
-from dynamics.mechanism.rotor import Rotor
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
 UNIT_Z = np.array([0.0, 0.0, 1.0])
 
 
-def approach(scene: Scene, rotors: Sequence[Rotor], index: int, line: LineOfAction) -> FloatArray:
+def approach(scene: Scene, rotors: Bodies, index: int, line: LineOfAction) -> FloatArray:
     """Return the derivative of the approach along `line` of mesh `index` in all rotors' freedoms, (N,)."""
     mesh = scene.meshes[index]
     sides: list[tuple[str, Wrench]] = [
@@ -65,7 +63,7 @@ def misalignment_per_tilt(scene: Scene, index: int, line: LineOfAction, sense: i
 
 
 def misalignment_gradient(
-    scene: Scene, rotors: Sequence[Rotor], index: int, line: LineOfAction, sense: int
+    scene: Scene, rotors: Bodies, index: int, line: LineOfAction, sense: int
 ) -> FloatArray:
     """Return the derivative of the misalignment in all rotors' freedoms, (N,).
 
@@ -76,7 +74,7 @@ def misalignment_gradient(
     return gear_row(scene, rotors, [(mesh.driver, lambda _: moment), (mesh.driven, lambda _: -moment)])
 
 
-def distance_gradient(scene: Scene, rotors: Sequence[Rotor], index: int, line: LineOfAction) -> FloatArray:
+def distance_gradient(scene: Scene, rotors: Bodies, index: int, line: LineOfAction) -> FloatArray:
     """Return the derivative of the center distance at mid-face in all rotors' freedoms, (N,)."""
     mesh = scene.meshes[index]
     shafts = [scene.shaft_index(scene.gear(name).shaft) for name in (mesh.driver, mesh.driven)]

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import elastic_columns
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.planets import carried_motion
-from dynamics.mechanism.rotor import Rotor
 from dynamics.types import BoolArray, FloatArray, IntArray
 
 FREEDOMS = ("x", "y", "z", "tilt_x", "tilt_y", "rotation")
@@ -51,9 +51,7 @@ class Freedoms:
         return int(index[0]) if index.size else -1
 
 
-def find_freedoms(
-    rotors: Sequence[Rotor], kinematics: Kinematics, added: Sequence[Collection[str]]
-) -> Freedoms:
+def find_freedoms(rotors: Bodies, kinematics: Kinematics, added: Sequence[Collection[str]]) -> Freedoms:
     """Gather the freedoms `added` to each rotor, and the rotation of every shaft without a rigid drive."""
     freedoms: list[tuple[str, int, bool]] = []
     for index, rotor in enumerate(rotors):

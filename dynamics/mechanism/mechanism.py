@@ -19,6 +19,7 @@ from dynamics.mechanism.bearing_elements import (
     bearing_locations,
     supports_by_name,
 )
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.coupled_rotors import with_couplings
 from dynamics.mechanism.kinematics import Kinematics, solve_kinematics
 from dynamics.mechanism.line_of_action import LineOfAction, line_of_action
@@ -40,8 +41,8 @@ class Mechanism:
     ----------
     scene : Scene
     kinematics : Kinematics
-    rotors : tuple of Rotor
-        One per shaft.
+    rotors : Bodies
+        A rotor per shaft.
     lines : tuple of LineOfAction
         One per mesh.
     nominal_force : (m,) array
@@ -60,7 +61,7 @@ class Mechanism:
 
     scene: Scene
     kinematics: Kinematics
-    rotors: tuple[Rotor, ...]
+    rotors: Bodies
     lines: tuple[LineOfAction, ...]
     nominal_force: FloatArray
     bearing_duty: dict[str, BearingDuty]
@@ -106,20 +107,20 @@ def gather_mechanism(scene: Scene, additions: Additions) -> Mechanism:
     """
     scene, corrected = with_common_base_pitches(scene)
     kinematics = solve_kinematics(scene)
-    rotors = tuple(build_rotor(scene, shaft) for shaft in scene.shafts)
+    rotors = Bodies(tuple(build_rotor(scene, shaft) for shaft in scene.shafts))
     lines = tuple(line_of_action(scene, index, sense) for index, sense in enumerate(kinematics.mesh_sense))
     coasts = COAST_FLANKS in additions.possible
     forces = nominal_forces(scene, kinematics, rotational_inertia(rotors), coasts=coasts)
     duties = bearing_duties(scene, rotors, bearing_loads(scene, rotors, forces))
     bearings, rotors = _with_bearings(scene, rotors, duties)
-    rotors = with_couplings(scene, rotors)
+    rotors = Bodies(with_couplings(scene, rotors))
     _check_rotation(rotors, kinematics)
     return Mechanism(scene, kinematics, rotors, lines, forces, duties, bearings, corrected, additions)
 
 
 def _with_bearings(
-    scene: Scene, rotors: tuple[Rotor, ...], duties: dict[str, BearingDuty]
-) -> tuple[tuple[BearingElement, ...], tuple[Rotor, ...]]:
+    scene: Scene, rotors: Bodies, duties: dict[str, BearingDuty]
+) -> tuple[tuple[BearingElement, ...], Bodies]:
     """Return where laws of bearings act, and the rotors with their typical stiffness."""
     names = gather_supports(rotors, frozenset()).name
     bearings = bearing_locations(scene, rotors, names, duties)
@@ -128,7 +129,7 @@ def _with_bearings(
         index, support = known[at.name]
         rotor = stiffened[index]
         stiffened[index] = replace(rotor, curved=(*rotor.curved, (at.seat, rotor.lever(support))))
-    return bearings, tuple(stiffened)
+    return bearings, Bodies(tuple(stiffened))
 
 
 def _check_rotation(rotors: Sequence[Rotor], kinematics: Kinematics) -> None:

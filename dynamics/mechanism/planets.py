@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count, rigid_motion
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.rotor import Rotor
@@ -14,7 +15,7 @@ from dynamics.types import FloatArray, IntArray
 PLANET_KINDS = 5  # x, y, z, tilt_x, tilt_y: the carrier takes a planet along in these, not in its rotation
 
 
-def carried_motion(rotors: Sequence[Rotor], free: IntArray) -> FloatArray:
+def carried_motion(rotors: Bodies, free: IntArray) -> FloatArray:
     """Return (N, N): what all freedoms do where only the freedoms `free` move on their own.
 
     What is not free goes with the carrier on a planet and with nothing else.
@@ -31,7 +32,7 @@ def carried_motion(rotors: Sequence[Rotor], free: IntArray) -> FloatArray:
     return motion
 
 
-def kinematic_vectors(rotors: Sequence[Rotor], kinematics: Kinematics) -> FloatArray:
+def kinematic_vectors(rotors: Bodies, kinematics: Kinematics) -> FloatArray:
     """Return (k, N): motion of all rotors per radian of each law, planets' centers with their carriers.
 
     In the frame of a carrier its planets are at rest in the kinematic motion. These vectors are that motion

@@ -8,12 +8,13 @@ import numpy as np
 
 from dynamics.joints import Bushing, PlanetBearing
 from dynamics.joints.seat import SEAT
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import section, section_rows
 from dynamics.mechanism.rotor import Rotor
 from dynamics.types import FloatArray
 
 
-def seat_motion(rotors: Sequence[Rotor], index: int, support: Bushing | PlanetBearing) -> FloatArray:
+def seat_motion(rotors: Bodies, index: int, support: Bushing | PlanetBearing) -> FloatArray:
     """Return the strains of a support of rotor `index` per freedom, (5, N): x, y, z, tilt_x, tilt_y.
 
     Of a planet bearing: the motion of the planet's section less that of the pin, which goes with the carrier.

@@ -9,6 +9,7 @@ import numpy as np
 
 from dynamics.joints import Bushing, Housing, PlanetBearing
 from dynamics.joints.seat import SEAT
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count
 from dynamics.mechanism.rotor import Rotor
 from dynamics.mechanism.seat_motion import seat_axes, seat_error, seat_motion
@@ -65,7 +66,7 @@ def seated(scene: Scene) -> frozenset[str]:
     return frozenset(housed | full)
 
 
-def gather_seats(scene: Scene, rotors: Sequence[Rotor], names: Sequence[str]) -> Seats:
+def gather_seats(scene: Scene, rotors: Bodies, names: Sequence[str]) -> Seats:
     """Lay out the bearings of `scene` that are seats; `names` are those of all supports."""
     chosen = seated(scene)
     housed = [name for housing in scene.housings for name in housing.bushings]

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count, elastic_columns
 from dynamics.mechanism.rotor import Rotor
 from dynamics.types import FloatArray
@@ -29,7 +29,7 @@ def spun_inertia(rotor: Rotor) -> FloatArray:
     return np.asarray(tilts.T @ rotor.elastic.polar @ tilts)
 
 
-def pair_rows(rotors: Sequence[Rotor], index: int) -> FloatArray:
+def pair_rows(rotors: Bodies, index: int) -> FloatArray:
     """Return tilts about x and y of each motion of `spun_inertia`, (1 + b, 2, N)."""
     count = spun_inertia(rotors[index]).shape[0]
     rows = np.zeros((count, 2, column_count(rotors)))
@@ -40,7 +40,7 @@ def pair_rows(rotors: Sequence[Rotor], index: int) -> FloatArray:
     return rows
 
 
-def spun_pairs(rotors: Sequence[Rotor], index: int, speed: float) -> list[tuple[FloatArray, float]]:
+def spun_pairs(rotors: Bodies, index: int, speed: float) -> list[tuple[FloatArray, float]]:
     """Return rows (2, N) and polar inertias of which P is the sum, without what shifts no frequency.
 
     `speed` is the largest of the run, rad/s; infinite where it is not known.

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from dynamics.joints import Bushing, PlanetBearing
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count
-from dynamics.mechanism.rotor import Rotor
 from dynamics.mechanism.seat_motion import seat_error, seat_motion
 from dynamics.types import FloatArray
 
@@ -44,7 +43,7 @@ class Supports:
         return np.asarray(np.einsum("bki,bk,bkj->ij", left, coefficient, right))
 
 
-def gather_supports(rotors: Sequence[Rotor], seated: frozenset[str]) -> Supports:
+def gather_supports(rotors: Bodies, seated: frozenset[str]) -> Supports:
     """Lay out the supports of all rotors; those `seated` have their springs in other arrays (`Seats`)."""
     on_ground: list[tuple[int, Bushing]] = [
         (i, bushing) for i, rotor in enumerate(rotors) for bushing in rotor.bushings

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count, times_mass
-from dynamics.mechanism.rotor import Rotor
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
 
-def weight(scene: Scene, rotors: Sequence[Rotor]) -> FloatArray:
+def weight(scene: Scene, rotors: Bodies) -> FloatArray:
     """Return the force of gravity per freedom of all rotors, (N,) in N.
 
     It acts at the centers of mass: elastic coordinates share no momentum with the rigid motion, so gravity
