@@ -14,7 +14,7 @@ from dynamics.assembly.force_elements import force_elements
 from dynamics.assembly.model import Model, decide_model
 from dynamics.assembly.system_arrays import system_arrays
 from dynamics.effects import EFFECTS, EffectLedger
-from dynamics.mechanism.additions import BEARING_LAWS
+from dynamics.mechanism.additions import BEARING_LAWS, HOUSING_AMPLITUDES
 from dynamics.mechanism.base_pitches import Corrections
 from dynamics.mechanism.bearing_elements import BearingElement
 from dynamics.mechanism.bodies import Bodies
@@ -129,7 +129,8 @@ def assemble(scene: Scene) -> System:
     if not system.bearings or BEARING_LAWS in model.mechanism.additions.possible:
         return system
     linear = _assemble(decide_model(_with_linear_bearings(system), EFFECTS))
-    return replace(linear, ledger=system.ledger, corrected=system.corrected)
+    ledger = system.ledger.with_entries_of(linear.ledger, HOUSING_AMPLITUDES)
+    return replace(linear, ledger=ledger, corrected=system.corrected)
 
 
 def _assemble(model: Model) -> System:

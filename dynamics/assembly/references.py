@@ -94,7 +94,7 @@ def lay_out_drives(
         damping += couplings.matrix(couplings.damping, twisted, strains)
     springs, dampers = elastic_terms(mechanism.rotors)
     stiffness += (turned * springs) @ freedoms.motion
-    damping += (turned * dampers) @ freedoms.motion
+    damping += (turned @ dampers) @ freedoms.motion
     for law, drive, row in drive_springs(scene, kinematics, mechanism.rotors, freedoms):
         stiffness[law] -= (drive.stiffness or 0.0) * row
         damping[law] -= drive.damping * row

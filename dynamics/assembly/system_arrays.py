@@ -21,9 +21,13 @@ from dynamics.mechanism.connections import elastic_matrices, linear_matrices
 from dynamics.mechanism.freedoms import FREEDOMS, ROTATION, Freedoms
 from dynamics.mechanism.kinematics import mesh_shafts
 from dynamics.mechanism.mechanism import Mechanism
+from dynamics.mechanism.modal_housing import ModalHousing
 from dynamics.mechanism.weight import weight
 from dynamics.scene.scene import LEAST_RATE, Scene
 from dynamics.types import FloatArray
+
+LEAST_SEAT = 0.1
+"""Least scale of an amplitude, of the largest."""
 
 
 def system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) -> SystemArrays:
@@ -98,7 +102,11 @@ def _reach(mass: FloatArray, held: FloatArray) -> FloatArray:
 
 
 def _scales(scene: Scene, rotors: Bodies, freedoms: Freedoms) -> FloatArray:
-    """Meters per unit of each freedom, (n,): for rotations the largest base or pin radius on the shaft."""
+    """Meters per unit of each freedom, (n,): for rotations the largest base or pin radius on the shaft.
+
+    For an amplitude of a housing what it moves a seat by, at least a tenth of what any of them does: modes
+    that hardly move a seat do not matter to the shafts.
+    """
     largest = max((gear.base_radius for gear in scene.gears), default=1.0)
     radius = np.zeros(len(rotors))
     for gear in scene.gears:
@@ -115,4 +123,11 @@ def _scales(scene: Scene, rotors: Bodies, freedoms: Freedoms) -> FloatArray:
         for rotor, own in zip(rotors, scale, strict=True)
         if rotor.elastic is not None
     ]
-    return np.ascontiguousarray(np.concatenate([scale.ravel(), *elastic])[freedoms.column])
+    seats = [_seat_scale(housing, largest) for housing in rotors.housings]
+    return np.ascontiguousarray(np.concatenate([scale.ravel(), *elastic, *seats])[freedoms.column])
+
+
+def _seat_scale(housing: ModalHousing, lever: float) -> FloatArray:
+    """Return the largest motion of a seat per amplitude, (m,), tilts by a lever."""
+    moved = np.max(np.abs(housing.shape) * np.array([1.0, 1.0, 1.0, lever, lever])[:, None], axis=(0, 1))
+    return np.asarray(np.maximum(moved, LEAST_SEAT * np.max(moved)))

@@ -10,8 +10,8 @@ from dynamics.assembly.assemble import System
 from dynamics.deflection.clearance import clearance_of
 from dynamics.joints.seat import SEAT
 from dynamics.mechanism.bearing_elements import supports_by_name
-from dynamics.mechanism.seat_motion import seat_motion
-from dynamics.mechanism.seats import seat_compliance
+from dynamics.mechanism.seat_motion import carried_seat, seat_motion
+from dynamics.mechanism.seats import condensed_housings, seat_compliance
 from dynamics.types import FloatArray
 
 
@@ -53,18 +53,20 @@ def bearing_strain(system: System, motion: FloatArray, coordinate: FloatArray) -
         Local coordinates of the force elements there.
     """
     places = supports_by_name(system.rotors)
-    total = np.array([seat_motion(system.rotors, *places[name]) @ motion for name in system.supports.name])
-    total = total.reshape(-1, SEAT)
-    seat = _seats(system, total)
+    names, rotors = system.supports.name, system.rotors
+    strain = np.array([seat_motion(rotors, *places[name]) @ motion for name in names]).reshape(-1, SEAT)
+    carried = np.array([carried_seat(rotors, name) @ motion for name in names]).reshape(-1, SEAT)
+    total = strain + carried
+    seat = carried + _condensed_seats(system, total)
     clearance = clearance_of(system, total - seat, coordinate)
     return BearingStrain(total - seat - clearance, clearance, seat)
 
 
-def _seats(system: System, total: FloatArray) -> FloatArray:
-    """Return the motions (b, 5) of the seats by the shafts' at the bearings (b, 5)."""
+def _condensed_seats(system: System, total: FloatArray) -> FloatArray:
+    """Return the motions (b, 5) of the seats in housings that are no freedoms by the shafts' there (b, 5)."""
     places, names = supports_by_name(system.rotors), list(system.supports.name)
     moved = np.zeros_like(total)
-    for housing in system.scene.housings:
+    for housing in condensed_housings(system.scene, system.rotors):
         parts = [places[name][1] for name in housing.bushings]
         at = [names.index(name) for name in housing.bushings]
         stiffness = np.zeros((SEAT * len(at), SEAT * len(at)))

@@ -106,6 +106,11 @@ class EffectLedger:
         made = (LedgerEntry(effect, part, choice, verdict) for part, verdict in verdicts.items())
         return EffectLedger((*self.entries, *made))
 
+    def with_entries_of(self, other: EffectLedger, addition: str) -> EffectLedger:
+        """Return the ledger with the decisions of `other` on the effect that adds `addition`."""
+        kept = (entry for entry in self.entries if addition not in entry.decided.adds)
+        return EffectLedger((*kept, *other.adding(addition)))
+
     def on_rotor(self, shaft: str) -> list[RotorEffect]:
         """Return the effects of rotors that are on for `shaft`."""
         own = [entry.decided for entry in self.entries if entry.on and entry.part == shaft]

@@ -13,6 +13,7 @@ from dynamics.effects.element_passing import ElementPassing
 from dynamics.effects.flexible_shafts import FlexibleShafts
 from dynamics.effects.friction import Friction
 from dynamics.effects.gyroscopic import Gyroscopic
+from dynamics.effects.housing_modes import HousingModes
 from dynamics.effects.lateral import Lateral
 from dynamics.effects.moving_application_point import MovingApplicationPoint
 from dynamics.effects.tilt import Tilt
@@ -26,6 +27,7 @@ EFFECTS: tuple[Effect, ...] = (
     Gyroscopic(),
     CentrifugalLoad(),
     FlexibleShafts(),
+    HousingModes(),
     Backlash(),
     DynamicMisalignment(),
     DynamicCenterDistance(),

@@ -20,6 +20,7 @@ from dynamics.housing_modes.reduced_matrices import (
 )
 from dynamics.housing_modes.reduction_cost import CostLimit, reduction_cost
 from dynamics.housing_modes.response import receptance
+from dynamics.housing_modes.scene_housing import scene_housing
 from dynamics.housing_modes.seats import Ring, SeatBore, SeatFrame
 from dynamics.housing_modes.step_mesh import mesh_step
 from dynamics.housing_modes.tetrahedral_mesh import TetrahedralMesh
@@ -55,4 +56,5 @@ __all__ = [
     "receptance",
     "reduced_housing",
     "reduction_cost",
+    "scene_housing",
 ]

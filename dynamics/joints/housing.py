@@ -1,4 +1,4 @@
-"""An elastic housing under several bearings, as one stiffness matrix over their seats."""
+"""An elastic housing under several bearings, by matrices over their seats."""
 
 from __future__ import annotations
 
@@ -8,67 +8,139 @@ from pathlib import Path
 
 import numpy as np
 
-from dynamics.checks import distinct
+from bounds import Declared, Kind, between, declared, described, integers
+from dynamics.checks import declared_fields, distinct, finite
 from dynamics.errors import InputError
-from dynamics.joints.matrix import Matrix, check_matrix
+from dynamics.joints.matrix import Matrix, check_matrix, least_share
 from dynamics.joints.seat import SEAT
 from dynamics.types import FloatArray
 
 PER_SEAT = (3, SEAT, SEAT + 1)
+MATRICES = ("stiffness", "damping", "mass")
 PRECISION = 1e-6  # relative; a finite-element program writes its matrices with that many digits
 
 
+DEFINITE = 1e-13
+"""Least eigenvalue of a mass or a stiffness that is taken for more than rounding, diagonal entries 1."""
+DAMPING_RATIO = Declared(
+    Kind.RATIO,
+    "",
+    between(0.0, 1.0),
+    "Damping ratio of every mode of a housing with mass that has no damping matrix",
+    0.005,
+    later=True,
+)
+MODAL_COORDINATES = Declared(
+    Kind.COUNT,
+    "",
+    integers(0, 2000),
+    "Modal coordinates of a housing with mass: the last rows of its matrices, behind those of the seats",
+    0,
+    later=True,
+)
+
+
+@described
 @dataclass(frozen=True)
 class Housing:
-    """A massless elastic housing, which couples its bearings.
+    """An elastic housing, which couples its bearings; with or without mass.
 
-    Attributes
-    ----------
-    name : str
-        Unique among the housings.
-    bushings : tuple of str
-        The bushings it carries, in the order of the matrix.
-    stiffness : square matrix
-        Forces (and moments) on the seats per their displacements (and rotations), N, m, rad; symmetric,
-        positive semidefinite. Per seat 3 rows x, y, z, or 5 with tilt_x, tilt_y, or 6 with the rotation about
-        z, which is condensed out free of moment. Directions without rows are rigid.
-    damping : matrix of the same size or None
-        N s/m ...; None: no damping in the housing.
+    Without mass it follows its bearings, which are linear, without delay. With mass it has natural modes, and
+    any bearing sits in it: `bushings` are the names of bushings and rolling bearings, in the order of the
+    matrices.
+
+    The matrices are square, symmetric and positive semidefinite, in N, m, rad, kg, s: forces (and moments) on
+    the seats per their displacements (and rotations). Per seat 3 rows x, y, z, or 5 with tilt_x, tilt_y, or 6
+    with the rotation about z, which is free of moment. Directions without rows are rigid. Without `damping`
+    a housing without mass has none, and the modes of one with mass have `damping_ratio`: of cast iron with
+    bolted joints 0.002 to 0.01, a guess.
+
+    `mass`, of as many rows as `stiffness`, is positive definite, and so is then `stiffness`: the housing is
+    held at its feet. Behind the rows of the seats there may be those of modal coordinates, as in the form of
+    Craig and Bampton. `seat_positions` are (x, y, z) of each seat in the fixed frame, m; None: where the
+    bearings are. The weight of the housing itself is left out: its seats are where they rest under it.
     """
 
     name: str
     bushings: tuple[str, ...]
     stiffness: Matrix
     damping: Matrix | None = None
+    mass: Matrix | None = None
+    damping_ratio: float = declared(0.005, DAMPING_RATIO)
+    modal_coordinates: int = declared(0, MODAL_COORDINATES)
+    seat_positions: tuple[tuple[float, float, float], ...] | None = None
 
     def __post_init__(self) -> None:
+        declared_fields(self)
         if not self.bushings:
             raise InputError("bushings", self.bushings, "at least one bushing")
         distinct("bushings", self.bushings)
-        sizes = tuple(per * len(self.bushings) for per in PER_SEAT)
+        if self.mass is None and self.modal_coordinates:
+            advice = "Give mass: modal coordinates are those of a housing with mass."
+            raise InputError("modal_coordinates", self.modal_coordinates, "0 without mass", advice)
+        sizes = tuple(per * len(self.bushings) + self.modal_coordinates for per in PER_SEAT)
         rows = len(check_matrix("stiffness", self.stiffness, sizes, PRECISION))
-        if self.damping is not None:
-            check_matrix("damping", self.damping, (rows,), PRECISION)
+        for name in ("damping", "mass"):
+            if getattr(self, name) is not None:
+                check_matrix(name, getattr(self, name), (rows,), PRECISION)
+        if self.mass is not None:
+            _require_definite("mass", self.mass, "Give every direction of every seat some mass or inertia.")
+            _require_definite("stiffness", self.stiffness, "Hold the housing at its feet, or on mounts.")
+        self._check_seat_positions()
+
+    def _check_seat_positions(self) -> None:
+        """Refuse positions that are not three numbers per seat."""
+        if self.seat_positions is None:
+            return
+        count = len(self.bushings)
+        if len(self.seat_positions) != count or any(len(point) != 3 for point in self.seat_positions):
+            raise InputError("seat_positions", self.seat_positions, f"{count} times x, y, z: one per seat")
+        for seat, point in enumerate(self.seat_positions):
+            for axis, value in zip("xyz", point, strict=True):
+                finite(f"seat_positions[{seat}].{axis}", value)
+
+    @property
+    def per_seat(self) -> int:
+        """Rows per seat: 3, 5 or 6."""
+        return (len(self.stiffness) - self.modal_coordinates) // len(self.bushings)
 
     @property
     def columns(self) -> tuple[int, ...]:
         """Rows of the matrix among the five directions of all seats, without rotations about z."""
-        per = len(self.stiffness) // len(self.bushings)
-        kept = min(per, SEAT)
+        kept = min(self.per_seat, SEAT)
         return tuple(SEAT * seat + kind for seat in range(len(self.bushings)) for kind in range(kept))
 
+    @property
+    def own_columns(self) -> tuple[int, ...]:
+        """The same among the rows of the matrices."""
+        per = self.per_seat
+        return tuple(
+            per * seat + kind for seat in range(len(self.bushings)) for kind in range(min(per, SEAT))
+        )
+
     def matrices(self) -> tuple[FloatArray, FloatArray]:
-        """Return stiffness and damping over `columns`, symmetric, rotations about z condensed out."""
-        rows, per = len(self.stiffness), len(self.stiffness) // len(self.bushings)
+        """Return stiffness and damping over `columns`, symmetric.
+
+        Rotations about z and modal coordinates are condensed out, free of moment and of force.
+        """
+        rows = len(self.stiffness)
         stiffness = np.array(self.stiffness, dtype=float)
         damping = np.zeros_like(stiffness) if self.damping is None else np.array(self.damping, dtype=float)
         stiffness, damping = 0.5 * (stiffness + stiffness.T), 0.5 * (damping + damping.T)
-        rotational = np.arange(rows) % per == SEAT
-        kept, out = np.flatnonzero(~rotational), np.flatnonzero(rotational)
+        kept = np.array(self.own_columns, dtype=np.int64)
+        out = np.setdiff1d(np.arange(rows), kept)
         follow = np.zeros((rows, kept.size))
         follow[kept] = np.eye(kept.size)
         follow[out] = -np.linalg.pinv(stiffness[np.ix_(out, out)]) @ stiffness[np.ix_(out, kept)]
         return follow.T @ stiffness @ follow, follow.T @ damping @ follow
+
+
+def _require_definite(field: str, rows: Matrix, advice: str) -> None:
+    """Refuse a matrix that some motion makes zero."""
+    least = least_share(np.asarray(rows, dtype=float))
+    if least <= DEFINITE:
+        bound = "positive definite on a housing with mass"
+        raise InputError(field, f"singular: least eigenvalue {least:.1e} of the diagonal", bound, advice)
 
 
 def read_housing(path: str | Path, name: str, bushings: tuple[str, ...]) -> Housing:
@@ -78,7 +150,7 @@ def read_housing(path: str | Path, name: str, bushings: tuple[str, ...]) -> Hous
     ----------
     path : str or Path
         ``.csv``: the rows of the stiffness matrix, numbers with commas between, ``#`` before remarks.
-        ``.npz``: an array ``stiffness`` and, if given, ``damping``.
+        ``.npz``: an array ``stiffness`` and, if given, ``damping`` and ``mass``.
     name : str
     bushings : tuple of str
         In the order of the matrix.
@@ -88,12 +160,12 @@ def read_housing(path: str | Path, name: str, bushings: tuple[str, ...]) -> Hous
     InputError
         Naming ``stiffness_file``, or the matrix's fault.
     """
-    stiffness, damping = read_housing_matrices(path)
-    return Housing(name, bushings, _rows(stiffness), None if damping is None else _rows(damping))
+    matrices = {part: _rows(matrix) for part, matrix in read_housing_matrices(path).items()}
+    return Housing(name, bushings, matrices["stiffness"], matrices.get("damping"), matrices.get("mass"))
 
 
-def read_housing_matrices(path: str | Path) -> tuple[FloatArray, FloatArray | None]:
-    """Return stiffness and damping of a file as `read_housing` takes it, unchecked; raises as it does."""
+def read_housing_matrices(path: str | Path) -> dict[str, FloatArray]:
+    """Return the matrices of a file as `read_housing` takes it by field, unchecked; raises as it does."""
     file, field = Path(path), "stiffness_file"
     if file.suffix.lower() not in (".csv", ".npz"):
         raise InputError(field, str(path), "a .csv or .npz file")
@@ -109,7 +181,7 @@ def read_housing_matrices(path: str | Path) -> tuple[FloatArray, FloatArray | No
         raise InputError(field, str(path), f"a readable matrix ({error})") from error
     if "stiffness" not in arrays:
         raise InputError(field, str(path), 'an archive with the array "stiffness"', f"It has {list(arrays)}.")
-    return arrays["stiffness"], arrays.get("damping")
+    return {part: arrays[part] for part in MATRICES if part in arrays}
 
 
 def _rows(matrix: FloatArray) -> Matrix:

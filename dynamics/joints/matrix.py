@@ -65,6 +65,15 @@ def _least_eigenvalue(matrix: FloatArray, precision: float) -> float:
     return float(np.linalg.eigvalsh(matrix / np.outer(unit, unit))[0])
 
 
+def least_share(matrix: FloatArray) -> float:
+    """Return the least eigenvalue of a symmetric matrix in units in which its diagonal is 1; 0 at a zero."""
+    diagonal = np.diag(matrix)
+    if float(np.min(diagonal)) <= 0.0:
+        return 0.0
+    unit = np.sqrt(diagonal)
+    return float(np.linalg.eigvalsh(0.5 * (matrix + matrix.T) / np.outer(unit, unit))[0])
+
+
 def congruent(matrix: FloatArray, motion: FloatArray) -> FloatArray:
     """Return `motion`^T `matrix` `motion` as the square of a factor, positive semidefinite however it rounds.
 

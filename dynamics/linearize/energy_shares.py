@@ -11,7 +11,7 @@ from dynamics.assembly.assemble import System
 from dynamics.linearize.linear_system import LinearSystem
 from dynamics.types import FloatArray
 
-HELD_BY = ("mesh", "bearing", "coupling", "drive", "shaft")
+HELD_BY = ("mesh", "bearing", "coupling", "drive", "shaft", "housing")
 MOVES = {
     "x": "lateral",
     "y": "lateral",
@@ -23,6 +23,7 @@ MOVES = {
     "bending_y": "bending",
     "stretch": "axial",
     "twist": "torsional",
+    "mode": "housing",
 }
 
 
@@ -48,11 +49,14 @@ def kinetic_shares(linear: LinearSystem, shape: FloatArray | NDArray[np.complex1
 def spring_parts(system: System, spring: Sequence[str]) -> tuple[tuple[str, str], ...]:
     """Return the part that each of `spring` belongs to and its kind, one of `HELD_BY`.
 
-    The springs of a bearing's directions are one part; what is no mesh, bearing, coupling or drive is of a
-    shaft that bends.
+    The springs of a bearing's directions are one part, and so are the modes of a housing; a housing without
+    mass is one with its bearings. What is no mesh, bearing, housing, coupling or drive is of a shaft that
+    bends.
     """
     scene = system.scene
-    kinds = dict.fromkeys((*system.supports.name, *(part.name for part in scene.housings)), "bearing")
+    kinds = {part.name: "housing" for part in system.rotors.housings}
+    condensed = (part.name for part in scene.housings if part.name not in kinds)
+    kinds |= dict.fromkeys((*system.supports.name, *condensed), "bearing")
     kinds |= {part.name: "coupling" for part in scene.couplings}
     kinds |= {part.name: "drive" for part in scene.drives}
     meshes = {mesh.name for mesh in scene.meshes}
@@ -69,6 +73,6 @@ def spring_parts(system: System, spring: Sequence[str]) -> tuple[tuple[str, str]
 
 
 def freedom_parts(freedom: Sequence[str]) -> tuple[tuple[str, str], ...]:
-    """Return the shaft of each freedom "shaft.kind" and how it moves along it, one of the `MOVES`."""
+    """Return the body of each freedom "body.kind" and how it moves along it, one of the `MOVES`."""
     pairs = [name.rpartition(".")[::2] for name in freedom]
     return tuple((shaft, MOVES[kind.rstrip("_0123456789")]) for shaft, kind in pairs)

@@ -1,4 +1,7 @@
-"""Rows over all freedoms of all rotors: six rigid ones of each, then flexible shafts' elastic coordinates."""
+"""Rows over all freedoms of all bodies.
+
+Six rigid ones of each rotor, then flexible shafts' elastic coordinates, then the amplitudes of housings.
+"""
 
 from __future__ import annotations
 
@@ -16,14 +19,27 @@ Wrench = Callable[[FloatArray], FloatArray]
 
 
 def column_count(rotors: Bodies) -> int:
-    """Return N, the number of freedoms of all rotors."""
-    return 6 * len(rotors) + sum(rotor.elastic_count for rotor in rotors)
+    """Return N, the number of freedoms of all bodies."""
+    housings = sum(housing.stiffness.size for housing in rotors.housings)
+    return _first_of_housings(rotors) + housings
 
 
 def elastic_columns(rotors: Bodies, index: int) -> slice:
     """Return where the elastic coordinates of the rotor `index` are among the freedoms."""
     first = 6 * len(rotors) + sum(rotor.elastic_count for rotor in rotors[:index])
     return slice(first, first + rotors[index].elastic_count)
+
+
+def housing_columns(rotors: Bodies, index: int) -> slice:
+    """Return where the amplitudes of the housing `index` are among the freedoms."""
+    sizes = [housing.stiffness.size for housing in rotors.housings[: index + 1]]
+    first = _first_of_housings(rotors) + sum(sizes[:index])
+    return slice(first, first + sizes[index])
+
+
+def _first_of_housings(rotors: Bodies) -> int:
+    """Return the number of freedoms of the rotors."""
+    return 6 * len(rotors) + sum(rotor.elastic_count for rotor in rotors)
 
 
 def rigid_motion(arm: FloatArray) -> FloatArray:
@@ -77,12 +93,16 @@ def turn_row(rotors: Bodies, index: int, position: float) -> FloatArray:
 
 
 def elastic_terms(rotors: Bodies) -> tuple[FloatArray, FloatArray]:
-    """Return stiffness and damping per freedom, (N,) each: zero but for elastic coordinates."""
-    stiffness, damping = np.zeros(column_count(rotors)), np.zeros(column_count(rotors))
+    """Return stiffness (N,) and damping (N, N) of the bodies themselves: elastic coordinates, amplitudes."""
+    count = column_count(rotors)
+    stiffness, damping = np.zeros(count), np.zeros((count, count))
     for index, rotor in enumerate(rotors):
         if rotor.elastic is not None:
             own = elastic_columns(rotors, index)
-            stiffness[own], damping[own] = rotor.elastic.stiffness, rotor.elastic.damping
+            stiffness[own], damping[own, own] = rotor.elastic.stiffness, np.diag(rotor.elastic.damping)
+    for index, housing in enumerate(rotors.housings):
+        own = housing_columns(rotors, index)
+        stiffness[own], damping[own, own] = housing.stiffness, housing.damping
     return stiffness, damping
 
 
@@ -90,7 +110,8 @@ def mass_terms(rotors: Bodies) -> tuple[FloatArray, FloatArray]:
     """Return the diagonal of the mass matrix, (N,), and how rotations couple with all freedoms, (N, r).
 
     Rigid freedoms are those of the centers of mass, which elastic coordinates leave at rest. Only where a
-    rotation is imposed at one position, torsion is measured against that and coupled with it.
+    rotation is imposed at one position, torsion is measured against that and coupled with it. Amplitudes of
+    housings have unit modal mass.
     """
     inertia = [rotor.inertia for rotor in rotors]
     rigid = [[i.mass, i.mass, i.mass, i.transverse, i.transverse, i.polar] for i in inertia]
@@ -101,6 +122,7 @@ def mass_terms(rotors: Bodies) -> tuple[FloatArray, FloatArray]:
         if rotor.elastic is not None:
             own = elastic_columns(rotors, index)
             diagonal[own], turned[own, index] = rotor.elastic.mass, rotor.elastic.turned
+    diagonal[_first_of_housings(rotors) :] = 1.0
     return diagonal, turned
 
 

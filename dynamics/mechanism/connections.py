@@ -37,7 +37,7 @@ class Connections:
 
 def gather_connections(scene: Scene, rotors: Bodies) -> Connections:
     """Lay out what joins the rotors of `scene`."""
-    supports = gather_supports(rotors, seated(scene))
+    supports = gather_supports(rotors, seated(scene, rotors))
     couplings = gather_couplings(scene, rotors)
     return Connections(supports, gather_seats(scene, rotors, supports.name), couplings)
 
@@ -64,10 +64,10 @@ def linear_matrices(
 
 
 def elastic_matrices(rotors: Bodies, freedoms: Freedoms) -> tuple[FloatArray, FloatArray]:
-    """Return stiffness and damping (n, n) of the shafts themselves."""
+    """Return stiffness and damping (n, n) of shafts and housings themselves."""
     springs, dampers = elastic_terms(rotors)
     motion = freedoms.motion
-    return motion.T @ (springs[:, None] * motion), motion.T @ (dampers[:, None] * motion)
+    return motion.T @ (springs[:, None] * motion), motion.T @ (dampers @ motion)
 
 
 def forces_on_ground(

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.mechanism.bodies import Bodies
-from dynamics.mechanism.columns import elastic_columns
+from dynamics.mechanism.columns import elastic_columns, housing_columns
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.planets import carried_motion
 from dynamics.types import BoolArray, FloatArray, IntArray
@@ -26,9 +26,11 @@ class Freedoms:
     Attributes
     ----------
     name : tuple of str
-        "shaft.kind" with kind one of x, y, z (m), tilt_x, tilt_y, rotation (rad).
+        "shaft.kind" with kind one of x, y, z (m), tilt_x, tilt_y, rotation (rad); "housing.mode_1" ... (m
+        kg^1/2).
     column : (n,) int array
-        Of each among the N freedoms of all rotors: 6 rotor + kind, elastic coordinates after all of these.
+        Of each among the N freedoms of all bodies: 6 rotor + kind, elastic coordinates after all of these,
+        then the amplitudes of housings.
     motion : (N, n) array
         All freedoms of all rotors per freedom: one at its index; planets go with their carrier where
         nothing lets them move on their own.
@@ -64,6 +66,9 @@ def find_freedoms(rotors: Bodies, kinematics: Kinematics, added: Sequence[Collec
             own += [(kind, first + k, bool(twists[k])) for k, kind in enumerate(rotor.elastic.kinds)]
             own.sort(key=lambda part: COUPLED.index(part[0].rstrip("_0123456789")))
         freedoms += [(f"{rotor.shaft.name}.{kind}", column, turns) for kind, column, turns in own]
+    for index, housing in enumerate(rotors.housings):
+        first = housing_columns(rotors, index).start
+        freedoms += [(f"{housing.name}.{kind}", first + k, False) for k, kind in enumerate(housing.kinds)]
     column = np.array([part[1] for part in freedoms], dtype=np.int64)
     motion = carried_motion(rotors, column)[:, column]
     return Freedoms(

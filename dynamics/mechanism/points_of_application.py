@@ -81,7 +81,7 @@ def _points_of_application(
     """Return where gears, bearings, couplings and torques act."""
     scene, name = mechanism.scene, rotor.shaft.name
     laws = mechanism.bearings
-    tilting = seated(scene) | {at.name for at in laws if at.tilts}
+    tilting = seated(scene, mechanism.rotors) | {at.name for at in laws if at.tilts}
     holding = {at.name for at in laws if at.holds_axis}
     points = [
         PointOfApplication(rotor.on_shaft(gear.position), bends, bends, stretches, True)

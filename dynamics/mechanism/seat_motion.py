@@ -1,4 +1,4 @@
-"""A bearing's five strains by the bodies: of the shaft against the ground, or against a pin."""
+"""A bearing's five strains by the bodies: of the shaft against the ground, a seat of a housing, or a pin."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from dynamics.joints import Bushing, PlanetBearing
 from dynamics.joints.seat import SEAT
 from dynamics.mechanism.bodies import Bodies
-from dynamics.mechanism.columns import section, section_rows
+from dynamics.mechanism.columns import column_count, housing_columns, section, section_rows
 from dynamics.mechanism.rotor import Rotor
 from dynamics.types import FloatArray
 
@@ -18,6 +18,7 @@ def seat_motion(rotors: Bodies, index: int, support: Bushing | PlanetBearing) ->
     """Return the strains of a support of rotor `index` per freedom, (5, N): x, y, z, tilt_x, tilt_y.
 
     Of a planet bearing: the motion of the planet's section less that of the pin, which goes with the carrier.
+    In a housing with mass: the motion of the shaft's section less that of the seat.
     """
     rotor = rotors[index]
     z = rotor.shaft.origin[2] + support.position
@@ -26,6 +27,14 @@ def seat_motion(rotors: Bodies, index: int, support: Bushing | PlanetBearing) ->
         carrier = carrier_of(rotor, support)
         pin = section(rotors[carrier], np.array([*rotor.center[:2], z]))[:SEAT]
         row[:, 6 * carrier : 6 * carrier + 6] -= pin
+    return row - carried_seat(rotors, support.name)
+
+
+def carried_seat(rotors: Bodies, bearing: str) -> FloatArray:
+    """Return the motion of a bearing's seat per freedom, (5, N): zero but in a housing with mass."""
+    row, index = np.zeros((SEAT, column_count(rotors))), rotors.housing_of(bearing)
+    if index is not None:
+        row[:, housing_columns(rotors, index)] = rotors.housings[index].seat(bearing)
     return row
 
 

@@ -59,17 +59,25 @@ class Seats:
         return np.asarray(self.damping @ quarter)
 
 
-def seated(scene: Scene) -> frozenset[str]:
-    """Return the names of the bearings that are more than three springs to rigid ground or pin."""
-    housed = {name for housing in scene.housings for name in housing.bushings}
+def seated(scene: Scene, rotors: Bodies) -> frozenset[str]:
+    """Return the names of the bearings that are more than three springs to what holds them.
+
+    Those in a housing without mass, or whose mass is neglected, have its matrix in series.
+    """
+    housed = {name for housing in condensed_housings(scene, rotors) for name in housing.bushings}
     full = {part.name for part in (*scene.ground_bearings, *scene.planet_bearings) if part.full}
     return frozenset(housed | full)
 
 
+def condensed_housings(scene: Scene, rotors: Bodies) -> list[Housing]:
+    """Return the housings that are no freedoms."""
+    return [part for part in scene.housings if part.name not in {own.name for own in rotors.housings}]
+
+
 def gather_seats(scene: Scene, rotors: Bodies, names: Sequence[str]) -> Seats:
     """Lay out the bearings of `scene` that are seats; `names` are those of all supports."""
-    chosen = seated(scene)
-    housed = [name for housing in scene.housings for name in housing.bushings]
+    chosen, condensed = seated(scene, rotors), condensed_housings(scene, rotors)
+    housed = [name for housing in condensed for name in housing.bushings]
     order = [*housed, *(name for name in names if name in chosen and name not in housed)]
     supports = {part.name: (i, part) for i, rotor in enumerate(rotors) for part in rotor.supports}
     size = SEAT * len(order)
@@ -84,7 +92,7 @@ def gather_seats(scene: Scene, rotors: Bodies, names: Sequence[str]) -> Seats:
         own = np.zeros(SEAT) if part.preload is None else np.array(part.preload)
         preload[rows] = turn.T @ own + stiffness[rows, rows] @ seat_error(rotors, index, part)
     first, groups = 0, []
-    for housing in scene.housings:
+    for housing in condensed:
         rows = slice(first, first + SEAT * len(housing.bushings))
         yielding = condense_housing(housing, stiffness[rows, rows], damping[rows, rows], preload[rows])
         stiffness[rows, rows], damping[rows, rows], preload[rows] = yielding
@@ -111,7 +119,7 @@ def _frame(rotors: Sequence[Rotor], index: int, part: Bushing | PlanetBearing) -
 def condense_housing(
     housing: Housing, stiffness: FloatArray, damping: FloatArray, preload: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return stiffness, damping and preload of bearings in series with a massless housing.
+    """Return stiffness, damping and preload of bearings in series with a housing, its mass neglected.
 
     The seats follow the shaft by S = (K_b + K_h)^-1 K_b and leave T = 1 - S to the bearings:
 

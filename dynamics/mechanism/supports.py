@@ -9,7 +9,7 @@ import numpy as np
 from dynamics.joints import Bushing, PlanetBearing
 from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count
-from dynamics.mechanism.seat_motion import seat_error, seat_motion
+from dynamics.mechanism.seat_motion import carried_seat, seat_error, seat_motion
 from dynamics.types import FloatArray
 
 
@@ -24,7 +24,10 @@ class Supports:
         Rotor of the carrier whose rotating frame the ground is seen from; None: forces are in the fixed frame
         as they are, or, of a planet bearing, stay in the carrier's.
     motion : (b, 3, N) array
-        Strain per freedom: displacement of the axis there, less that of the pin on a planet bearing.
+        Strain per freedom: displacement of the axis there, less that of the pin on a planet bearing, of the
+        seat in a housing with mass.
+    seat : (b, 3, N) array
+        Of the seat alone: zero but in a housing with mass.
     stiffness, damping : (b, 3) arrays
         N/m, N s/m.
     error : (b, 3) array
@@ -34,6 +37,7 @@ class Supports:
     name: tuple[str, ...]
     frame: tuple[int | None, ...]
     motion: FloatArray
+    seat: FloatArray
     stiffness: FloatArray
     damping: FloatArray
     error: FloatArray
@@ -52,6 +56,7 @@ def gather_supports(rotors: Bodies, seated: frozenset[str]) -> Supports:
     placed: list[tuple[int, Bushing | PlanetBearing]] = [*on_ground, *on_pins]
     parts = [part for _, part in placed]
     rows = [seat_motion(rotors, index, part)[:3] for index, part in placed]
+    seats = [carried_seat(rotors, part.name)[:3] for part in parts]
     errors = [seat_error(rotors, index, part)[:3] for index, part in placed]
     stiffness = [[p.radial_stiffness, p.radial_stiffness, p.axial_stiffness] for p in parts]
     damping = [[p.radial_damping or 0.0, p.radial_damping or 0.0, p.axial_damping or 0.0] for p in parts]
@@ -62,6 +67,7 @@ def gather_supports(rotors: Bodies, seated: frozenset[str]) -> Supports:
         tuple(part.name for part in parts),
         (*(rotors[index].frame for index, _ in on_ground), *(None for _ in on_pins)),
         np.array(rows).reshape(-1, 3, column_count(rotors)),
+        np.array(seats).reshape(-1, 3, column_count(rotors)),
         np.array(stiffness).reshape(-1, 3),
         np.array(damping).reshape(-1, 3),
         np.array(errors).reshape(-1, 3),

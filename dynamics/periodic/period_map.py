@@ -123,10 +123,11 @@ def periodic_problem(
 def _highest(system: System, frequency: FloatArray) -> float:
     """Return the highest natural frequency that steps resolve, Hz.
 
-    Flexible shafts have coordinates far above what is of interest; the implicit method lets them follow as
-    springs do.
+    Flexible shafts and housings have coordinates far above what is of interest; the implicit method lets them
+    follow as springs do. Of a housing what meshes excite is of interest.
     """
     interest = [rotor.elastic.highest for rotor in system.rotors if rotor.elastic is not None]
+    interest += [system.sampling.mode_frequency for _ in system.rotors.housings]
     if not interest or system.scene.integration.method == "explicit":
         return float(frequency[-1])
     return float(np.max(frequency[frequency <= max(interest)], initial=0.0))

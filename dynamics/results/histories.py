@@ -128,7 +128,7 @@ def _accelerations(
     if system.scene.outputs.displacements:
         series["acceleration"] = acceleration
     if system.scene.outputs.bearing_forces:
-        moves = system.freedoms.keep(system.supports.motion)
+        moves = system.freedoms.keep(system.supports.motion + system.supports.seat)
         bearings, _, freedoms = moves.shape
         seats = (moves.reshape(3 * bearings, freedoms) @ acceleration).reshape(bearings, 3, len(moved))
         series["bearing_acceleration"] = _seen_from_the_ground(system, seats, laws, moved)

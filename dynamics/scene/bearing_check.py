@@ -16,12 +16,13 @@ def check_bearing_laws(
     contacts: Sequence[RollingContact],
     curves: Sequence[SpringCurve],
     rolling: Sequence[RollingBearing],
-    housed: frozenset[str],
+    condensed: frozenset[str],
     rotating: frozenset[str],
 ) -> None:
-    """Every law has its own direction of one of `bearings`, on rigid ground or on a pin.
+    """Every law has its own direction of one of `bearings`, on rigid ground, a pin or a housing with mass.
 
-    `housed` names the bearings in a housing, `rotating` those of shafts described in a rotating frame.
+    `condensed` names the bearings in a housing without mass, `rotating` those of shafts described in a
+    rotating frame.
     """
     fields = [
         *((f"rolling_contacts[{index}].bushing", part.bushing) for index, part in enumerate(contacts)),
@@ -30,9 +31,9 @@ def check_bearing_laws(
     for field, name in fields:
         one_of(field, name, bearings)
     for field, name in (*fields, *((f"rolling_bearings[{i}].name", p.name) for i, p in enumerate(rolling))):
-        if name in housed:
-            bound = "a bushing outside of housings, which are condensed with linear bushings"
-            raise InputError(field, name, bound, "Take it out of the housing.")
+        if name in condensed:
+            bound = "a bushing outside of housings without mass, which are condensed with linear bushings"
+            raise InputError(field, name, bound, "Give the housing its mass, or take the bearing out of it.")
     distinct("rolling_contacts", [part.bushing for part in contacts])
     distinct("spring_curves", [f"{part.bushing}.{part.direction}" for part in curves])
     for index, curve in enumerate(curves):

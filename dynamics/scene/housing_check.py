@@ -1,9 +1,10 @@
-"""Housings and bushings with matrices: what they can carry."""
+"""Housings and bushings with matrices: what they can carry, and where."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from bounds import Quantity, Text
 from dynamics.bodies import Shaft
 from dynamics.checks import one_of
 from dynamics.errors import InputError
@@ -12,6 +13,7 @@ from dynamics.joints.seat import SEAT
 from dynamics.types import FloatArray
 
 ISOTROPY = 1e-9  # relative
+SEAT_AGREEMENT = 1e-3  # m; a bearing acts at its middle, which need not be that of its bore
 IRRATIONAL = 1.0  # rad; what this turn leaves alone any turn does
 
 
@@ -32,9 +34,27 @@ def check_housings(
                 bound = "a bushing of a shaft described in the fixed frame"
                 raise InputError(field, name, bound, "A planetary set's frame turns against the housing.")
             taken[name] = housing.name
+        _check_positions(index, housing, shafts, by_name)
     for index, bushing in enumerate(bushings):
         if frames[bushing.shaft] is not None:
             _check_isotropic(f"bushings[{index}]", bushing)
+
+
+def _check_positions(
+    index: int, housing: Housing, shafts: tuple[Shaft, ...], bushings: dict[str, Bushing]
+) -> None:
+    """Refuse a seat of a housing that is not where its bearing is."""
+    origins = {shaft.name: shaft.origin for shaft in shafts}
+    for seat, (name, at) in enumerate(zip(housing.bushings, housing.seat_positions or (), strict=False)):
+        bearing = bushings[name]
+        expected = np.add(origins[bearing.shaft], (0.0, 0.0, bearing.position))
+        off = np.subtract(at, expected)
+        if float(np.max(np.abs(off))) > SEAT_AGREEMENT:
+            x, y, z = (Quantity(float(value), "m", digits=3) for value in off)
+            limit = Quantity(SEAT_AGREEMENT, "m")
+            bound = Text.of("within ", limit, f' of "{name}"; it is off by ', x, ", ", y, ", ", z)
+            advice = "Move and turn the mesh so that it stands as the scene does, z along the shafts."
+            raise InputError(f"housings[{index}].seat_positions[{seat}]", at, bound, advice)
 
 
 def _check_isotropic(field: str, bushing: Bushing) -> None:

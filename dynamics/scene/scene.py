@@ -155,7 +155,7 @@ class Scene:
             self.rolling_contacts,
             self.spring_curves,
             self.rolling_bearings,
-            frozenset(name for housing in self.housings for name in housing.bushings),
+            frozenset(name for housing in self.housings if housing.mass is None for name in housing.bushings),
             frozenset(bushing.name for bushing in self.bushings if bushing.shaft in rotating),
         )
 

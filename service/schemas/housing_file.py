@@ -1,21 +1,26 @@
-"""Housing matrices as files beside a scene file: read and written out in the scene.
+"""Housings as files beside a scene file: their matrices are read and written out in the scene.
 
 Only files on the caller's own disk name other files; what goes over HTTP holds the matrix itself.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from host import MissingExtra
 from service.problems import BadInput
+from service.units import MM, as_typed
 
-FIELD, ROWS = "stiffness_file", "stiffness_matrix"
+ROWS = "stiffness_matrix"
+MATRIX_FILE, MODES_FILE = "stiffness_file", "modes_file"
 Table = dict[str, Any]
 
 
 def with_housing_files(table: Table, folder: Path) -> Table:
-    """Return the table of a scene with `stiffness_matrix` in place of the housings' `stiffness_file`.
+    """Return the table of a scene with the housings' matrices in place of the files that hold them.
 
     Raises
     ------
@@ -30,21 +35,56 @@ def with_housing_files(table: Table, folder: Path) -> Table:
 
 def _written_out(housing: object, folder: Path, index: int) -> object:
     """One housing with its file's matrices."""
+    named = [field for field in READERS if isinstance(housing, dict) and field in housing]
+    if not isinstance(housing, dict) or not named:
+        return housing
+    field, name = f"housings[{index}].{named[0]}", housing[named[0]]
+    if not isinstance(name, str):
+        raise BadInput.of(field, name, "the name of a file in quotes", "See docs/case-file.md.")
+    if ROWS in housing or len(named) > 1:
+        others = " and ".join((ROWS, *(other for other in READERS if other != named[0])))
+        raise BadInput.of(field, name, f"left out when {others} is given", "Keep one of them.")
+    own = {key: value for key, value in housing.items() if key != named[0]}
+    return READERS[named[0]](own, folder / name, field)
+
+
+def _with_matrices(housing: Table, file: Path, field: str) -> Table:
+    """Return a housing with the matrices of a CSV or NPZ file."""
     from dynamics.errors import InputError  # noqa: PLC0415 - the client reads scenes too, and stays light
     from dynamics.joints.housing import read_housing_matrices  # noqa: PLC0415
 
-    if not isinstance(housing, dict) or FIELD not in housing:
-        return housing
-    field, name = f"housings[{index}].{FIELD}", housing[FIELD]
-    if not isinstance(name, str):
-        raise BadInput.of(field, name, "the name of a CSV or NPZ file in quotes", "See docs/case-file.md.")
-    if ROWS in housing:
-        raise BadInput.of(field, name, f"left out when {ROWS} is given", "Give one of the two.")
     try:
-        stiffness, damping = read_housing_matrices(folder / name)
+        matrices = read_housing_matrices(file)
     except InputError as error:
-        raise BadInput.of(
-            field, name, str(error.bound), str(error.suggestion) or "See docs/case-file.md."
-        ) from None
-    resolved = {key: value for key, value in housing.items() if key != FIELD} | {ROWS: stiffness.tolist()}
-    return resolved if damping is None else resolved | {"damping_matrix": damping.tolist()}
+        advice = str(error.suggestion) or "See docs/case-file.md."
+        raise BadInput.of(field, file.name, str(error.bound), advice) from None
+    return housing | {f"{part}_matrix": matrix.tolist() for part, matrix in matrices.items()}
+
+
+def _with_modes(housing: Table, file: Path, field: str) -> Table:
+    """Return a housing with the matrices and the seats of a reduced housing."""
+    try:
+        modes: Any = import_module("dynamics.housing_modes")  # an extra, which the client does without
+    except MissingExtra as error:
+        raise BadInput.of(field, file.name, "read where the extra is installed", f"{error}") from None
+    from dynamics.errors import InputError, ResultError  # noqa: PLC0415
+
+    try:
+        part = modes.scene_housing(modes.ReducedHousing.from_netcdf(file), str(housing.get("name", "")))
+    except ResultError as error:
+        raise BadInput.of(field, file.name, "a reduced housing (NetCDF)", f"{error}") from None
+    except InputError as error:
+        fault = f"a housing that a scene takes: {error.field} {error.bound}"
+        raise BadInput.of(field, file.name, fault, str(error.suggestion)) from None
+    matrices = {f"{name}_matrix": getattr(part, name) for name in ("stiffness", "damping", "mass")}
+    places = [[as_typed(value, MM) for value in point] for point in part.seat_positions or ()]
+    derived = {"bushings": list(part.bushings), "modal_coordinates": part.modal_coordinates}
+    given = {name: rows for name, rows in matrices.items() if rows is not None}
+    return derived | {"seat_positions_mm": places} | housing | given
+
+
+READERS: dict[str, Callable[[Table, Path, str], Table]] = {
+    MATRIX_FILE: _with_matrices,
+    MODES_FILE: _with_modes,
+}
+"""What reads the files that a housing names, by the field that names them."""

@@ -1,0 +1,88 @@
+"""Modes of housings with mass: the bearing seats move as inertia and resonance of the housing let them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from dynamics.effects.effect import RotorEffect, Verdict
+from dynamics.effects.loaded_rotors import LoadedRotor
+from dynamics.joints import Housing
+from dynamics.mechanism.additions import HOUSING_AMPLITUDES
+from dynamics.mechanism.mechanism import Mechanism
+from dynamics.mechanism.modal_housing import ModalHousing, modal_housing
+from dynamics.mechanism.sampling import top_load_frequency, top_mesh_frequency
+
+SHARE = 0.01
+"""Least motion of a seat by the housing's inertia, over its static one, that calls for it."""
+
+
+class HousingModes(RotorEffect):
+    """The amplitudes of all modes of a housing, as freedoms beside those of the shafts in it."""
+
+    name = "housing_modes"
+    at_rest = False
+    adds = (HOUSING_AMPLITUDES,)
+    cost = "a freedom per row of the housing's matrices, all coupled by its linear bearings"
+
+    def verdicts(self, rotors: Sequence[LoadedRotor]) -> Sequence[Verdict]:
+        """Call for it in housings whose first mode the mesh orders wanted, or a load, come near.
+
+        All shafts in a housing have its verdict, and where one sits in two, that of the one it is on in.
+        Static motions are the same without it.
+        """
+        none = Verdict(False, False, "no bearing of it sits in a housing with mass", 0.0)
+        return [
+            max(
+                (_verdict(rotor, housing) for housing in _housings_of(rotor.mechanism, rotor.index)),
+                key=lambda verdict: verdict.on,
+                default=none,
+            )
+            for rotor in rotors
+        ]
+
+    def extend(self, mechanism: Mechanism, decided: Sequence[Verdict | None]) -> Mechanism:
+        """Give the housings of shafts on which it is on their amplitudes."""
+        on = {
+            housing.name
+            for index, verdict in enumerate(decided)
+            if verdict is not None
+            for housing in _housings_of(mechanism, index)
+        }
+        moving = tuple(modal_housing(part) for part in mechanism.scene.housings if part.name in on)
+        return replace(mechanism, rotors=replace(mechanism.rotors, housings=moving)) if moving else mechanism
+
+
+def _housings_of(mechanism: Mechanism, index: int) -> list[Housing]:
+    """Return the housings with mass in which the shaft `index` has a bearing."""
+    own = {part.name for part in mechanism.rotors[index].supports}
+    massive = (part for part in mechanism.scene.housings if part.mass is not None)
+    return [part for part in massive if not own.isdisjoint(part.bushings)]
+
+
+def _verdict(rotor: LoadedRotor, housing: Housing) -> Verdict:
+    """Assess a housing under one of its shafts.
+
+    At the frequency f the inertia of a housing of the first mode f_1 moves a seat by up to (f/f_1)^2 of its
+    static motion more.
+    """
+    scene, kinematics = rotor.mechanism.scene, rotor.mechanism.kinematics
+    modal = modal_housing(housing)
+    orders = scene.outputs.mesh_orders * top_mesh_frequency(scene, kinematics)
+    highest, first = max(orders, top_load_frequency(scene, kinematics)), float(modal.frequency[0])
+    share = (highest / first) ** 2
+    influence = min(share, 1.0) * _static_motion(rotor, modal)
+    reason = f"mesh orders and loads reach {highest:.4g} Hz, the first mode of {housing.name} {first:.4g} Hz"
+    if any(at.name in housing.bushings for at in rotor.mechanism.bearings):
+        return Verdict(True, False, f"{reason}; it carries bearings that are not linear", influence)
+    return Verdict(share > SHARE, True, reason, influence)
+
+
+def _static_motion(rotor: LoadedRotor, modal: ModalHousing) -> float:
+    """Return how far an equal share of its mesh forces moves the softest seat of a rotor across, m."""
+    supports = [part.name for part in rotor.rotor.supports]
+    own = np.array([modal.seat(name)[:2] for name in supports if name in modal.bearings])
+    compliance = np.sum(own**2 / modal.stiffness, axis=2)
+    return rotor.pushed / len(supports) * float(np.max(compliance))
