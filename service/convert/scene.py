@@ -181,7 +181,21 @@ def _gear(index: int, gear: GearBodyInput, teeth: Teeth) -> GearBody:
 def _housing(index: int, housing: HousingInput) -> Housing:
     """Return a housing."""
     with named(f"housings[{index}]"):
-        return Housing(housing.name, housing.bushings, housing.stiffness_matrix, housing.damping_matrix)
+        positions = housing.seat_positions_mm
+        return Housing(
+            name=housing.name,
+            bushings=housing.bushings,
+            stiffness=housing.stiffness_matrix,
+            damping=housing.damping_matrix,
+            mass=housing.mass_matrix,
+            seat_positions=None if positions is None else tuple(_point(*at) for at in positions),
+            **in_si(Housing, housing),
+        )
+
+
+def _point(x: float, y: float, z: float) -> tuple[float, float, float]:
+    """Return a point given in mm."""
+    return x * MM, y * MM, z * MM
 
 
 def _coupling(index: int, coupling: CouplingInput) -> Coupling:

@@ -14,6 +14,7 @@ from dynamics.bodies.shaft import Shaft as TurningShaft
 from dynamics.joints.bushing import Bushing
 from dynamics.joints.coupling import Coupling
 from dynamics.joints.free_rotation import FreeRotation
+from dynamics.joints.housing import Housing
 from dynamics.joints.imposed_rotation import ImposedRotation
 from dynamics.joints.planet_bearing import PlanetBearing
 from dynamics.joints.rolling_bearing import RollingBearing
@@ -58,7 +59,7 @@ _ANYWHERE = (
     *(FlankModification, Material, Shaft, *(Gear, RingGear, *_with_parts(parts_of(Gear)))),
     *(GearBody, DiscBody, Inertia, TurningShaft, BeamSection),
     Outputs,
-    *(Bushing, PlanetBearing, Coupling, FreeRotation, AppliedForce, Unbalance),
+    *(Bushing, Housing, PlanetBearing, Coupling, FreeRotation, AppliedForce, Unbalance),
     *(RollingBearing, BallBearing, RollerBearing, CatalogLine),
 )
 """What declares its fields, by names that mean the same in every table."""
@@ -95,6 +96,7 @@ _LAST = _fields_of(*_ANYWHERE) | {
     "moment": "moment_n_m",
     "highest_frequency": "highest_frequency_hz",
     "radial_clearance": "radial_clearance_um",
+    "seat_positions": "seat_positions_mm",
     "backlash": "backlash_um",
     # results
     "max_pressure": "max_pressure_gpa",
@@ -130,7 +132,7 @@ def scene_field(name: str) -> str:
         return "run.duration_s"
     if (
         len(parts) == 2
-        and head in ("stiffness", "damping")
+        and head in ("stiffness", "damping", "mass")
         and parts[0].startswith(("bushings", "planet_bearings", "housings", "couplings"))
     ):
         parts[-1] = f"{head}_matrix"

@@ -8,6 +8,7 @@ from pydantic import Field, Strict
 
 Name = Annotated[str, Field(min_length=1, max_length=64)]
 Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]
+Point = Annotated[tuple[Coordinate, ...], Strict(False), Field(min_length=3, max_length=3)]
 Acceleration = Annotated[float, Field(ge=-1e6, le=1e6)]
 Number = Annotated[float, Field(ge=-1e9, le=1e9)]
 Times = Annotated[tuple[Annotated[float, Field(ge=0.0, le=1e9)], ...], Strict(False)]

@@ -13,6 +13,8 @@ import numpy as np
 import pytest
 from small_table import small_table
 
+from dynamics.housing_modes import ReducedHousing, ReducedMatrices, Ring, SeatFrame, housing_of_matrices
+from dynamics.mechanism.modal_housing import modal_housing
 from dynamics.rolling_bearings import BallBearing, RollerBearing, from_catalog
 from dynamics.scene import Scene
 from service.convert.bearings import planet_bearing_of, rolling_contacts_of, spring_curves_of
@@ -25,6 +27,8 @@ ROOT = Path(__file__).parents[3]
 EXAMPLE = tomllib.loads((ROOT / "examples" / "palermo_scene.toml").read_text())
 MATRIX = (1e8 * np.diag([1.0, 1.0, 0.5, 0.01, 0.01])).tolist()
 HOUSING = (1e9 * (np.eye(6) + 0.1)).tolist()
+MASS = (5.0 * np.eye(6) + 1.0).tolist()
+SEATS = [[0.0, 0.0, part["position_mm"]] for part in EXAMPLE["bushings"][:2]]
 Change = Callable[[dict[str, Any]], object]
 
 
@@ -129,7 +133,7 @@ def test_a_housing_file_is_written_out_in_the_scene(tmp_path: Path, suffix: str)
     if suffix == ".csv":
         np.savetxt(tmp_path / name, HOUSING, delimiter=",")
     else:
-        np.savez(tmp_path / name, stiffness=HOUSING)
+        np.savez(tmp_path / name, stiffness=HOUSING, mass=np.eye(6))
     text = (ROOT / "examples" / "palermo_scene.toml").read_text()
     names = ", ".join(f'"{bushing["name"]}"' for bushing in EXAMPLE["bushings"][:2])
     part = f'\n[[housings]]\nname = "case"\nbushings = [{names}]\nstiffness_file = "{name}"\n'
@@ -138,14 +142,82 @@ def test_a_housing_file_is_written_out_in_the_scene(tmp_path: Path, suffix: str)
     np.testing.assert_array_equal(given.housings[0].stiffness_matrix, HOUSING)
     found = dynamic_scene(given, {"mesh": small_table()})
     np.testing.assert_array_equal(found.housings[0].stiffness, HOUSING)
+    assert (found.housings[0].mass is None) == (suffix == ".csv")
+
+
+def reduced(path: Path, off: float = 0.0) -> ReducedHousing:
+    """Write a housing under the first two bearings, one mode inside; the second seat is `off` (m) along z."""
+    origin = {shaft["name"]: shaft.get("origin_mm", [0.0, 0.0, 0.0]) for shaft in EXAMPLE["shafts"]}
+    seats = []
+    for index, bushing in enumerate(EXAMPLE["bushings"][:2]):
+        x, y, z = origin[bushing["shaft"]]
+        at = 1e-3 * np.array([x, y, z + bushing["position_mm"]]) + np.array([0.0, 0.0, off * index])
+        axes = np.diag([1.0, -1.0, -1.0]) if index else np.eye(3)
+        seats.append(SeatFrame(bushing["name"], at, axes, Ring.RIGID, ("x", "y", "z")))
+    stiffness, mass = np.diag([*np.diag(HOUSING), 4e7]), np.eye(7)
+    stiffness[:6, :6], mass[0, 6], mass[6, 0] = HOUSING, 0.3, 0.3
+    housing = housing_of_matrices(ReducedMatrices(stiffness, mass), tuple(seats))
+    housing.to_netcdf(path)
+    return housing
+
+
+def test_a_reduced_housing_is_written_out_in_the_scene(tmp_path: Path) -> None:
+    """Its seats name the bearings; the one whose bore points down turns y and z over."""
+    housing, file = reduced(tmp_path / "case.nc"), tmp_path / "scene.toml"
+    text = (ROOT / "examples" / "palermo_scene.toml").read_text()
+    file.write_text(text + '\n[[housings]]\nname = "case"\nmodes_file = "case.nc"\n')
+    found = dynamic_scene(read_model(SceneInput, file), {"mesh": small_table()}).housings[0]
+    assert found.bushings == tuple(part["name"] for part in EXAMPLE["bushings"][:2])
+    assert found.modal_coordinates == 1
+    over = np.diag([1.0, 1.0, 1.0, 1.0, -1.0, -1.0, 1.0])
+    for name in ("stiffness", "damping", "mass"):
+        np.testing.assert_array_equal(getattr(found, name), over @ getattr(housing, name) @ over)
+    square = modal_housing(found).stiffness
+    np.testing.assert_allclose(np.sqrt(square), housing.modes[0], rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("line", "off", "field"),
+    [
+        ('modes_file = "none.nc"', 0.0, "housings[0].modes_file"),
+        ('modes_file = "scene.toml"', 0.0, "housings[0].modes_file"),
+        ('modes_file = "case.nc"\nstiffness_file = "case.csv"', 0.0, "housings[0].stiffness_file"),
+        ("modes_file = 3", 0.0, "housings[0].modes_file"),
+        ('modes_file = "case.nc"', 0.01, "housings[0].seat_positions_mm[1]"),
+    ],
+)
+def test_a_reduced_housing_that_does_not_fit_is_named(
+    tmp_path: Path, line: str, off: float, field: str
+) -> None:
+    reduced(tmp_path / "case.nc", off)
+    part = f'\n[[housings]]\nname = "case"\n{line}\n'
+    (tmp_path / "scene.toml").write_text((ROOT / "examples" / "palermo_scene.toml").read_text() + part)
+    with pytest.raises(BadInput) as caught:
+        dynamic_scene(read_model(SceneInput, tmp_path / "scene.toml"), {"mesh": small_table()})
+    assert caught.value.faults[0].field == field
+    assert off == 0.0 or "10 mm" in str(caught.value.faults[0])
+
+
+def test_a_housing_has_its_mass_from_the_file() -> None:
+    found = scene(housing(mass_matrix=MASS, damping_ratio=0.01, seat_positions_mm=SEATS)).housings[0]
+    np.testing.assert_array_equal(found.mass, MASS)
+    assert found.damping_ratio == 0.01
+    bare = validated(SceneInput, copy.deepcopy(EXAMPLE) | {"housings": [housing_of(EXAMPLE)]})
+    later = {"mass_matrix", "damping_ratio", "modal_coordinates", "seat_positions_mm"}
+    assert later.isdisjoint(bare.model_dump(mode="json")["housings"][0])
+
+
+def housing_of(table: dict[str, Any], **fields: Any) -> dict[str, Any]:
+    """Return a housing under the first two bushings."""
+    names = [bushing["name"] for bushing in table["bushings"][:2]]
+    return {"name": "case", "bushings": names, "stiffness_matrix": HOUSING} | fields
 
 
 def housing(**fields: Any) -> Change:
-    """Return a change that adds a housing under the first two bushings."""
+    """Return a change that adds this housing."""
 
     def change(table: dict[str, Any]) -> None:
-        names = [bushing["name"] for bushing in table["bushings"][:2]]
-        table["housings"] = [{"name": "case", "bushings": names, "stiffness_matrix": HOUSING} | fields]
+        table["housings"] = [housing_of(table, **fields)]
 
     return change
 
@@ -210,6 +282,23 @@ WRONG: dict[str, tuple[Change, str]] = {
     "unknown bushing": (housing(bushings=["input left", "x"]), "housings[0].bushings[1]"),
     "wrong size": (housing(stiffness_matrix=np.eye(7).tolist()), "housings[0].stiffness_matrix"),
     "damping of another size": (housing(damping_matrix=np.eye(10).tolist()), "housings[0].damping_matrix"),
+    "a motion without mass": (
+        housing(mass_matrix=np.diag([1.0, 1.0, 1.0, 1.0, 1.0, 0.0]).tolist()),
+        "housings[0].mass_matrix",
+    ),
+    "modes without mass": (
+        housing(stiffness_matrix=np.eye(7).tolist(), modal_coordinates=1),
+        "housings[0].modal_coordinates",
+    ),
+    "seats elsewhere": (
+        housing(seat_positions_mm=[SEATS[0], [0.0, 0.0, -50.0]]),
+        "housings[0].seat_positions_mm[1]",
+    ),
+    "modes over HTTP": (housing(modes_file="case.nc"), "housings[0].modes_file"),
+    "a law in a housing without mass": (
+        lambda t: (housing()(t), rolling(ball=BALL)(t)),
+        "rolling_bearings[0].name",
+    ),
     "a file over HTTP": (housing(stiffness_file="case.csv"), "housings[0].stiffness_file"),
 }
 
