@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from dynamics.errors import SolveError
 from dynamics.linearize.harmonic_response import HarmonicResponse, extremes, response_of
 from dynamics.linearize.steady_vibration import ComplexArray, Excited, Steady, swept_vibration
 from dynamics.types import FloatArray, IntArray
@@ -163,7 +164,11 @@ def _push(family: Family, receptance: ComplexArray, made: ComplexArray) -> Compl
 
 
 def _at_rest(at: Excited, row: FloatArray) -> ComplexArray:
-    """Displacements per static force along rows (f, n), (n, f)."""
+    """Displacements (n, f) per static force along rows (f, n); `SolveError` where a motion is free."""
     per_meter = 1.0 / at.linear.scale
     held = per_meter[:, None] * at.linear.stiffness * per_meter
-    return np.asarray(np.linalg.solve(held, (row * per_meter).T) * per_meter[:, None], dtype=complex)
+    try:
+        moved = np.linalg.solve(held, (row * per_meter).T)
+    except np.linalg.LinAlgError as error:
+        raise SolveError("nothing holds the system at its static equilibrium") from error
+    return np.asarray(moved * per_meter[:, None], dtype=complex)
