@@ -86,6 +86,7 @@ def _series(system: System, trajectory: Trajectory) -> tuple[FloatArray, FloatAr
     """Transmission errors (m, T) and bearing forces in their own frames (b, 3, T)."""
     observed = observe(system.arrays, trajectory.time, trajectory.q, trajectory.v, trajectory.moved)
     force = system.bearing_force(observed.force, trajectory.q, trajectory.v)[:, :3]
-    if system.freedoms.column.size and not np.any(system.bearing_stiffness) and not system.bearings:
+    elastic = np.any(system.bearing_stiffness) or system.housed or system.bearings
+    if system.freedoms.column.size and not elastic:
         force = np.full_like(force, np.nan)  # bearings hold nothing here: no freedom moves them
     return observed.coordinate[system.driving_rows], force

@@ -11,6 +11,7 @@ from dynamics.arrays.elements import Element
 from dynamics.assembly.bearing_force import BearingForce, bearing_force_map
 from dynamics.assembly.bearing_rest import linear_scene
 from dynamics.assembly.force_elements import force_elements
+from dynamics.assembly.housed_bearings import housed_bearings
 from dynamics.assembly.model import Model, decide_model
 from dynamics.assembly.system_arrays import system_arrays
 from dynamics.effects import EFFECTS, EffectLedger
@@ -56,6 +57,8 @@ class System:
         The bearings that are more than three springs to rigid ground or pin.
     bearings : tuple of BearingElement
         Where the last elements act, those of bearings that are not linear.
+    housed : tuple of BearingElement
+        Where those before them act: linear bearings in housings that move.
     couplings : CouplingRows
     bearing_stiffness, bearing_damping : (b, 3 or 6, n) arrays
         Force on the ground, or on the pin, at each support per freedom and its rate; where bearings may
@@ -80,6 +83,7 @@ class System:
     supports: Supports
     seats: Seats
     bearings: tuple[BearingElement, ...]
+    housed: tuple[BearingElement, ...]
     couplings: CouplingRows
     bearing_stiffness: FloatArray
     bearing_damping: FloatArray
@@ -150,6 +154,7 @@ def _with_linear_bearings(system: System) -> Scene:
 def _put_together(model: Model, elements: tuple[Element, ...], arrays: SystemArrays) -> System:
     """Gather all parts; bearings that hold tilt also exert moments."""
     mechanism, freedoms, joined = model.mechanism, model.freedoms, model.connections
+    housed = housed_bearings(mechanism)
     tilted = bool(joined.seats.name) or any(at.tilts for at in mechanism.bearings)
     stiffness, damping = forces_on_ground(joined, freedoms, tilted)
     return System(
@@ -164,11 +169,17 @@ def _put_together(model: Model, elements: tuple[Element, ...], arrays: SystemArr
         joined.supports,
         joined.seats,
         mechanism.bearings,
+        housed,
         joined.couplings,
         stiffness,
         damping,
         bearing_force_map(
-            stiffness, damping, joined.supports, joined.seats, mechanism.bearings, arrays.elements
+            stiffness,
+            damping,
+            joined.supports,
+            joined.seats,
+            (*housed, *mechanism.bearings),
+            arrays.elements,
         ),
         choose_sampling(mechanism.scene, mechanism.kinematics, _top_mode(model, arrays)),
         model.ledger,

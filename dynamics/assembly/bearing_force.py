@@ -55,8 +55,8 @@ def bearing_force_map(
 ) -> BearingForce:
     """Gather the map from `stiffness` and `damping` (b, 3 or 6, n) and the laws of the bearings.
 
-    Springs of supports press against their errors, seats have preloads, and a bearing that is not linear
-    gives its own forces: the last elements.
+    Springs of supports press against their errors, seats have preloads, and bearings that are not linear or
+    sit in a housing that moves give their own forces: the last elements.
     """
     count, rows, n = stiffness.shape
     total = elements.offset.size

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dynamics.arrays.elements import Element
 from dynamics.assembly.flank_elements import flank_elements
 from dynamics.assembly.frame_couplings import frame_coupling_elements
+from dynamics.assembly.housed_bearings import housed_bearing_elements, housed_bearings
 from dynamics.assembly.load_elements import force_course_elements, unbalance_elements
 from dynamics.assembly.model import Model
 from dynamics.assembly.phases import repeating_phases
@@ -16,7 +17,7 @@ from dynamics.mechanism.bearing_elements import bearing_elements, tilt_lever
 
 
 def force_elements(model: Model) -> tuple[tuple[Element, ...], ElementLaws]:
-    """Return the driving flanks of all meshes, then everything else, and their laws."""
+    """Return the driving flanks of all meshes, everything else, bearings last, and their laws."""
     mechanism, flanks = model.mechanism, model.flanks
     scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
     plain = flank_elements(scene, rotors, kinematics.mesh_sense, mechanism.lines, flanks)
@@ -35,6 +36,7 @@ def force_elements(model: Model) -> tuple[tuple[Element, ...], ElementLaws]:
     across, frame = frame_coupling_elements(scene, rotors, tilt_lever(scene))
     applied, course = force_course_elements(mechanism)
     eccentric, unbalance = unbalance_elements(mechanism)
+    housed, linear_bearing = housed_bearing_elements(mechanism, housed_bearings(mechanism))
     laws = ElementLaws(
         flank=flanks.law,
         speed_torque=speed,
@@ -43,6 +45,8 @@ def force_elements(model: Model) -> tuple[tuple[Element, ...], ElementLaws]:
         frame_coupling=frame,
         applied_force=course,
         unbalance=unbalance,
+        linear_bearing=linear_bearing,
         **bearing_laws,
     )
-    return (*in_space, *by_speed, *applied, *eccentric, *in_frames, *across, *on_bearings), laws
+    others = (*by_speed, *applied, *eccentric, *in_frames, *across, *housed)
+    return (*in_space, *others, *on_bearings), laws

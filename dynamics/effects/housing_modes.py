@@ -25,7 +25,7 @@ class HousingModes(RotorEffect):
     name = "housing_modes"
     at_rest = False
     adds = (HOUSING_AMPLITUDES,)
-    cost = "a freedom per row of the housing's matrices, all coupled by its linear bearings"
+    cost = "a freedom per row of the housing's matrices, a force element per bearing in it, implicit steps"
 
     def verdicts(self, rotors: Sequence[LoadedRotor]) -> Sequence[Verdict]:
         """Call for it in housings whose first mode the mesh orders wanted, or a load, come near.

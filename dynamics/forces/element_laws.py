@@ -24,6 +24,7 @@ from dynamics.forces.frame_coupling import (
     frame_coupling_energy,
 )
 from dynamics.forces.law import Law
+from dynamics.forces.linear_bearing import LinearBearingLaws, linear_bearing, linear_bearing_energy
 from dynamics.forces.local_state import LocalState
 from dynamics.forces.roller_elements import RollerElements, rollers, rollers_energy
 from dynamics.forces.rolling_contact import (
@@ -45,6 +46,7 @@ SPATIAL_FLANK = int(Law.SPATIAL_FLANK)
 ROTATING_FRAME, FRAME_COUPLING = int(Law.ROTATING_FRAME), int(Law.FRAME_COUPLING)
 BALLS, ROLLERS = int(Law.BALLS), int(Law.ROLLERS)
 APPLIED_FORCE, UNBALANCE = int(Law.APPLIED_FORCE), int(Law.UNBALANCE)
+LINEAR_BEARING = int(Law.LINEAR_BEARING)
 
 
 class ElementLaws(NamedTuple):
@@ -61,6 +63,7 @@ class ElementLaws(NamedTuple):
     rollers: RollerElements
     applied_force: ForceCourseLaws
     unbalance: UnbalanceLaws
+    linear_bearing: LinearBearingLaws
 
 
 class Elements(NamedTuple):
@@ -134,6 +137,7 @@ ROUTINES = {
     Law.ROLLERS: (rollers, rollers_energy),
     Law.APPLIED_FORCE: (applied_force,),
     Law.UNBALANCE: (unbalance, unbalance_energy),
+    Law.LINEAR_BEARING: (linear_bearing, linear_bearing_energy),
 }
 """What a kind of law is compiled from, when a scene first has it; flanks are compiled into every loop."""
 
@@ -182,6 +186,8 @@ def evaluate(elements: Elements, local: LocalState, e: int) -> None:
         applied_force(laws.applied_force, entry, local, row)
     elif kind == UNBALANCE:
         unbalance(laws.unbalance, entry, local, row)
+    elif kind == LINEAR_BEARING:
+        linear_bearing(laws.linear_bearing, entry, local, row)
 
 
 @inner
@@ -210,6 +216,8 @@ def potential(elements: Elements, local: LocalState, e: int) -> tuple[float, flo
         energy, slope = rollers_energy(laws.rollers, entry, local, row, elements.mesh[e])
     elif kind == UNBALANCE:
         energy = unbalance_energy(laws.unbalance, entry, local, row)
+    elif kind == LINEAR_BEARING:
+        energy = linear_bearing_energy(laws.linear_bearing, entry, local, row)
     return energy, slope
 
 

@@ -19,7 +19,8 @@ class Law(IntEnum):
     ROLLERS = 8  # p = 5: a bearing's row of rollers
     APPLIED_FORCE = 9  # p = 1 to 4: a force on a shaft by time, speed or angle
     UNBALANCE = 10  # p = 3: mass off a shaft's axis
+    LINEAR_BEARING = 11  # p = 1 to 5: a linear bearing in a housing that moves
 
 
-OF_BEARINGS = (Law.ROLLING_CONTACT, Law.SPRING_CURVE, Law.BALLS, Law.ROLLERS)
-"""Laws of bearings that are not linear; each is the gradient of an energy without hollows."""
+OF_BEARINGS = (Law.ROLLING_CONTACT, Law.SPRING_CURVE, Law.BALLS, Law.ROLLERS, Law.LINEAR_BEARING)
+"""Laws of bearings; each is the gradient of an energy without hollows."""

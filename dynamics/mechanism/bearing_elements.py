@@ -46,7 +46,7 @@ class BearingElement:
     own : (p, 5) array
         The same per strain in the bearing's own axes.
     typical : (p,) array
-        Stiffness of the rows at the typical load, N/m.
+        Stiffness of the rows at the typical load, N/m; of a linear bearing without cross terms.
     """
 
     name: str

@@ -45,20 +45,23 @@ def gather_connections(scene: Scene, rotors: Bodies) -> Connections:
 def linear_matrices(
     connections: Connections, freedoms: Freedoms
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return stiffness and damping (n, n), and the constant force (n,) of pin errors and preload."""
+    """Return stiffness and damping (n, n), and the constant force (n,) of pin errors and preload.
+
+    Bearings in housings that move are force elements instead; their preload is in the constant force.
+    """
     supports, seats, couplings = connections.supports, connections.seats, connections.couplings
-    moves = freedoms.keep(supports.motion)
-    stiffness = supports.matrix(supports.stiffness, moves, moves)
-    damping = supports.matrix(supports.damping, moves, moves)
+    moves, held = freedoms.keep(supports.motion), ~supports.carried
+    stiffness = supports.matrix(supports.stiffness * held[:, None], moves, moves)
+    damping = supports.matrix(supports.damping * held[:, None], moves, moves)
     if couplings.name:
         strains = freedoms.keep(couplings.motion)
         stiffness += couplings.matrix(couplings.stiffness, strains, strains)
         damping += couplings.matrix(couplings.damping, strains, strains)
     constant = np.einsum("bki,bk,bk->i", moves, supports.stiffness, supports.error)
     if seats.name:
-        strains = freedoms.keep(seats.motion)
-        stiffness += strains.T @ seats.stiffness @ strains
-        damping += strains.T @ seats.damping @ strains
+        strains, held = freedoms.keep(seats.motion), np.repeat(held[seats.support], SEAT)
+        stiffness += strains.T @ (seats.stiffness * held) @ strains
+        damping += strains.T @ (seats.damping * held) @ strains
         constant += seats.preload @ strains
     return stiffness, damping, constant
 
@@ -75,12 +78,14 @@ def forces_on_ground(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the force on the ground at each support per freedom and per its rate, (b, 3, n) each.
 
-    With moments (`tilted`) both, (b, 6, n).
+    With moments (`tilted`) both, (b, 6, n). Bearings in housings that move are force elements: 0 here.
     """
     supports, seats = connections.supports, connections.seats
+    held = (~supports.carried)[:, None]
+    rows = np.repeat(held[seats.support, 0], SEAT)
     return (
-        _on_ground(connections, freedoms, supports.stiffness, seats.stiffness, tilted),
-        _on_ground(connections, freedoms, supports.damping, seats.damping, tilted),
+        _on_ground(connections, freedoms, supports.stiffness * held, seats.stiffness * rows, tilted),
+        _on_ground(connections, freedoms, supports.damping * held, seats.damping * rows, tilted),
     )
 
 

@@ -10,7 +10,7 @@ from dynamics.joints import Bushing, PlanetBearing
 from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count
 from dynamics.mechanism.seat_motion import carried_seat, seat_error, seat_motion
-from dynamics.types import FloatArray
+from dynamics.types import BoolArray, FloatArray
 
 
 @dataclass(frozen=True)
@@ -41,6 +41,11 @@ class Supports:
     stiffness: FloatArray
     damping: FloatArray
     error: FloatArray
+
+    @property
+    def carried(self) -> BoolArray:
+        """Whether each sits in a housing that moves, (b,)."""
+        return np.asarray(np.any(self.seat != 0.0, axis=(1, 2)))
 
     def matrix(self, coefficient: FloatArray, left: FloatArray, right: FloatArray) -> FloatArray:
         """Return left^T diag(coefficient) right for strains (b, 3, a) and (b, 3, c)."""

@@ -168,7 +168,7 @@ def _on_the_ground(
 
 def _holds_tilt(system: System) -> bool:
     """Whether any bearing exerts a moment."""
-    if any(at.tilts for at in system.bearings):
+    if any(at.tilts for at in (*system.housed, *system.bearings)):
         return True
     matrices = (system.bearing_stiffness[:, 3:], system.bearing_damping[:, 3:])
     return any(bool(np.any(matrix)) for matrix in (*matrices, system.seats.preload.reshape(-1, SEAT)[:, 3:]))

@@ -17,8 +17,9 @@ from dynamics.errors import InputError
 from dynamics.forces import RollingContact
 from dynamics.integrators import static_equilibrium
 from dynamics.joints import Bushing, Coupling, Housing, RollingBearing
-from dynamics.linearize import forced_response, natural_modes, whirl_modes
+from dynamics.linearize import forced_response, linearize, natural_modes, whirl_modes
 from dynamics.loads import AppliedForce
+from dynamics.motion.observation import local_state
 from dynamics.periodic import steady_states
 from dynamics.rolling_bearings import BallBearing
 from dynamics.rolling_bearings.row_law import row_law
@@ -97,10 +98,9 @@ def freedom(system, name):
 
 
 def bearing_forces(system, found):
-    n = found.displacement.size
-    local = np.zeros((system.arrays.direction.shape[0], 1))
-    local[system.driving_rows, 0] = found.mesh_force
-    return system.bearing_force(local, found.displacement[None], np.zeros((1, n)))[..., 0]
+    rest = 0.0 * found.displacement
+    local = local_state(system.arrays, 0.0, found.displacement, rest).force
+    return system.bearing_force(local[:, None], found.displacement[None], rest[None])[..., 0]
 
 
 @pytest.mark.parametrize(("per", "modal"), [(3, 0), (5, 0), (6, 0), (5, 7)])
@@ -158,13 +158,13 @@ def test_the_dynamic_stiffness_is_that_of_the_matrices_at_any_frequency():
     scene = housed(pair(), 5, 7)
     system, bare = assemble(scene), assemble(replace(scene, housings=()))
     stiffness, damping, mass = matrices(5, 7)
-    arrays, other = system.arrays, bare.arrays
+    about, other = linearize(system), linearize(bare)
     n = other.mass.shape[0]
     seats = np.concatenate([bare.freedoms.keep(motion) for motion in bare.supports.motion])
     springs, dampers = bare.supports.stiffness.ravel(), bare.supports.damping.ravel()
     place = [5 * seat + axis for seat in range(4) for axis in range(3)]
     for omega in (30.0, 3000.0, 10000.0):
-        whole = arrays.stiffness + 1j * omega * arrays.damping - omega**2 * arrays.mass
+        whole = about.stiffness + 1j * omega * about.damping - omega**2 * about.mass
         found = whole[:n, :n] - whole[:n, n:] @ np.linalg.solve(whole[n:, n:], whole[n:, :n])
         own = np.diag(springs + 1j * omega * dampers)
         ground = stiffness + 1j * omega * damping - omega**2 * mass

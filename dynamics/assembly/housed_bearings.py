@@ -1,0 +1,52 @@
+"""Linear bearings in housings that move: where they act, and their force elements."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from dynamics.arrays.elements import Element
+from dynamics.forces.law import Law
+from dynamics.forces.linear_bearing import LinearBearingLaws, pack_linear_bearings
+from dynamics.mechanism.bearing_elements import BearingElement, supports_by_name, tilt_lever
+from dynamics.mechanism.mechanism import Mechanism
+from dynamics.mechanism.seat_motion import seat_motion
+from dynamics.mechanism.supports import gather_supports
+from dynamics.types import FloatArray
+
+
+def housed_bearings(mechanism: Mechanism) -> tuple[BearingElement, ...]:
+    """Return the bearings with stiffness or damping in housings that move, tilts by a lever."""
+    rotors, supports = mechanism.rotors, supports_by_name(mechanism.rotors)
+    if not rotors.housings:
+        return ()
+    names, lever = gather_supports(rotors, frozenset()).name, tilt_lever(mechanism.scene)
+    unit, bearings = np.diag([1.0, 1.0, 1.0, lever, lever]), []
+    for name in (name for housing in rotors.housings for name in housing.bearings):
+        part = supports[name][1]
+        acting = np.any((part.seat_stiffness != 0.0) | (part.seat_damping != 0.0), axis=0)
+        way = unit[acting]
+        if len(way):
+            typical = np.diag(_per_meter(way, part.seat_stiffness)).copy()
+            bearings.append(BearingElement(name, names.index(name), way, way, typical))
+    return tuple(bearings)
+
+
+def housed_bearing_elements(
+    mechanism: Mechanism, bearings: Sequence[BearingElement]
+) -> tuple[tuple[Element, ...], LinearBearingLaws]:
+    """Return the elements of `bearings`, and their laws."""
+    supports, elements, laws = supports_by_name(mechanism.rotors), [], []
+    for entry, at in enumerate(bearings):
+        index, part = supports[at.name]
+        gradient, none = at.way @ seat_motion(mechanism.rotors, index, part), np.zeros(len(at.way))
+        elements.append(Element(Law.LINEAR_BEARING, entry, -1, gradient, none, stiffness=at.typical))
+        laws.append((_per_meter(at.way, part.seat_stiffness), _per_meter(at.way, part.seat_damping)))
+    return tuple(elements), pack_linear_bearings(laws)
+
+
+def _per_meter(way: FloatArray, matrix: FloatArray) -> FloatArray:
+    """Return a bearing's matrix (5, 5) in the rows `way` (p, 5), (p, p)."""
+    back = way / np.sum(way, axis=1, keepdims=True) ** 2
+    return np.asarray(back @ matrix @ back.T)
