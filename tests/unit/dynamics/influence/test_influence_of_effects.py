@@ -13,9 +13,10 @@ from geared_scenes import RPM, gear_pair_scene, spring_table, with_gear
 from dynamics.ablation import ablate
 from dynamics.bodies import BeamSection, TimeLaw
 from dynamics.errors import InputError
+from dynamics.forces import RollingContact
 from dynamics.influence import decide_effects, estimate_influences
 from dynamics.influence.operating_conditions import operating_conditions
-from dynamics.joints import FreeRotation
+from dynamics.joints import FreeRotation, Housing
 from dynamics.scene import Outputs, Scene
 from dynamics.simulation import simulate
 
@@ -50,6 +51,33 @@ def test_estimates_are_right_within_a_factor_of_two() -> None:
     assert lateral.estimate is not None
     assert (lateral.estimate.freedoms, lateral.estimate.on) == (4, True)
     json.dumps(made.to_json(), allow_nan=False)
+
+
+@pytest.mark.parametrize("rpm", [3000.0, 4000.0])
+def test_a_housing_is_estimated_as_ablation_shows_it(rpm: float) -> None:
+    """Four seats of 6.75 kg on springs, tied to each other: modes from 1061 to 1369 Hz."""
+    tie = 4.0 * np.eye(4) - np.ones((4, 4))
+    stiffness, mass = np.kron(3e8 * np.eye(4) + 5e7 * tie, np.eye(3)), 6.75 * np.eye(12)
+    speed = TimeLaw.constant(rpm * RPM)
+    scene = gear_pair_scene(duration=0.1, outputs=QUICK, on_violation="report", speed=speed)
+    names = tuple(part.name for part in scene.bushings)
+    housing = Housing("case", names, stiffness.tolist(), mass=mass.tolist(), damping_ratio=0.03)
+    (entry,) = ablate(replace(scene, housings=(housing,)), only=["housing_modes"]).effects
+    assert entry.on and entry.estimate is not None
+    assert (entry.estimate.freedoms, entry.estimate.rows) == (12, 12)
+    assert abs(entry.peak_to_peak_change[0]) > 0.02 * entry.with_effect.peak_to_peak[0]
+    assert entry.estimate.peak_to_peak[0] == pytest.approx(entry.peak_to_peak_change[0], rel=0.1)
+    assert entry.estimate.mean[0] == pytest.approx(entry.mean_change[0], rel=0.1)
+
+
+def test_an_effect_without_which_nothing_holds_has_no_estimate() -> None:
+    """Shafts that only tilt do not reach the clearance of their bearings: nothing resists them."""
+    scene = replace(gear_pair_scene(spring_table(4e8)), effects={"tilt": "on", "lateral": "on"})
+    bushings = tuple(replace(part, radial_stiffness=0.0) for part in scene.bushings)
+    contacts = tuple(RollingContact(part.name, 1e11, 1.5, 1e-5) for part in bushings)
+    found = estimate_influences(replace(scene, bushings=bushings, rolling_contacts=contacts))
+    assert "lateral" not in found
+    assert "tilt" in found
 
 
 def test_a_tolerance_leaves_off_what_cannot_be_seen_and_says_so() -> None:

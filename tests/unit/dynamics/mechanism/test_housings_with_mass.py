@@ -270,6 +270,16 @@ def test_without_the_effect_it_is_the_housing_without_mass_bit_by_bit():
             np.testing.assert_array_equal(x, y)
 
 
+def test_modes_with_modal_damping_are_coupled_by_their_bearings_alone():
+    """These are force elements: what time steps invert has a block per shaft, and a mode each."""
+    system = assemble(housed(pair(), 5, 7, damping=None))
+    modes = [name.startswith("case.") for name in system.freedoms.name]
+    assert sum(modes) == 27
+    coupling = system.arrays.sparse.coupling
+    entries = np.diff(coupling.first)[modes]
+    np.testing.assert_array_equal(entries, 1)
+
+
 def test_the_ledger_calls_for_it_near_the_first_mode_and_where_bearings_are_not_linear():
     auto = {key: value for key, value in ON.items() if key != "housing_modes"}
     scene = block(effects=auto, ratio=0.01)
