@@ -38,6 +38,20 @@ def rows(matrix):
     return tuple(tuple(float(value) for value in row) for row in np.asarray(matrix))
 
 
+FULL = {
+    "stiffness": rows(
+        [
+            [3e8, 2e7, 1e7, 1e5, 4e6],
+            [2e7, 2e8, -2e7, -3e6, 2e5],
+            [1e7, -2e7, 1e8, 3e5, -1e5],
+            [1e5, -3e6, 3e5, 2e5, 1e4],
+            [4e6, 2e5, -1e5, 1e4, 3e5],
+        ]
+    ),
+    "preload": (100.0, -50.0, 20.0, 1.0, -2.0),
+}
+
+
 def definite(size, seed, scale):
     """A well-conditioned positive definite matrix without zeros."""
     factor = np.random.default_rng(seed).normal(size=(size, size))
@@ -103,9 +117,13 @@ def bearing_forces(system, found):
     return system.bearing_force(local[:, None], found.displacement[None], rest[None])[..., 0]
 
 
-@pytest.mark.parametrize(("per", "modal"), [(3, 0), (5, 0), (6, 0), (5, 7)])
-def test_it_rests_as_the_housing_without_mass(per, modal):
-    scene = housed(pair(), per, modal)
+@pytest.mark.parametrize(
+    ("per", "modal", "bearing"),
+    [(3, 0, {}), (5, 0, {}), (6, 0, {}), (5, 7, {}), (5, 0, FULL)],
+    ids=["three rows", "five", "six", "modal", "full bearings"],
+)
+def test_it_rests_as_the_housing_without_mass(per, modal, bearing):
+    scene = housed(with_bushings(pair(), **bearing), per, modal)
     with_mass, without = assemble(scene), assemble(replace(scene, effects=OFF))
     found, expected = static_equilibrium(with_mass), static_equilibrium(without)
     assert found.status.usable and expected.status.usable
@@ -120,8 +138,12 @@ def test_it_rests_as_the_housing_without_mass(per, modal):
         atol=1e-9 * size,
     )
     forces = bearing_forces(without, expected)
+    rows_of = slice(None) if bearing else slice(3)  # condensed bearings state moments, zero on plain ones
     np.testing.assert_allclose(
-        bearing_forces(with_mass, found)[:, :3], forces[:, :3], rtol=0.0, atol=1e-9 * np.max(np.abs(forces))
+        bearing_forces(with_mass, found)[:, rows_of],
+        forces[:, rows_of],
+        rtol=0.0,
+        atol=1e-9 * np.max(np.abs(forces)),
     )
 
 
@@ -206,6 +228,8 @@ def test_a_run_has_the_response_of_two_masses_and_balances_seat_and_feet():
     feet = GROUND * shape @ result.displacement[modes] + loss * shape @ result.velocity[modes]
     force = result.bearing_force[seat]
     assert np.max(np.abs(force[0])) > 10.0
+    moved = result.bearing_acceleration[seat, 0]  # of the shaft, not against its seat
+    np.testing.assert_allclose(moved, result.acceleration[at], rtol=0.0, atol=1e-9 * np.max(np.abs(moved)))
     np.testing.assert_allclose(force, inertia + feet, rtol=0.0, atol=1e-8 * np.max(np.abs(force)))
 
 
@@ -262,6 +286,13 @@ def test_a_run_on_bearings_with_clearance_in_a_housing_closes_its_balance():
     np.testing.assert_allclose(natural_modes(off).frequency, tangents, rtol=1e-6, atol=1e-3)
 
 
+def test_a_run_on_full_bearing_matrices_in_a_housing_closes_its_balance():
+    scene = replace(housed(with_bushings(pair(), **FULL)), meshes=gear_pair_scene(square_wave_table()).meshes)
+    result = simulate(replace(scene, duration=0.01, integration=Integration(tolerance=1e-11)))
+    assert result.energy.relative < 1e-4
+    assert np.max(np.abs(result.bearing_moment[0, :2])) > 1.0
+
+
 def test_without_the_effect_it_is_the_housing_without_mass_bit_by_bit():
     scene = housed(pair(OFF), 6)
     bare = replace(scene, housings=(replace(scene.housings[0], mass=None),))
@@ -291,6 +322,10 @@ def test_the_ledger_calls_for_it_near_the_first_mode_and_where_bearings_are_not_
         assert not ledger.on("housing_modes", "input")
     slow = replace(scene, housings=(replace(scene.housings[0], stiffness=rows(1e12 * np.eye(3))),))
     assert not assemble(slow).ledger.on("housing_modes", "disc")
+    both = {"housing_modes": "off", "bearing_clearance": "off"}
+    linear = replace(scene, rolling_contacts=(RollingContact("seat", 5e8),), effects=auto | both)
+    assert not assemble(linear).ledger.on("housing_modes", "disc")
+    assert not assemble(linear).rotors.housings
     curved = replace(
         slow, rolling_contacts=(RollingContact("seat", 5e8),), effects=auto | {"housing_modes": "off"}
     )
