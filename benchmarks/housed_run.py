@@ -1,0 +1,55 @@
+"""The run-up of the paper's pair in a housing with 80 modes up to 6.3 kHz, against the same without one."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.figures import Figure
+from dynamics.joints import Housing
+from dynamics.scene import Scene
+from dynamics.simulation import simulate
+from service.cli.scene_tables import scene_with_tables
+from service.client.portable import scene_of
+
+EXAMPLE = Path(__file__).parents[1] / "examples" / "palermo_scene.toml"
+SEATS, MODES = 12, 80
+LIMIT = 1.5
+
+
+def figures() -> list[Figure]:
+    """Return the times of both runs and their ratio."""
+    given, folder = scene_of(EXAMPLE)
+    scene = scene_with_tables(given, folder, None, lambda _stage, _fraction: None)
+    alone, housed = _seconds(scene), _seconds(in_housing(scene))
+    subject = f"run-up of {scene.duration:g} s, 4 bearings, {MODES} modes and {SEATS} residual ones"
+    return [
+        Figure(subject, "without a housing", alone, "CPU s"),
+        Figure(subject, "in a housing", housed, "CPU s"),
+        Figure(subject, "ratio", housed / alone, "-", LIMIT),
+    ]
+
+
+def in_housing(scene: Scene) -> Scene:
+    """Put all bearings into a housing of modes of random shapes, amplitude 0.2 kg^-1/2 at the seats."""
+    size = SEATS + MODES
+    shape = 0.2 * np.random.default_rng(1).normal(size=(SEATS, size))
+    hertz = np.concatenate([np.linspace(670.0, 6300.0, MODES), np.geomspace(8e3, 6e4, SEATS)])
+    back = np.linalg.inv(np.vstack([shape, np.eye(MODES, size)]))
+    square = back.T @ np.diag((2.0 * np.pi * hertz) ** 2) @ back
+    stiffness, mass = (0.5 * (matrix + matrix.T) for matrix in (square, back.T @ back))
+    names = tuple(part.name for part in scene.bushings)
+    rows = (tuple(map(tuple, matrix.tolist())) for matrix in (stiffness, mass))
+    housing = Housing("case", names, next(rows), mass=next(rows), modal_coordinates=MODES)
+    return replace(scene, housings=(housing,))
+
+
+def _seconds(scene: Scene) -> float:
+    """Return the CPU time of a run, compiled before."""
+    simulate(replace(scene, duration=0.02))
+    began = time.process_time()
+    simulate(scene)
+    return time.process_time() - began
