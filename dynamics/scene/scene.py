@@ -71,7 +71,8 @@ class Scene:
         Parts, each with a name unique among its kind. Drives and free rotations together set the kinematic
         motion of all shafts: one for each independent speed of the gearing.
     rolling_contacts, spring_curves : tuples
-        Nonlinear laws of bearings; each names its bushing or planet bearing.
+        Nonlinear laws of bearings; each names its bushing or planet bearing, which sits in no housing without
+        mass.
     duration : float
         s.
     gravity : tuple of three floats
