@@ -13,7 +13,9 @@ import numpy as np
 import pytest
 from small_table import small_table
 
+from dynamics.assembly.assemble import assemble
 from dynamics.housing_modes import ReducedHousing, ReducedMatrices, Ring, SeatFrame, housing_of_matrices
+from dynamics.integrators import static_equilibrium
 from dynamics.mechanism.modal_housing import modal_housing
 from dynamics.rolling_bearings import BallBearing, RollerBearing, from_catalog
 from dynamics.scene import Scene
@@ -220,6 +222,13 @@ def housing(**fields: Any) -> Change:
         table["housings"] = [housing_of(table, **fields)]
 
     return change
+
+
+def test_a_rolling_bearing_sits_in_a_housing_with_mass() -> None:
+    found = scene(lambda table: (housing(mass_matrix=MASS)(table), rolling(ball=BALL)(table)))
+    system = assemble(found)
+    assert [part.bearings for part in system.rotors.housings] == [("input left", "input right")]
+    assert static_equilibrium(system).status.usable
 
 
 WRONG: dict[str, tuple[Change, str]] = {
