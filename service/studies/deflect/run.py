@@ -94,7 +94,7 @@ def _force(index: int, force: CaseForceInput) -> CaseForce:
 
 
 def check_cases(scene: SceneInput, inputs: Inputs) -> None:
-    """Refuse load cases that cannot be, and what they state of a scene that lacks it, before tables are computed.
+    """Refuse load cases that cannot be, or that ask for what the scene lacks, before tables are computed.
 
     Raises
     ------
