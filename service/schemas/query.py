@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Self
 
-from pydantic import Discriminator, Field, Strict, Tag, model_validator
+from pydantic import Field, Strict, model_validator
 
 from service.schemas.model import BoundaryModel, refuse
+from service.schemas.one_or_many import MANY, ONE, ONE_OR_MANY
 
 MOST_POINTS = 100_000
 LIMITS: dict[str, float] = {
@@ -31,23 +32,18 @@ def _limit(name: str) -> Any:
     return Field(ge=-LIMITS[name], le=LIMITS[name])
 
 
-def _shape(value: object) -> str:
-    """Tell one value from a list of them (the names are left out of what a fault is called)."""
-    return "[many]" if isinstance(value, list | tuple) else "[one]"
-
-
 _List = (Strict(False), Field(min_length=1, max_length=MOST_POINTS, fail_fast=True))
 _Positions = Annotated[tuple[Annotated[float, _limit("position")], ...], *_List]
 _Deflections = Annotated[tuple[Annotated[float, _limit("deflection_um")], ...], *_List]
 _Misalignment = Annotated[float, _limit("misalignment_um")]
 _Change = Annotated[float, _limit("center_distance_change_mm")]
 _Misalignments = Annotated[
-    Annotated[_Misalignment, Tag("[one]")] | Annotated[tuple[_Misalignment, ...], *_List, Tag("[many]")],
-    Discriminator(_shape),
+    Annotated[_Misalignment, ONE] | Annotated[tuple[_Misalignment, ...], *_List, MANY],
+    ONE_OR_MANY,
 ]
 _Changes = Annotated[
-    Annotated[_Change, Tag("[one]")] | Annotated[tuple[_Change, ...], *_List, Tag("[many]")],
-    Discriminator(_shape),
+    Annotated[_Change, ONE] | Annotated[tuple[_Change, ...], *_List, MANY],
+    ONE_OR_MANY,
 ]
 
 
