@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from analysis_requests import design_request
+from helical_pairs import helical
 
-from fe_contact import Gear, GearPair, analyze
+from fe_contact import GearPair, analyze
 from fe_contact.microgeometry import (
     DesignVariable,
     GaussHermite,
@@ -41,14 +40,6 @@ RELIEF, LENGTH = "pinion.tip_relief", "pinion.tip_relief_length"
 DESIGN = {CROWNING: 4e-6, SLOPE: 6e-6, RELIEF: 10e-6, LENGTH: 1e-3}
 SKEW = 8e-6
 POSITIONS = 8
-
-
-def helical(hand: int) -> GearPair:
-    """Overlap ratio 0.87, the pinion right-handed if `hand` is 1."""
-    sizes: dict[str, Any] = {"normal_module": 3e-3, "face_width": 24e-3, "bore_diameter": 30e-3}
-    angle = hand * math.radians(20.0)
-    pinion, wheel = (Gear(teeth=20, helix_angle=beta, **sizes) for beta in (angle, -angle))
-    return GearPair(pinion, wheel, 2.0 * pinion.reference_radius)
 
 
 @pytest.fixture(scope="module")
