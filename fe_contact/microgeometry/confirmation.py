@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cache as cached
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from fe_contact.analysis.database.compute_database import compute_database
 from fe_contact.analysis.request.decided import Decided
 from fe_contact.analysis.request.request_check import check_asked
+from fe_contact.microgeometry.design_loads import misalignment_axis, on_axis
 from fe_contact.microgeometry.design_problem import DesignProblem
 from fe_contact.microgeometry.design_study import DesignStudy
 from fe_contact.microgeometry.evaluator import Evaluation, Evaluator
@@ -84,17 +86,17 @@ def confirm(
     """
     search, nodes, counted = problem.evaluator, problem.evaluator.nodes, study.counted
     table = full_table(search, values, study.decided, cache)
-    fine = replace(search.at(table.position), load=table.force)
-    figures = fine.evaluate(values)
-    error = _errors(table, search.misalignment + nodes.misalignment)
+    fine = replace(search.at(table.position), load=study.force, misalignment=study.loads.misalignment)
+    figures, exact = fine.evaluate(values), replace(fine, nodes=ONE_NODE)
+    error = ripple_errors(table, fine)
     ripple = figures.peak_to_peak
-    nominal = replace(fine, nodes=ONE_NODE).evaluate(values)
+    nominal = exact.evaluate(values)
     harris = HarrisMap(
-        torque=study.all_torques,
+        torque=study.loads.torque,
         position=table.position,
         ste=nominal.ste[0],
         nominal=nominal.peak_to_peak[0],
-        nominal_error=_errors(table, np.array([search.misalignment]))[0],
+        nominal_error=ripple_errors(table, exact)[0],
         peak_to_peak=ripple,
         error=error,
         weight=nodes.weight,
@@ -115,7 +117,7 @@ def full_table(
 ) -> SteDatabase:
     """Compute the table of a design over torques and the misalignments of all nodes and of none."""
     request = decided.checked.request
-    skews = np.unique([search.misalignment, *(search.misalignment + search.nodes.misalignment)])
+    skews = misalignment_axis(search.misalignment, search.nodes.misalignment)
     full = replace(
         request,
         pair=modified(request.pair, values),
@@ -128,15 +130,15 @@ def full_table(
     return table
 
 
-def _errors(table: SteDatabase, misalignment: FloatArray) -> FloatArray:
-    """Errors of peak-to-peak (S, T) in m at misalignments of the table."""
-    known = {
-        float(skew): [
-            table.peak_to_peak(force=float(load), misalignment=float(skew)).error for load in table.force
-        ]
-        for skew in np.unique(misalignment)
-    }
-    return np.array([known[float(skew)] for skew in misalignment])
+def ripple_errors(table: SteDatabase, fine: Evaluator) -> FloatArray:
+    """Return errors of peak-to-peak (S, T), m: those of the table at the nodes and loads of an evaluator."""
+
+    @cached
+    def error(load: float, skew: float) -> float:
+        return table.peak_to_peak(force=load, misalignment=skew).error
+
+    rows = on_axis(table.misalignment, fine.misalignments).tolist()
+    return np.array([[error(*point) for point in zip(fine.load.tolist(), row, strict=True)] for row in rows])
 
 
 def _scatter_error(problem: DesignProblem, values: Mapping[str, float]) -> float:

@@ -56,7 +56,7 @@ class DesignMemory:
             "bodies": _digest_of_bodies(evaluator),
             "effects": dict(evaluator.choices),
             "load": evaluator.load.tolist(),
-            "misalignment": evaluator.misalignment,
+            "misalignment": evaluator.misalignment.tolist(),
             "scatter": request.scatter.to_json(),
             "objective": request.objective.to_json(),
             "limits": request.limits.to_json(),

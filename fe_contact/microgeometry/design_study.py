@@ -9,20 +9,19 @@ from pathlib import Path
 
 import numpy as np
 
-from bounds import SiNote
 from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.analysis.request.decided import Decided
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_asked, check_request
-from fe_contact.checks import increasing, integer, within
+from fe_contact.checks import integer
 from fe_contact.errors import InputError
 from fe_contact.geometry import ParallelAxes
+from fe_contact.microgeometry.design_loads import DesignLoads, Misalignments, misalignment_axis
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.scatter import MISALIGNMENT, Scatter
 from fe_contact.microgeometry.variables import effect_of, figure, modified
 from fe_contact.options import AnalysisOptions, Levels, Run, TableAxes
-from fe_contact.options.table_axes import LARGEST_DEVIATION
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, IntArray
 
@@ -35,23 +34,26 @@ class DesignStudy:
     ----------
     decided : Decided
         Model and discretization, of all designs and all torques.
-    all_torques : ndarray, shape (T,)
-        Of its loads, N m.
+    loads : DesignLoads
+        All T of them: those of the full analysis.
+    force : ndarray, shape (T,)
+        Their normal forces, N.
     counted : ndarray of int, shape (L,)
         Which of them count; the others are for maps.
     evaluator : Evaluator
-        At the torques that count.
+        At the loads that count.
     """
 
     decided: Decided
-    all_torques: FloatArray
+    loads: DesignLoads
+    force: FloatArray
     counted: IntArray
     evaluator: Evaluator
 
     @property
     def torque(self) -> FloatArray:
         """Torques that count (L,), N m."""
-        return np.asarray(self.all_torques[self.counted])
+        return np.asarray(self.loads.torque[self.counted])
 
 
 @dataclass(frozen=True)
@@ -65,8 +67,8 @@ class DesignSpace:
         ``gear.quantity`` to m of a design in which nothing that is varied is zero: by it the effects are
         decided.
     scatter : Scatter
-    misalignment : float
-        About which it scatters, m.
+    misalignment : float or sequence of float
+        About which it scatters, m: one value, or one for each torque.
     positions : int
         Equally spaced in a base pitch.
     options : AnalysisOptions
@@ -76,12 +78,17 @@ class DesignSpace:
     pair: ParallelAxes
     varied: Mapping[str, float]
     scatter: Scatter
-    misalignment: float
+    misalignment: Misalignments
     positions: int
     options: AnalysisOptions
 
-    def check(self, torques: Levels) -> Checked:
+    def check(self, torques: Levels, further_torques: Levels = ()) -> Checked:
         """Check the request of a design in which everything acts that may act in any; computes nothing.
+
+        Parameters
+        ----------
+        torques, further_torques : sequence of float
+            Those that count, each with its misalignment, and others that the table has, N m.
 
         Raises
         ------
@@ -89,15 +96,14 @@ class DesignSpace:
             A value that cannot be used, or something is varied whose effect is off.
         """
         integer("positions", self.positions, 8, 4096, "64 resolve a spur pair.")
-        ends = -LARGEST_DEVIATION, LARGEST_DEVIATION
-        within("misalignment", self.misalignment, *ends, SiNote("In m: 10 um is 1e-5."))
+        loads = DesignLoads.of(torques, self.misalignment)
         scattered = self.scatter.modification
         present = {name: figure(self.pair, name) for name in scattered} | dict(self.varied)
         acting = {name: present[name] + scattered.get(name, 0.0) for name in present}
-        skews = np.unique(self.misalignment + self.scatter.nodes().misalignment)
+        skews = misalignment_axis(loads.misalignment, self.scatter.nodes().misalignment)
         checked = check_request(
             modified(self.pair, acting),
-            TableAxes(torques, misalignments=skews),
+            TableAxes(np.union1d(loads.torque, further_torques), misalignments=skews),
             replace(self.options, positions=None, receipt="full", on_violation="report"),
             spare=False,
         )
@@ -124,20 +130,20 @@ def design_study(
     InputError
         As `DesignSpace.check`.
     """
-    counted = increasing("torques", torques)
-    everything = np.union1d(counted, further_torques)
+    own = DesignLoads.of(torques, space.misalignment)
+    loads, counted = own.with_torques(further_torques)
     with clock.stage("planning"):
-        decided = _on_one_mesh(space.check(everything), run.cache)
+        decided = _on_one_mesh(space.check(torques, further_torques), run.cache)
     run.progress("compliance", 0.0)
     with clock.stage("compliance"):
         report = partial(run.progress, "compliance")
         contact = pair_contact(space.pair, decided.plan, run.cache, report=report)
     run.progress("compliance", 1.0)
-    index = np.searchsorted(everything, counted)
-    load = decided.checked.request.load[index]
     position, nodes = np.arange(space.positions) / space.positions, space.scatter.nodes()
-    evaluator = Evaluator(contact, decided.checked.decided, position, load, space.misalignment, nodes)
-    return DesignStudy(decided, everything, index, evaluator)
+    level = np.searchsorted(np.unique(loads.torque), loads.torque)  # the table has every torque once
+    force = decided.checked.request.load[level]
+    evaluator = Evaluator(contact, decided.checked.decided, position, force[counted], own.misalignment, nodes)
+    return DesignStudy(decided, loads, force, counted, evaluator)
 
 
 def _on_one_mesh(checked: Checked, cache: Path | None) -> Decided:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -23,7 +24,7 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.objective import Limits
 from fe_contact.microgeometry.scatter import MISALIGNMENT, ScatterNodes
 from fe_contact.microgeometry.variables import LENGTHS, SLOPES, figure, modified
-from fe_contact.types import BoolArray, FloatArray, Status
+from fe_contact.types import BoolArray, FloatArray, IntArray, Status
 from model_studies import in_unit
 
 
@@ -70,6 +71,8 @@ class Evaluation:
 class Evaluator:
     """A pair with its compliance, positions, loads and scatter; only the modification varies.
 
+    Loads of one misalignment are solved together, each from the one below it.
+
     Attributes
     ----------
     contact : PairContact
@@ -80,8 +83,8 @@ class Evaluator:
         In one base pitch.
     load : ndarray, shape (L,)
         Normal forces, N.
-    misalignment : float
-        About which it scatters, m.
+    misalignment : ndarray, shape (L,)
+        Of each load, about which it scatters, m.
     nodes : ScatterNodes
     """
 
@@ -89,20 +92,46 @@ class Evaluator:
     choices: Mapping[str, str]
     position: FloatArray
     load: FloatArray
-    misalignment: float
+    misalignment: FloatArray
     nodes: ScatterNodes
+
+    @property
+    def misalignments(self) -> FloatArray:
+        """Misalignment at every node and load (S, L), m."""
+        return np.asarray(self.misalignment + self.nodes.misalignment[:, None])
+
+    @cached_property
+    def groups(self) -> tuple[IntArray, ...]:
+        """The loads of each misalignment, by rising force."""
+        order = np.argsort(self.load, kind="stable")
+        return tuple(order[self.misalignment[order] == skew] for skew in np.unique(self.misalignment))
 
     def evaluate(self, values: Mapping[str, float]) -> Evaluation:
         """Solve the contact of one design, ``gear.quantity`` to m, at every node and load."""
-        return evaluation(figures(problem, solution) for _, problem, solution in self.solved(values))
+        return self.evaluation(figures(problem, solution) for _, problem, solution in self.solved(values))
 
     def solved(
         self, values: Mapping[str, float]
     ) -> Iterator[tuple[ParallelAxes, ContactProblem, ContactSolution]]:
-        """Yield the pair as it comes out at every node, with its contact solved at every load."""
+        """Yield the pair as it comes out at every node, with its contact solved at each group of loads."""
         touches: dict[tuple[float, ...], Touch] = {}
         for node in range(self.nodes.weight.size):
-            yield self._at_node(values, node, touches)
+            for group in self.groups:
+                yield self._at_node(values, node, group, touches)
+
+    def evaluation(self, solved: Iterable[LoadFigures]) -> Evaluation:
+        """Put the figures of all that was `solved` together."""
+        figures = [
+            (f.ste, f.pressure.max(axis=(0, 2)), f.face_load.max(axis=1), f.edge_load_share.max(axis=0))
+            for f in solved
+        ]
+        return Evaluation(*(self.gathered(each) for each in zip(*figures, strict=True)))
+
+    def gathered(self, solved: Sequence[FloatArray]) -> FloatArray:
+        """Return arrays (..., l) of all that was `solved`, each at its loads, as one (S, ..., L)."""
+        count, order = len(self.groups), np.argsort(np.concatenate(self.groups))
+        nodes = [solved[k : k + count] for k in range(0, len(solved), count)]
+        return np.stack([np.concatenate(each, axis=-1)[..., order] for each in nodes])
 
     def at(self, position: FloatArray) -> Evaluator:
         """Return the same at other positions (P,), of which those in the first base pitch count."""
@@ -119,11 +148,11 @@ class Evaluator:
         )
 
     def _at_node(
-        self, values: Mapping[str, float], node: int, touches: dict[tuple[float, ...], Touch]
+        self, values: Mapping[str, float], node: int, group: IntArray, touches: dict[tuple[float, ...], Touch]
     ) -> tuple[ParallelAxes, ContactProblem, ContactSolution]:
-        """Solve one node; nodes of one modification share its touching points."""
-        pair, skew = self.scattered(values, node), self.misalignment + self.nodes.misalignment[node]
-        scene = ContactScene(pair, pair.torque(self.load), EFFECTS, np.array([skew]))
+        """Solve a group of loads at one node; nodes of one modification share its touching points."""
+        pair, load = self.scattered(values, node), self.load[group]
+        scene = ContactScene(pair, pair.torque(load), EFFECTS, self.misalignments[node, group[:1]])
         model, _ = compose(scene, self.choices)
         bodies = self.contact.problem(replace(model, gaps=(), tooth_gaps=()), self.position)
         moving = tuple(term for term in model.gaps if term.along_profile)
@@ -134,7 +163,7 @@ class Evaluator:
             touches[key] = modified_touch(pair, bodies.candidates.touch, face, moving)
         touch = modified_touch(pair, touches[key], face, steady) if steady else touches[key]
         problem = _in_all_pitches(bodies.touching(bodies.candidates.touching(touch)), model)
-        return pair, problem, solve_contact(problem, self.load)
+        return pair, problem, solve_contact(problem, load)
 
 
 def _deviated(
@@ -165,8 +194,8 @@ def _in_all_pitches(problem: ContactProblem, model: ContactModel) -> ContactProb
 
 
 @dataclass(frozen=True)
-class NodeFigures:
-    """The figures of one node of the scatter.
+class LoadFigures:
+    """The figures of L loads of one misalignment at one node of the scatter.
 
     Attributes
     ----------
@@ -186,22 +215,13 @@ class NodeFigures:
     edge_load_share: FloatArray
 
 
-def figures(problem: ContactProblem, solution: ContactSolution) -> NodeFigures:
+def figures(problem: ContactProblem, solution: ContactSolution) -> LoadFigures:
     """Read the figures off a solution."""
     ste = np.where(solution.status == Status.CONVERGED, solution.deflection, np.nan)
     face_load = over_face(problem, solution.force)
     at_edges = on_edges(problem, solution.force) / carried(problem, solution.force).sum(axis=2)
     pressure = contact_pressure(problem, solution.force)
-    return NodeFigures(ste, pressure, face_load / face_load.mean(axis=1, keepdims=True), at_edges)
-
-
-def evaluation(nodes: Iterable[NodeFigures]) -> Evaluation:
-    """Put the figures of all nodes together."""
-    figures = [
-        (f.ste, f.pressure.max(axis=(0, 2)), f.face_load.max(axis=1), f.edge_load_share.max(axis=0))
-        for f in nodes
-    ]
-    return Evaluation(*(np.stack(each) for each in zip(*figures, strict=True)))
+    return LoadFigures(ste, pressure, face_load / face_load.mean(axis=1, keepdims=True), at_edges)
 
 
 def over_face(problem: ContactProblem, force: FloatArray) -> FloatArray:

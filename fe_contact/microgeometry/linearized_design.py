@@ -14,10 +14,9 @@ from fe_contact.microgeometry.curve_derivatives import opened_by
 from fe_contact.microgeometry.evaluator import (
     Evaluation,
     Evaluator,
-    NodeFigures,
+    LoadFigures,
     carried,
     edges,
-    evaluation,
     figures,
     on_edges,
     over_face,
@@ -52,8 +51,8 @@ class LinearizedDesign:
 
 
 @dataclass(frozen=True)
-class _Node:
-    """One node of the scatter with its derivatives by d variables.
+class _Solved:
+    """L loads of one misalignment at one node of the scatter with their derivatives by d variables.
 
     Attributes
     ----------
@@ -68,7 +67,7 @@ class _Node:
     pair: ParallelAxes
     problem: ContactProblem
     solution: ContactSolution
-    figures: NodeFigures
+    figures: LoadFigures
     names: tuple[str, ...]
     strips: CarryingStrips
     opened: FloatArray
@@ -90,62 +89,63 @@ def linearized(
     evaluator: Evaluator, values: Mapping[str, float], names: Sequence[str], limits: Limits
 ) -> LinearizedDesign:
     """Solve a design, ``gear.quantity`` to m, and differentiate it by the variables named."""
-    nodes = [_node(*solved, tuple(names)) for solved in evaluator.solved(values)]
-    rows = [_limit_rows(node, limits) for node in nodes]
+    parts = [_differentiated(*solved, tuple(names)) for solved in evaluator.solved(values)]
+    rows = [_limit_rows(part, limits) for part in parts]
     joined = tuple(
         (np.concatenate([part[0] for part in each]), np.concatenate([part[1] for part in each]))
         for each in zip(*rows, strict=True)
     )
-    curves = np.stack([np.moveaxis(node.ste, 0, -1) for node in nodes])
-    return LinearizedDesign(evaluation(node.figures for node in nodes), curves, joined)
+    curves = np.ascontiguousarray(np.moveaxis(evaluator.gathered([part.ste for part in parts]), 1, -1))
+    return LinearizedDesign(evaluator.evaluation(part.figures for part in parts), curves, joined)
 
 
-def _node(
+def _differentiated(
     pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution, names: tuple[str, ...]
-) -> _Node:
-    """Differentiate a node."""
+) -> _Solved:
+    """Differentiate what was solved."""
     strips = CarryingStrips.of(pair, problem.candidates, adjoint(problem, solution))
     opened = np.stack([opened_by(strips, pair, name) for name in names])
-    return _Node(pair, problem, solution, figures(problem, solution), names, strips, opened)
+    return _Solved(pair, problem, solution, figures(problem, solution), names, strips, opened)
 
 
-def _limit_rows(node: _Node, limits: Limits) -> list[Rows]:
-    """Return the rows of one node for each limit that is set."""
+def _limit_rows(solved: _Solved, limits: Limits) -> list[Rows]:
+    """Return the rows of each limit that is set."""
     rows: list[Rows] = []
     if limits.max_pressure is not None:
-        rows.append(_pressure(node, limits.max_pressure))
+        rows.append(_pressure(solved, limits.max_pressure))
     if limits.face_load_factor is not None:
-        rows.append(_face_load(node, limits.face_load_factor))
+        rows.append(_face_load(solved, limits.face_load_factor))
     if limits.edge_load_share is not None:
-        rows.append(_edge_load(node, limits.edge_load_share))
+        rows.append(_edge_load(solved, limits.edge_load_share))
     return rows
 
 
-def _pressure(node: _Node, limit: float) -> Rows:
+def _pressure(solved: _Solved, limit: float) -> Rows:
     """Return how far pressures exceed their limit; they grow as the root of the load."""
-    pressure = node.figures.pressure
+    pressure = solved.figures.pressure
     near = pressure >= NEAR * pressure.max()
     part = pressure[near] / limit
-    by = [0.5 * part * each[near] / node.solution.force[near] for each in node.force]
+    by = [0.5 * part * each[near] / solved.solution.force[near] for each in solved.force]
     return part - 1.0, np.stack(by, axis=-1)
 
 
-def _face_load(node: _Node, limit: float) -> Rows:
+def _face_load(solved: _Solved, limit: float) -> Rows:
     """Return how far the load at each point of the face exceeds its limit."""
-    mean = over_face(node.problem, node.solution.force).mean(axis=1, keepdims=True) * limit
-    by = [(over_face(node.problem, each) / mean).ravel() for each in node.force]
-    return node.figures.face_load.ravel() / limit - 1.0, np.stack(by, axis=-1)
+    mean = over_face(solved.problem, solved.solution.force).mean(axis=1, keepdims=True) * limit
+    by = [(over_face(solved.problem, each) / mean).ravel() for each in solved.force]
+    return solved.figures.face_load.ravel() / limit - 1.0, np.stack(by, axis=-1)
 
 
-def _edge_load(node: _Node, limit: float) -> Rows:
+def _edge_load(solved: _Solved, limit: float) -> Rows:
     """Return how far the load on tip edges exceeds its limit at each position and load.
 
     Where none is in contact it is below zero by what the nearest one would carry, had the gear to lag by
     its clearance more.
     """
-    problem, solution, c = node.problem, node.solution, node.problem.candidates
+    problem, solution, c = solved.problem, solved.solution, solved.problem.candidates
     load = carried(problem, solution.force).sum(axis=2)
-    share, by = node.figures.edge_load_share.copy(), [on_edges(problem, each) / load for each in node.force]
+    share = solved.figures.edge_load_share.copy()
+    by = [on_edges(problem, each) / load for each in solved.force]
     clear = c.motion_arm[:, None] * (c.gap[:, None] - solution.deflection[..., None])
     clear = np.where(edges(problem)[:, None], clear + problem.moved(solution.force), np.inf)
     nearest = clear.argmin(axis=2)
@@ -154,8 +154,8 @@ def _edge_load(node: _Node, limit: float) -> Rows:
     per_gap = 1.0 / (c.motion_arm[p, m] * solution.tangent[p, k] * load[p, k])
     share[p, k] = -clear[p, k, m] * per_gap
     zero = np.zeros(p.size)
-    points = CarryingStrips.at(node.pair, c, load.shape[1], (p, k, m), zero, zero + _POINT, zero)
-    for a, name in enumerate(node.names):
-        moved = problem.moved(node.force[a])[p, k, m] - c.motion_arm[p, m] * node.ste[a, p, k]
-        by[a][p, k] = -(opened_by(points, node.pair, name) + moved) * per_gap
+    points = CarryingStrips.at(solved.pair, c, load.shape[1], (p, k, m), zero, zero + _POINT, zero)
+    for a, name in enumerate(solved.names):
+        moved = problem.moved(solved.force[a])[p, k, m] - c.motion_arm[p, m] * solved.ste[a, p, k]
+        by[a][p, k] = -(opened_by(points, solved.pair, name) + moved) * per_gap
     return share.ravel() - limit, np.stack([each.ravel() for each in by], axis=-1)

@@ -5,7 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+import numpy as np
+
 from fe_contact.microgeometry.confirmation import ConfirmedDesign
+from fe_contact.microgeometry.design_loads import DesignLoads
 from fe_contact.microgeometry.scatter import ScatterNodes
 from fe_contact.microgeometry.search import SearchRun
 from fe_contact.microgeometry.variables import DesignVariable
@@ -56,8 +59,8 @@ class Optimization:
     variables : tuple of DesignVariable
     torque : ndarray, shape (L,)
         Torques that count, N m.
-    misalignment : float
-        About which it scatters, m.
+    misalignment : ndarray, shape (L,)
+        Of each, about which it scatters, m.
     nodes : ScatterNodes
     start, optimum : ConfirmedDesign
     runs : tuple of SearchRun
@@ -77,7 +80,7 @@ class Optimization:
     reason: str
     variables: tuple[DesignVariable, ...]
     torque: FloatArray = field(metadata=in_unit("n_m", "torque"))
-    misalignment: float = field(metadata=in_unit("m"))
+    misalignment: FloatArray = field(metadata=in_unit("m", "torque"))
     nodes: ScatterNodes
     start: ConfirmedDesign
     optimum: ConfirmedDesign
@@ -88,11 +91,21 @@ class Optimization:
     cost: Json
     asked: Json
 
+    def __post_init__(self) -> None:
+        # files of version 0.2 hold one value for all torques
+        object.__setattr__(self, "misalignment", np.broadcast_to(self.misalignment, self.torque.shape))
+
     @property
     def gain(self) -> Estimate:
         """Reduction of the objective, m; the errors are added, although both designs have one mesh."""
         start, optimum = self.start.objective, self.optimum.objective
         return Estimate(start.value - optimum.value, start.error + optimum.error, "m")
+
+    @property
+    def map_misalignment(self) -> FloatArray:
+        """Misalignments of the torques of the Harris maps (T,), m: see `OptimizationRequest`."""
+        loads, _ = DesignLoads(self.torque, self.misalignment).with_torques(self.start.harris_map.torque)
+        return loads.misalignment
 
     @property
     def evaluations(self) -> int:
@@ -106,7 +119,7 @@ class Optimization:
             "reason": self.reason,
             "variables": [each.to_json() for each in self.variables],
             "torque_n_m": self.torque.tolist(),
-            "misalignment_m": self.misalignment,
+            "misalignment_m": self.misalignment.tolist(),
             "nodes": self.nodes.to_json(),
             "gain_m": self.gain.value,
             "gain_error_m": self.gain.error,

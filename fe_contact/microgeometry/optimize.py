@@ -74,7 +74,7 @@ def _result(
         reason=reason,
         variables=request.variables,
         torque=study.torque,
-        misalignment=request.misalignment,
+        misalignment=study.evaluator.misalignment,
         nodes=study.evaluator.nodes,
         start=choice.start,
         optimum=choice.optimum,

@@ -8,6 +8,7 @@ import numpy as np
 
 from fe_contact.checks import increasing
 from fe_contact.geometry import ParallelAxes
+from fe_contact.microgeometry.design_loads import DesignLoads, Misalignments
 from fe_contact.microgeometry.design_study import DesignSpace, DesignStudy
 from fe_contact.microgeometry.objective import NO_LIMITS, Limits, Objective, WeightedMean
 from fe_contact.microgeometry.scatter import NO_SCATTER, Scatter
@@ -31,12 +32,13 @@ class OptimizationRequest:
     pair : GearPair or InternalGearPair
         Its own modifications are the start; those that are not varied stay.
     torques : sequence of float
-        Design torques, N m on the driving gear, increasing.
+        Design torques, N m on the driving gear, increasing; equal ones only at different misalignments.
     variables : tuple of DesignVariable
     scatter : Scatter
         Of misalignment and modifications, about the design.
-    misalignment : float
-        About which it scatters, m.
+    misalignment : float or sequence of float
+        About which it scatters, m: one value, or one for each torque. Further torques of the maps have it
+        linear in between, and held beyond the lowest and the highest design torque.
     objective : Objective
         `WeightedMean` or `Worst` of the expectations at the torques.
     limits : Limits
@@ -55,7 +57,7 @@ class OptimizationRequest:
     torques: Levels
     variables: tuple[DesignVariable, ...]
     scatter: Scatter = NO_SCATTER
-    misalignment: float = 0.0
+    misalignment: Misalignments = 0.0
     objective: Objective = WeightedMean()  # noqa: RUF009 (frozen)
     limits: Limits = NO_LIMITS
     search: Search = Search()  # noqa: RUF009 (frozen)
@@ -102,9 +104,8 @@ class OptimizationRequest:
             As `optimize`.
         """
         check_variables(self.pair, self.variables)
-        counted = increasing("torques", self.torques)
-        self.objective.check(counted.size)
-        self.space.check(counted)
+        self.objective.check(DesignLoads.of(self.torques, self.misalignment).torque.size)
+        self.space.check(self.torques)
 
     def to_json(self, study: DesignStudy) -> Json:
         """Return plain JSON, with what the study decided."""

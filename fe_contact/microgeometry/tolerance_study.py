@@ -8,7 +8,7 @@ import numpy as np
 
 from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes
-from fe_contact.microgeometry.confirmation import full_table
+from fe_contact.microgeometry.confirmation import full_table, ripple_errors
 from fe_contact.microgeometry.design_study import DesignSpace, design_study
 from fe_contact.microgeometry.evaluator import Evaluator, least_deviation
 from fe_contact.microgeometry.linearized_design import linearized
@@ -146,7 +146,7 @@ def _sampled(
     space: DesignSpace, torques: Levels, tolerances: Tolerances, sampling: Sampling, run: Run
 ) -> ToleranceStudy:
     """Sample a space of designs within tolerances; see `scatter`."""
-    clock, misalignment = StageClock(), space.misalignment
+    clock = StageClock()
     study = design_study(space, torques, [], clock, run)
     deviation = tolerances.sample(sampling.samples, sampling.seed)
     names, nominal = tuple(tolerances.widths), replace(study.evaluator, nodes=ONE_NODE)
@@ -156,7 +156,7 @@ def _sampled(
         ripple = _evaluated(study.evaluator, names, deviation, run)
     with clock.stage("confirmation"):
         table = full_table(nominal, {}, study.decided, run.cache)
-        error = [table.peak_to_peak(force=float(f), misalignment=misalignment).error for f in table.force]
+        error = ripple_errors(table, nominal)[0]
     run.progress("confirmation", 1.0)
     return ToleranceStudy(
         study.torque,
@@ -164,7 +164,7 @@ def _sampled(
         deviation,
         ripple,
         nominal.evaluate({}).peak_to_peak[0],
-        np.array(error),
+        error,
         tuple(quantile(ripple, fraction, sampling.confidence) for fraction in sampling.fractions),
         at_once,
         sampling.confidence,
@@ -173,7 +173,7 @@ def _sampled(
             "tolerances": tolerances.to_json(),
             "seed": sampling.seed,
             "positions": sampling.positions,
-            "misalignment_m": misalignment,
+            "misalignment_m": space.misalignment,
         },
     )
 

@@ -121,6 +121,11 @@ def test_defaults_written_out_are_the_same_question() -> None:
         ({"objective": {"weights": [1.0]}}, "objective.weights"),
         ({"search": {"evaluations": 0}}, "search.evaluations"),
         ({"torque_n_m": [80.0, 40.0]}, "torque_n_m"),
+        ({"torque_n_m": [40.0, 40.0], "misalignment_um": [5.0, 5.0]}, "torque_n_m"),
+        ({"torque_n_m": [40.0, 80.0], "misalignment_um": [0.0, 1.0, 2.0]}, "misalignment_um"),
+        ({"misalignment_um": [0.0, 1.0, 2.0]}, "misalignment_um"),  # of the torques of the case
+        ({"misalignment_um": [0.0, 2e4]}, "misalignment_um[1]"),
+        ({"misalignment_um": [0.0, 5.0]}, "misalignment_um"),  # in the plane
     ],
 )
 def test_bad_inputs_are_refused_by_name_before_there_is_a_job(

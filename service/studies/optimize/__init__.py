@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
+from itertools import cycle, pairwise
 from typing import Annotated, Any, Literal, Optional, Self
 
 from pydantic import Field, Strict, model_validator
@@ -11,10 +11,16 @@ from bounds import DEPTHS, Kind
 from fe_contact.flank.modification import FlankModification
 from service.schemas.declared import Figure, figures, with_fields
 from service.schemas.model import BoundaryModel, refuse
+from service.schemas.one_or_many import MANY, ONE, ONE_OR_MANY
 
 Deviation = Annotated[float, Field(gt=0.0, le=1000.0)]
 Torque = Annotated[float, Field(gt=0.0, le=1e9)]
-Torques = Annotated[tuple[Torque, ...], Strict(False), Field(min_length=1, max_length=64)]
+_EACH = (Strict(False), Field(min_length=1, max_length=64))
+Torques = Annotated[tuple[Torque, ...], *_EACH]
+Misalignment = Annotated[float, Field(ge=-10_000.0, le=10_000.0)]
+Misalignments = Annotated[
+    Annotated[Misalignment, ONE] | Annotated[tuple[Misalignment, ...], *_EACH, MANY], ONE_OR_MANY
+]
 
 
 def _ends(figure: Figure) -> tuple[Any, Any]:
@@ -194,14 +200,13 @@ class Inputs(BoundaryModel):
 
     torque_n_m: Torques | None = Field(
         default=None,
-        description="Design torques in N m on the driving gear, increasing; default: those of the case",
+        description="Design torques in N m on the driving gear, increasing, and equal only at different "
+        "misalignments; default: those of the case",
         examples=[[100.0, 200.0, 300.0]],
     )
-    misalignment_um: float = Field(
+    misalignment_um: Misalignments = Field(
         default=0.0,
-        ge=-10_000.0,
-        le=10_000.0,
-        description="Mean misalignment in um",
+        description="Misalignment in um, one value or one for each torque",
         examples=[0.0],
     )
     variables: VariablesInput = Field(
@@ -215,10 +220,17 @@ class Inputs(BoundaryModel):
     search: SearchInput = Field(default=SearchInput(), description="Search method and its settings")
 
     @model_validator(mode="after")
-    def _increasing(self) -> Self:
-        """Refuse torques that do not increase."""
-        if self.torque_n_m is not None and any(b <= a for a, b in pairwise(self.torque_n_m)):
-            refuse(
-                "torque_n_m", list(self.torque_n_m), "strictly increasing", "Sort the list and drop repeats."
-            )
+    def _loads(self) -> Self:
+        """Refuse misalignments of other loads, torques that fall, and a load twice."""
+        torques, given = self.torque_n_m, self.misalignment_um
+        if torques is None:
+            return self
+        misalignments = given if isinstance(given, tuple) else (given,)
+        if len(misalignments) not in (1, len(torques)):
+            bound = f"one value, or {len(torques)}, one for each torque"
+            refuse("misalignment_um", f"{len(misalignments)} values", bound)
+        loads = {*zip(torques, cycle(misalignments), strict=False)}
+        if any(b < a for a, b in pairwise(torques)) or len(loads) < len(torques):
+            bound = "increasing, and equal only at different misalignments"
+            refuse("torque_n_m", list(torques), bound, "Sort the list and drop repeats.")
         return self

@@ -79,7 +79,7 @@ class OptimizationFigures(Figures):
     reason: str
     variables: list[VariableFigures]
     torque_n_m: list[float]
-    misalignment_um: float
+    misalignment_um: list[float]
     nodes: NodeFigures
     gain_um: float
     gain_error_um: float

@@ -108,19 +108,22 @@ def _ripple(result: Optimization) -> Panel:
 def ripple_table(result: Optimization) -> Table:
     """Return peak-to-peak at the torques of the map, with errors."""
     before, after = result.start.harris_map, result.optimum.harris_map
+    texts, skews = thousands(before.torque.tolist()), result.map_misalignment / UM
     rows = tuple(
         (
             text,
+            number(float(skews[k]), 3),
             "yes" if torque in result.torque else "",
             *_value(before.expected[k], before.expected_error[k]),
             *_value(after.expected[k], after.expected_error[k]),
             number(float(before.expected[k] / after.expected[k]), 3),
             number(after.peak_to_peak[:, k].max() / UM, 3),
         )
-        for k, (text, torque) in enumerate(zip(thousands(before.torque.tolist()), before.torque, strict=True))
+        for k, (text, torque) in enumerate(zip(texts, before.torque, strict=True))
     )
     head = (
-        "torque, N m", "counts", "before, µm", "± µm", "after, µm", "± µm", "factor", "worst node after, µm",
+        "torque, N m", "misalignment, µm", "counts", "before, µm", "± µm", "after, µm", "± µm", "factor",
+        "worst node after, µm",
     )  # fmt: skip
     return Table("Expected peak to peak of the transmission error", head, rows)
 

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from fe_contact.microgeometry import (
     DesignVariable,
     DifferentialEvolution,
@@ -92,7 +94,7 @@ def _request(case: Case, study: Inputs) -> OptimizationRequest:
         list(torques),
         tuple(_variables(study)),
         scatter_of(study.scatter, study.search.seed),
-        study.misalignment_um * UM,
+        np.asarray(study.misalignment_um) * UM,
         objective,
         _limits(study),
         _search(study.search),

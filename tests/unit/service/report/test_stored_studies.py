@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
+from dataclasses import field, fields, make_dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, get_type_hints
 
 import h5netcdf
 import numpy as np
@@ -20,6 +21,7 @@ from fe_contact.geometry import FlankModification, Gear, GearPair
 from fe_contact.microgeometry import (
     DesignVariable,
     GaussHermite,
+    Optimization,
     Sampling,
     Scatter,
     Search,
@@ -29,12 +31,14 @@ from fe_contact.microgeometry import (
 )
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.ste import SteDatabase
+from model_studies.record_file import write_record
 from service.problems import BadInput
 from service.registry import STUDIES, Study
 from service.report.as_json import page_json, stored_figures
 from service.report.content import page_of
 from service.report.inputs import read_inputs
 from service.studies.ablate.page import ablation_page
+from service.studies.optimize.page import ripple_table
 
 RELIEF = FlankModification(tip_relief=15e-6, tip_relief_length=1.2e-3)
 GEAR = Gear(20, 4e-3, 0.025, 0.04, modification=RELIEF)
@@ -106,6 +110,26 @@ ALL = (
     "optimization without scatter",
     "tolerances",
 )
+
+
+def test_an_optimization_of_one_misalignment_for_all_torques_still_opens(
+    studies: dict[str, tuple[Study, Any]], tmp_path: Path
+) -> None:
+    """As version 0.2 wrote it."""
+    study, result = studies["optimization"]
+    hints = get_type_hints(Optimization) | {"misalignment": float}
+    metadata = {each.name: dict(each.metadata) for each in fields(Optimization)}
+    metadata["misalignment"].pop("dimensions")
+    before = make_dataclass(
+        "Optimization", [(name, hints[name], field(metadata=facts)) for name, facts in metadata.items()]
+    )
+    values = {name: getattr(result, name) for name in metadata} | {"misalignment": 5e-6}
+    write_record(before(**values), tmp_path / "before.nc", "lineofaction optimization")
+    opened = study.run.file.read(tmp_path / "before.nc")
+    assert opened.misalignment.tolist() == [5e-6, 5e-6]
+    assert opened.optimum.objective == result.optimum.objective
+    assert study.run.facts(opened)["misalignment_um"] == pytest.approx([5.0, 5.0], rel=1e-12)
+    assert {row[1] for row in ripple_table(opened).rows} == {"5.00"}
 
 
 @pytest.mark.parametrize("name", ALL)
