@@ -14,38 +14,28 @@ from service.studies.deflect.figures import mesh_names
 from service.studies.deflect.result import GearboxDeflection
 from service.units import UM
 
-ALIKE = 1e-6
+DIGITS = 3
+"""Of a misalignment in um behind the point."""
 
 
 def optimization_inputs(result: GearboxDeflection, mesh: str) -> Json:
-    """Return torques with their weights, mean misalignment and its scatter over the spectrum of a mesh.
+    """Return the loads of a mesh over the spectrum: torques, their misalignments, their shares as weights.
 
-    Load cases of equal torque are one. Those on the coast side load the other flanks and are left aside,
-    unless all are. A plane model has no misalignment: there the inputs have none.
+    Load cases of equal torque and misalignment, to the digits of the file, are one load; those of equal
+    torque at different misalignments are several. Load cases on the coast side load the other flanks and are
+    left aside, unless all are. A plane model has no misalignment: there the inputs have none.
     """
-    points = _points(result, mesh)
-    torque = np.array([point[0] for point in points])
-    weight = np.array([point[1] for point in points])
-    misalignment = np.array([point[2] for point in points])
-    order = np.argsort(torque)
-    merged: list[list[float]] = []
-    for k in order:
-        if merged and torque[k] <= merged[-1][0] * (1.0 + ALIKE):
-            merged[-1][1] += weight[k]
-        else:
-            merged.append([float(torque[k]), float(weight[k])])
-    inputs: Json = {
-        "torque_n_m": [_digits(point[0]) for point in merged],
-        "objective": {"kind": "weighted_mean", "weights": [_digits(point[1]) for point in merged]},
+    in_plane, shares = _in_plane(result, mesh), dict[tuple[float, float], float]()
+    for torque, share, misalignment in _points(result, mesh):
+        load = _digits(torque), 0.0 if in_plane else round(misalignment / UM, DIGITS) + 0.0
+        shares[load] = shares.get(load, 0.0) + share
+    torques, misalignments = zip(*sorted(shares), strict=True)
+    weights = [_digits(shares[load]) for load in sorted(shares)]
+    return {
+        "torque_n_m": list(torques),
+        **({} if in_plane else {"misalignment_um": list(misalignments)}),
+        "objective": {"kind": "weighted_mean", "weights": weights},
     }
-    if _in_plane(result, mesh):
-        return inputs
-    mean = float(np.average(misalignment, weights=weight))
-    spread = float(np.sqrt(np.average((misalignment - mean) ** 2, weights=weight)))
-    inputs["misalignment_um"] = _digits(mean / UM)
-    if spread > ALIKE * max(abs(mean), UM):
-        inputs["scatter"] = {"misalignment_um": _digits(spread / UM)}
-    return inputs
 
 
 def _in_plane(result: GearboxDeflection, mesh: str) -> bool:

@@ -231,20 +231,39 @@ def test_parts_of_the_table_sum_to_the_misalignment(result: GearboxDeflection) -
 def test_the_spectrum_of_the_driving_side_is_what_is_optimized(result: GearboxDeflection) -> None:
     inputs = optimization_inputs(result, "first")
     study = OptimizeInputs.model_validate_json(json.dumps(inputs))
-    forces = [case.meshes[0].force for case in result.deflection.cases]
-    assert study.torque_n_m == pytest.approx((0.02 * forces[1], 0.02 * forces[0]), rel=1e-6)
+    first = [case.meshes[0] for case in result.deflection.cases]
+    assert study.torque_n_m == pytest.approx((0.02 * first[1].force, 0.02 * first[0].force), rel=1e-6)
     assert study.objective.weights == (5.0, 1.0)  # equal torques are one load
-    m = np.array([case.meshes[0].misalignment for case in result.deflection.cases[:3]]) * 1e6
-    mean = float(np.average(m, weights=[1.0, 3.0, 2.0]))
-    assert study.misalignment_um == pytest.approx(mean, rel=1e-6)
-    spread = float(np.sqrt(np.average((m - mean) ** 2, weights=[1.0, 3.0, 2.0])))
-    assert study.scatter.misalignment_um == pytest.approx(spread, rel=1e-6)
+    own = tuple(1e6 * mesh.misalignment for mesh in (first[1], first[0]))
+    assert study.misalignment_um == pytest.approx(own, abs=5e-4) and own[1] / own[0] > 1.5
+    assert study.scatter.misalignment_um == 0.0
+
+
+def tilted(result: GearboxDeflection, case: int, further_um: float) -> GearboxDeflection:
+    """The same with the first mesh misaligned further under a load case."""
+    loaded = result.deflection.cases[case]
+    mesh = loaded.meshes[0]
+    skewed = replace(mesh, misalignment=mesh.misalignment + 1e-6 * further_um)
+    cases = list(result.deflection.cases)
+    cases[case] = replace(loaded, meshes=(skewed, *loaded.meshes[1:]))
+    return replace(result, deflection=replace(result.deflection, cases=tuple(cases)))
+
+
+def test_equal_torques_at_different_misalignments_stay_two_loads(result: GearboxDeflection) -> None:
+    before, after = (optimization_inputs(each, "first") for each in (result, tilted(result, 2, -2.0)))
+    (torque, other), (skew, larger) = before["torque_n_m"], before["misalignment_um"]
+    assert after["torque_n_m"] == [torque, torque, other]
+    assert after["misalignment_um"] == pytest.approx([skew - 2.0, skew, larger], abs=1e-9)
+    assert after["objective"]["weights"] == [2.0, 3.0, 1.0]
+    OptimizeInputs.model_validate_json(json.dumps(after))
+    assert optimization_inputs(tilted(result, 2, 1e-5), "first") == before  # less than a file shows
 
 
 def test_a_plane_model_gets_no_misalignment_to_optimize_for(result: GearboxDeflection) -> None:
     plane = replace(result, flanks=tuple(replace(f, face_load_factor=np.nan) for f in result.flanks))
     inputs, across_face = optimization_inputs(plane, "first"), optimization_inputs(result, "first")
-    assert across_face.keys() - inputs.keys() == {"misalignment_um", "scatter"}
+    assert across_face.keys() - inputs.keys() == {"misalignment_um"}
+    assert optimization_inputs(tilted(plane, 2, 2.0), "first") == inputs
 
 
 def test_files_of_an_optimization_stand_beside_the_list_of_calls(
