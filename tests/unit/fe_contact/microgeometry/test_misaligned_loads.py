@@ -23,11 +23,13 @@ from fe_contact.microgeometry import (
     WeightedMean,
     optimize,
 )
+from fe_contact.microgeometry.design_problem import DesignProblem
 from fe_contact.microgeometry.design_study import DesignSpace, design_study
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.linearized_design import linearized
-from fe_contact.microgeometry.objective import Limits
+from fe_contact.microgeometry.objective import NO_LIMITS, Limits
 from fe_contact.microgeometry.scatter import NO_SCATTER
+from fe_contact.microgeometry.search import search_from
 from fe_contact.microgeometry.variables import modified
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.stage_clock import StageClock
@@ -145,3 +147,28 @@ def test_every_load_is_confirmed_by_an_analysis_at_its_misalignment(
         assert harris.nominal_error[k] == pytest.approx(assessed.error, rel=0.1, abs=0.0)
     objective = np.average(harris.nominal[[0, 2, 3]], weights=(1.0, 2.0, 3.0))
     assert found.optimum.objective.value == pytest.approx(objective, rel=1e-12, abs=0.0)
+
+
+@pytest.mark.parametrize("weights", [(1.0, 0.0), (3.0, 1.0), (1.0, 1.0), (1.0, 3.0)])
+def test_the_best_slope_is_the_compromise_of_the_loads_by_their_weights(
+    pair: GearPair, compliances: Path, weights: tuple[float, float]
+) -> None:
+    """Minus the misalignment of a load alone; of two, between theirs and on the side of the heavier one.
+
+    No slope of a scan by one load is better: the ripple at a misalignment is that of so much more slope.
+    """
+    skews, level = np.array([-12e-6, 12e-6]), {CROWNING: 4e-6}
+    free, objective = (DesignVariable(SLOPE, -24e-6, 24e-6),), WeightedMean(weights)
+    assessed = evaluator(pair, compliances, [300.0, 300.0], skews.tolist())
+    assessed = replace(assessed, contact=replace(assessed.contact, pair=modified(pair, level)))
+    problem = DesignProblem(assessed, free, objective, NO_LIMITS, 1e-6)
+    search = Search(NelderMead(), evaluations=40, positions=POSITIONS)
+    run = search_from(problem, search, np.array([0.4]), 0)
+    alone, slopes = evaluator(pair, compliances, [300.0], [0.0]), np.linspace(-36e-6, 36e-6, 37)
+    ripple = [float(alone.evaluate(level | {SLOPE: x}).peak_to_peak[0, 0]) for x in slopes]
+    scan = [objective.of(np.interp(x + skews, slopes, ripple)) for x in slopes[6:-6]]
+    assert 0.98 * min(scan) < run.assessed.objective < min(scan) * (1.0 + 1e-6)
+    (slope,) = problem.values(run.place).values()
+    assert np.sign(weights[0] - weights[1]) * slope >= 0.0 and abs(slope) < 12.2e-6
+    if not all(weights):
+        assert slope == pytest.approx(12e-6, abs=0.2e-6)
