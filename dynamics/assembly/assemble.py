@@ -15,7 +15,7 @@ from dynamics.assembly.housed_bearings import housed_bearings
 from dynamics.assembly.model import Model, decide_model
 from dynamics.assembly.system_arrays import system_arrays
 from dynamics.effects import EFFECTS, EffectLedger
-from dynamics.mechanism.additions import BEARING_LAWS, HOUSING_AMPLITUDES
+from dynamics.mechanism.additions import BEARING_LAWS, ELEMENT_PASSING, HOUSING_AMPLITUDES
 from dynamics.mechanism.base_pitches import Corrections
 from dynamics.mechanism.bearing_elements import BearingElement
 from dynamics.mechanism.bodies import Bodies
@@ -25,11 +25,15 @@ from dynamics.mechanism.flanks import Flanks
 from dynamics.mechanism.freedoms import Freedoms
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.line_of_action import LineOfAction
+from dynamics.mechanism.resting_housings import resting_housings, under_laws
 from dynamics.mechanism.sampling import Sampling, choose_sampling, top_mode
 from dynamics.mechanism.seats import Seats
 from dynamics.mechanism.supports import Supports
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray, IntArray, Json
+
+LAWS = frozenset((BEARING_LAWS, ELEMENT_PASSING))
+"""What effects add to bearings that are not linear."""
 
 
 @dataclass(frozen=True)
@@ -121,20 +125,34 @@ class System:
 
 
 def assemble(scene: Scene) -> System:
-    """Assemble `scene`; where no effect may add the laws of bearings, by their tangents at the load.
+    """Assemble `scene`; where it cannot have the laws of bearings, by their tangents at the load.
+
+    That is where no effect may add them, and where a housing without mass carries one: no equation of motion
+    says where its seats are between the bodies.
 
     Raises
     ------
     InputError
         If parts do not fit each other, or a free direction has no inertia.
     """
-    model = decide_model(scene, EFFECTS)
+    massless = under_laws(scene)
+    model = decide_model(_at_rest(scene) if massless else scene, EFFECTS)
     system = _assemble(model)
     if not system.bearings or BEARING_LAWS in model.mechanism.additions.possible:
         return system
-    linear = _assemble(decide_model(_with_linear_bearings(system), EFFECTS))
+    tangents = replace(_with_linear_bearings(system), housings=scene.housings, effects=scene.effects)
+    linear = _assemble(decide_model(tangents, EFFECTS))
     ledger = system.ledger.with_entries_of(linear.ledger, HOUSING_AMPLITUDES)
+    if massless:
+        reason = f'the housing "{massless[0].name}" has no mass: bearings have their tangents at the load'
+        ledger = ledger.without(LAWS, reason, scene.effects)
     return replace(linear, ledger=ledger, corrected=system.corrected)
+
+
+def _at_rest(scene: Scene) -> Scene:
+    """Return the scene in which bearings have their laws at rest alone, on all its housings."""
+    off = {effect.name: "off" for effect in EFFECTS if not LAWS.isdisjoint(effect.adds)}
+    return replace(scene, housings=resting_housings(scene), effects={**scene.effects, **off})
 
 
 def _assemble(model: Model) -> System:

@@ -13,6 +13,7 @@ from dynamics.effects import EFFECTS
 from dynamics.errors import InputError
 from dynamics.joints import ImposedRotation
 from dynamics.mechanism.kinematics import Kinematics, solve_kinematics
+from dynamics.mechanism.resting_housings import resting_housings
 from dynamics.scene.scene import Scene
 from dynamics.settings.load_case import DRIVE, LoadCase
 
@@ -86,6 +87,7 @@ def loaded_scene(scene: Scene, case: LoadCase) -> Scene:
             )
             for mesh in scene.meshes
         ),
+        housings=resting_housings(scene),
         effects=_effects_at_rest(scene),
         tolerance=None,
         highest_frequency=STATIC,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from dynamics.checks import one_of
 from dynamics.effects.effect import Effect, MeshEffect, RotorEffect, Verdict
@@ -110,6 +110,21 @@ class EffectLedger:
         """Return the ledger with the decisions of `other` on the effect that adds `addition`."""
         kept = (entry for entry in self.entries if addition not in entry.decided.adds)
         return EffectLedger((*kept, *other.adding(addition)))
+
+    def without(self, additions: frozenset[str], reason: str, choices: Mapping[str, str]) -> EffectLedger:
+        """Return the ledger in which no effect that adds one of `additions` is possible."""
+        return EffectLedger(
+            tuple(
+                entry
+                if additions.isdisjoint(entry.decided.adds)
+                else replace(
+                    entry,
+                    choice=choices.get(entry.effect, "auto"),
+                    verdict=replace(entry.verdict, on=False, possible=False, reason=reason),
+                )
+                for entry in self.entries
+            )
+        )
 
     def on_rotor(self, shaft: str) -> list[RotorEffect]:
         """Return the effects of rotors that are on for `shaft`."""

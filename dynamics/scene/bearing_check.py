@@ -16,13 +16,11 @@ def check_bearing_laws(
     contacts: Sequence[RollingContact],
     curves: Sequence[SpringCurve],
     rolling: Sequence[RollingBearing],
-    condensed: frozenset[str],
     rotating: frozenset[str],
 ) -> None:
-    """Every law has its own direction of one of `bearings`, on rigid ground, a pin or a housing with mass.
+    """Every law has its own direction of one of `bearings`.
 
-    `condensed` names the bearings in a housing without mass, `rotating` those of shafts described in a
-    rotating frame.
+    `rotating` names the bearings of shafts described in a rotating frame.
     """
     fields = [
         *((f"rolling_contacts[{index}].bushing", part.bushing) for index, part in enumerate(contacts)),
@@ -30,10 +28,6 @@ def check_bearing_laws(
     ]
     for field, name in fields:
         one_of(field, name, bearings)
-    for field, name in (*fields, *((f"rolling_bearings[{i}].name", p.name) for i, p in enumerate(rolling))):
-        if name in condensed:
-            bound = "a bushing outside of housings without mass, which are condensed with linear bushings"
-            raise InputError(field, name, bound, "Give the housing its mass, or take the bearing out of it.")
     distinct("rolling_contacts", [part.bushing for part in contacts])
     distinct("spring_curves", [f"{part.bushing}.{part.direction}" for part in curves])
     for index, curve in enumerate(curves):

@@ -9,6 +9,8 @@ from dynamics.bodies import Shaft
 from dynamics.checks import one_of
 from dynamics.errors import InputError
 from dynamics.joints import Bushing, Housing
+from dynamics.joints.housing import DEFINITE
+from dynamics.joints.matrix import least_share
 from dynamics.joints.seat import SEAT
 from dynamics.types import FloatArray
 
@@ -18,9 +20,15 @@ IRRATIONAL = 1.0  # rad; what this turn leaves alone any turn does
 
 
 def check_housings(
-    shafts: tuple[Shaft, ...], bushings: tuple[Bushing, ...], housings: tuple[Housing, ...]
+    shafts: tuple[Shaft, ...],
+    bushings: tuple[Bushing, ...],
+    housings: tuple[Housing, ...],
+    lawful: frozenset[str],
 ) -> None:
-    """Each bushing sits in one housing at most; what a rotating frame holds is alike in all directions."""
+    """Each bushing sits in one housing at most; what a rotating frame holds is alike in all directions.
+
+    A housing under a bearing that is not linear, of those named in `lawful`, is held in all directions.
+    """
     by_name = {bushing.name: bushing for bushing in bushings}
     frames = {shaft.name: shaft.frame for shaft in shafts}
     taken: dict[str, str] = {}
@@ -35,6 +43,10 @@ def check_housings(
                 raise InputError(field, name, bound, "A planetary set's frame turns against the housing.")
             taken[name] = housing.name
         _check_positions(index, housing, shafts, by_name)
+        if not lawful.isdisjoint(housing.bushings) and least_share(housing.matrices()[0]) <= DEFINITE:
+            bound = "positive definite under bearings that are not linear"
+            advice = "Hold the housing at its feet, or on mounts, in every direction that has a row."
+            raise InputError(f"housings[{index}].stiffness", housing.name, bound, advice)
     for index, bushing in enumerate(bushings):
         if frames[bushing.shaft] is not None:
             _check_isotropic(f"bushings[{index}]", bushing)

@@ -149,14 +149,18 @@ class Scene:
             check_on_axis(self.shafts, kind, getattr(self, kind))
         check_gravity(self.shafts, self.gravity)
         check_couplings(self.shafts, self.couplings)
-        check_housings(self.shafts, self.ground_bearings, self.housings)
+        check_housings(
+            self.shafts,
+            self.ground_bearings,
+            self.housings,
+            frozenset(law.bushing for law in self.bearing_laws),
+        )
         rotating = {shaft.name for shaft in self.shafts if shaft.frame is not None}
         check_bearing_laws(
             [bearing.name for bearing in (*self.bushings, *self.planet_bearings)],
             self.rolling_contacts,
             self.spring_curves,
             self.rolling_bearings,
-            frozenset(name for housing in self.housings if housing.mass is None for name in housing.bushings),
             frozenset(bushing.name for bushing in self.bushings if bushing.shaft in rotating),
         )
 

@@ -351,7 +351,3 @@ def test_what_is_no_housing_with_mass_is_named():
         housed(pair(), seat_positions=at)
     assert caught.value.field == "housings[0].seat_positions[1]"
     assert "-0.2 m" in str(caught.value)
-    massless = block((RollingContact("seat", 5e8),)).housings[0]
-    with pytest.raises(InputError, match="Give the housing its mass") as caught:
-        replace(block((RollingContact("seat", 5e8),)), housings=(replace(massless, mass=None),))
-    assert caught.value.field == "rolling_contacts[0].bushing"
