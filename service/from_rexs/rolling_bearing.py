@@ -22,7 +22,7 @@ from service.schemas.declared import figures
 _STIFFNESSES = ("radial_stiffness", "axial_stiffness", "bending_stiffness")
 
 
-def rolling_bearing(layout: Layout, entry: Connection, housed: Collection[int]) -> dict[str, Any] | str:
+def rolling_bearing(layout: Layout, entry: Connection, loose: Collection[int]) -> dict[str, Any] | str:
     """Return what a scene file states of a bearing by its geometry, or why it is a bushing.
 
     Name, shaft and position are left to the caller.
@@ -32,12 +32,12 @@ def rolling_bearing(layout: Layout, entry: Connection, housed: Collection[int]) 
     layout : Layout
     entry : Connection
         A bearing on the ground.
-    housed : collection of int
-        Components in an elastic housing.
+    loose : collection of int
+        Components in an elastic housing that is not held in all directions.
     """
     part = entry.part
-    if part.id in housed:
-        return "the casing is elastic, on which a scene has bushings"
+    if part.id in loose:
+        return "the matrix of the casing is singular, and only linear bearings sit in it"
     if entry.held.id != entry.inner.id:
         return "the shaft is on its outer side"
     if operating_point(part) is not None or any(stated_stiffness(part, item) for item in _STIFFNESSES):

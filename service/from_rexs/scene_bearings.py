@@ -16,7 +16,7 @@ from service.from_rexs.names import Names
 from service.from_rexs.part import Part
 from service.from_rexs.placement import placement
 from service.from_rexs.rolling_bearing import rolling_bearing
-from service.from_rexs.scene_housing import housed_bearings
+from service.from_rexs.scene_housing import loosely_housed
 from service.from_rexs.scene_shafts import SceneShafts
 
 RIGID_COUPLING, RIGID_TORSION = 1e9, 1e7
@@ -34,8 +34,8 @@ class SceneBearings:
         Tables of a scene file.
     seats : dict of int to str
         The bushing or rolling bearing of each bearing on the ground, by its component.
-    housed : frozenset of int
-        The components in an elastic housing.
+    loose : frozenset of int
+        The components in an elastic housing that is not held in all directions.
     """
 
     bushings: list[dict[str, Any]] = field(default_factory=list)
@@ -43,12 +43,12 @@ class SceneBearings:
     planet_bearings: list[dict[str, Any]] = field(default_factory=list)
     couplings: list[dict[str, Any]] = field(default_factory=list)
     seats: dict[int, str] = field(default_factory=dict)
-    housed: frozenset[int] = frozenset()
+    loose: frozenset[int] = frozenset()
 
 
 def scene_bearings(layout: Layout, shafts: SceneShafts) -> SceneBearings:
     """Return bearings and couplings of the scene; the account says what is left out and why."""
-    tables, names = SceneBearings(housed=frozenset(housed_bearings(layout))), Names()
+    tables, names = SceneBearings(loose=frozenset(loosely_housed(layout))), Names()
     for entry in bearings(layout.unit):
         _enter(layout, shafts, tables, names, entry)
     for entry in couplings(layout.unit):
@@ -86,7 +86,7 @@ def _enter_on_ground(
     layout: Layout, shafts: SceneShafts, tables: SceneBearings, names: Names, entry: Connection
 ) -> None:
     """Enter a bearing by its geometry, or as a bushing for the reason that the account has."""
-    rolling = rolling_bearing(layout, entry, tables.housed)
+    rolling = rolling_bearing(layout, entry, tables.loose)
     seat = _seat(layout, shafts, names, entry, entry.held)
     if isinstance(rolling, str):
         _say_clearances(entry.part)

@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 
 from bounds.types import FloatArray
+from dynamics.joints.housing import DEFINITE
+from dynamics.joints.matrix import least_share
 from service.from_rexs.layout import Layout
 from service.from_rexs.names import Names
 from service.from_rexs.part import Part
@@ -19,10 +21,10 @@ SYMMETRIC = 1e-6
 
 
 def scene_housings(layout: Layout, seats: dict[int, str]) -> list[dict[str, Any]]:
-    """Return the housings whose points carry bushings.
+    """Return the housings whose points carry bearings.
 
     The matrix of the file has six rows a point, motions along and rotations about u, v, w of its assembly
-    group, in N, mm, rad, and the order of the points. Points that carry no bushing of the scene follow free
+    group, in N, mm, rad, and the order of the points. Points that carry no bearing of the scene follow free
     of force (static condensation).
 
     Parameters
@@ -38,18 +40,19 @@ def scene_housings(layout: Layout, seats: dict[int, str]) -> list[dict[str, Any]
     return tables
 
 
-def housed_bearings(layout: Layout) -> set[int]:
-    """Return the components that an elastic housing holds: those at the points of a matrix that is read.
+def loosely_housed(layout: Layout) -> set[int]:
+    """Return the components in an elastic housing that is not held in all directions: its matrix is singular.
 
-    A scene takes bushings alone on a housing, so that these bearings are bushings.
+    Only linear bearings sit in such a housing.
     """
-    housed: set[int] = set()
+    loose: set[int] = set()
     for group in _groups(layout):
         points = layout.unit.children(group, "reduction_point")
-        if _stiffness(group, len(points)) is not None:
+        matrix = _stiffness(group, len(points))
+        if matrix is not None and least_share(matrix) <= DEFINITE:
             seats = (layout.unit.related(point, "reference", "origin", "referenced") for point in points)
-            housed |= {part.id for parts in seats for part in parts}
-    return housed
+            loose |= {part.id for parts in seats for part in parts}
+    return loose
 
 
 def _groups(layout: Layout) -> list[Part]:

@@ -304,8 +304,9 @@ def test_a_shaft_in_the_outer_ring_is_on_a_bushing() -> None:
     assert "outer side" in why(opened(two_stages(more=more, further=[side])), number)
 
 
-def test_bearings_of_an_elastic_casing_are_bushings_and_say_so() -> None:
-    matrix = tuple(map(tuple, (1e6 * np.eye(6)).tolist()))
+@pytest.mark.parametrize("held", [True, False])
+def test_bearings_of_a_casing_are_bushings_where_nothing_holds_it_and_say_so(held: bool) -> None:
+    matrix = tuple(map(tuple, np.diag([1e6] * 5 + [1e6 * held]).tolist()))
     group = place(0.0, 0.0, 0.0) | {"reduced_static_stiffness_matrix": matrix}
     more = at(LEFT, "catalog", LINE) | at(RIGHT, "catalog", LINE)
     more |= {50: ("assembly_group", group), 51: ("reduction_point", {})}
@@ -316,8 +317,12 @@ def test_bearings_of_an_elastic_casing_are_bushings_and_say_so() -> None:
     ]
     further = [relation(2000 + n, kind, **roles) for n, (kind, roles) in enumerate(rows)]
     unit = opened(two_stages(more=more, further=further))
-    assert "the casing is elastic" in why(unit, LEFT)
-    assert list(by_name(unit)) == [RIGHT]
+    if held:
+        assert list(by_name(unit)) == [LEFT, RIGHT]
+        assert unit.scene is not None and unit.scene.housings[0].bushings
+    else:
+        assert "the matrix of the casing is singular" in why(unit, LEFT)
+        assert list(by_name(unit)) == [RIGHT]
 
 
 ROLES = {"support_vector", "u_axis_vector", "w_axis_vector", "reference_component_for_position"}

@@ -441,13 +441,20 @@ def test_the_example_opens_with_bearings_by_geometry_on_its_housing() -> None:
     unit, scene = opened(document), scene_of(document)
     assert not [line for line in unit.lines if line.fate == "refused"]
     (housing,) = scene.housings
-    assert housing.bushings == tuple(bushing.name for bushing in scene.bushings) and len(scene.bushings) == 6
+    assert housing.bushings == tuple(bearing.name for bearing in scene.rolling_bearings)
+    assert len(scene.rolling_bearings) == 6 and scene.bushings == ()
     assert [case.torque_n_m for case in unit.load_cases] == [160.0, 120.0, 80.0, 40.0]
     assert [case.share for case in unit.load_cases] == [0.05, 0.15, 0.5, 0.3]
     (load,) = scene.loads
     assert load.torque_n_m == pytest.approx((80.0 * 63.0 / 25.0 * 74.0 / 21.0,), rel=1e-12)
-    for number in (33, 35):  # tapered rollers hold their shaft in every direction, by their own tangent
-        fate, words = said(unit, number, "axial_stiffness")
-        assert fate == "derived" and "tangent of the bearing's geometry" in words
+    balls, rollers = scene.rolling_bearings[:2], scene.rolling_bearings[2:]
+    assert [bearing.locating for bearing in balls] == ["both", "none"]
+    assert all(bearing.roller is not None for bearing in rollers)
+    assert np.sign([row.contact_angle_deg for bearing in rollers if (row := bearing.roller)]).tolist() == [
+        -1,
+        1,
+        -1,
+        1,
+    ]
     matrix = np.array(housing.stiffness_matrix)
     assert np.linalg.eigvalsh(matrix)[0] > 0.0 and np.array_equal(matrix, matrix.T)
