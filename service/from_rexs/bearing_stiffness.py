@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from bounds.types import FloatArray
+from dynamics.bearing_rows import RollerBearing
 from dynamics.errors import DynamicsError
-from service.from_rexs.bearing_geometry import bearing_geometry, bearing_type
+from service.from_rexs.bearing_geometry import Row, bearing_geometry, bearing_type
 from service.from_rexs.gear_unit import GearUnit
 from service.from_rexs.part import Part
 
@@ -147,7 +148,7 @@ def _by_geometry(unit: GearUnit, part: Part) -> FloatArray | None:
     from dynamics.rolling_bearings import LoadedBearing  # noqa: PLC0415 (start-up time)
 
     bearing = LoadedBearing(geometry.row, COPIES)
-    load = geometry.rating * np.array([RADIAL_LOAD, 0.0, _axial_load(geometry.row.contact_angle), 0.0, 0.0])
+    load = geometry.rating * np.array([RADIAL_LOAD, 0.0, _axial_load(geometry.row), 0.0, 0.0])
     try:
         return np.asarray(bearing.evaluate(bearing.displacement(load, held=_TILTS)).tangent)
     except DynamicsError as error:
@@ -155,8 +156,14 @@ def _by_geometry(unit: GearUnit, part: Part) -> FloatArray | None:
         return None
 
 
-def _axial_load(contact_angle: float) -> float:
-    """Return the usual axial load over the static load rating, with the sign of the contact angle."""
+def _axial_load(row: Row) -> float:
+    """Return the usual axial load over the static load rating, with the sign of the contact angle.
+
+    Cylindrical rollers carry none: that of their ribs is not in the geometry.
+    """
+    contact_angle = row.contact_angle
+    if isinstance(row, RollerBearing) and contact_angle == 0.0:
+        return 0.0
     least = INDUCED * RADIAL_LOAD * math.tan(abs(contact_angle))
     return math.copysign(max(AXIAL_LOAD, least), contact_angle)
 

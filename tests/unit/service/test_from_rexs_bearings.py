@@ -256,6 +256,9 @@ def test_cylindrical_rollers_hold_nothing_and_ribs_are_a_bushing() -> None:
     (bearing,) = by_name(unit).values()
     assert thrusts(bearing) == (0.0, 0.0) and bearing.roller is not None
     assert "ribs carry axial force" in why(unit, RIGHT)
+    fate, words = said(unit, RIGHT, "radial_stiffness")
+    assert fate == "derived" and "tangent of the bearing's geometry" in words
+    assert said(unit, RIGHT, "axial_stiffness")[0] == "defaulted"
 
 
 @pytest.mark.parametrize(
