@@ -123,6 +123,7 @@ def linted(tmp_path: Path, linter: str, *options: str) -> str:
     return "" if ended.returncode == 0 else ended.stdout + ended.stderr
 
 
+@pytest.mark.nightly  # half a minute; what it asks for beyond the specification is tested by name
 def test_spectral_has_nothing_to_say(tmp_path: Path) -> None:
     assert linted(tmp_path, "spectral", "--ruleset", "rules.json", "--fail-severity", "warn") == ""
 
