@@ -107,6 +107,7 @@ def tree_of(revision: str, folder: Path) -> Path:
     return folder
 
 
+@pytest.mark.nightly
 def test_two_versions_share_a_database_while_they_are_exchanged(
     service: RollingService, tmp_path: Path
 ) -> None:

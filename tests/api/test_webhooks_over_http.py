@@ -171,6 +171,7 @@ def test_what_is_not_listed_is_refused_by_name(http: TestClient, listener: Recei
     assert http.get("/v1/jobs").json()["jobs"] == [] and listener.requests == []
 
 
+@pytest.mark.nightly  # it waits for the call to time out
 def test_a_call_that_a_killed_service_was_making_is_made_again(tmp_path: Path, listener: Receiver) -> None:
     """kill -9 while the receiver holds the request: its lease ends, and it is sent again."""
     settings = {"LOA_WEBHOOK_ORIGINS": listener.origin, "LOA_WEBHOOK_SECRET": SECRET}

@@ -135,9 +135,8 @@ def stop_between_transactions(pid: int, other: Bench) -> None:
                 time.sleep(0.05)
 
 
-@pytest.mark.parametrize(
-    "database_url", ["sqlite", pytest.param("postgresql", marks=pytest.mark.nightly)], indirect=True
-)
+@pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
+@pytest.mark.nightly  # it waits for a lease to end
 def test_the_worker_of_a_stalled_scheduler_ends_before_another_takes_up_its_work(
     tmp_path: Path, schedulers: Schedulers
 ) -> None:

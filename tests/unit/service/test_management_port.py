@@ -163,6 +163,7 @@ def test_a_port_in_use_is_said(signs: tuple[Vitals, Path]) -> None:
     assert [fault.field for fault in caught.value.faults] == ["management_port"]
 
 
+@pytest.mark.nightly
 def test_connections_that_say_nothing_take_bounded_room(signs: tuple[Vitals, Path]) -> None:
     before = threading.active_count()
     with ManagementServer("127.0.0.1", 0, signs[0], bytes) as server:
