@@ -104,22 +104,20 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
     app.add_middleware(DirectRoutes, router=queries.router, prefix=API_PREFIX)
     app.add_middleware(Access, identities=identities, always=not settings.loopback or bool(identities))
     app.add_middleware(Guard, body_limit=settings.body_limit, metrics=app.state.metrics)
+    _route(app, offered)
+    return app
+
+
+def _route(app: FastAPI, offered: Registry) -> None:
+    """Add all routes, in the order of the description."""
     jobs_shown = (landing.router, processes_router(offered), jobs.router, job_results_router(offered))
     stored = (databases.router, results.router, figures.router, queries.router, live.router)
-    others = (
-        batches.router,
-        events.router,
-        cases.router,
-        scenes.router,
-        units.router,
-        effects.router,
-        former_results.router,
-    )
-    for router in (*jobs_shown, *stored, *others):
+    grouped = (batches.router, events.router)
+    converted = (cases.router, scenes.router, units.router, effects.router, former_results.router)
+    for router in (*jobs_shown, *stored, *grouped, *converted):
         app.include_router(router, prefix=API_PREFIX)
     for router in (page.router, description.router, health.router):
         app.include_router(router)
-    return app
 
 
 def _registry(context: Context) -> CollectorRegistry:

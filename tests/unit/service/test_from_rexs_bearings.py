@@ -17,6 +17,7 @@ from service.from_rexs.opened import OpenedUnit, opened
 from service.rexs import Document, read_rexs
 from service.schemas.scene_bearings import BallRowInput, RollerRowInput, RollingBearingInput
 from tests.fakes.deflected_unit import deflection_of_unit
+from tests.fakes.opened_unit import said
 from tests.fakes.rexs_stage import relation
 from tests.fakes.rexs_unit import CASING, INPUT, MOTOR, NORMAL_LOAD, place, two_stages
 
@@ -81,12 +82,6 @@ def why(unit: OpenedUnit, number: int) -> str:
     assert any(bushing.name.endswith(str(number)) for bushing in unit.scene.bushings)
     (line,) = [line for line in unit.lines if (line.component, line.item) == (number, "")]
     return line.words
-
-
-def said(unit: OpenedUnit, number: int, item: str) -> tuple[str, str]:
-    """Return fate and words of a value."""
-    (line,) = [line for line in unit.lines if (line.component, line.item) == (number, item)]
-    return line.fate, line.words
 
 
 def thrusts(bearing: RollingBearingInput) -> tuple[float, float]:

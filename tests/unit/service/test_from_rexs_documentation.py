@@ -145,6 +145,11 @@ def whole_units() -> Iterator[GearUnit]:
                 ),
             ],
         )
+    yield ring_unit()
+
+
+def ring_unit() -> GearUnit:
+    """Return a unit with a ring gear."""
     ring = {
         "number_of_teeth": 60,
         "tip_diameter": 117.0,
@@ -152,7 +157,7 @@ def whole_units() -> Iterator[GearUnit]:
         "support_vector": (30.0, 0.0, -40.0),
     }
     cutter = {"number_of_teeth": 25, "addendum_modification_coefficient": 0.0}
-    yield stage_unit(
+    return stage_unit(
         {WHEEL: ring, STAGE: {"center_distance": 40.0}, 46: cutter},
         {WHEEL: "ring_gear", 46: "cutter_wheel_tool"},
         [relation(130, "manufacturing_step", 1, workpiece=WHEEL_RIGHT, tool=46)],
