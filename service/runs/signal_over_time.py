@@ -12,33 +12,43 @@ from service.runs.run_series import RunSeries
 from service.runs.run_view import Signal
 from service.runs.speed_window import speed_window, window_speeds
 
+AXES = "Components in the fixed frame; of a planet bearing in its carrier's."
+DETAIL = "Below: less the mean of the window."
+
 
 def signal_over_time(run: RunResult, series: RunSeries, signal: Signal) -> Figure:
-    """Draw the components of the quantity."""
+    """Draw the components of the quantity, over the few base pitches less their means: the ripple is seen."""
     speed = window_speeds(series.speed_rpm)[-1]
     window = speed_window(series.position, series.speed_rpm, speed)
     of = "base pitches" if run.mesh else "turns"
     detail = f"three {of} at {number(speed, 3)} rpm"
     vector = signal.quantity.part == "bearing"
+    quantity, _, unit = signal.label.rpartition(", ")
     return Figure(
         key="signal",
         title=f"Time history of the {signal.name}",
-        caption="Components in the fixed frame; of a planet bearing in its carrier's." if vector else "",
+        caption=f"{AXES} {DETAIL}" if vector else DETAIL,
         alternative=_words(run, signal, window),
-        content=(_panel(run, signal, slice(None), "whole run"), _panel(run, signal, window, detail)),
+        content=(
+            _panel(run, signal, slice(None), "whole run", signal.label),
+            _panel(run, signal, window, detail, f"{quantity} less its mean, {unit}", about_mean=True),
+        ),
         table=_table(run, signal),
     )
 
 
-def _panel(run: RunResult, signal: Signal, window: slice, title: str) -> Panel:
+def _panel(
+    run: RunResult, signal: Signal, window: slice, title: str, label: str, *, about_mean: bool = False
+) -> Panel:
     """Draw one stretch of time."""
     lines = []
     for index, (component, values) in enumerate(signal.components(run).items()):
-        time, thinned = envelope(run.time[window], values[window])
+        own = values[window]
+        time, decimated = envelope(run.time[window], own - own.mean() if about_mean else own)
         name = component or signal.quantity.noun
-        lines.append(Line(name, time, thinned, palette.category(index), width=1.2))
+        lines.append(Line(name, time, decimated, palette.category(index), width=1.2))
     ends = (float(run.time[window][0]), float(run.time[window][-1]))
-    return Panel(Axis("time, s", limits=ends), Axis(f"{signal.label}"), tuple(lines), title=title)
+    return Panel(Axis("time, s", limits=ends), Axis(label), tuple(lines), title=title)
 
 
 def _words(run: RunResult, signal: Signal, window: slice) -> str:

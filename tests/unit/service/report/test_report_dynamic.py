@@ -54,6 +54,16 @@ def test_the_bearing_that_varies_most_is_shown(run: RunResult) -> None:
     assert detail.x.limits[0] > whole.x.limits[0]
 
 
+def test_over_a_few_pitches_the_ripple_is_drawn_about_its_mean(run: RunResult) -> None:
+    shifted = replace(run, bearing_force=run.bearing_force + 1e5)
+    signal, series = shown_signal(shifted, RunView()), run_series(shifted)
+    _, detail = signal_over_time(shifted, series, signal).content  # type: ignore[misc]
+    assert detail.y.label.endswith("less its mean, N")
+    (ripple,) = (line.y for line in detail.lines if line.name == "y")  # alone has any
+    assert ripple.min() < 0.0 < ripple.max()
+    assert all(np.abs(line.y).max() < 1e4 for line in detail.lines)
+
+
 def test_the_view_names_bearing_quantity_and_scale(run: RunResult) -> None:
     other = shown_signal(run, RunView(bearing="left", scale="peak"))
     assert (other.part, other.unit) == ("left", "N peak")
