@@ -24,7 +24,14 @@ def folder() -> Iterator[Path]:
         yield made
 
 
-@pytest.mark.parametrize("page", manual.pages(), ids=lambda page: page.stem)
+LONG = {"ripple-map", "tolerances"}  # half a minute each; no other page uses what they make
+PAGES = [
+    pytest.param(page, id=page.stem, marks=[pytest.mark.nightly] * (page.stem in LONG))
+    for page in manual.pages()
+]
+
+
+@pytest.mark.parametrize("page", PAGES)
 def test_the_page_runs_and_makes_its_pictures(page: Path, folder: Path) -> None:
     manual.run_page(page)
     assert [name for name in manual.pictures(page) if not (folder / name).is_file()] == []
