@@ -8,7 +8,6 @@ from dynamics.housing_modes.damping import USUAL_DAMPING, MaterialDamping, Modal
 from dynamics.housing_modes.faces import Bore, BoundedPlane, Box, Group, Plane
 from dynamics.housing_modes.feet import Foot, Mount
 from dynamics.housing_modes.kept import reduced_housing
-from dynamics.housing_modes.material import CAST_ALUMINUM, GRAY_CAST_IRON, SPHEROIDAL_CAST_IRON, Material
 from dynamics.housing_modes.mesh_file import read_mesh
 from dynamics.housing_modes.meshed_housing import MeshedHousing
 from dynamics.housing_modes.reduced_housing import ReducedHousing
@@ -21,9 +20,10 @@ from dynamics.housing_modes.reduced_matrices import (
 from dynamics.housing_modes.reduction_cost import CostLimit, reduction_cost
 from dynamics.housing_modes.response import receptance
 from dynamics.housing_modes.scene_housing import scene_housing
-from dynamics.housing_modes.seats import Ring, SeatBore, SeatFrame
+from dynamics.housing_modes.seats import SeatBore, SeatFrame
 from dynamics.housing_modes.step_mesh import mesh_step
 from dynamics.housing_modes.tetrahedral_mesh import TetrahedralMesh
+from dynamics.solid_housing import CAST_ALUMINUM, GRAY_CAST_IRON, SPHEROIDAL_CAST_IRON, Material, Ring
 
 __all__ = [
     "CAST_ALUMINUM",

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
+from bounds import inside
 from dynamics.housing_modes.elasticity import mass_and_stiffness
 from dynamics.housing_modes.feet import Foot
 from dynamics.housing_modes.meshed_housing import MeshedHousing
@@ -14,7 +15,6 @@ from dynamics.housing_modes.quadrature import over_surface
 from dynamics.housing_modes.rigid_faces import Freedoms, RigidFace, independent_freedoms
 from dynamics.housing_modes.rigid_motion import RigidBody, rigid_body
 from dynamics.housing_modes.seats import (
-    Ring,
     SeatBore,
     SeatFrame,
     in_axes,
@@ -23,6 +23,7 @@ from dynamics.housing_modes.seats import (
     wall_nodes,
 )
 from dynamics.housing_modes.tetrahedral_mesh import TetrahedralMesh
+from dynamics.solid_housing import Ring
 from dynamics.types import FloatArray
 
 HELD = 1e-12
@@ -69,6 +70,7 @@ def assemble(housing: MeshedHousing) -> AssembledHousing:
         A seat, foot or point is not on the mesh.
     """
     mesh = housing.mesh
+    _check_faces(housing)
     frames = tuple(seat_frame(seat) for seat in housing.seats)
     faces = (*_rigid_seats(housing), *_rigid_feet(housing))
     freedoms = independent_freedoms(mesh.points, faces)
@@ -87,6 +89,17 @@ def assemble(housing: MeshedHousing) -> AssembledHousing:
         _loose(mesh.points, housing.feet, freedoms, mounts[0]),
         rigid_body(mesh.points, nodal_mass),
     )
+
+
+def _check_faces(housing: MeshedHousing) -> None:
+    """Refuse a seat, a foot or a point that is not on the mesh, before anything costly."""
+    for number, seat in enumerate(housing.seats):
+        with inside(f"seats[{number}].bore"):
+            seat.bore.triangles(housing.mesh)
+    for number, foot in enumerate(housing.feet):
+        with inside(f"feet[{number}].face"):
+            foot.face.triangles(housing.mesh)
+    housing.nodes_of_points()
 
 
 def _rigid_seats(housing: MeshedHousing) -> list[RigidFace]:

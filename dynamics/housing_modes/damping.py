@@ -7,12 +7,12 @@ from typing import Protocol
 
 import numpy as np
 
-from bounds import Declared, Kind, between, described, required
+from bounds import described, required
 from dynamics.checks import declared_fields, within
 from dynamics.errors import InputError
+from dynamics.solid_housing import LOSS_FACTOR
 from dynamics.types import FloatArray
 
-_LOSS = Declared(Kind.RATIO, "", between(0.0, 1.0), "Loss factor of the material and its joints", 0.01)
 HIGHEST_RATIO = 1.0
 
 
@@ -49,7 +49,7 @@ class MaterialDamping:
     The equivalent viscous damping: at a mode's natural frequency it loses as much energy as the material.
     """
 
-    loss_factor: float = required(_LOSS)
+    loss_factor: float = required(LOSS_FACTOR)
 
     def __post_init__(self) -> None:
         declared_fields(self)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from dynamics.housing_modes.material import Material
 from dynamics.housing_modes.quadrature import over_volume, tetrahedron
 from dynamics.housing_modes.tetrahedral_mesh import TetrahedralMesh
+from dynamics.solid_housing import Material
 from dynamics.types import FloatArray, IntArray
 
 BATCH = 2000

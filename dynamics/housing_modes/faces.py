@@ -7,10 +7,11 @@ from typing import Protocol
 
 import numpy as np
 
-from bounds import Declared, Kind, described, required, up_to
+from bounds import Quantity, Text, described, required
 from dynamics.checks import declared_fields, finite, one_of
 from dynamics.errors import InputError
 from dynamics.housing_modes.tetrahedral_mesh import TetrahedralMesh
+from dynamics.solid_housing import BORE_DIAMETER, BORE_LENGTH
 from dynamics.types import BoolArray, FloatArray, IntArray
 
 NEAR = 5e-3
@@ -19,8 +20,6 @@ INWARD = 0.7
 """Least cosine between the normal of a bore's wall and the direction to its axis."""
 COVERED = 0.5
 """Least part of a bore's wall that must be there: a split seat has half of it."""
-_DIAMETER = Declared(Kind.LENGTH, "m", up_to(20.0), "Diameter of the bore", 0.062)
-_LENGTH = Declared(Kind.LENGTH, "m", up_to(20.0), "Length of the bore along its axis", 0.025)
 
 
 class Face(Protocol):
@@ -63,8 +62,8 @@ class Bore:
 
     position: tuple[float, float, float]
     axis: tuple[float, float, float]
-    diameter: float = required(_DIAMETER)
-    length: float = required(_LENGTH)
+    diameter: float = required(BORE_DIAMETER)
+    length: float = required(BORE_LENGTH)
 
     def __post_init__(self) -> None:
         _vector("position", self.position)
@@ -92,15 +91,16 @@ class Bore:
         whole = np.pi * self.diameter * self.length
         if area >= COVERED * whole:
             return
-        others = "no wall faces the axis there"
+        others = Text.of("no wall faces the axis there")
         if radii.size:
-            others = (
-                f"walls facing the axis have diameters from {2.0 * radii.min():g} to {2.0 * radii.max():g} m"
-            )
+            low, high = (Quantity(2.0 * float(end), "m", digits=6) for end in (radii.min(), radii.max()))
+            others = Text.of("walls facing the axis have diameters from ", low, " to ", high)
         bound = (
             f"that of a bore of the mesh, of which at least {COVERED:.0%} is there ({area / whole:.0%} is)"
         )
-        advice = f"Check position, axis, length and the unit of the mesh: {others}."
+        x, y, z = (Quantity(value, "m", digits=6) for value in self.position)
+        place = Text.of("Its middle is expected at ", x, ", ", y, ", ", z, ". Check ")
+        advice = Text.of(place, "position, axis, length and the unit of the mesh: ", others, ".")
         raise InputError("diameter", self.diameter, bound, advice)
 
 
@@ -182,12 +182,16 @@ def _normals(mesh: TetrahedralMesh, triangles: IntArray) -> tuple[FloatArray, Fl
     return area / size[:, None], size
 
 
+def _extent(low: FloatArray, high: FloatArray) -> Text:
+    """Say where a mesh is."""
+    ends = (Quantity(float(end), "m", digits=6) for pair in zip(low, high, strict=True) for end in pair)
+    words = ("The mesh spans ", " to ", ", ", " to ", ", ", " to ")
+    return Text.of(*(part for pair in zip(words, ends, strict=True) for part in pair), " in x, y, z.")
+
+
 def _some(field: str, value: object, mesh: TetrahedralMesh, chosen: BoolArray) -> IntArray:
     """Return the triangles chosen, of which there must be some."""
     if not chosen.any():
         low, high = mesh.points.min(axis=0), mesh.points.max(axis=0)
-        extent = ", ".join(f"{a:g} to {b:g}" for a, b in zip(low, high, strict=True))
-        raise InputError(
-            field, value, "where the surface has triangles", f"The mesh spans {extent} m in x, y, z."
-        )
+        raise InputError(field, value, "where the surface has triangles", _extent(low, high))
     return np.asarray(mesh.surface[chosen])

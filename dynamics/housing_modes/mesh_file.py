@@ -12,11 +12,10 @@ from dynamics.checks import one_of
 from dynamics.errors import InputError
 from dynamics.housing_modes.mesh_quality import FIELD, check_quality
 from dynamics.housing_modes.tetrahedral_mesh import TetrahedralMesh, raised
+from dynamics.solid_housing import MESH_SUFFIXES
 from dynamics.types import FloatArray, IntArray
 
 UNITS = {"m": 1.0, "mm": 1e-3}
-SUFFIXES = (".msh", ".inp", ".bdf", ".nas", ".fem", ".vtu", ".vtk")
-"""gmsh, Abaqus and CalculiX, Nastran, VTK."""
 SURFACE_CELLS = ("triangle", "triangle6")
 NODES = {"tetra": 4, "tetra10": 10}
 PHYSICAL, PROPERTY = "gmsh:physical", "nastran:ref"
@@ -50,7 +49,7 @@ def _content(file: Path) -> Any:
     """Return a file as meshio reads it."""
     import meshio  # noqa: PLC0415 (start-up time)
 
-    one_of(f"{FIELD}.suffix", file.suffix.lower(), SUFFIXES)
+    one_of(f"{FIELD}.suffix", file.suffix.lower(), MESH_SUFFIXES)
     if not file.is_file():
         raise InputError(FIELD, str(file), "a file that exists")
     try:

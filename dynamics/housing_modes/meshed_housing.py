@@ -7,19 +7,15 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from bounds import Declared, Kind, declared, integers
+from bounds import Quantity, Text, declared
 from dynamics.checks import declared_fields, distinct
 from dynamics.errors import InputError
 from dynamics.housing_modes.damping import USUAL_DAMPING, Damping
 from dynamics.housing_modes.feet import Foot
-from dynamics.housing_modes.material import Material
 from dynamics.housing_modes.seats import SeatBore, check_seats
 from dynamics.housing_modes.tetrahedral_mesh import TetrahedralMesh
+from dynamics.solid_housing import MODES, Material
 from dynamics.types import IntArray
-
-_MODES = Declared(
-    Kind.COUNT, "", integers(1, 2000), "Modes to keep; responses hold to 0.7 of the highest frequency", 80
-)
 
 
 @dataclass(frozen=True)
@@ -45,7 +41,7 @@ class MeshedHousing:
     seats: tuple[SeatBore, ...]
     feet: tuple[Foot, ...] = ()
     points: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
-    modes: int = declared(80, _MODES)
+    modes: int = declared(80, MODES)
     damping: Damping = USUAL_DAMPING
 
     def __post_init__(self) -> None:
@@ -71,7 +67,8 @@ class MeshedHousing:
         for name, point in self.points.items():
             distance = np.linalg.norm(self.mesh.points - np.array(point, dtype=float), axis=1)
             if not distance.min() <= reach:
-                bound = f"within an element of the mesh; the next node is {distance.min():g} m away"
+                away = Quantity(float(distance.min()), "m", digits=6)
+                bound = Text.of("within an element of the mesh; the next node is ", away, " away")
                 raise InputError(f"points.{name}", point, bound)
             nodes.append(int(distance.argmin()))
         return np.array(nodes, dtype=np.int64)

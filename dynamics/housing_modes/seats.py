@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import StrEnum, auto
 
 import numpy as np
 import scipy.sparse as sp
@@ -13,22 +12,11 @@ from dynamics.errors import InputError
 from dynamics.housing_modes.faces import Bore, Face, unit
 from dynamics.housing_modes.quadrature import over_surface, triangle
 from dynamics.housing_modes.tetrahedral_mesh import TetrahedralMesh
+from dynamics.solid_housing import Ring
 from dynamics.types import FloatArray, IntArray
 
 MOTIONS = ("x", "y", "z", "tilt_x", "tilt_y", "rotation_z")
 """In the seat's own axes, z along the bore."""
-
-
-class Ring(StrEnum):
-    """What a seat's wall does.
-
-    ``WEIGHTED_AVERAGE``: it stays elastic; its motion is the rigid motion nearest to that of the wall in
-    the mean square over its area, and a force is spread by the same weights (RBE3). ``RIGID``: it moves as a
-    rigid ring (RBE2), which stiffens the housing.
-    """
-
-    WEIGHTED_AVERAGE = auto()
-    RIGID = auto()
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,11 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from dynamics.checks import positive
+from dynamics.checks import one_of, positive
 from dynamics.errors import InputError, SolveError
 from dynamics.housing_modes.mesh_file import read_mesh
 from dynamics.housing_modes.tetrahedral_mesh import TetrahedralMesh
+from dynamics.solid_housing import STEP_SUFFIXES
 from host import ChildFailed, ChildOutOfMemory, ask_child
 
 WORKER = Path(__file__).with_name("step_worker.py")
@@ -46,8 +47,7 @@ def mesh_step(
         The mesher failed, ran out of time or memory.
     """
     file = Path(path)
-    if file.suffix.lower() not in (".step", ".stp"):
-        raise InputError("step_file", str(path), "a .step or .stp file")
+    one_of("step_file.suffix", file.suffix.lower(), STEP_SUFFIXES)
     if not file.is_file():
         raise InputError("step_file", str(path), "a file that exists")
     if element_size is not None:

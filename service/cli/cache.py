@@ -15,6 +15,7 @@ from service.problems import BadInput
 LIMIT = "LOA_CACHE_BYTES"
 KINDS = {
     "compliance": "condensed gears",
+    "housings": "meshes and modes of housings",
     "results": "results of services",
     "searches": "searches of optimizations",
     "studies": "tasks of studies",

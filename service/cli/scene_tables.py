@@ -14,13 +14,15 @@ from service.cli.remote import watching
 from service.cli.warned import warn
 from service.client import LineOfActionClient
 from service.client.mesh_tables import MeshTables
-from service.client.portable import case_of_mesh
+from service.client.portable import case_of_mesh, without_modes_files
 from service.client.scene_calls import ServiceTables
 from service.client.steps import Steps, finished
 from service.convert.checks import check_case
+from service.convert.housings import modes_in_files, reduced_in
 from service.convert.plausibility import case_warnings, scene_warnings, within
 from service.convert.scene import TabledScene, check_scene, dynamic_scene
 from service.convert.topology import facts_of
+from service.directories import cache_home
 from service.problems import BadInput
 from service.schemas import Case
 from service.schemas.scene import SceneInput
@@ -37,10 +39,10 @@ def scene_with_tables(scene: SceneInput, folder: Path, service: str | None, repo
 def tabled_scene(scene: SceneInput, folder: Path, service: str | None, report: Report) -> TabledScene:
     """Return the scene with its tables and with its cases written out; see `scene_with_tables`."""
     if service is None:
-        return _checked(scene, _Tables(MeshTables(folder, _Here(report)), finished), folder)
+        return _checked(scene, _Tables(MeshTables(folder, _Here(report)), finished), folder, report)
     with LineOfActionClient(service, progress=watching(report)) as client:
         tables = MeshTables(folder, ServiceTables(client))
-        return _checked(scene, _Tables(tables, client.driver.run), folder)
+        return _checked(scene, _Tables(tables, client.driver.run), folder, report)
 
 
 @dataclass(frozen=True)
@@ -55,14 +57,15 @@ class _Tables:
         return self.run(self.tables.of(index, mesh))
 
 
-def _checked(scene: SceneInput, tables: _Tables, folder: Path) -> TabledScene:
-    """Check the scene before anything is computed for it, then gather its tables."""
+def _checked(scene: SceneInput, tables: _Tables, folder: Path, report: Report) -> TabledScene:
+    """Check the scene before anything is computed for it, then reduce its housings and gather its tables."""
     facts = {mesh.name: _facts(i, mesh, folder, tables) for i, mesh in scene.with_database}
     warn(scene_warnings(scene, check_scene(scene, facts)))
+    housings = reduced_in(scene, cache_home(), report) | modes_in_files(scene, folder)
     databases = {mesh.name: tables.of(i, mesh) for i, mesh in scene.with_database}
-    built = dynamic_scene(scene, databases)
+    built = dynamic_scene(scene, databases, housings)
     warn(scene_warnings(scene, built, {name: table.metadata.warnings for name, table in databases.items()}))
-    return TabledScene(_written_out(scene, folder), databases, built)
+    return TabledScene(_written_out(scene, folder), databases, built, housings)
 
 
 def _written_out(scene: SceneInput, folder: Path) -> SceneInput:
@@ -72,7 +75,7 @@ def _written_out(scene: SceneInput, folder: Path) -> SceneInput:
         mesh if case is None else mesh.model_copy(update={"case": case, "case_file": None})
         for mesh, case in zip(scene.meshes, cases, strict=True)
     )
-    return scene.model_copy(update={"meshes": tuple(meshes)})
+    return without_modes_files(scene.model_copy(update={"meshes": tuple(meshes)}))
 
 
 def _facts(index: int, mesh: MeshInput, folder: Path, tables: _Tables) -> PairFacts:

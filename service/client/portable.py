@@ -109,4 +109,10 @@ def portable_scene(scene: schemas.SceneInput, folder: Path) -> schemas.SceneInpu
             raise BadInput.of(f"{field}.database_file", mesh.database_file, "left out for a service", advice)
         case = case_of_mesh(mesh, field, folder)
         meshes.append(mesh.model_copy(update={"case": case, "case_file": None}))
-    return scene.model_copy(update={"meshes": tuple(meshes)})
+    return without_modes_files(scene.model_copy(update={"meshes": tuple(meshes)}))
+
+
+def without_modes_files(scene: schemas.SceneInput) -> schemas.SceneInput:
+    """Return the scene with the matrices of its files of modes alone."""
+    housings = tuple(part.model_copy(update={"modes_file": None}) for part in scene.housings)
+    return scene.model_copy(update={"housings": housings})

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 from dynamics.bodies import AngleLaw, GearBody, Inertia, TimeLaw, hollow_cylinder
 from dynamics.effects.mechanism_of import mechanism_of
@@ -29,6 +30,7 @@ from service.convert.case import boundary_errors
 from service.convert.closed_form import closed_forms
 from service.convert.declared import declared_part, in_si
 from service.convert.errors import named
+from service.convert.housings import housing_of, stand_in
 from service.convert.loads import force_of, load_torque_of, speed_torque_of, unbalance_of
 from service.convert.shafts import disc_of, has_bent_shafts, shaft_of
 from service.convert.topology import Teeth, check_center_distances, teeth_of
@@ -36,13 +38,16 @@ from service.schemas.scene import SceneInput
 from service.schemas.scene_bodies import (
     CouplingInput,
     GearBodyInput,
-    HousingInput,
 )
 from service.schemas.scene_meshes import CoastFlankInput, MeshInput
 from service.schemas.scene_motion import DriveInput, FreeRotationInput
 from service.units import DEGREE, MM, RPM, UM
 
+if TYPE_CHECKING:
+    from dynamics.housing_modes import ReducedHousing
+
 ANY_STIFFNESS = 1e8  # N/m; checks that need no table do not read it
+NO_SOLIDS: Mapping[str, ReducedHousing] = {}
 
 
 @dataclass(frozen=True)
@@ -57,14 +62,21 @@ class TabledScene:
         By name of the mesh.
     scene : Scene
         What they make, in SI.
+    housings : mapping of str to ReducedHousing
+        By name of the housing: of those that have a solid, or a file of modes on the caller's disk.
     """
 
     inputs: SceneInput
     databases: Mapping[str, SteDatabase]
     scene: Scene
+    housings: Mapping[str, ReducedHousing] = field(default_factory=dict)
 
 
-def dynamic_scene(scene: SceneInput, databases: Mapping[str, SteDatabase]) -> Scene:
+def dynamic_scene(
+    scene: SceneInput,
+    databases: Mapping[str, SteDatabase],
+    reduced: Mapping[str, ReducedHousing] = NO_SOLIDS,
+) -> Scene:
     """Return the scene in SI.
 
     Parameters
@@ -72,6 +84,8 @@ def dynamic_scene(scene: SceneInput, databases: Mapping[str, SteDatabase]) -> Sc
     scene : SceneInput
     databases : mapping of str to SteDatabase
         By name of the mesh; of all meshes that do not state their stiffness.
+    reduced : mapping of str to ReducedHousing
+        By name of the housing; of all housings that are given by their solids.
 
     Raises
     ------
@@ -83,24 +97,37 @@ def dynamic_scene(scene: SceneInput, databases: Mapping[str, SteDatabase]) -> Sc
     facts = {name: database.facts for name, database in databases.items()}
     with boundary_errors():
         tables: dict[str, MeshTable] = {name: table.force_table() for name, table in databases.items()}
-    moving = _moving(scene, facts, tables)
+    housings = [housing_of(i, part, reduced.get(part.name)) for i, part in enumerate(scene.housings)]
+    moving = _moving(scene, facts, tables, housings)
     bent = {name for name, database in databases.items() if has_bent_shafts(database)}
     meshes = tuple(replace(mesh, bent_shafts=mesh.name in bent) for mesh in moving.meshes)
     return replace(moving, meshes=meshes)
 
 
 def check_scene(scene: SceneInput, facts: Mapping[str, PairFacts]) -> Scene:
-    """Return the scene on tables that stand in for its own, by the facts of the pairs (by name of the mesh).
+    """Return the scene on stand-ins for its tables and for the matrices of solids.
+
+    Parameters
+    ----------
+    scene : SceneInput
+    facts : mapping of str to PairFacts
+        By name of the mesh.
 
     Raises
     ------
     BadInput
         No such system exists or moves.
     """
-    return _moving(scene, facts, dict.fromkeys(facts, straight_table(ANY_STIFFNESS)))
+    tables = dict.fromkeys(facts, straight_table(ANY_STIFFNESS))
+    return _moving(scene, facts, tables, [stand_in(i, part) for i, part in enumerate(scene.housings)])
 
 
-def _moving(scene: SceneInput, facts: Mapping[str, PairFacts], tables: Mapping[str, MeshTable]) -> Scene:
+def _moving(
+    scene: SceneInput,
+    facts: Mapping[str, PairFacts],
+    tables: Mapping[str, MeshTable],
+    housings: Sequence[Housing],
+) -> Scene:
     """Return the scene with all its planets, its parts checked one by one, together, and in motion.
 
     Facts and tables are those of the meshes with a database.
@@ -111,7 +138,7 @@ def _moving(scene: SceneInput, facts: Mapping[str, PairFacts], tables: Mapping[s
     meshes = tuple(
         _mesh(i, mesh, tables[mesh.name], facts[mesh.name].base_pitch) for i, mesh in enumerate(scene.meshes)
     )
-    one_of_each = _assembled(scene, facts, meshes)
+    one_of_each = _assembled(scene, facts, meshes, housings)
     with named(""):
         check_motion(one_of_each)
     whole = _with_all_planets(scene, one_of_each)
@@ -120,7 +147,12 @@ def _moving(scene: SceneInput, facts: Mapping[str, PairFacts], tables: Mapping[s
     return whole
 
 
-def _assembled(scene: SceneInput, facts: Mapping[str, PairFacts], meshes: tuple[GearMesh, ...]) -> Scene:
+def _assembled(
+    scene: SceneInput,
+    facts: Mapping[str, PairFacts],
+    meshes: tuple[GearMesh, ...],
+    housings: Sequence[Housing],
+) -> Scene:
     """Return the scene with its parts checked one by one and together."""
     teeth = teeth_of(scene, facts)
     check_center_distances(scene, facts)
@@ -142,7 +174,7 @@ def _assembled(scene: SceneInput, facts: Mapping[str, PairFacts], meshes: tuple[
             couplings=tuple(_coupling(i, part) for i, part in enumerate(scene.couplings)),
             speed_torques=tuple(speed_torque_of(i, part) for i, part in enumerate(scene.speed_torques)),
             free_rotations=tuple(_free_rotation(i, part) for i, part in enumerate(scene.free_rotations)),
-            housings=tuple(_housing(i, part) for i, part in enumerate(scene.housings)),
+            housings=tuple(housings),
             rolling_bearings=tuple(rolling_bearing_of(i, b) for i, b in enumerate(scene.rolling_bearings)),
             rolling_contacts=tuple(rolling_contacts_of(scene)),
             spring_curves=tuple(spring_curves_of(scene)),
@@ -176,26 +208,6 @@ def _gear(index: int, gear: GearBodyInput, teeth: Teeth) -> GearBody:
             internal=teeth.internal,
             **in_si(GearBody, gear),
         )
-
-
-def _housing(index: int, housing: HousingInput) -> Housing:
-    """Return a housing."""
-    with named(f"housings[{index}]"):
-        positions = housing.seat_positions_mm
-        return Housing(
-            name=housing.name,
-            bushings=housing.bushings,
-            stiffness=housing.stiffness_matrix,
-            damping=housing.damping_matrix,
-            mass=housing.mass_matrix,
-            seat_positions=None if positions is None else tuple(_point(*at) for at in positions),
-            **in_si(Housing, housing),
-        )
-
-
-def _point(x: float, y: float, z: float) -> tuple[float, float, float]:
-    """Return a point given in mm."""
-    return x * MM, y * MM, z * MM
 
 
 def _coupling(index: int, coupling: CouplingInput) -> Coupling:

@@ -22,6 +22,8 @@ from dynamics.loads.applied_force import AppliedForce
 from dynamics.loads.unbalance import Unbalance
 from dynamics.settings.integration import Integration
 from dynamics.settings.outputs import Outputs
+from dynamics.solid_housing import Material as HousingMaterial
+from dynamics.solid_housing import ReductionSettings, SeatWall
 from fe_contact.body.shaft import Shaft
 from fe_contact.flank.modification import FlankModification
 from fe_contact.geometry import Gear, GearPair, RingGear
@@ -60,6 +62,7 @@ _ANYWHERE = (
     *(GearBody, DiscBody, Inertia, TurningShaft, BeamSection),
     Outputs,
     *(Bushing, Housing, PlanetBearing, Coupling, FreeRotation, AppliedForce, Unbalance),
+    *(SeatWall, HousingMaterial, ReductionSettings),
     *(RollingBearing, BallBearing, RollerBearing, CatalogLine),
 )
 """What declares its fields, by names that mean the same in every table."""
@@ -97,6 +100,9 @@ _LAST = _fields_of(*_ANYWHERE) | {
     "highest_frequency": "highest_frequency_hz",
     "radial_clearance": "radial_clearance_um",
     "seat_positions": "seat_positions_mm",
+    "point": "point_mm",
+    "low": "low_mm",
+    "high": "high_mm",
     "backlash": "backlash_um",
     # results
     "max_pressure": "max_pressure_gpa",

@@ -1,6 +1,6 @@
-"""Housings as files beside a scene file: their matrices are read and written out in the scene.
+"""Housings as files beside a scene file: matrices and solids are read and written out in the scene.
 
-Only files on the caller's own disk name other files; what goes over HTTP holds the matrix itself.
+Only files on the caller's own disk name other files; what goes over HTTP holds their content itself.
 """
 
 from __future__ import annotations
@@ -10,22 +10,25 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from dynamics.solid_housing import MESH_SUFFIXES, STEP_SUFFIXES
 from host import MissingExtra
 from service.problems import BadInput
+from service.schemas.file_content import FileContentInput
 from service.units import MM, as_typed
 
 ROWS = "stiffness_matrix"
 MATRIX_FILE, MODES_FILE = "stiffness_file", "modes_file"
+STEP_FILE, MESH_FILE = "step_file", "mesh_file"
 Table = dict[str, Any]
 
 
 def with_housing_files(table: Table, folder: Path) -> Table:
-    """Return the table of a scene with the housings' matrices in place of the files that hold them.
+    """Return the table of a scene with the content of the housings' files in place of their names.
 
     Raises
     ------
     BadInput
-        A file that cannot be read or holds no matrix.
+        A file that cannot be read or holds no housing.
     """
     housings = table.get("housings")
     if not isinstance(housings, list):
@@ -34,8 +37,8 @@ def with_housing_files(table: Table, folder: Path) -> Table:
 
 
 def _written_out(housing: object, folder: Path, index: int) -> object:
-    """One housing with its file's matrices."""
-    named = [field for field in READERS if isinstance(housing, dict) and field in housing]
+    """One housing with the content of its file."""
+    named = [field for field in READERS if isinstance(housing, dict) and not _is_content(housing.get(field))]
     if not isinstance(housing, dict) or not named:
         return housing
     field, name = f"housings[{index}].{named[0]}", housing[named[0]]
@@ -44,8 +47,13 @@ def _written_out(housing: object, folder: Path, index: int) -> object:
     if ROWS in housing or len(named) > 1:
         others = " and ".join((ROWS, *(other for other in READERS if other != named[0])))
         raise BadInput.of(field, name, f"left out when {others} is given", "Keep one of them.")
-    own = {key: value for key, value in housing.items() if key != named[0]}
+    own = {key: value for key, value in housing.items() if key != named[0] or key == MODES_FILE}
     return READERS[named[0]](own, folder / name, field)
+
+
+def _is_content(value: object) -> bool:
+    """Whether nothing names a file: it is left out, or written out already."""
+    return value is None or isinstance(value, dict)
 
 
 def _with_matrices(housing: Table, file: Path, field: str) -> Table:
@@ -83,8 +91,24 @@ def _with_modes(housing: Table, file: Path, field: str) -> Table:
     return derived | {"seat_positions_mm": places} | housing | given
 
 
+def _with_solid(housing: Table, file: Path, field: str) -> Table:
+    """Return a housing with the content of a STEP file or a mesh."""
+    name = field.rpartition(".")[2]
+    suffixes = STEP_SUFFIXES if name == STEP_FILE else MESH_SUFFIXES
+    if file.suffix.lower() not in suffixes:
+        raise BadInput.of(field, file.name, f"a file that ends in {', '.join(suffixes)}")
+    if not file.is_file():
+        raise BadInput.of(field, str(file), "a file that exists", "It is relative to the scene file.")
+    try:
+        return housing | {name: FileContentInput.of(file).model_dump(mode="json")}
+    except (OSError, ValueError) as error:
+        raise BadInput.of(field, file.name, f"readable ({error})") from None
+
+
 READERS: dict[str, Callable[[Table, Path, str], Table]] = {
     MATRIX_FILE: _with_matrices,
     MODES_FILE: _with_modes,
+    STEP_FILE: _with_solid,
+    MESH_FILE: _with_solid,
 }
 """What reads the files that a housing names, by the field that names them."""

@@ -18,11 +18,11 @@ from service.schemas.scene_bodies import (
     BushingInput,
     CouplingInput,
     GearBodyInput,
-    HousingInput,
     PlanetBearingInput,
     PlanetsInput,
 )
 from service.schemas.scene_discs import DiscInput
+from service.schemas.scene_housings import HousingInput
 from service.schemas.scene_loads import ForceInput, UnbalanceInput
 from service.schemas.scene_meshes import MeshInput
 from service.schemas.scene_motion import DriveInput, FreeRotationInput, LoadTorqueInput, SpeedTorqueInput

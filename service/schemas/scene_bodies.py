@@ -11,12 +11,11 @@ from dynamics.bodies.gear_body import GearBody
 from dynamics.bodies.inertia import Inertia
 from dynamics.joints.bushing import Bushing
 from dynamics.joints.coupling import Coupling
-from dynamics.joints.housing import Housing
 from dynamics.joints.planet_bearing import PlanetBearing
 from service.schemas.declared import declared_in, figures, with_fields
 from service.schemas.model import BoundaryModel, refuse
 from service.schemas.rules import both, given, left_out, stated
-from service.schemas.scene_types import Coordinate, CouplingRows, HousingRows, Name, Number, Point, SeatRows
+from service.schemas.scene_types import Coordinate, CouplingRows, Name, Number, SeatRows
 
 
 @with_fields(declared_in(Inertia, all_given=True))
@@ -203,52 +202,6 @@ class BushingInput(BearingInput):
         max_length=2,
         description="Moment about x, y in N m on the shaft at zero displacement",
         examples=[[0.0, 0.0]],
-    )
-
-
-def _left_out(value: object) -> bool:
-    """Whether a field that came after results had been stored is not there."""
-    return value is None
-
-
-@with_fields(declared_in(Housing))
-class HousingInput(BoundaryModel):
-    """An elastic housing that several bearings share, with or without mass."""
-
-    name: Name = Field(description="Name of the housing", examples=["gearbox"])
-    bushings: Annotated[tuple[Name, ...], Strict(False)] = Field(
-        min_length=1,
-        max_length=1000,
-        description="Bushings and rolling bearings in the order of the matrix; in a scene file with "
-        "modes_file by default the names of its seats",
-        examples=[["a", "b"]],
-    )
-    stiffness_matrix: HousingRows = Field(
-        min_length=3,
-        max_length=6000,
-        description="Stiffness over all seats: per bushing 3 rows x, y, z, or 5 with tilt_x, tilt_y, or 6 "
-        "with the rotation; then a row per modal coordinate; N, m, rad. A scene file may name a CSV or NPZ "
-        "file by stiffness_file instead, or a reduced housing (NetCDF) by modes_file",
-    )
-    damping_matrix: HousingRows | None = Field(
-        default=None,
-        min_length=3,
-        max_length=6000,
-        description="Damping over all seats, likewise; left out: none, with mass that of damping_ratio",
-    )
-    mass_matrix: HousingRows | None = Field(
-        default=None,
-        min_length=3,
-        max_length=6000,
-        description="Mass over all seats, likewise; kg, m, rad; left out: no mass",
-        exclude_if=_left_out,
-    )
-    seat_positions_mm: Annotated[tuple[Point, ...], Strict(False)] | None = Field(
-        default=None,
-        min_length=1,
-        max_length=1000,
-        description="Where the seats are in the fixed frame, x, y, z in mm; checked against the bearings",
-        exclude_if=_left_out,
     )
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NoReturn
+
 from fe_contact.ste import PairFacts, SteDatabase
 from service.convert.checks import check_case
 from service.convert.scene import check_scene
@@ -20,6 +22,9 @@ def check_scene_inputs(scene: SceneInput, store: ResultStore) -> None:
     BadInput
         It cannot be or cannot move, names a file of the caller, or a database that is not stored.
     """
+    for index, housing in enumerate(scene.housings):
+        if housing.modes_file is not None:
+            _refuse_file(f"housings[{index}].modes_file", housing.modes_file, "Give its matrices")
     check_scene(scene, {mesh.name: _facts(f"meshes[{i}]", mesh, store) for i, mesh in scene.with_database})
 
 
@@ -38,11 +43,15 @@ def _check_source(field: str, mesh: MeshInput, store: ResultStore) -> None:
     """Refuse files of the callers, which a service does not read, and hashes it does not hold."""
     for name, path in (("case_file", mesh.case_file), ("database_file", mesh.database_file)):
         if path is not None:
-            bound = "left out: the service reads no files of its callers"
-            advice = "Write the case out, or submit it and give database_hash; the client does this for you."
-            raise BadInput.of(f"{field}.{name}", path, bound, advice)
+            _refuse_file(f"{field}.{name}", path, "Write the case out, or submit it and give database_hash")
     key = mesh.database_hash
     if key is not None and store.find(key, "database") is None:
         raise BadInput.of(
             f"{field}.database_hash", key, "the hash of a stored database", "Submit its case first."
         )
+
+
+def _refuse_file(field: str, path: str, instead: str) -> NoReturn:
+    """Refuse the name of a file on the caller's disk."""
+    bound = "left out: the service reads no files of its callers"
+    raise BadInput.of(field, path, bound, f"{instead}; the client does this for you.")

@@ -303,7 +303,6 @@ WRONG: dict[str, tuple[Change, str]] = {
         housing(seat_positions_mm=[SEATS[0], [0.0, 0.0, -50.0]]),
         "housings[0].seat_positions_mm[1]",
     ),
-    "modes over HTTP": (housing(modes_file="case.nc"), "housings[0].modes_file"),
     "a law in a housing that a direction of a seat moves freely": (
         lambda t: (
             housing(stiffness_matrix=np.diag([1e8, 1e8, 0.0, 1e8, 1e8, 1e8]).tolist())(t),

@@ -19,6 +19,7 @@ from service.schemas import (
     scene,
     scene_bearings,
     scene_bodies,
+    scene_housings,
     scene_loads,
     scene_meshes,
     scene_motion,
@@ -35,7 +36,8 @@ def page(name: str) -> str:
 
 def models() -> list[type[BaseModel]]:
     """Return the tables of case and scene files."""
-    modules = (case, gear, scene, scene_bearings, scene_bodies, scene_loads, scene_meshes, scene_motion)
+    modules = (case, gear, scene, scene_bearings, scene_bodies, scene_housings)
+    modules += (scene_loads, scene_meshes, scene_motion)
     found = [vars(module).values() for module in modules]
     return [m for group in found for m in group if inspect.isclass(m) and issubclass(m, BaseModel)]
 

@@ -307,11 +307,15 @@ class Points(dict):
         ({"seats": ()}, "seats"),
         ({"seats": (UPPER, UPPER)}, "seats[1].name"),
         ({"seats": (UPPER, replace(UPPER, name="same"))}, "seats"),
-        ({"seats": (replace(UPPER, bore=replace(UPPER.bore, diameter=0.09)),)}, "diameter"),
-        ({"seats": (replace(UPPER, bore=replace(UPPER.bore, diameter=OUTER)),)}, "diameter"),  # faces outward
-        ({"seats": (replace(UPPER, bore=replace(UPPER.bore, position=(0.01, 0.0, 0.075))),)}, "diameter"),
-        ({"feet": (Foot("base", Plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0))),)}, "point"),
-        ({"feet": (Foot("base", Box((1.0, 1.0, 1.0), (2.0, 2.0, 2.0))),)}, "low"),
+        ({"seats": (replace(UPPER, bore=replace(UPPER.bore, diameter=0.09)),)}, "seats[0].bore.diameter"),
+        # a wall that faces outward
+        ({"seats": (replace(UPPER, bore=replace(UPPER.bore, diameter=OUTER)),)}, "seats[0].bore.diameter"),
+        (
+            {"seats": (replace(UPPER, bore=replace(UPPER.bore, position=(0.01, 0.0, 0.075))),)},
+            "seats[0].bore.diameter",
+        ),
+        ({"feet": (Foot("base", Plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0))),)}, "feet[0].face.point"),
+        ({"feet": (Foot("base", Box((1.0, 1.0, 1.0), (2.0, 2.0, 2.0))),)}, "feet[0].face.low"),
         ({"feet": (FIXED, replace(FIXED, name="again"))}, "feet.again"),
         ({"points": {"far": (1.0, 0.0, 0.0)}}, "points.far"),
         ({"modes": 100000}, "modes"),

@@ -38,3 +38,8 @@ SPHEROIDAL_CAST_IRON = Material(169e9, 0.275, 7100.0)
 """EN-GJS-400 (EN 1563, annex)."""
 CAST_ALUMINUM = Material(73e9, 0.33, 2700.0)
 """Die-cast aluminum-silicon alloys, usual value."""
+MATERIALS = {
+    "gray_cast_iron": GRAY_CAST_IRON,
+    "spheroidal_cast_iron": SPHEROIDAL_CAST_IRON,
+    "cast_aluminum": CAST_ALUMINUM,
+}

@@ -1,0 +1,202 @@
+"""Reduction of the housings of a scene that are given by their solids."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from dynamics.errors import DynamicsError, InputError
+from dynamics.housing_modes import (
+    Bore,
+    BoundedPlane,
+    Box,
+    Foot,
+    Group,
+    Material,
+    MaterialDamping,
+    MeshedHousing,
+    ModalDamping,
+    Mount,
+    Plane,
+    ReducedHousing,
+    Ring,
+    SeatBore,
+    TetrahedralMesh,
+    mesh_step,
+    read_mesh,
+    reduced_housing,
+)
+from dynamics.joints.matrix import Matrix
+from model_studies.progress import Progress, by_cost, silent
+from service.convert.declared import in_si
+from service.convert.errors import named, translated
+from service.problems import BadInput
+from service.schemas.file_content import FileContentInput
+from service.schemas.scene import SceneInput
+from service.schemas.scene_housings import HousingFootInput, HousingInput, HousingSeatInput
+from service.units import MM
+
+STAGE = "housing"
+_MESHED = 0.3
+"""Usual share of the mesh in the time of a housing."""
+Vector = tuple[float, float, float]
+
+
+def reduced_housings(
+    scene: SceneInput, cache: Path | None, progress: Progress = silent
+) -> dict[str, ReducedHousing]:
+    """Mesh and reduce the housings of a scene that are given by their solids, or take them from the cache.
+
+    Parameters
+    ----------
+    scene : SceneInput
+    cache : Path or None
+        Directory of kept meshes and reductions.
+    progress : callable
+        Called as progress("housing", fraction).
+
+    Returns
+    -------
+    dict of str to ReducedHousing
+        By name of the housing.
+
+    Raises
+    ------
+    BadInput
+        A file is no solid, a bore, foot or point is not there, or the reduction costs too much.
+    JobFailed
+        The mesher failed, or the modes do not converge.
+    """
+    solid = [(index, part) for index, part in enumerate(scene.housings) if part.is_solid]
+    parts = by_cost(lambda fraction: progress(STAGE, fraction), {part.name: 1.0 for _, part in solid})
+    reduced = {}
+    for index, part in solid:
+        with _named(f"housings[{index}]", part):
+            mesh = _mesh(part, cache)
+            parts(part.name, _MESHED)
+            reduced[part.name] = reduced_housing(_meshed(part, scene, mesh), cache)
+            parts(part.name, 1.0)
+    return reduced
+
+
+@contextmanager
+def _named(field: str, housing: HousingInput) -> Iterator[None]:
+    """Turn errors of dynamics into the boundary's, by the fields of a housing."""
+    with named(field):
+        try:
+            yield
+        except InputError as error:
+            own = _FACE.sub(r"\1.bore_\2", error.field)
+            own = _OF_FOOT.sub(r"\1.\2", own)
+            for number, point in enumerate(housing.points):
+                own = own if own != f"points.{point.name}" else f"points[{number}].position"
+            raise InputError(own, error.value, error.bound, error.suggestion) from None
+        except DynamicsError as error:
+            raise translated(error) or error from None
+
+
+_FACE = re.compile(r"^(seats\[\d+\])\.bore\.(\w+)")
+_OF_FOOT = re.compile(r"^(feet\[\d+\])\.face\.(\w+)")
+
+
+def _mesh(housing: HousingInput, cache: Path | None) -> TetrahedralMesh:
+    """Return the mesh of a solid where it stands in the scene."""
+    name = "step_file" if housing.step_file is not None else "mesh_file"
+    content: FileContentInput = getattr(housing, name)
+    try:
+        data = content.unpacked()
+    except ValueError as error:
+        raise BadInput.of(f"{name}.content", f"{len(content.content)} characters", str(error)) from None
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / f"housing{Path(content.name).suffix.lower()}"
+        file.write_bytes(data)
+        if name == "step_file":
+            size = housing.element_size_mm  # type: ignore[attr-defined]
+            mesh = mesh_step(file, None if size is None else size * MM)
+        else:
+            mesh = read_mesh(file, str(housing.mesh_unit))
+    return _placed(housing, mesh)
+
+
+def _placed(housing: HousingInput, mesh: TetrahedralMesh) -> TetrahedralMesh:
+    """Turn and move a mesh from the frame of its file into that of the scene."""
+    if housing.origin_mm is None and housing.x_axis is None and housing.z_axis is None:
+        return mesh
+    x = np.array(housing.x_axis or (1.0, 0.0, 0.0))
+    z = np.array(housing.z_axis or (0.0, 0.0, 1.0))
+    axes = np.stack([x, np.cross(z, x), z], axis=1)
+    origin = MM * np.array(housing.origin_mm or (0.0, 0.0, 0.0))
+    return replace(mesh, points=mesh.points @ axes.T + origin)
+
+
+def _meshed(housing: HousingInput, scene: SceneInput, mesh: TetrahedralMesh) -> MeshedHousing:
+    """Return the housing on its mesh."""
+    loss, ratio = housing.loss_factor, housing.damping_ratio  # type: ignore[attr-defined]
+    assert housing.material is not None  # the schema comes first
+    return MeshedHousing(
+        mesh,
+        Material(**in_si(Material, housing.material)),
+        tuple(_seat(seat, scene) for seat in housing.seats),
+        tuple(_foot(foot) for foot in housing.feet),
+        {point.name: _si(point.position_mm) for point in housing.points},
+        housing.modes,  # type: ignore[attr-defined]
+        ModalDamping((ratio,)) if loss is None else MaterialDamping(loss),
+    )
+
+
+def _seat(seat: HousingSeatInput, scene: SceneInput) -> SeatBore:
+    """Return the bore of a seat, about the axis of its bearing and where that is."""
+    bearings = {part.name: part for part in (*scene.bushings, *scene.rolling_bearings)}
+    origins = {shaft.name: shaft.origin_mm for shaft in scene.shafts}
+    bearing = bearings[seat.bearing]
+    x, y, z = origins[bearing.shaft]
+    middle = _si((x, y, z + bearing.position_mm))  # type: ignore[union-attr]
+    bore = Bore(middle, (0.0, 0.0, 1.0), seat.bore_diameter_mm * MM, seat.bore_length_mm * MM)  # type: ignore[attr-defined]
+    return SeatBore(seat.bearing, bore, Ring(seat.ring))  # type: ignore[attr-defined]
+
+
+def _foot(foot: HousingFootInput) -> Foot:
+    """Return a foot."""
+    stiffness, damping = foot.mount_stiffness_n_per_m, foot.mount_damping_n_s_per_m
+    mount = None
+    if stiffness is not None:
+        mount = Mount(_diagonal(stiffness), None if damping is None else _diagonal(damping))
+    return Foot(foot.name, _face(foot), mount)
+
+
+def _face(foot: HousingFootInput) -> Plane | Box | BoundedPlane | Group:
+    """Return the face of a foot."""
+    if foot.group is not None:
+        return Group(foot.group)
+    plane = box = None
+    if foot.point_mm is not None and foot.normal is not None:
+        plane = Plane(_si(foot.point_mm), _vector(foot.normal))
+    if foot.low_mm is not None and foot.high_mm is not None:
+        box = Box(_si(foot.low_mm), _si(foot.high_mm))
+    if plane is not None and box is not None:
+        return BoundedPlane(plane, box)
+    face = plane or box
+    assert face is not None  # the schema comes first
+    return face
+
+
+def _si(point: tuple[float, ...]) -> Vector:
+    """Return a point given in mm."""
+    return _vector(tuple(value * MM for value in point))
+
+
+def _vector(values: tuple[float, ...]) -> Vector:
+    """Return three numbers."""
+    x, y, z = values
+    return x, y, z
+
+
+def _diagonal(values: tuple[float, ...]) -> Matrix:
+    """Return the matrix that has values on its diagonal alone."""
+    return tuple(tuple(row) for row in np.diag(values).tolist())
