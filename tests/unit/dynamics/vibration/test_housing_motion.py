@@ -2,50 +2,22 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, square_wave_table
+from reduced_housings import PAIR, PER_SEAT, random_housing
 
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
-from dynamics.housing_modes import (
-    ModalDamping,
-    Ring,
-    SeatFrame,
-    housing_of_matrices,
-    receptance,
-    scene_housing,
-)
-from dynamics.housing_modes.reduced_matrices import ReducedMatrices
-from dynamics.housing_modes.seats import MOTIONS
+from dynamics.housing_modes import receptance, scene_housing
 from dynamics.linearize import forced_response
 from dynamics.mechanism.modal_housing import modal_housing
 from dynamics.vibration import housing_motion, seat_forces
 
-PER_SEAT = 5
 ON = {"lateral": "on", "axial": "on", "tilt": "on", "housing_modes": "on"}
 SPEEDS = np.array([60.0, 150.0, 420.0])
-
-
-def reduced(names, modal=3, seed=1):
-    """A held housing of random matrices; seats turned about z, so that their axes are not the scene's."""
-    lever = np.concatenate([np.tile([1.0, 1.0, 1.0, 0.1, 0.1], len(names)), np.ones(modal)])
-    matrices = []
-    for number, scale in enumerate((3e8, 4.0)):
-        factor = np.random.default_rng(seed + number).normal(size=(lever.size, lever.size))
-        full = scale * (factor @ factor.T / lever.size + 0.5 * np.eye(lever.size))
-        matrices.append(np.outer(lever, lever) * full)
-    seats = tuple(_seat(name, 0.3 * index) for index, name in enumerate(names))
-    return housing_of_matrices(ReducedMatrices(*matrices), seats, ModalDamping((0.02,)))
-
-
-def _seat(name, angle):
-    c, s = math.cos(angle), math.sin(angle)
-    axes = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    return SeatFrame(name, np.zeros(3), axes, Ring.RIGID, MOTIONS[:PER_SEAT])
 
 
 def scene_in(housing):
@@ -54,11 +26,8 @@ def scene_in(housing):
     return replace(scene, housings=(part,))
 
 
-NAMES = ("input.left", "input.right", "output.left", "output.right")
-
-
 def test_forces_on_the_seats_move_the_housing_as_the_scene_does():
-    housing = reduced(NAMES)
+    housing = random_housing()
     system = assemble(scene_in(housing))
     response = forced_response(system, SPEEDS, orders=4)
     force = seat_forces(response, housing)
@@ -73,7 +42,7 @@ def test_forces_on_the_seats_move_the_housing_as_the_scene_does():
 
 
 def test_a_steady_force_deflects_by_the_compliance():
-    housing = reduced(NAMES)
+    housing = random_housing()
     force = np.random.default_rng(3).normal(size=housing.motions)
     whole = np.concatenate([force, np.zeros(len(housing.stiffness) - housing.motions)])
     found = housing_motion(housing, np.zeros(()), force + 0j)
@@ -81,7 +50,7 @@ def test_a_steady_force_deflects_by_the_compliance():
 
 
 def test_motions_add_up_and_are_those_of_the_receptance():
-    housing = reduced(NAMES)
+    housing = random_housing()
     hertz = np.array([300.0, 900.0, 2500.0])
     draw = np.random.default_rng(4)
     first, second = draw.normal(size=(2, 3, housing.motions)) + 1j * draw.normal(size=(2, 3, housing.motions))
@@ -94,7 +63,7 @@ def test_motions_add_up_and_are_those_of_the_receptance():
 
 
 def test_what_is_asked_without_sense_is_refused():
-    housing = reduced(NAMES)
+    housing = random_housing()
     with pytest.raises(InputError, match="force"):
         housing_motion(housing, np.array([100.0]), np.zeros((2, housing.motions), dtype=complex))
     massless = replace(housing, mass=np.zeros_like(housing.mass))
@@ -102,6 +71,6 @@ def test_what_is_asked_without_sense_is_refused():
         housing_motion(massless, np.array([100.0]), np.zeros((1, housing.motions), dtype=complex))
     response = forced_response(assemble(scene_in(housing)), SPEEDS[:1], orders=2)
     with pytest.raises(InputError, match=r"bearings\[1\]"):
-        seat_forces(response, housing, ("input.left", "none", *NAMES[2:]))
+        seat_forces(response, housing, ("input.left", "none", *PAIR[2:]))
     with pytest.raises(InputError, match="one per seat"):
-        seat_forces(response, housing, NAMES[:3])
+        seat_forces(response, housing, PAIR[:3])
