@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from dynamics.errors import InputError
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.linearize import HarmonicResponse
+from dynamics.results import RunResult
 from dynamics.types import FloatArray
 
 ComplexArray = NDArray[np.complex128]
@@ -38,17 +40,39 @@ def seat_forces(
     InputError
         A bearing is not in the response, or their number is not that of the seats.
     """
+    force = _on_seats(response.bearing_force, response.bearing, housing, bearings)
+    return np.moveaxis(force, 0, -1)
+
+
+def run_seat_forces(
+    result: RunResult, housing: ReducedHousing, bearings: Sequence[str] | None = None
+) -> FloatArray:
+    """Return the forces on the seats of a housing over the time of a run, (T, s), N and N m.
+
+    Parameters and errors as those of `seat_forces`; it refuses runs without bearing forces too.
+    """
+    signals = result.bearing_force
+    if not len(signals):
+        advice = "Run the scene with bearing forces among its outputs."
+        raise InputError("bearing_force", "none", "a run with bearing forces", advice)
+    if result.bearing_moment.size:
+        signals = np.concatenate([signals, result.bearing_moment], axis=1)
+    return np.moveaxis(_on_seats(signals, result.bearing, housing, bearings), 0, -1)
+
+
+def _on_seats(
+    signals: NDArray[Any], known: Sequence[str], housing: ReducedHousing, bearings: Sequence[str] | None
+) -> NDArray[Any]:
+    """Return forces of bearings (b, 3 or 6, ...) by the motions of the seats, (s, ...)."""
     names = tuple(seat.name for seat in housing.seats) if bearings is None else tuple(bearings)
     if len(names) != len(housing.seats):
         raise InputError("bearings", len(names), f"{len(housing.seats)}, one per seat")
     for index, name in enumerate(names):
-        if name not in response.bearing:
-            raise InputError(f"bearings[{index}]", name, f"one of {', '.join(response.bearing)}")
-    signals = response.bearing_force
-    rows = [_turn(seat.axes, signals.shape[1])[: len(seat.motions)] for seat in housing.seats]
-    own = [signals[response.bearing.index(name)] for name in names]
-    forces = [np.einsum("mc,csh->shm", turn, force) for turn, force in zip(rows, own, strict=True)]
-    return np.concatenate(forces, axis=2)
+        if name not in known:
+            raise InputError(f"bearings[{index}]", name, f"one of {', '.join(known)}")
+    turns = [_turn(seat.axes, signals.shape[1])[: len(seat.motions)] for seat in housing.seats]
+    own = [signals[known.index(name)] for name in names]
+    return np.concatenate([np.tensordot(turn, force, 1) for turn, force in zip(turns, own, strict=True)])
 
 
 def _turn(axes: FloatArray, signals: int) -> FloatArray:

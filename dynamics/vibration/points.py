@@ -1,0 +1,27 @@
+"""Named points of a reduced housing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from dynamics.errors import InputError
+from dynamics.housing_modes.reduced_housing import PointMotion, ReducedHousing
+
+
+def named_points(housing: ReducedHousing, names: Sequence[str] | None = None) -> tuple[PointMotion, ...]:
+    """Return points by their names, by default all.
+
+    Raises
+    ------
+    InputError
+        The housing has no such point, or none at all.
+    """
+    if not housing.points:
+        raise InputError(
+            "points", [], "at least one named point", "Name points where the housing is reduced."
+        )
+    point_of = {point.name: point for point in housing.points}
+    for index, name in enumerate(names or ()):
+        if name not in point_of:
+            raise InputError(f"points[{index}]", name, f"one of {', '.join(point_of)}")
+    return tuple(point_of.values()) if names is None else tuple(point_of[name] for name in names)

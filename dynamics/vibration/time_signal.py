@@ -1,0 +1,201 @@
+"""Motion of a housing over time under the forces of its bearings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import factorial
+
+import numpy as np
+
+from bounds import Quantity, Text
+from dynamics.errors import InputError
+from dynamics.housing_modes.reduced_housing import ReducedHousing
+from dynamics.types import FloatArray
+from dynamics.vibration.motion_quantity import MotionQuantity
+from dynamics.vibration.points import named_points
+
+UNIFORM = 1e-6
+"""Largest deviation of a sample's time from a uniform grid, in steps."""
+LOOSE = 1e-6
+"""Of the highest natural frequency: what is below moves freely, to rounding."""
+PIECE = 4096
+"""Samples whose states are held at a time."""
+CUBIC = 4
+"""Coefficients of a piece of a cubic spline."""
+
+
+@dataclass(frozen=True)
+class Propagator:
+    """Advances the modes of a housing by one sample, exactly under forces that are cubic in time.
+
+    Attributes
+    ----------
+    transition : (2 m, 2 m) array
+        Of the state: modal amplitudes times `scale`, then their rates times the step.
+    gain : (4, 2 m, s) array
+        State per derivative of the force at the sample, in steps.
+    scale : (m,) array
+        Keeps stiff modes and rigid motions of like size in the state.
+    """
+
+    transition: FloatArray
+    gain: FloatArray
+    scale: FloatArray
+
+
+def point_signal(
+    housing: ReducedHousing,
+    time: FloatArray,
+    force: FloatArray,
+    points: Sequence[str] | None = None,
+    quantity: MotionQuantity = MotionQuantity.VELOCITY,
+) -> FloatArray:
+    """Return the motion of points of a housing under forces over time.
+
+    As `motion_signal` does, of named points along the axes of the mesh.
+
+    Parameters
+    ----------
+    housing, time, force, quantity
+        As in `motion_signal`.
+    points : sequence of str, optional
+        By default all, in their order.
+
+    Returns
+    -------
+    (T, k, 3) array
+        m, m/s or m/s^2.
+
+    Raises
+    ------
+    InputError
+        As `motion_signal` does, or the housing has no such point.
+    """
+    motion = np.stack([point.motion for point in named_points(housing, points)])
+    rows = motion.reshape(-1, motion.shape[2])
+    return motion_signal(housing, time, force, rows, quantity).reshape(-1, *motion.shape[:2])
+
+
+def motion_signal(
+    housing: ReducedHousing,
+    time: FloatArray,
+    force: FloatArray,
+    rows: FloatArray,
+    quantity: MotionQuantity = MotionQuantity.VELOCITY,
+) -> FloatArray:
+    """Return combinations of the reduced coordinates of a housing under forces over time.
+
+    Between the samples the force is a cubic spline, and the modes follow it exactly, damping between them
+    included. The only error is that of the spline: a harmonic of n samples a period enters with the gain
+    sinc(1/n)^4 3/(2 + cos(2 pi/n)), 1 - (2 pi/n)^4/720 for large n: 0.02 % low at 10 samples a period, 0.3 %
+    at 6, 1.5 % at 4, and with images about multiples of the sampling rate, (n - 1)^-4 of it.
+
+    The housing starts at rest, deflected by the first force; motions that nothing holds start at zero.
+
+    Parameters
+    ----------
+    housing : ReducedHousing
+        With mass.
+    time : (T,) array
+        s, uniform.
+    force : (T, s) array
+        On the motions of the seats, N and N m (`run_seat_forces`).
+    rows : (q, r) array
+        What is returned per reduced coordinate, such as `PointMotion.motion`.
+    quantity : MotionQuantity
+        Displacement, velocity or acceleration.
+
+    Returns
+    -------
+    (T, q) array
+        Of unit m, m/s or m/s^2 for rows of points.
+
+    Raises
+    ------
+    InputError
+        Shapes differ, times are not uniform, a force is no number, or the housing has no mass.
+    """
+    times, forces = np.asarray(time, dtype=float), np.asarray(force, dtype=float)
+    step = _checked_step(times, forces, housing)
+    natural, shape = housing.modes
+    damping = shape.T @ housing.damping @ shape
+    push = shape[: housing.motions].T
+    propagator = _propagator(natural, damping, push, step)
+    derivatives = _derivatives(times, forces, step)
+    state = np.concatenate([_at_rest(natural, push @ forces[0]) * propagator.scale, np.zeros(natural.size)])
+    response = np.empty((times.size, len(rows)))
+    for first in range(0, times.size, PIECE):
+        states, state = _advance(propagator, derivatives[:, first : first + PIECE], state)
+        amplitude = states[:, : natural.size] / propagator.scale
+        rate = states[:, natural.size :] / step
+        if quantity is MotionQuantity.ACCELERATION:
+            amplitude = forces[first : first + PIECE] @ push.T - rate @ damping.T - amplitude * natural**2
+        chosen = rate if quantity is MotionQuantity.VELOCITY else amplitude
+        response[first : first + PIECE] = chosen @ (np.asarray(rows) @ shape).T
+    return response
+
+
+def _checked_step(time: FloatArray, force: FloatArray, housing: ReducedHousing) -> float:
+    """Return the sampling step, s."""
+    if time.ndim != 1 or time.size < 2:
+        raise InputError("time", time.shape, "at least two samples, (T,)")
+    step = float((time[-1] - time[0]) / (time.size - 1))
+    uneven = np.abs(time - (time[0] + step * np.arange(time.size)))
+    if not (step > 0.0 and np.all(uneven <= UNIFORM * step)):
+        worst = Text.of("a uniform grid; off by ", Quantity(float(np.max(uneven)), "s", digits=2))
+        raise InputError("time", "not uniform", worst, "Resample the force.")
+    if force.shape != (time.size, housing.motions):
+        raise InputError("force", force.shape, f"shape {(time.size, housing.motions)}")
+    if not np.all(np.isfinite(force)):
+        raise InputError("force", "not finite", "finite numbers")
+    if not np.any(housing.mass):
+        raise InputError("mass", 0.0, "a housing with mass", "Reduce its mesh, or give its mass matrix.")
+    return step
+
+
+def _at_rest(natural: FloatArray, pushed: FloatArray) -> FloatArray:
+    """Return the static amplitudes of modes, (m,); 0 of motions that nothing holds."""
+    held = natural > LOOSE * natural.max()
+    return np.divide(pushed, natural**2, out=np.zeros(natural.size), where=held)
+
+
+def _propagator(natural: FloatArray, damping: FloatArray, push: FloatArray, step: float) -> Propagator:
+    """Integrate p'' + damping p' + natural^2 p = push f over a step, for forces 1, t, t^2/2, t^3/6.
+
+    By the exponential of the system that the derivatives of the force extend (C. F. van Loan, IEEE
+    Transactions on Automatic Control 23 (1978) 395-404).
+    """
+    from scipy.linalg import expm  # noqa: PLC0415 (start-up time)
+
+    modes, forces = push.shape
+    angle = natural * step
+    scale = np.maximum(angle, 1.0)
+    whole = np.zeros((2 * modes + CUBIC * forces,) * 2)
+    whole[:modes, modes : 2 * modes] = np.diag(scale)
+    whole[modes : 2 * modes, :modes] = -np.diag(angle**2 / scale)
+    whole[modes : 2 * modes, modes : 2 * modes] = -step * damping
+    whole[modes : 2 * modes, 2 * modes : 2 * modes + forces] = step**2 * push
+    whole[2 * modes : -forces, 2 * modes + forces :] = np.eye((CUBIC - 1) * forces)
+    exponential = expm(whole)[: 2 * modes]
+    gain = exponential[:, 2 * modes :].reshape(2 * modes, CUBIC, forces)
+    return Propagator(exponential[:, : 2 * modes], np.ascontiguousarray(np.moveaxis(gain, 1, 0)), scale)
+
+
+def _derivatives(time: FloatArray, force: FloatArray, step: float) -> FloatArray:
+    """Return derivatives of the spline of the force at the samples, in steps, (4, T - 1, s)."""
+    from scipy.interpolate import CubicSpline  # noqa: PLC0415 (start-up time)
+
+    power = CubicSpline(np.arange(time.size, dtype=float), force).c[::-1]
+    return np.stack([factorial(order) * part for order, part in enumerate(power)])
+
+
+def _advance(
+    propagator: Propagator, derivatives: FloatArray, state: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the states of samples, the first one `state`, and that of the sample after them."""
+    increments = sum(part @ gain.T for part, gain in zip(derivatives, propagator.gain, strict=True))
+    states = [state]
+    for increment in increments:
+        states.append(propagator.transition @ states[-1] + increment)
+    return np.array(states[:PIECE]), states[-1]
