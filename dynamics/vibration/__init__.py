@@ -1,17 +1,38 @@
 """Vibration of housings under the forces of their bearings."""
 
+from dynamics.vibration.contributions import Parts, bearing_parts, mode_parts
 from dynamics.vibration.housing_motion import housing_motion
+from dynamics.vibration.housing_vibration import HousingVibration, housing_vibration
+from dynamics.vibration.levels import overall, vibration_level
 from dynamics.vibration.motion_quantity import MotionQuantity
 from dynamics.vibration.points import named_points
 from dynamics.vibration.seat_forces import run_seat_forces, seat_forces
+from dynamics.vibration.surface_shape import SurfaceShape, mode_shape, operating_deflection
+from dynamics.vibration.surface_weight import mean_square, normal_weight, surface_weight
 from dynamics.vibration.time_signal import motion_signal, point_signal
+from dynamics.vibration.transfer_functions import mean_square_mobility, transfer_functions
 
 __all__ = [
+    "HousingVibration",
     "MotionQuantity",
+    "Parts",
+    "SurfaceShape",
+    "bearing_parts",
     "housing_motion",
+    "housing_vibration",
+    "mean_square",
+    "mean_square_mobility",
+    "mode_parts",
+    "mode_shape",
     "motion_signal",
     "named_points",
+    "normal_weight",
+    "operating_deflection",
+    "overall",
     "point_signal",
     "run_seat_forces",
     "seat_forces",
+    "surface_weight",
+    "transfer_functions",
+    "vibration_level",
 ]
