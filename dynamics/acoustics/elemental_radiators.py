@@ -14,6 +14,7 @@ import numpy as np
 
 from dynamics.acoustics.air import Air
 from dynamics.acoustics.hull import ComplexArray, Hull
+from dynamics.acoustics.plane_waves import mutual_resistance, order_of_waves
 from dynamics.types import FloatArray
 
 BLOCK = 512  # panels whose mutual resistances are held at a time
@@ -49,13 +50,21 @@ class ElementalRadiators:
         wavenumber = 2.0 * np.pi * frequency / air.sound_speed
         hull.require_resolved(wavenumber, air.sound_speed)
         volume_velocity = hull.areas[:, None] * shapes
-        total = np.zeros((shapes.shape[1],) * 2, dtype=volume_velocity.dtype)
-        for first in range(0, len(shapes), BLOCK):
+        if not self.baffled and 2 * order_of_waves(hull.centers, wavenumber) ** 2 < len(shapes):
+            total = mutual_resistance(hull.centers, volume_velocity, wavenumber)
+        else:
+            total = self._by_pairs(hull, volume_velocity, wavenumber)
+        solid_angle = 2.0 * np.pi if self.baffled else 4.0 * np.pi
+        return np.asarray(air.impedance * wavenumber**2 / solid_angle * 0.5 * (total + total.conj().T))
+
+    def _by_pairs(self, hull: Hull, volume_velocity: ComplexArray, wavenumber: float) -> ComplexArray:
+        """Return Q^H [sin(kr)/(kr)] Q over all pairs of panels."""
+        total = np.zeros((volume_velocity.shape[1],) * 2, dtype=volume_velocity.dtype)
+        for first in range(0, len(volume_velocity), BLOCK):
             block = slice(first, first + BLOCK)
             mutual = _mutual(hull.centers[block], hull.centers, wavenumber)
             total += volume_velocity[block].conj().T @ (mutual @ volume_velocity)
-        solid_angle = 2.0 * np.pi if self.baffled else 4.0 * np.pi
-        return np.asarray(air.impedance * wavenumber**2 / solid_angle * 0.5 * (total + total.conj().T))
+        return total
 
 
 def _mutual(rows: FloatArray, columns: FloatArray, wavenumber: float) -> FloatArray:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from dynamics.acoustics.hull import ComplexArray, Hull
-from dynamics.types import FloatArray
+from dynamics.acoustics.plane_waves import directions
 
 MARGIN = 8
 """Spherical harmonics above the wavenumber times the radius, whose part of the far field is below 1e-6."""
@@ -26,29 +26,13 @@ def far_field_resistance(
     """
     center = hull.areas @ hull.centers / hull.area
     radius = float(np.linalg.norm(hull.nodes - center, axis=1).max())
-    directions, weights = _directions(int(np.ceil(wavenumber * radius)) + MARGIN)
-    cosines = directions @ hull.normals.T
-    far = np.zeros((len(directions), pressure.shape[1]), dtype=complex)
+    vectors, weights = directions(int(np.ceil(wavenumber * radius)) + MARGIN)
+    cosines = vectors @ hull.normals.T
+    far = np.zeros((len(vectors), pressure.shape[1]), dtype=complex)
     for middle in MIDDLES:  # quadrature of second degree on every panel
         points = np.einsum("c,tcd->td", middle, hull.corners) - center
         at = np.einsum("c,tcm->tm", middle, pressure[hull.triangles])
-        phase = np.exp(-1j * wavenumber * directions @ points.T) * hull.areas / 3.0
+        phase = np.exp(-1j * wavenumber * vectors @ points.T) * hull.areas / 3.0
         far += (-1j * wavenumber * cosines * phase) @ at - phase @ slope
     far /= 4.0 * np.pi
     return np.asarray((far.conj().T * weights) @ far)
-
-
-def _directions(order: int) -> tuple[FloatArray, FloatArray]:
-    """Return unit vectors (D, 3) and weights (D,), exact for spherical harmonics below twice the order."""
-    cosine, weight = np.polynomial.legendre.leggauss(order)
-    angle = np.arange(2 * order) * np.pi / order
-    sine = np.sqrt(1.0 - cosine**2)
-    directions = np.stack(
-        [
-            np.outer(sine, np.cos(angle)).ravel(),
-            np.outer(sine, np.sin(angle)).ravel(),
-            np.repeat(cosine, 2 * order),
-        ],
-        axis=1,
-    )
-    return directions, np.repeat(weight, 2 * order) * np.pi / order

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from bounds import at_most
 from dynamics.checks import positive
 from dynamics.errors import InputError
-from dynamics.types import FloatArray, IntArray
+from dynamics.types import BoolArray, FloatArray, IntArray
 
 ComplexArray = NDArray[np.complex128]
 PANELS_PER_WAVELENGTH = 6.0
@@ -55,7 +55,7 @@ class Hull:
             raise InputError("triangles", int(triangles.max()), f"nodes from 0 to {len(nodes) - 1}")
         object.__setattr__(self, "nodes", nodes)
         object.__setattr__(self, "triangles", triangles)
-        flat = 2.0 * self.areas <= FLAT * self._edges.max(axis=1) ** 2
+        flat = flat_triangles(nodes, triangles)
         if np.any(flat):
             suggestion = "Remove triangles without an area."
             raise InputError(f"triangles[{int(np.argmax(flat))}]", 0.0, "a triangle with an area", suggestion)
@@ -106,6 +106,18 @@ class Hull:
         """Return the wavenumber at which `PANELS_PER_WAVELENGTH` longest edges make a wavelength, 1/m."""
         return float(2.0 * np.pi / (PANELS_PER_WAVELENGTH * self._edges.max()))
 
+    @property
+    def closed(self) -> bool:
+        """Whether every edge joins exactly two panels that run through it in opposite directions."""
+        return self._open_edges == 0
+
+    @cached_property
+    def _open_edges(self) -> int:
+        """Count the edges at which the hull is open, turned, or joined to itself."""
+        starts, ends = self.triangles, np.roll(self.triangles, -1, axis=1)
+        along, against = starts * len(self.nodes) + ends, ends * len(self.nodes) + starts
+        return int(np.setdiff1d(along, against).size + along.size - np.unique(along).size)
+
     def normal_velocity(self, velocity: ComplexArray) -> ComplexArray:
         """Return the mean normal velocity of the panels, (T,) or (T, M).
 
@@ -133,13 +145,11 @@ class Hull:
             An edge does not join exactly two panels that run through it in opposite directions, or the
             normals point inwards.
         """
-        starts, ends = self.triangles, np.roll(self.triangles, -1, axis=1)
-        along = starts * len(self.nodes) + ends
-        against = ends * len(self.nodes) + starts
-        lonely = np.setdiff1d(along, against).size
-        if lonely or np.unique(along).size < along.size:
+        if not self.closed:
             suggestion = "Join nodes at the same position and close the openings of the outer hull."
-            raise InputError("triangles", f"{lonely} open or turned edges", "a closed hull", suggestion)
+            raise InputError(
+                "triangles", f"{self._open_edges} open or turned edges", "a closed hull", suggestion
+            )
         positive("volume", self.volume, "Turn the triangles: their normals point inwards.")
 
     def require_resolved(self, wavenumber: float, sound_speed: float) -> None:
@@ -154,3 +164,11 @@ class Hull:
             frequency = sound_speed / (2.0 * np.pi)
             bound = at_most(self.highest_wavenumber * frequency, "Hz", note=", six edges in a wavelength")
             raise InputError("frequency", wavenumber * frequency, bound, "Use smaller triangles.")
+
+
+def flat_triangles(nodes: FloatArray, triangles: IntArray) -> BoolArray:
+    """Return which triangles have no area, (T,)."""
+    corners = nodes[triangles]
+    edges = corners - np.roll(corners, 1, axis=1)
+    area = np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1)
+    return np.asarray(area <= FLAT * np.sum(edges**2, axis=2).max(axis=1))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +13,7 @@ from dynamics.acoustics.hull import ComplexArray, Hull
 from dynamics.acoustics.radiation import RadiationModel, resistance
 from dynamics.checks import increasing
 from dynamics.errors import InputError
-from dynamics.types import FloatArray
+from dynamics.types import BoolArray, FloatArray
 
 
 @dataclass(frozen=True)
@@ -48,26 +49,59 @@ class ModalResistance:
         InputError
             A frequency lies outside of those computed, or the shapes of arrays differ.
         """
+        velocity = np.asarray(velocity)
+        return 0.5 * np.sum(velocity.conj() * self.reaction(frequency, velocity), axis=1).real
+
+    def reaction(self, frequency: FloatArray, velocity: ComplexArray) -> ComplexArray:
+        """Return the part R v of the air's force that takes power from the shapes, (B, M), N.
+
+        Re(u^H R v) / 2 is the power that goes by a part u of the velocity; parts of v add up to the whole.
+
+        Parameters
+        ----------
+        frequency, velocity : arrays
+            As of `power`.
+
+        Raises
+        ------
+        InputError
+            As `power` does.
+        """
         frequency, velocity = np.atleast_1d(np.asarray(frequency, dtype=float)), np.asarray(velocity)
         if velocity.shape != (frequency.size, self.matrix.shape[1]):
             raise InputError("velocity", velocity.shape, f"({frequency.size}, {self.matrix.shape[1]})")
+        force = np.zeros(velocity.shape, dtype=complex)
+        for knot, near, share in self._hats(frequency):
+            force[near] += share[:, None] * (velocity[near] @ self.matrix[knot].T)
+        return force
+
+    def alone(self, frequency: FloatArray, shapes: FloatArray) -> FloatArray:
+        """Return the resistance of each of K vectors of shapes (M, K) by itself, (B, K), at frequencies (B,).
+
+        Raises
+        ------
+        InputError
+            A frequency lies outside of those computed.
+        """
+        frequency = np.atleast_1d(np.asarray(frequency, dtype=float))
+        own = np.einsum("mk,fmn,nk->fk", shapes.conj(), self.matrix, shapes, optimize=True).real
+        found = np.zeros((frequency.size, shapes.shape[1]))
+        for knot, near, share in self._hats(frequency):
+            found[near] += share[:, None] * own[knot]
+        return found
+
+    def _hats(self, frequency: FloatArray) -> Iterator[tuple[int, BoolArray, FloatArray]]:
+        """Yield each computed frequency, the samples near it, and what part of its matrix they take."""
         low, high = float(self.frequency[0]), float(self.frequency[-1])
         if not np.all((frequency >= low) & (frequency <= high)):
             outside = frequency[(frequency < low) | (frequency > high)][0]
             raise InputError("frequency", float(outside), between(low, high, "Hz", "the computed"))
-        return self._interpolated(frequency, velocity)
-
-    def _interpolated(self, frequency: FloatArray, velocity: ComplexArray) -> FloatArray:
-        """Sum the quadratic forms of both ends of every interval that holds samples."""
         interval = np.searchsorted(self.frequency[1:-1], frequency, "right")
-        power = np.zeros(frequency.size)
         for knot in np.unique(np.concatenate([interval, interval + 1])):
             near = (interval == knot) | (interval + 1 == knot)
             weight = _hat(frequency[near], self.frequency[interval[near]], self.frequency[interval[near] + 1])
             share = np.where(interval[near] == knot, 1.0 - weight, weight)
-            squares = _quadratic(self.matrix[knot], velocity[near])
-            power[near] += 0.5 * share * (frequency[near] / self.frequency[knot]) ** 2 * squares
-        return power
+            yield int(knot), near, share * (frequency[near] / self.frequency[knot]) ** 2
 
     def interpolation_error(self, velocity: ComplexArray) -> float:
         """Return how far every second matrix is missed by those beside it, dB, for a velocity (M,).
@@ -110,8 +144,3 @@ def modal_resistance(
 def _hat(frequency: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
     """Return the part of the way from `low` to `high`."""
     return np.asarray((frequency - low) / (high - low))
-
-
-def _quadratic(matrix: ComplexArray, velocity: ComplexArray) -> FloatArray:
-    """Return v^H R v of every row, (B,)."""
-    return np.asarray(np.sum(velocity.conj() * (velocity @ matrix.T), axis=1).real)

@@ -22,6 +22,7 @@ from dynamics.acoustics import (
     sound_power,
     sphere_efficiency,
 )
+from dynamics.acoustics.plane_waves import mutual_resistance
 from dynamics.errors import InputError
 
 AIR = Air()
@@ -205,3 +206,14 @@ def test_what_cannot_be_used_is_refused() -> None:
         Hull(hull.nodes, hull.triangles[:, ::-1]).require_closed()
     with pytest.raises(InputError, match="density"):
         Air(density=-1.0)
+
+
+@pytest.mark.parametrize("ka", [0.01, 1.0, 6.0])
+def test_plane_waves_give_the_sum_over_pairs(ka: float) -> None:
+    """Free monopoles by directions against sin(kr)/(kr) of every pair."""
+    points, wavenumber = SPHERE.centers, ka
+    shapes = random_shapes(SPHERE)
+    distance = np.linalg.norm(points[:, None] - points, axis=2)
+    by_pairs = shapes.conj().T @ np.sinc(wavenumber * distance / np.pi) @ shapes
+    found = mutual_resistance(points, shapes, wavenumber)
+    np.testing.assert_allclose(found, by_pairs, rtol=0.0, atol=1e-8 * np.abs(by_pairs).max())

@@ -1,0 +1,58 @@
+"""Directions of plane waves, and the sound of point sources by them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dynamics.acoustics.hull import ComplexArray
+from dynamics.types import FloatArray
+
+MARGIN = 12
+"""Spherical harmonics above the wavenumber times the radius: what is left out is below 1e-8."""
+BLOCK = 2_000_000  # phases that are held at a time
+
+
+def directions(order: int) -> tuple[FloatArray, FloatArray]:
+    """Return unit vectors (D, 3) and weights (D,), exact for spherical harmonics below twice the order.
+
+    D is 2 order^2; the opposite of a direction is one of them, and the first half of each ring has none.
+    """
+    cosine, weight = np.polynomial.legendre.leggauss(order)
+    angle = np.arange(2 * order) * np.pi / order
+    sine = np.sqrt(1.0 - cosine**2)
+    vectors = np.stack(
+        [
+            np.outer(sine, np.cos(angle)).ravel(),
+            np.outer(sine, np.sin(angle)).ravel(),
+            np.repeat(cosine, 2 * order),
+        ],
+        axis=1,
+    )
+    return vectors, np.repeat(weight, 2 * order) * np.pi / order
+
+
+def order_of_waves(points: FloatArray, wavenumber: float) -> int:
+    """Return the order of directions that resolve the sound of sources at points (P, 3)."""
+    radius = float(np.linalg.norm(points - points.mean(axis=0), axis=1).max())
+    return int(np.ceil(wavenumber * radius)) + MARGIN
+
+
+def mutual_resistance(points: FloatArray, strength: ComplexArray, wavenumber: float) -> ComplexArray:
+    """Return Q^H [sin(kr)/(kr)] Q of point sources (P, 3) with strengths Q (P, M), (M, M).
+
+    sin(kr)/(kr) is the mean of exp(i k d.(x - y)) over all directions d. Cost grows with P, not its square,
+    and the result is a sum of squares. Opposite directions give the same: half of them are taken.
+    """
+    order = order_of_waves(points, wavenumber)
+    vectors, weights = directions(order)
+    half = np.arange(len(vectors)) % (2 * order) < order
+    vectors, weights = vectors[half], weights[half] / (2.0 * np.pi)
+    arm = points - points.mean(axis=0)
+    total = np.zeros((strength.shape[1],) * 2, dtype=strength.dtype)
+    step = max(BLOCK // len(points), 1)
+    for first in range(0, len(vectors), step):
+        phase = wavenumber * vectors[first : first + step] @ arm.T
+        weight = weights[first : first + step, None]
+        for wave in (np.cos(phase) @ strength, np.sin(phase) @ strength):
+            total += wave.conj().T @ (weight * wave)
+    return total

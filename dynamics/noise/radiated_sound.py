@@ -1,0 +1,177 @@
+"""Sound power of a housing in a forced response, by order and speed, and through what it gets there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from dynamics.acoustics import OrderPower
+from dynamics.errors import InputError
+from dynamics.housing_modes.reduced_housing import ReducedHousing
+from dynamics.linearize import HarmonicResponse
+from dynamics.noise.contributions import Contributions, contributions
+from dynamics.noise.housing_radiation import HousingRadiation
+from dynamics.results.array_file import ArrayFile, Stored
+from dynamics.types import BoolArray, FloatArray, Json
+from dynamics.vibration import housing_motion, seat_forces
+
+POWER = ("speed", "order")
+STORED = {
+    "speed": Stored(("speed",), "rad s-1", "speed of the leading drive"),
+    "order": Stored(("order",), "1", "multiple of the frequency of the first mesh that turns"),
+    "frequency": Stored(POWER, "Hz", "frequency of the harmonic"),
+    "power": Stored(POWER, "W", "radiated sound power"),
+    "efficiency": Stored(POWER, "1", "radiation efficiency"),
+    "bearing_share": Stored(("bearing", *POWER), "W", "part of the power by the force of a bearing"),
+    "bearing_alone": Stored(("bearing", *POWER), "W", "power under the force of a bearing alone"),
+    "mode_share": Stored(("mode", *POWER), "W", "part of the power by a mode of the housing"),
+    "mode_alone": Stored(("mode", *POWER), "W", "power of a mode of the housing alone"),
+    "natural_frequency": Stored(("mode",), "Hz", "natural frequency of the housing, seats free"),
+    "in_contact": Stored(("speed",), "1", "whether all flanks stay in contact"),
+}
+
+
+@dataclass(frozen=True)
+class RadiatedSound(ArrayFile):
+    """Sound power at S speeds in H orders, each as in a steady state; b bearings and m modes of housings.
+
+    Orders add up in power, and so do several housings. Shares of bearings add up to the power; to those of
+    modes what the kept modes lack statically is missing. A share is negative where a part cancels others.
+
+    Attributes
+    ----------
+    housing, bearing : tuples of str
+    mode_housing : tuple of str
+        The housing of each mode.
+    speed, order : (S,), (H,) arrays
+        rad/s of the leading drive; multiples of the frequency of the first mesh that turns.
+    frequency : (S, H) array
+        Hz.
+    power : (S, H) array
+        W.
+    efficiency : (S, H) array
+        Radiation efficiency: power over that of a plane with the same mean square velocity.
+    bearing_share, bearing_alone : (b, S, H) arrays
+        W: share in the power; power if this force acted alone.
+    mode_share, mode_alone : (m, S, H) arrays
+        W.
+    natural_frequency : (m,) array
+        Of the housing on its feet, its seats free, Hz.
+    in_contact : (S,) bool array
+        Whether the flanks stay in contact; where not, no linear answer holds.
+    facts : dict
+        Plain JSON: `radiation` by housing (`HousingRadiation.facts`, `model_name`, `area`).
+    """
+
+    SCHEMA = "lineofaction radiated sound"
+    ARRAYS = STORED
+
+    housing: tuple[str, ...]
+    bearing: tuple[str, ...]
+    mode_housing: tuple[str, ...]
+    speed: FloatArray
+    order: FloatArray
+    frequency: FloatArray
+    power: FloatArray
+    efficiency: FloatArray
+    bearing_share: FloatArray
+    bearing_alone: FloatArray
+    mode_share: FloatArray
+    mode_alone: FloatArray
+    natural_frequency: FloatArray
+    in_contact: BoolArray
+    facts: Json = field(default_factory=dict)
+
+    @property
+    def orders(self) -> OrderPower:
+        """Return levels, A-weighted levels and third octaves: orders first, then speeds."""
+        return OrderPower(self.frequency.T, self.power.T)
+
+    @property
+    def without_bearing(self) -> FloatArray:
+        """Return the power that is left without the force of each bearing, (b, S, H), W."""
+        return np.maximum(self.power - 2.0 * self.bearing_share + self.bearing_alone, 0.0)
+
+    @property
+    def without_mode(self) -> FloatArray:
+        """Return the power that is left without each mode, (m, S, H), W."""
+        return np.maximum(self.power - 2.0 * self.mode_share + self.mode_alone, 0.0)
+
+
+def radiated_sound(
+    response: HarmonicResponse,
+    housing: ReducedHousing,
+    bearings: Sequence[str] | None,
+    radiation: HousingRadiation,
+    name: str = "housing",
+) -> RadiatedSound:
+    """Return the sound power of a housing under the bearing forces of a response.
+
+    Parameters
+    ----------
+    response : HarmonicResponse
+        In the frame of the housing's mesh.
+    housing : ReducedHousing
+        With mass and a surface.
+    bearings : sequence of str or None
+        Bearings in the order of the seats; None: those with the names of the seats.
+    radiation : HousingRadiation
+        Of this housing, over the frequencies of the response.
+    name : str
+        Of the housing.
+
+    Raises
+    ------
+    InputError
+        As `seat_forces` and `housing_motion` do, or the radiation is of another housing or range.
+    """
+    names = tuple(seat.name for seat in housing.seats) if bearings is None else tuple(bearings)
+    if radiation.matrix.shape[1] != len(housing.stiffness):
+        raise InputError(
+            "radiation",
+            radiation.matrix.shape[1],
+            f"one of {len(housing.stiffness)} coordinates, the housing's",
+        )
+    parts = _parts(response, housing, names)
+    found = contributions(response.frequency, parts, housing, radiation)
+    return _result(response, housing, names, found, radiation, name)
+
+
+def _parts(response: HarmonicResponse, housing: ReducedHousing, names: tuple[str, ...]) -> FloatArray:
+    """Return the velocity of the coordinates under the force of each bearing alone, (b, S, H, r), m/s."""
+    force = seat_forces(response, housing, names)
+    owner = np.repeat(np.arange(len(names)), [len(seat.motions) for seat in housing.seats])
+    spin = 2j * np.pi * response.frequency[..., None]
+    alone = (np.where(owner == bearing, force, 0.0) for bearing in range(len(names)))
+    return np.stack([spin * housing_motion(housing, response.frequency, part) for part in alone])
+
+
+def _result(
+    response: HarmonicResponse,
+    housing: ReducedHousing,
+    names: tuple[str, ...],
+    found: Contributions,
+    radiation: HousingRadiation,
+    name: str,
+) -> RadiatedSound:
+    """Put the result of one housing together."""
+    about = {"model_name": radiation.model_name, "area": radiation.area, **radiation.facts}
+    return RadiatedSound(
+        (name,),
+        names,
+        (name,) * found.natural_frequency.size,
+        response.speed,
+        response.order,
+        response.frequency,
+        found.power,
+        found.efficiency,
+        found.bearing_share,
+        found.bearing_alone,
+        found.mode_share,
+        found.mode_alone,
+        found.natural_frequency,
+        response.in_contact,
+        {"radiation": {name: about}},
+    )

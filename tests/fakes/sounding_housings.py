@@ -1,0 +1,65 @@
+"""Reduced housings of matrices with the surface of a hull, for sound in closed form."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from dynamics.acoustics import Hull
+from dynamics.housing_modes import ModalDamping, Ring, SeatFrame, housing_of_matrices, scene_housing
+from dynamics.housing_modes.reduced_housing import ReducedHousing, SurfaceMotion
+from dynamics.housing_modes.reduced_matrices import ReducedMatrices
+from dynamics.housing_modes.seats import MOTIONS
+
+NAMES = ("input.left", "input.right", "output.left", "output.right")
+PER_SEAT = 5
+
+
+def seat(name: str, angle: float = 0.0, motions: int = PER_SEAT) -> SeatFrame:
+    c, s = math.cos(angle), math.sin(angle)
+    axes = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    return SeatFrame(name, np.zeros(3), axes, Ring.RIGID, MOTIONS[:motions])
+
+
+def random_housing(names=NAMES, modal=3, seed=1) -> ReducedHousing:
+    """A held housing of random matrices; seats turned about z, so that their axes are not the scene's."""
+    lever = np.concatenate([np.tile([1.0, 1.0, 1.0, 0.1, 0.1], len(names)), np.ones(modal)])
+    matrices = []
+    for number, scale in enumerate((3e8, 4.0)):
+        factor = np.random.default_rng(seed + number).normal(size=(lever.size, lever.size))
+        full = scale * (factor @ factor.T / lever.size + 0.5 * np.eye(lever.size))
+        matrices.append(np.outer(lever, lever) * full)
+    seats = tuple(seat(name, 0.3 * index) for index, name in enumerate(names))
+    return housing_of_matrices(ReducedMatrices(*matrices), seats, ModalDamping((0.02,)))
+
+
+def rigid_housing(mass: float, stiffness: float, damping: float, hull: Hull) -> ReducedHousing:
+    """A rigid hull on springs along x, y and z, with one seat of three motions."""
+    matrices = ReducedMatrices(stiffness * np.eye(3), mass * np.eye(3))
+    held = housing_of_matrices(matrices, (seat("seat", motions=3),), ModalDamping((damping,)))
+    return with_surface(held, hull, np.broadcast_to(np.eye(3), (len(hull.nodes), 3, 3)))
+
+
+def with_surface(housing: ReducedHousing, hull: Hull, motion: np.ndarray) -> ReducedHousing:
+    """Give a housing the surface of a hull; `motion` (N, 3, r) of its nodes, linear between them."""
+    edges = np.stack([hull.triangles, np.roll(hull.triangles, -1, axis=1)], axis=2).reshape(-1, 2)
+    pairs, number = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)
+    points = np.concatenate([hull.nodes, hull.nodes[pairs].mean(axis=1)])
+    moving = np.concatenate([motion, motion[pairs].mean(axis=1)])
+    triangles = np.concatenate([hull.triangles, len(hull.nodes) + number.reshape(-1, 3)], axis=1)
+    return replace(housing, surface=SurfaceMotion(points, triangles, moving))
+
+
+def smooth_motion(hull: Hull, coordinates: int, seed=2) -> np.ndarray:
+    """Random waves along the hull, (N, 3, r), longer than its panels."""
+    draw = np.random.default_rng(seed)
+    waves = 6.0 / np.ptp(hull.nodes, axis=0).max() * draw.normal(size=(3, coordinates))
+    phase = hull.nodes @ waves + draw.uniform(0.0, 2.0 * np.pi, coordinates)
+    return np.cos(phase)[:, None, :] * draw.normal(size=(1, 3, coordinates))
+
+
+def part_of_scene(housing: ReducedHousing, name: str = "case"):
+    """The same housing as a part of a scene whose bearings are elsewhere than the seats."""
+    return replace(scene_housing(housing, name), seat_positions=None)
