@@ -6,16 +6,17 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
-from scipy.signal import firwin, resample_poly
 
 from bounds import at_most
 from dynamics.acoustics.hull import ComplexArray
 from dynamics.checks import increasing, integer
 from dynamics.errors import InputError
+from dynamics.orders.resampling import resampled
 from dynamics.types import FloatArray
 
 SAMPLE_RATE = 48_000
-HALF_LENGTH, KAISER = 64, 8.0  # of the resampling filter, in samples of the lower rate; shape of its window
+HALF_LENGTH = 64  # of the resampling filter, in samples of the lower rate
+LARGEST_STEP = 20_000  # of the lower of two rates in their ratio
 PASSED = 0.45
 """Highest frequency over the sample rate: the resampling filter passes it unchanged."""
 
@@ -63,13 +64,20 @@ class Recording:
         least 70 dB.
         """
         integer("sample_rate", sample_rate, 1, 10_000_000)
-        ratio = Fraction(sample_rate, self.sample_rate)
-        steps = max(ratio.numerator, ratio.denominator)
-        taps = firwin(2 * HALF_LENGTH * steps + 1, 1.0 / steps, window=("kaiser", KAISER))
-        samples = resample_poly(  # type: ignore[call-overload]  # its stubs know no coefficients
-            self.samples, ratio.numerator, ratio.denominator, window=taps
-        )
+        samples = at_rate(self.samples, self.sample_rate, sample_rate)
         return Recording(samples, sample_rate, self.quantity, self.unit)
+
+
+def at_rate(values: FloatArray, sample_rate: float, to_rate: int) -> FloatArray:
+    """Return a series (T,) at another rate as `Recording.resampled` does; both rates above 0 Hz.
+
+    Their ratio is taken as one of integers, within 3e-9: the lower rate has at most 20 000 steps.
+    """
+    lower = min(sample_rate, to_rate)
+    ratio = Fraction(max(sample_rate, to_rate) / lower).limit_denominator(LARGEST_STEP)
+    more, fewer = ratio.numerator, ratio.denominator
+    up, down = (more, fewer) if to_rate >= sample_rate else (fewer, more)
+    return resampled(values, up, down, HALF_LENGTH)
 
 
 def order_recording(

@@ -6,9 +6,12 @@ import numpy as np
 
 from dynamics.checks import integer, one_of
 from dynamics.errors import InputError
+from dynamics.orders.resampling import interpolated
 from dynamics.results import RunResult
 from dynamics.results.series import SERIES
 from dynamics.types import FloatArray, IntArray
+
+FINER, HALF_LENGTH = 4, 24  # times the result's rate; of the filter, in samples of the result
 
 
 def resample_to_position(
@@ -16,8 +19,9 @@ def resample_to_position(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return unwrapped position (N,), time (N,) and `values` (..., N) in equal steps of a base pitch.
 
-    Cubic between the four nearest samples of the result: the error of a sinusoid of f samples per period is
-    2.3 (2 pi / f)^4 / 100 of its amplitude at most, 0.4 % at 10 and 2e-4 at 20.
+    Interpolated to four times the result's rate by a filter that passes what is below 0.42 of that rate
+    (outputs hold 0.39), then cubic between the four nearest values: the error of a sinusoid is at most 0.4 %
+    of its amplitude at 2.56 samples per period and 2e-5 at 10.
 
     Raises
     ------
@@ -40,7 +44,16 @@ def resample_to_position(
     time = np.interp(grid, position, result.time)
     index = np.clip(np.searchsorted(result.time, time, side="right") - 1, 0, result.time.size - 2)
     part = (time - result.time[index]) / (result.time[index + 1] - result.time[index])
-    return grid, time, _cubic(np.asarray(values, dtype=float), index, part)
+    return grid, time, _at(np.asarray(values, dtype=float), index, part)
+
+
+def _at(values: FloatArray, index: IntArray, part: FloatArray) -> FloatArray:
+    """Interpolate `values` (..., T) of a uniform grid at (N,) places, `part` of the way after `index`."""
+    rows = values.reshape(-1, values.shape[-1])  # one at a time: the finer grid is four times as long
+    place = FINER * (index + part)
+    fine = np.minimum(place.astype(int), FINER * (rows.shape[1] - 1) - 1)
+    made = [_cubic(interpolated(row, FINER, HALF_LENGTH), fine, place - fine) for row in rows]
+    return np.reshape(made, (*values.shape[:-1], index.size))
 
 
 def _cubic(values: FloatArray, index: IntArray, part: FloatArray) -> FloatArray:
