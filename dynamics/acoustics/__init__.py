@@ -19,6 +19,12 @@ from dynamics.acoustics.radiation import (
     sound_power,
 )
 from dynamics.acoustics.recording import Recording, order_recording
+from dynamics.acoustics.run_recording import (
+    audible,
+    force_recording,
+    principal_direction,
+    series_recording,
+)
 from dynamics.acoustics.sound_quality import SoundQuality, loudness_over_time, sound_quality
 from dynamics.acoustics.wav import common_full_scale, read_wav, write_wav
 
@@ -39,9 +45,11 @@ __all__ = [
     "SoundQuality",
     "SurfacePressure",
     "a_weighting",
+    "audible",
     "common_full_scale",
     "compare_models",
     "errors_db",
+    "force_recording",
     "free_field_pressure",
     "level_band",
     "level_sum",
@@ -52,9 +60,11 @@ __all__ = [
     "order_power",
     "order_recording",
     "panel_power",
+    "principal_direction",
     "radiation_efficiency",
     "read_wav",
     "resistance",
+    "series_recording",
     "sound_power",
     "sound_power_level",
     "sound_quality",
