@@ -10,11 +10,10 @@ import numpy as np
 
 from dynamics.assembly.assemble import System
 from dynamics.errors import InputError
-from dynamics.linearize.flank_cycles import averaged, flank_cycles
-from dynamics.linearize.harmonic_response import HarmonicResponse, harmonic_response
-from dynamics.linearize.linear_system import about_running, linearize
+from dynamics.linearize.harmonic_response import HarmonicResponse, excited_harmonics, response_of
 from dynamics.linearize.modes import natural_modes
 from dynamics.linearize.speeds import checked_speeds, leading_law
+from dynamics.linearize.steady_vibration import EXCITATIONS, steady_vibration
 from dynamics.results.array_file import ArrayFile, Stored
 from dynamics.results.force_check import checked_ledger
 from dynamics.types import FloatArray, Json
@@ -97,16 +96,17 @@ def forced_response(
         raise InputError("speed", [], "at least one speed")
     share = _halves(progress)
     began = clock.process_time()
-    system = about_running(system)
-    linear = linearize(system, time)
-    ledger = checked_ledger(system, linear.equilibrium.mesh_force)
-    frequency = natural_modes(averaged(system, linear, flank_cycles(system, linear, time), time)).frequency
+    at, harmonics = excited_harmonics(system, orders, time)
+    system, start = at.system, at.linear.equilibrium
+    ledger = checked_ledger(system, start.mesh_force)
+    frequency = natural_modes(at.linear).frequency
     seconds = {"equilibrium_and_modes": clock.process_time() - began}
     began = clock.process_time()
-    response = harmonic_response(system, speeds, orders, time, progress=share(0.0))
-    other = harmonic_response(system, speeds, orders, time, "blocked_force", share(0.5))
+    response, other = (
+        response_of(at, speeds, steady_vibration(at, speeds, harmonics, excitation, share(start_at)))
+        for excitation, start_at in zip(EXCITATIONS, (0.0, 0.5), strict=True)
+    )
     seconds["response"] = clock.process_time() - began
-    start = linear.equilibrium
     facts: Json = {
         "leading_shaft": system.scene.references[leading_law(system)].shaft,
         "time": time,

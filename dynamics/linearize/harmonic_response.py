@@ -21,7 +21,7 @@ from dynamics.linearize.steady_vibration import (
 )
 from dynamics.motion.force_balance import block_diagonal
 from dynamics.motion.observation import local_state
-from dynamics.types import BoolArray, FloatArray
+from dynamics.types import BoolArray, FloatArray, IntArray
 
 
 @dataclass(frozen=True)
@@ -119,13 +119,26 @@ def harmonic_response(
         If there is no static equilibrium.
     """
     one_of("excitation", excitation, EXCITATIONS)
-    integer("orders", orders, 1, SAMPLES // 4)
     speed = np.atleast_1d(np.asarray(speed, dtype=float))
     for index, value in enumerate(np.abs(speed)):
         positive(f"speed[{index}]", float(value))
-    at = excited(system, time, orders)
-    harmonics = np.arange(1, orders * at.period.counted + 1, dtype=np.int64)
+    at, harmonics = excited_harmonics(system, orders, time)
     return response_of(at, speed, steady_vibration(at, speed, harmonics, excitation, progress=progress))
+
+
+def excited_harmonics(system: System, orders: int, time: float) -> tuple[Excited, IntArray]:
+    """Return what excites `system`, and the multiples (H,) of the common period's frequency up to `orders`.
+
+    Raises
+    ------
+    InputError
+        If `orders` is out of range, or the meshes have no common period.
+    SolveError
+        If there is no static equilibrium.
+    """
+    integer("orders", orders, 1, SAMPLES // 4)
+    at = excited(system, time, orders)
+    return at, np.arange(1, orders * at.period.counted + 1, dtype=np.int64)
 
 
 def response_of(at: Excited, speed: FloatArray, steady: Steady) -> HarmonicResponse:
