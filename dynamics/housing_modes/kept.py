@@ -16,7 +16,7 @@ from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.housing_modes.reduction import reduce_housing
 from dynamics.housing_modes.reduction_cost import CostLimit, check_cost
 
-REDUCTION_VERSION = 1
+REDUCTION_VERSION = 2
 """Raised with every change of the numbers of a reduction."""
 
 

@@ -100,6 +100,8 @@ class ReducedHousing:
     checks : ReductionChecks or None
     surface : SurfaceMotion or None
     points : tuple of PointMotion
+    mount_damping : (r, r) array or None
+        What of `damping` is that of the mounts; None: nothing, or not known apart.
     """
 
     mass: FloatArray
@@ -112,6 +114,7 @@ class ReducedHousing:
     checks: ReductionChecks | None = None
     surface: SurfaceMotion | None = None
     points: tuple[PointMotion, ...] = ()
+    mount_damping: FloatArray | None = None
 
     @property
     def motions(self) -> int:

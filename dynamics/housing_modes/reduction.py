@@ -52,11 +52,12 @@ def reduce_housing(housing: MeshedHousing) -> ReducedHousing:
     space = _independent(assembled, modes)
     coordinates = _craig_bampton(assembled, space)
     frequency = np.concatenate([np.zeros(modes.rigid.shape[1]), modes.frequency])
-    ratio, damping = _damping(housing, assembled, coordinates, len(frequency))
+    ratio, own = _own_damping(housing, assembled, coordinates)
+    mounts = _symmetric(coordinates.motion.T @ (assembled.mounts[1] @ coordinates.motion))
     return ReducedHousing(
         coordinates.mass,
         coordinates.stiffness,
-        damping,
+        own + mounts,
         assembled.frames,
         frequency,
         ratio[: len(frequency)],
@@ -64,6 +65,7 @@ def reduce_housing(housing: MeshedHousing) -> ReducedHousing:
         _checks(housing, assembled, modes),
         _surface(housing, assembled, coordinates),
         _points(housing, assembled, coordinates),
+        mounts if np.any(mounts) else None,
     )
 
 
@@ -114,20 +116,19 @@ def _craig_bampton(housing: AssembledHousing, space: FloatArray) -> Coordinates:
     )
 
 
-def _damping(
-    housing: MeshedHousing, assembled: AssembledHousing, coordinates: Coordinates, kept: int
+def _own_damping(
+    housing: MeshedHousing, assembled: AssembledHousing, coordinates: Coordinates
 ) -> tuple[FloatArray, FloatArray]:
-    """Return damping ratios of all reduced modes, and the damping matrix with that of the mounts."""
+    """Return damping ratios of all reduced modes, and their damping matrix, without that of the mounts."""
     square, shape = eigh(coordinates.stiffness, coordinates.mass)
     square[: assembled.loose.shape[1]] = 0.0
-    motion, (stiffness, loss) = coordinates.motion, assembled.mounts
-    springs = motion.T @ (stiffness @ motion)
+    springs = coordinates.motion.T @ (assembled.mounts[0] @ coordinates.motion)
     energy = np.einsum("rm,rs,sm->m", shape, springs, shape, optimize=True)
     share = np.where(square > 0.0, 1.0 - energy / np.where(square > 0.0, square, 1.0), 0.0)
     ratio = housing.damping.ratios(np.clip(share, 0.0, 1.0))
     impulse = coordinates.mass @ shape
     own = impulse @ np.diag(2.0 * ratio * np.sqrt(np.maximum(square, 0.0))) @ impulse.T
-    return ratio, _symmetric(own + motion.T @ (loss @ motion))
+    return ratio, _symmetric(own)
 
 
 def _checks(housing: MeshedHousing, assembled: AssembledHousing, modes: FreeModes) -> ReductionChecks:

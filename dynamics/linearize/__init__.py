@@ -6,6 +6,7 @@ from dynamics.linearize.harmonic_response import HarmonicResponse, harmonic_resp
 from dynamics.linearize.linear_system import LinearSystem, linearize
 from dynamics.linearize.modal_analysis import ModalAnalysis, modal_analysis
 from dynamics.linearize.modes import Modes, natural_modes
+from dynamics.linearize.power_balance import PowerBalance, power_balance
 from dynamics.linearize.whirl import WhirlModes, whirl_modes
 
 __all__ = [
@@ -16,6 +17,7 @@ __all__ = [
     "ModalAnalysis",
     "Modes",
     "Peak",
+    "PowerBalance",
     "WhirlModes",
     "common_period",
     "forced_response",
@@ -24,5 +26,6 @@ __all__ = [
     "modal_analysis",
     "natural_modes",
     "peaks",
+    "power_balance",
     "whirl_modes",
 ]

@@ -12,6 +12,7 @@ from dynamics.assembly.assemble import System
 from dynamics.errors import InputError
 from dynamics.linearize.harmonic_response import HarmonicResponse, excited_harmonics, response_of
 from dynamics.linearize.modes import natural_modes
+from dynamics.linearize.power_balance import PowerBalance, power_balance
 from dynamics.linearize.speeds import checked_speeds, leading_law
 from dynamics.linearize.steady_vibration import EXCITATIONS, steady_vibration
 from dynamics.results.array_file import ArrayFile, Stored
@@ -36,6 +37,8 @@ STORED = {
         ("mesh", "order"), "1", "change of the largest amplitude with the other excitation, relative"
     ),
     "natural_frequency": Stored(("mode",), "Hz", "undamped natural frequency"),
+    "power_input": Stored(("source", "speed", "order"), "W", "mean power put in"),
+    "power_loss": Stored(("sink", "speed", "order"), "W", "mean power lost"),
 }
 
 
@@ -51,6 +54,8 @@ class ForcedResponse(HarmonicResponse, ArrayFile):
         order in the ripple cannot tell.
     natural_frequency : (n,) array
         Undamped, with the mean mesh stiffness, Hz.
+    power_source, power_input, power_sink, power_sink_kind, power_loss
+        The fields of `power`; empty in files of versions without it.
     facts : dict
         Plain JSON: `leading_shaft`, `time`, `equilibrium`, `seconds` (CPU by stage), `effect_ledger`.
     """
@@ -60,7 +65,19 @@ class ForcedResponse(HarmonicResponse, ArrayFile):
 
     excitation_difference: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
     natural_frequency: FloatArray = field(default_factory=lambda: np.empty(0))
+    power_source: tuple[str, ...] = ()
+    power_input: FloatArray = field(default_factory=lambda: np.empty((0, 0, 0)))
+    power_sink: tuple[str, ...] = ()
+    power_sink_kind: tuple[str, ...] = ()
+    power_loss: FloatArray = field(default_factory=lambda: np.empty((0, 0, 0)))
     facts: Json = field(default_factory=dict)
+
+    @property
+    def power(self) -> PowerBalance:
+        """Where the power of the vibration comes from and goes to, with the residual of the balance."""
+        return PowerBalance(
+            self.power_source, self.power_input, self.power_sink, self.power_sink_kind, self.power_loss
+        )
 
 
 def forced_response(
@@ -102,10 +119,12 @@ def forced_response(
     frequency = natural_modes(at.linear).frequency
     seconds = {"equilibrium_and_modes": clock.process_time() - began}
     began = clock.process_time()
-    response, other = (
-        response_of(at, speeds, steady_vibration(at, speeds, harmonics, excitation, share(start_at)))
-        for excitation, start_at in zip(EXCITATIONS, (0.0, 0.5), strict=True)
+    steady, blocked = (
+        steady_vibration(at, speeds, harmonics, excitation, share(part))
+        for excitation, part in zip(EXCITATIONS, (0.0, 0.5), strict=True)
     )
+    response, other = (response_of(at, speeds, each) for each in (steady, blocked))
+    power = power_balance(at, speeds, steady)
     seconds["response"] = clock.process_time() - began
     facts: Json = {
         "leading_shaft": system.scene.references[leading_law(system)].shaft,
@@ -117,7 +136,15 @@ def forced_response(
     }
     plain = {f.name: getattr(response, f.name) for f in fields(response)}
     return ForcedResponse(
-        **plain, excitation_difference=_difference(response, other), natural_frequency=frequency, facts=facts
+        **plain,
+        excitation_difference=_difference(response, other),
+        natural_frequency=frequency,
+        power_source=power.source,
+        power_input=power.input,
+        power_sink=power.sink,
+        power_sink_kind=power.kind,
+        power_loss=power.loss,
+        facts=facts,
     )
 
 

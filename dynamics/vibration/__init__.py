@@ -2,6 +2,7 @@
 
 from dynamics.vibration.contributions import Parts, bearing_parts, mode_parts
 from dynamics.vibration.housing_motion import housing_motion
+from dynamics.vibration.housing_power import HousingPower, housing_power
 from dynamics.vibration.housing_vibration import HousingVibration, housing_vibration
 from dynamics.vibration.levels import overall, vibration_level
 from dynamics.vibration.motion_quantity import MotionQuantity
@@ -13,12 +14,14 @@ from dynamics.vibration.time_signal import motion_signal, point_signal
 from dynamics.vibration.transfer_functions import mean_square_mobility, transfer_functions
 
 __all__ = [
+    "HousingPower",
     "HousingVibration",
     "MotionQuantity",
     "Parts",
     "SurfaceShape",
     "bearing_parts",
     "housing_motion",
+    "housing_power",
     "housing_vibration",
     "mean_square",
     "mean_square_mobility",

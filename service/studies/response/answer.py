@@ -36,6 +36,22 @@ class PeakFigures(Part):
     natural_frequency_hz: float
 
 
+class PowerLoss(Part):
+    """Mean power that a part loses by order, then by speed."""
+
+    part: str
+    kind: str
+    loss_w: list[list[float]]
+
+
+class Power(Part):
+    """Mean power that errors of meshes and loads put in, where it is lost, and the rest over the input."""
+
+    input_w: dict[str, list[list[float]]]
+    losses: list[PowerLoss]
+    residual: float
+
+
 class Equilibrium(Part):
     """The loaded equilibrium."""
 
@@ -54,6 +70,7 @@ class ResponseFigures(Figures):
     peaks: list[PeakFigures]
     parting_rpm: list[float]
     natural_frequency_hz: list[float]
+    power: Power
     residual: float
     equilibrium: Equilibrium
     cpu_seconds: dict[str, float]

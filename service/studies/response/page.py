@@ -16,6 +16,7 @@ from service.studies.presentation import Presentation, dynamics_page
 
 RPM = np.pi / 30.0
 SHOWN_ORDERS, SHOWN_PEAKS = 6, 15
+LEAST_SHARE = 1e-3  # %, of what is listed
 
 WITH_MESHES = (
     "Peak amplitudes of the mesh orders about the static equilibrium, linear: mean mesh stiffness, no loss "
@@ -120,6 +121,25 @@ def peak_table(response: ForcedResponse) -> Table:
     return Table("Peaks over speed, the largest first", head, tuple(rows))
 
 
+def power_table(response: ForcedResponse) -> Table | None:
+    """List where the power goes at the speed at which most is lost; None where nothing is."""
+    power = response.power
+    by_part = np.sum(power.loss, axis=2)
+    total = np.sum(by_part, axis=0)
+    if not np.any(total > 0.0):
+        return None
+    at = int(np.argmax(total))
+    rows = []
+    for kind, lost in power.by_kind().items():
+        own = [part for part, each in enumerate(power.kind) if each == kind]
+        most = max(own, key=lambda part: by_part[part, at])
+        share = 100.0 * float(lost[at] / total[at])
+        if abs(share) >= LEAST_SHARE:
+            rows.append((kind, power.sink[most], number(float(lost[at]), 3), number(share, 3)))
+    title = f"Power lost at {number(float(response.speed[at]) / RPM, 4)} rpm, all orders"
+    return Table(title, ("lost in", "most in", "W", "%"), tuple(rows))
+
+
 def _words(response: ForcedResponse) -> str:
     """Say the largest amplitude, and where flanks part."""
     if not response.mesh:
@@ -168,7 +188,11 @@ def _text(response: ForcedResponse) -> Iterator[Table | str]:
         "first-order theory: the other excitation changes "
         f"amplitudes by up to {engineering(worst, 2)} % of the largest"
     )
-    yield f"residual of the solves {leftover(response.residual)}"
+    lost = power_table(response)
+    if lost is not None:
+        yield lost
+    left = response.power.residual
+    yield f"residual of the solves {leftover(response.residual)}, of the power balance {leftover(left)}"
     yield f"cost {engineering(sum(response.facts['seconds'].values()), 3)} CPU s"
     yield from run_lines(response.facts)
 

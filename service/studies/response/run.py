@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from dynamics.assembly.assemble import assemble
-from dynamics.linearize import ForcedResponse, Peak, forced_response, peaks
+from dynamics.linearize import ForcedResponse, Peak, PowerBalance, forced_response, peaks
 from dynamics.scene import Scene
 from service.convert.case import boundary_errors
 from service.studies.computation import Computation, Means
@@ -44,6 +44,7 @@ def facts(response: ForcedResponse) -> Json:
         "peaks": [_peak_json(peak) for peak in peaks(response)],
         "parting_rpm": (response.speed[~response.in_contact] / RPM).tolist(),
         "natural_frequency_hz": response.natural_frequency.tolist(),
+        "power": _power_json(response.power),
         "residual": response.residual,
         "equilibrium": {
             "status": about["equilibrium"]["status"].lower(),
@@ -64,6 +65,16 @@ def _mesh_json(response: ForcedResponse, mesh: int) -> Json:
         "mesh_force_n": np.abs(response.mesh_force[mesh]).T.tolist(),
         "least_mesh_force_n": response.least_mesh_force[mesh].tolist(),
         "excitation_difference": response.excitation_difference[mesh].tolist(),
+    }
+
+
+def _power_json(power: PowerBalance) -> Json:
+    """Where the power comes from and goes to."""
+    sinks = zip(power.sink, power.kind, power.loss, strict=True)
+    return {
+        "input_w": {name: own.T.tolist() for name, own in zip(power.source, power.input, strict=True)},
+        "losses": [{"part": name, "kind": kind, "loss_w": own.T.tolist()} for name, kind, own in sinks],
+        "residual": power.residual,
     }
 
 

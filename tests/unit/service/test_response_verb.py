@@ -73,6 +73,23 @@ def test_the_table_and_every_kind_of_file_say_the_same(scene: Path, tmp_path: Pa
     assert "Forced response to transmission errors and loads" in page.read_text()
 
 
+def test_the_power_of_the_vibration_is_lost_where_the_table_says(scene: Path) -> None:
+    arguments = (scene, "--speed-rpm", "2000:6000:500", "--orders", 3)
+    power = json.loads(loa(*arguments, "--json").stdout)["power"]
+    lost = np.sum([part["loss_w"] for part in power["losses"]], axis=0)
+    assert lost.shape == (3, 9)
+    np.testing.assert_allclose(lost, np.sum(list(power["input_w"].values()), axis=0), rtol=1e-9, atol=1e-12)
+    assert power["residual"] < 1e-9
+    worst = int(np.argmax(lost.sum(axis=0)))
+    lines = loa(*arguments).stdout.splitlines()
+    assert f"Power lost at {2000 + 500 * worst} rpm" in " ".join(line.strip() for line in lines)
+    shares = {part["kind"]: 0.0 for part in power["losses"]}
+    for part in power["losses"]:
+        shares[part["kind"]] += float(np.sum(part["loss_w"], axis=0)[worst] / lost.sum(axis=0)[worst])
+    row = next(line for line in lines if line.strip().startswith("mesh "))
+    assert float(row.split()[-1]) == pytest.approx(100.0 * shares["mesh"], rel=0.01)
+
+
 def test_speeds_at_which_flanks_part_are_said(scene: Path) -> None:
     scene.write_text(scene.read_text().replace("damping_ratio = 0.08", "damping_ratio = 0.005"))
     result = loa(scene, "--speed-rpm", "13500:14500:50", "--json")

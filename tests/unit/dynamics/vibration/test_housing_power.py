@@ -1,0 +1,88 @@
+"""Power of bearings in a housing: balance, the split between housing and mounts, the whole mesh's mounts."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from lattice_meshes import tube
+from scipy.sparse.linalg import spsolve
+
+from dynamics.housing_modes import (
+    Bore,
+    Foot,
+    Material,
+    MaterialDamping,
+    MeshedHousing,
+    ModalDamping,
+    Mount,
+    Plane,
+    ReducedHousing,
+    SeatBore,
+)
+from dynamics.housing_modes.assembled_housing import assemble
+from dynamics.housing_modes.reduction import reduce_housing
+from dynamics.vibration import housing_power
+
+STEEL = Material(210e9, 0.3, 7850.0)
+STIFFNESS, DASHPOT = 2e7, 3e3
+HERTZ = np.array([50.0, 400.0, 2000.0, 4000.0])
+
+
+def rows(diagonal):
+    return tuple(map(tuple, np.diag(diagonal).tolist()))
+
+
+@cache
+def meshed(damping=None, *, dashpot=DASHPOT) -> MeshedHousing:
+    """A tube of steel on one mount."""
+    lever = [1.0, 1.0, 1.0, 4e-3, 4e-3, 4e-3]
+    mount = Mount(rows([STIFFNESS * a for a in lever]), rows([dashpot * a for a in lever]))
+    seat = SeatBore("seat", Bore((0.0, 0.0, 0.075), (0.0, 0.0, 1.0), 0.08, 0.05))
+    foot = Foot("base", Plane((0.0, 0.0, 0.0), (0.0, 0.0, -1.0)), mount)
+    mesh = tube(0.12, 0.08, 0.1, (12, 1, 2))
+    return MeshedHousing(mesh, STEEL, (seat,), (foot,), modes=20, damping=damping or MaterialDamping(0.01))
+
+
+@cache
+def reduced(damping=None, *, dashpot=DASHPOT) -> ReducedHousing:
+    return reduce_housing(meshed(damping, dashpot=dashpot))
+
+
+def forces(seed=1):
+    draw = np.random.default_rng(seed)
+    return draw.normal(size=(HERTZ.size, 5)) + 1j * draw.normal(size=(HERTZ.size, 5))
+
+
+def test_what_bearings_put_in_is_lost_in_the_housing_and_its_mounts() -> None:
+    power = housing_power(reduced(), HERTZ, forces())
+    assert power.residual < 1e-9
+    assert np.all(power.own > 0.0) and np.all(power.mounts > 0.0)
+    assert power.mounts[0] > 100.0 * power.own[0]  # a rigid body on its mount
+    bare = housing_power(reduced(dashpot=0.0), HERTZ, forces())
+    assert not np.any(bare.mounts) and bare.residual < 1e-9
+
+
+def test_mounts_take_what_they_take_on_the_whole_mesh() -> None:
+    """A housing without losses of its own: all power leaves through the mounts."""
+    lossless = ModalDamping((0.0,))
+    power, whole = housing_power(reduced(lossless), HERTZ, forces()), assemble(meshed(lossless))
+    assert np.max(np.abs(power.own)) < 1e-9 * np.max(power.mounts)
+    for index, hertz in enumerate(HERTZ):
+        omega = 2.0 * math.pi * hertz
+        dynamic = whole.stiffness + 1j * omega * whole.mounts[1] - omega**2 * whole.mass
+        motion = spsolve(sp.csc_array(dynamic), whole.seats.T @ forces()[index])
+        through = 0.5 * omega**2 * np.real(motion.conj() @ (whole.mounts[1] @ motion))
+        assert power.mounts[index] == pytest.approx(through, rel=0.01)
+
+
+def test_a_rigid_body_on_a_mount_loses_its_power_there() -> None:
+    """m x'' + c x' + k x = F along the axis, far below the first mode of the tube."""
+    housing, omega = reduced(), 2.0 * math.pi * 50.0
+    push = np.array([[0.0, 0.0, 7.0, 0.0, 0.0]], dtype=complex)
+    found = housing_power(housing, HERTZ[:1], push)
+    moved = 7.0 / (STIFFNESS - omega**2 * housing.body.mass + 1j * omega * DASHPOT)
+    assert found.mounts[0] == pytest.approx(0.5 * DASHPOT * omega**2 * abs(moved) ** 2, rel=2e-3)
