@@ -7,7 +7,7 @@ import host.analysis  # noqa: F401 (says what to install)
 from dynamics.housing_modes.damping import USUAL_DAMPING, MaterialDamping, ModalDamping
 from dynamics.housing_modes.faces import Bore, BoundedPlane, Box, Group, Plane
 from dynamics.housing_modes.feet import Foot, Mount
-from dynamics.housing_modes.kept import reduced_housing
+from dynamics.housing_modes.kept import meshed_step, reduced_housing
 from dynamics.housing_modes.mesh_file import read_mesh
 from dynamics.housing_modes.meshed_housing import MeshedHousing
 from dynamics.housing_modes.reduced_housing import ReducedHousing
@@ -50,6 +50,7 @@ __all__ = [
     "TetrahedralMesh",
     "housing_of_matrices",
     "mesh_step",
+    "meshed_step",
     "read_matrix_market",
     "read_mesh",
     "read_reduced_matrices",

@@ -93,8 +93,8 @@ class Bore:
             return
         others = Text.of("no wall faces the axis there")
         if radii.size:
-            low, high = (Quantity(2.0 * float(end), "m", digits=6) for end in (radii.min(), radii.max()))
-            others = Text.of("walls facing the axis have diameters from ", low, " to ", high)
+            nearest = Quantity(2.0 * float(radii.min()), "m", digits=6)
+            others = Text.of("the nearest wall that faces the axis has a diameter of ", nearest)
         bound = (
             f"that of a bore of the mesh, of which at least {COVERED:.0%} is there ({area / whole:.0%} is)"
         )

@@ -1,10 +1,11 @@
-"""Reductions kept on disk, by the hash of everything that decides them."""
+"""Meshes of STEP files and reductions kept on disk, by the hash of everything that decides them."""
 
 from __future__ import annotations
 
 import hashlib
 import os
 from contextlib import suppress
+from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 
@@ -15,9 +16,56 @@ from dynamics.housing_modes.meshed_housing import MeshedHousing
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.housing_modes.reduction import reduce_housing
 from dynamics.housing_modes.reduction_cost import CostLimit, check_cost
+from dynamics.housing_modes.step_mesh import WALL_ELEMENTS, mesh_step
+from dynamics.housing_modes.tetrahedral_mesh import TetrahedralMesh
+from dynamics.types import FloatArray, IntArray
+from model_studies.array_file import UnreadableFile
+from model_studies.record_file import read_record, write_record
 
 REDUCTION_VERSION = 2
 """Raised with every change of the numbers of a reduction."""
+MESH_VERSION = 1
+"""Raised with every change of the mesh of a STEP file."""
+MESH_SCHEMA = "lineofaction housing mesh"
+
+
+@dataclass(frozen=True)
+class KeptMesh:
+    """Nodes and elements of a mesh, as `TetrahedralMesh` has them."""
+
+    points: FloatArray
+    tetrahedra: IntArray
+
+
+def meshed_step(
+    path: str | Path, element_size: float | None = None, cache: Path | None = None
+) -> TetrahedralMesh:
+    """Return the mesh of a STEP file, from the cache if it is there.
+
+    Parameters
+    ----------
+    path, element_size
+        As `mesh_step` takes them, and it raises the same.
+    cache : Path, optional
+        Directory of kept results; None: neither read nor written.
+    """
+    file = None
+    if cache is not None and Path(path).is_file():
+        facts = repr([MESH_VERSION, WALL_ELEMENTS, version("gmsh"), version("meshio"), element_size])
+        content = hashlib.sha256(Path(path).read_bytes() + facts.encode()).hexdigest()
+        file = cache / f"mesh-{content}.nc"
+    if file is not None:
+        with suppress(UnreadableFile):  # absent or damaged: meshed again
+            kept = read_record(file, {MESH_SCHEMA: KeptMesh})
+            with suppress(OSError):  # of another owner
+                os.utime(file)
+            return TetrahedralMesh(kept.points, kept.tetrahedra)
+    mesh = mesh_step(path, element_size)
+    if file is not None:
+        with suppress(OSError):
+            file.parent.mkdir(parents=True, exist_ok=True)
+            write_record(KeptMesh(mesh.points, mesh.tetrahedra), file, MESH_SCHEMA)
+    return mesh
 
 
 def reduced_housing(

@@ -62,9 +62,7 @@ def check_cost(housing: MeshedHousing, limit: CostLimit) -> ReductionCost:
     """
     motions = sum(seat.motions for seat in housing.seats)
     cost = reduction_cost(housing.mesh.freedoms, housing.modes, motions)
-    advice = (
-        f"{housing.mesh.freedoms} freedoms, {housing.modes} modes: use a coarser mesh or raise the limit."
-    )
+    advice = f"{housing.mesh.freedoms} freedoms, {housing.modes} modes: use a coarser mesh or fewer modes."
     if cost.seconds > limit.seconds:
         raise InputError("predicted_seconds", cost.seconds, at_most(limit.seconds, "s"), advice)
     if cost.bytes > limit.bytes:

@@ -13,6 +13,7 @@ from service.client.process import obtained
 from service.client.result_calls import ResultCalls
 from service.client.steps import Steps
 from service.client.surface import Surface, operation
+from service.directories import cache_home
 
 if TYPE_CHECKING:
     from dynamics.scene import Scene
@@ -50,7 +51,8 @@ class SceneCalls(Surface):
 
         Its meshes take their tables by ``case``, ``case_file``, ``database_hash`` or ``database_file``,
         unless they state their ``stiffness``; those
-        of cases are as from `analyze`, those of files are read here.
+        of cases are as from `analyze`, those of files are read here. Housings by their solids are reduced
+        here.
 
         Raises
         ------
@@ -63,6 +65,9 @@ class SceneCalls(Surface):
         for index, mesh in inputs.with_database:
             tables[mesh.name] = yield from source.of(index, mesh)
         with libraries():
-            from service.convert.scene import dynamic_scene  # noqa: PLC0415 (keeps the import of the client light)
+            # keeps the import of the client light
+            from service.convert.housings import reduced_in  # noqa: PLC0415
+            from service.convert.scene import dynamic_scene  # noqa: PLC0415
 
-        return dynamic_scene(inputs, tables)
+            housings = reduced_in(inputs, cache_home())
+        return dynamic_scene(inputs, tables, housings)

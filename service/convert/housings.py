@@ -7,10 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from dynamics.errors import InputError
 from dynamics.joints import Housing
 from model_studies.progress import Progress, silent
 from service.convert.declared import in_si
 from service.convert.errors import named
+from service.convert.solid_file import solid_file
+from service.problems import BadInput
 from service.schemas.scene import SceneInput
 from service.schemas.scene_housings import HousingInput
 from service.units import MM
@@ -57,13 +60,24 @@ def housing_of(index: int, housing: HousingInput, reduced: ReducedHousing | None
 
     assert reduced is not None  # whoever makes the scene reduces them
     with named(f"housings[{index}]"):
-        return scene_housing(reduced, housing.name, housing.bushings)
+        try:
+            return scene_housing(reduced, housing.name, housing.bushings)
+        except InputError as error:
+            if error.field != "stiffness":
+                raise
+            advice = "Fix a foot, or give mounts on three feet that are not in line."
+            bound = "such that they hold the housing in every direction"
+            raise InputError("feet", [foot.name for foot in housing.feet], bound, advice) from None
 
 
 def stand_in(index: int, housing: HousingInput) -> Housing:
-    """Return a housing on matrices that stand in for those of a solid."""
+    """Return a housing on matrices that stand in for those of a solid, whose file is looked into."""
     if not housing.is_solid:
         return _of_matrices(index, housing)
+    try:
+        solid_file(housing)
+    except BadInput as error:
+        raise error.within(f"housings[{index}]") from None
     unit = np.eye(_MOTIONS * len(housing.bushings))
     stiffness, mass = (tuple(map(tuple, (scale * unit).tolist())) for scale in (_ANY_STIFFNESS, _ANY_MASS))
     with named(f"housings[{index}]"):

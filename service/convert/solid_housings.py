@@ -28,18 +28,19 @@ from dynamics.housing_modes import (
     Ring,
     SeatBore,
     TetrahedralMesh,
-    mesh_step,
+    meshed_step,
     read_mesh,
     reduced_housing,
 )
 from dynamics.joints.matrix import Matrix
 from model_studies.progress import Progress, by_cost, silent
 from service.convert.declared import in_si
-from service.convert.errors import named, translated
-from service.problems import BadInput
-from service.schemas.file_content import FileContentInput
+from service.convert.errors import named
+from service.convert.solid_file import solid_file
+from service.problems import BadInput, JobFailed
 from service.schemas.scene import SceneInput
-from service.schemas.scene_housings import HousingFootInput, HousingInput, HousingSeatInput
+from service.schemas.scene_housings import HousingInput
+from service.schemas.scene_solids import HousingFootInput, HousingSeatInput
 from service.units import MM
 
 STAGE = "housing"
@@ -91,45 +92,58 @@ def _named(field: str, housing: HousingInput) -> Iterator[None]:
     with named(field):
         try:
             yield
+        except BadInput as error:
+            raise error.within(field) from None
         except InputError as error:
-            own = _FACE.sub(r"\1.bore_\2", error.field)
-            own = _OF_FOOT.sub(r"\1.\2", own)
-            for number, point in enumerate(housing.points):
-                own = own if own != f"points.{point.name}" else f"points[{number}].position"
+            own = _own_name(error.field, housing)
             raise InputError(own, error.value, error.bound, error.suggestion) from None
         except DynamicsError as error:
-            raise translated(error) or error from None
+            raise JobFailed(f'housing "{housing.name}": {error}') from error
 
 
-_FACE = re.compile(r"^(seats\[\d+\])\.bore\.(\w+)")
-_OF_FOOT = re.compile(r"^(feet\[\d+\])\.face\.(\w+)")
+def _own_name(field: str, housing: HousingInput) -> str:
+    """Return the scene file's name of a field of `dynamics.housing_modes`, but for its unit."""
+    for pattern, own in _NAMES.items():
+        field = pattern.sub(own, field)
+    names = {f"points.{point.name}": f"points[{i}].position" for i, point in enumerate(housing.points)}
+    names |= {f"feet.{foot.name}": f"feet[{i}]" for i, foot in enumerate(housing.feet)}
+    names |= {f"seats.{seat.bearing}": f"seats[{i}]" for i, seat in enumerate(housing.seats)}
+    source = "step_file" if housing.step_file is not None else "mesh_file"
+    return re.sub(r"^mesh_file", source, names.get(field, field))
+
+
+_NAMES = {
+    re.compile(r"^(seats\[\d+\])\.bore\.(\w+)"): r"\1.bore_\2",
+    re.compile(r"^(feet\[\d+\])\.face\.(\w+)"): r"\1.\2",
+    re.compile(r"^mesh_file\.size$"): "mesh_file.size_mm",
+}
 
 
 def _mesh(housing: HousingInput, cache: Path | None) -> TetrahedralMesh:
     """Return the mesh of a solid where it stands in the scene."""
-    name = "step_file" if housing.step_file is not None else "mesh_file"
-    content: FileContentInput = getattr(housing, name)
-    try:
-        data = content.unpacked()
-    except ValueError as error:
-        raise BadInput.of(f"{name}.content", f"{len(content.content)} characters", str(error)) from None
+    field, suffix, data = solid_file(housing)
     with TemporaryDirectory() as folder:
-        file = Path(folder) / f"housing{Path(content.name).suffix.lower()}"
+        file = Path(folder) / f"housing{suffix}"
         file.write_bytes(data)
-        if name == "step_file":
-            size = housing.element_size_mm  # type: ignore[attr-defined]
-            mesh = mesh_step(file, None if size is None else size * MM)
-        else:
-            mesh = read_mesh(file, str(housing.mesh_unit))
-    return _placed(housing, mesh)
+        try:
+            if field == "step_file":
+                size = housing.element_size_mm
+                return _placed(housing, meshed_step(file, None if size is None else size * MM, cache))
+            return _placed(housing, read_mesh(file, str(housing.mesh_unit)))
+        except InputError as error:
+            if error.value != str(file):
+                raise
+            content = housing.step_file or housing.mesh_file
+            assert content is not None
+            bound = str(error.bound).replace(folder, "").replace(f"/{file.name}", content.name)
+            raise InputError(error.field, content.name, bound, error.suggestion) from None
 
 
 def _placed(housing: HousingInput, mesh: TetrahedralMesh) -> TetrahedralMesh:
     """Turn and move a mesh from the frame of its file into that of the scene."""
     if housing.origin_mm is None and housing.x_axis is None and housing.z_axis is None:
         return mesh
-    x = np.array(housing.x_axis or (1.0, 0.0, 0.0))
-    z = np.array(housing.z_axis or (0.0, 0.0, 1.0))
+    x, z = (np.array(axis) / np.linalg.norm(axis) for axis in (housing.own_x_axis, housing.own_z_axis))
     axes = np.stack([x, np.cross(z, x), z], axis=1)
     origin = MM * np.array(housing.origin_mm or (0.0, 0.0, 0.0))
     return replace(mesh, points=mesh.points @ axes.T + origin)
@@ -137,7 +151,7 @@ def _placed(housing: HousingInput, mesh: TetrahedralMesh) -> TetrahedralMesh:
 
 def _meshed(housing: HousingInput, scene: SceneInput, mesh: TetrahedralMesh) -> MeshedHousing:
     """Return the housing on its mesh."""
-    loss, ratio = housing.loss_factor, housing.damping_ratio  # type: ignore[attr-defined]
+    loss, ratio = housing.loss_factor, housing.damping_ratio
     assert housing.material is not None  # the schema comes first
     return MeshedHousing(
         mesh,
@@ -145,7 +159,7 @@ def _meshed(housing: HousingInput, scene: SceneInput, mesh: TetrahedralMesh) -> 
         tuple(_seat(seat, scene) for seat in housing.seats),
         tuple(_foot(foot) for foot in housing.feet),
         {point.name: _si(point.position_mm) for point in housing.points},
-        housing.modes,  # type: ignore[attr-defined]
+        housing.modes,
         ModalDamping((ratio,)) if loss is None else MaterialDamping(loss),
     )
 
@@ -157,8 +171,8 @@ def _seat(seat: HousingSeatInput, scene: SceneInput) -> SeatBore:
     bearing = bearings[seat.bearing]
     x, y, z = origins[bearing.shaft]
     middle = _si((x, y, z + bearing.position_mm))  # type: ignore[union-attr]
-    bore = Bore(middle, (0.0, 0.0, 1.0), seat.bore_diameter_mm * MM, seat.bore_length_mm * MM)  # type: ignore[attr-defined]
-    return SeatBore(seat.bearing, bore, Ring(seat.ring))  # type: ignore[attr-defined]
+    bore = Bore(middle, (0.0, 0.0, 1.0), seat.bore_diameter_mm * MM, seat.bore_length_mm * MM)
+    return SeatBore(seat.bearing, bore, Ring(seat.ring))
 
 
 def _foot(foot: HousingFootInput) -> Foot:

@@ -9,6 +9,15 @@ from service.schemas.process_inputs import AnalyzeInputs, SimulateInputs, study_
 from service.stages import Stage
 from service.worker.process import Process, Registry, on_demand
 
+_HOUSING = Stage("housing", 0.3)
+"""Mesh and modes of solids; a stage that a scene does without has no share."""
+
+
+def of_scene(*stages: Stage) -> tuple[Stage, ...]:
+    """Return the stages of the work on a scene, which begins with its housings."""
+    return (_HOUSING, *(Stage(stage.name, (1.0 - _HOUSING.share) * stage.share) for stage in stages))
+
+
 ANALYZE = Process(
     id="analyze",
     title="STE database of a gear pair",
@@ -33,12 +42,13 @@ SIMULATE = Process(
     kind="run",
     prepare=on_demand("service.worker.preparations:prepare_scene"),
     entry="service.worker.simulation_work:simulate_scene",
-    stages=(Stage("analysis", 0.5), Stage("integration", 0.5)),
+    stages=of_scene(Stage("analysis", 0.5), Stage("integration", 0.5)),
 )
 
 
 def study_process(study: Study) -> Process:
     """Return the process of a study."""
+    stages = tuple(Stage(*stage) for stage in study.stages)
     return Process(
         id=study.name,
         title=study.title,
@@ -49,7 +59,7 @@ def study_process(study: Study) -> Process:
         kind=study.kind,
         prepare=partial(on_demand("service.worker.study_work:prepare"), study),
         entry=f"service.worker.study_work:{study.name}",
-        stages=tuple(Stage(*stage) for stage in study.stages),
+        stages=stages if study.subject == "case" else of_scene(*stages),
         action=study.action,
     )
 

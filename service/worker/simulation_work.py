@@ -14,6 +14,7 @@ from dynamics.simulation import simulate_to_file
 from fe_contact.ste import SteDatabase
 from model_studies.progress import Report, by_cost
 from service.convert.case import case_json
+from service.convert.housings import reduced_in
 from service.convert.plausibility import scene_warnings
 from service.convert.runs import staged
 from service.convert.scene import TabledScene, dynamic_scene
@@ -44,17 +45,18 @@ class OrderedScene:
 
 
 def ordered_scene(order: WorkOrder, progress: Progress) -> OrderedScene:
-    """Gather or compute the tables of the scene of an order."""
+    """Reduce the housings of the scene of an order, gather or compute its tables."""
     inputs = SceneInput.model_validate_json(json.dumps(order.inputs["scene"]))
+    housings = reduced_in(inputs, order.data_directory, progress)
     products: list[Product] = []
     databases: dict[str, SteDatabase] = {}
     costs = {mesh.name: float(_stored_key(order, mesh) is None) for _, mesh in inputs.with_database}
     tables = by_cost(partial(progress, "analysis"), costs)
     for index, mesh in inputs.with_database:
         databases[mesh.name] = _table(order, index, mesh, products, partial(tables, mesh.name))
-    scene = dynamic_scene(inputs, databases)
+    scene = dynamic_scene(inputs, databases, housings)
     warnings = {name: database.metadata.warnings for name, database in databases.items()}
-    tabled = TabledScene(inputs, databases, scene)
+    tabled = TabledScene(inputs, databases, scene, housings)
     return OrderedScene(tabled, tuple(products), scene_warnings(inputs, scene, warnings))
 
 

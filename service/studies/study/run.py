@@ -32,7 +32,7 @@ def study_of(tabled: TabledScene, inputs: Inputs, means: Means) -> Study:
         design = design_of(tabled.inputs, inputs, places)
         responses = responses_of(tabled.scene, inputs)
         written = tabled.inputs.model_dump_json()
-        scenes = VariedScene(written, tabled.databases, places, str(means.home / "compliance"))
+        scenes = VariedScene(written, tabled.databases, places, str(means.home))
         task = StudyTask(scenes, design.names, responses, inputs.start_s, inputs.receipt)
         result = study(
             task,

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pydantic import ValidationError
@@ -19,14 +19,20 @@ from fe_contact.errors import FeContactError
 from fe_contact.ste import SteDatabase
 from model_studies import LeftOut
 from service.convert.case import gear_pair
+from service.convert.housings import reduced_in
 from service.convert.scene import dynamic_scene
 from service.problems import BadInput, ServiceError
 from service.schemas.faults import faults_of
+from service.schemas.model import BoundaryModel
 from service.schemas.scene import SceneInput
 from service.studies.study.paths import Place, mesh_of_case, with_value
 
+if TYPE_CHECKING:
+    from dynamics.housing_modes import ReducedHousing
+
 Json = dict[str, Any]
 Key = tuple[tuple[str, float], ...]
+SolidKey = tuple[tuple[BoundaryModel, ...], ...]
 
 
 @dataclass(frozen=True)
@@ -41,20 +47,21 @@ class VariedScene:
         By name of the mesh.
     places : mapping
         Of every factor, where it stands in the scene.
-    cache : str
-        Folder of flank compliances.
+    home : str
+        Folder of the caches.
     """
 
     written: str
     databases: Mapping[str, SteDatabase]
     places: Mapping[str, tuple[Place, ...]]
-    cache: str
+    home: str
 
     def scene(self, values: Mapping[str, float]) -> Scene:
         """Return the scene at values of the factors; raises `LeftOut` where there is none."""
         try:
             inputs = self.inputs(values)
-            return dynamic_scene(inputs, self._databases_of(inputs, self.expensive(values)))
+            databases = self._databases_of(inputs, self.expensive(values))
+            return dynamic_scene(inputs, databases, self._reduced(inputs))
         except (ServiceError, FeContactError) as error:
             raise LeftOut(str(error)) from error
 
@@ -76,6 +83,19 @@ class VariedScene:
         return {}
 
     @cached_property
+    def _housings(self) -> dict[SolidKey, Mapping[str, ReducedHousing]]:
+        """The housings reduced last, by what decides them."""
+        return {}
+
+    def _reduced(self, inputs: SceneInput) -> Mapping[str, ReducedHousing]:
+        """Return the reductions of the solids; those made last are kept."""
+        key = inputs.housings, inputs.shafts, inputs.bushings, inputs.rolling_bearings
+        if key not in self._housings:
+            self._housings.clear()
+            self._housings[key] = reduced_in(inputs, Path(self.home))
+        return self._housings[key]
+
+    @cached_property
     def _table(self) -> Json:
         """The scene as JSON."""
         return dict(json.loads(self.written))
@@ -95,7 +115,8 @@ class VariedScene:
     def _bodies(self, mesh: Any) -> CondensedPair:
         """Fetch or compute the compliance of a mesh."""
         pair, effects = gear_pair(mesh.case), dict(mesh.case.effects)
-        found = condensed_pair(pair, self.databases[mesh.name], effects, Path(self.cache), compute=True)
+        cache = Path(self.home) / "compliance"
+        found = condensed_pair(pair, self.databases[mesh.name], effects, cache, compute=True)
         assert found is not None
         return found
 

@@ -23,6 +23,7 @@ from service.schemas import (
     scene_loads,
     scene_meshes,
     scene_motion,
+    scene_solids,
 )
 from service.settings import Settings, load_settings
 
@@ -37,7 +38,7 @@ def page(name: str) -> str:
 def models() -> list[type[BaseModel]]:
     """Return the tables of case and scene files."""
     modules = (case, gear, scene, scene_bearings, scene_bodies, scene_housings)
-    modules += (scene_loads, scene_meshes, scene_motion)
+    modules += (scene_loads, scene_meshes, scene_motion, scene_solids)
     found = [vars(module).values() for module in modules]
     return [m for group in found for m in group if inspect.isclass(m) and issubclass(m, BaseModel)]
 

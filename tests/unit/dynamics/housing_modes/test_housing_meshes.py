@@ -186,7 +186,7 @@ def test_a_step_file_is_meshed_and_its_bores_are_seats(tmp_path: Path) -> None:
         assert radius == pytest.approx(
             diameter / 2.0, rel=1e-6
         )  # mid-side nodes too: they follow the surface
-    with pytest.raises(InputError, match=r"diameters from 0\.04") as caught:
+    with pytest.raises(InputError, match=r"diameter of 0\.04") as caught:
         bore(0.035, 0.05).triangles(mesh)
     assert caught.value.field == "diameter"
     corner = BoundedPlane(Plane((0.0, 0.0, 0.0), (0.0, 0.0, -1.0)), Box((-1.0, -1.0, -1.0), (0.06, 1.0, 1.0)))

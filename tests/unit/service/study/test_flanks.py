@@ -52,8 +52,8 @@ def scenes(
     assert case is not None
     database = analyzed(case, lambda _stage, _fraction: None)
     places = {PATH: places_of(written, "path", PATH)}
-    cache = str(tmp_path_factory.mktemp("compliance"))
-    return VariedScene(written.model_dump_json(), {"mesh": database}, places, cache)
+    home = str(tmp_path_factory.mktemp("caches"))
+    return VariedScene(written.model_dump_json(), {"mesh": database}, places, home)
 
 
 def test_other_flanks_are_other_tables_and_the_designed_ones_agree_with_the_analysis(
@@ -73,7 +73,7 @@ def test_runs_of_equal_flanks_are_in_a_row_and_equal_to_single_runs(scenes: Vari
         scenes.written,
         scenes.databases,
         {torque: (("loads", 0, "torque_n_m"),), **scenes.places},
-        scenes.cache,
+        scenes.home,
     )
     design = Design({torque: Levels((60.0, 90.0)), PATH: Levels((10.0, 40.0))})
     made = study(StudyTask(both, design.names, RESPONSES), design)
