@@ -50,7 +50,8 @@ class ModalResistance:
             A frequency lies outside of those computed, or the shapes of arrays differ.
         """
         velocity = np.asarray(velocity)
-        return 0.5 * np.sum(velocity.conj() * self.reaction(frequency, velocity), axis=1).real
+        flow = np.sum(velocity.conj() * self.reaction(frequency, velocity), axis=1)
+        return np.asarray(0.5 * flow.real)
 
     def reaction(self, frequency: FloatArray, velocity: ComplexArray) -> ComplexArray:
         """Return the part R v of the air's force that takes power from the shapes, (B, M), N.

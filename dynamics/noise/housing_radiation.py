@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
+from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -103,7 +104,7 @@ def housing_radiation(
     began = time.process_time()
     outer = outer_hull(housing)
     surface = outer.shapes.T @ (outer.hull.areas[:, None] * outer.shapes)
-    plane = air.impedance * surface
+    plane = cast(ComplexArray, air.impedance * surface)
     resolved = _resolved(outer, model, air)
     modes, parts, most = housing.modes[1], [], 0
     for first, last in _octaves(low, min(high, resolved)):
@@ -149,7 +150,7 @@ def _octaves(low: float, high: float) -> list[tuple[float, float]]:
 
 def _resistance(model: RadiationModel, hull: RadiatingHull, air: Air, frequency: float) -> ComplexArray:
     """Return the resistance of the coordinates at a frequency, (r, r)."""
-    return resistance(model, hull.hull, frequency, hull.shapes, air)
+    return resistance(model, hull.hull, frequency, cast(ComplexArray, hull.shapes), air)
 
 
 def _resolved(outer: OuterHull, model: RadiationModel, air: Air) -> float:

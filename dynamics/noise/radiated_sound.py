@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from dynamics.acoustics import OrderPower
+from dynamics.acoustics.hull import ComplexArray
 from dynamics.errors import InputError
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.linearize import HarmonicResponse
@@ -139,7 +140,7 @@ def radiated_sound(
     return _result(response, housing, names, found, radiation, name)
 
 
-def _parts(response: HarmonicResponse, housing: ReducedHousing, names: tuple[str, ...]) -> FloatArray:
+def _parts(response: HarmonicResponse, housing: ReducedHousing, names: tuple[str, ...]) -> ComplexArray:
     """Return the velocity of the coordinates under the force of each bearing alone, (b, S, H, r), m/s."""
     force = seat_forces(response, housing, names)
     owner = np.repeat(np.arange(len(names)), [len(seat.motions) for seat in housing.seats])

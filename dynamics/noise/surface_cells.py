@@ -20,10 +20,8 @@ FARTHEST = 1.0
 def surface_cells(hull: Hull, count: int) -> IntArray:
     """Return the cell of every node, (N,), numbers from 0 on; at most `count` of about the same size."""
     edges, share = _edges(hull), _node_areas(hull)
-    draw = np.random.default_rng(0)
-    seeds = draw.choice(
-        len(share), size=min(count, np.count_nonzero(share)), replace=False, p=share / share.sum()
-    )
+    most = min(count, int(np.count_nonzero(share)))
+    seeds = np.random.default_rng(0).choice(len(share), most, replace=False, p=share / share.sum())
     for _ in range(STEPS):
         cell = _next_seed(edges, seeds)
         seeds = nearest_nodes(hull, cell, _means(cell, share, hull.nodes))
@@ -73,7 +71,8 @@ def _next_seed(edges: csr_array, seeds: IntArray) -> IntArray:
 
 def _node_areas(hull: Hull) -> FloatArray:
     """Return a third of the areas of the panels about each node, (N,), m^2."""
-    return np.bincount(hull.triangles.ravel(), np.repeat(hull.areas / 3.0, 3), len(hull.nodes))
+    shares = np.repeat(hull.areas / 3.0, 3)
+    return np.asarray(np.bincount(hull.triangles.ravel(), shares, len(hull.nodes)), dtype=float)
 
 
 def _means(cell: IntArray, weight: FloatArray, values: FloatArray) -> FloatArray:
