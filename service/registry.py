@@ -248,6 +248,18 @@ STUDIES: dict[str, Study] = {
             stages=(("analysis", 0.9), ("response", 0.1)),
         ),
         Study(
+            "noise",
+            "scene",
+            "Noise",
+            "Find the sound power",
+            "Find the sound power of the housings over speed: dB(A) by order, third octaves, and which order "
+            "is loudest where, through which mode and bearing.",
+            "scene.toml --speed-rpm 100:6000:25 -o noise.html",
+            kind="noise",
+            stages=(("analysis", 0.5), ("response", 0.1), ("radiation", 0.4)),
+            version="1",
+        ),
+        Study(
             "steady",
             "scene",
             "Steady states",

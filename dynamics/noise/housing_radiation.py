@@ -18,7 +18,7 @@ from dynamics.checks import positive
 from dynamics.errors import InputError
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.noise.coarse_hull import RadiatingHull, radiating_hull
-from dynamics.noise.knots import knots_between
+from dynamics.noise.knots import constant_knots, knots_between
 from dynamics.noise.outer_hull import OuterHull, outer_hull
 from dynamics.results.array_file import ArrayFile, Stored
 from dynamics.types import FloatArray, Json
@@ -116,7 +116,7 @@ def housing_radiation(
             progress(((last - low) / (high - low)) ** 2)
     if high > resolved:
         first = max(low, float(np.nextafter(resolved, np.inf)))
-        parts.append(knots_between(first, high, lambda _: plane, modes))
+        parts.append(constant_knots(first, high, plane))
     facts: Json = {
         "resolved_frequency": resolved,
         "interpolation_error": 0.25 * max(part.error for part in parts),

@@ -15,6 +15,8 @@ TOLERANCE = 0.5
 """dB, of the power of each mode in the middle of two frequencies; what is kept is off by a quarter of it."""
 NOTHING = 1e-6
 """Resistance over the largest of all modes that counts as none."""
+CONSTANT, CONSTANT_ERROR = 1.05, 0.008
+"""Ratio of frequencies for R that does not change: R/f^2 is convex, 3/4 (step/f)^2 off in the middle, dB."""
 WIDEST, CLOSEST = 1.5, 1.03
 """Largest ratio of frequencies side by side; the smallest that is parted."""
 
@@ -61,6 +63,12 @@ def knots_between(
             error = max(error, missed)
     frequency = np.array(sorted(found))
     return Knots(frequency, np.stack([found[float(at)] for at in frequency]), error)
+
+
+def constant_knots(low: float, high: float, matrix: ComplexArray) -> Knots:
+    """Return frequencies between which a matrix that does not change is interpolated within 0.01 dB."""
+    frequency = np.geomspace(low, high, max(int(np.ceil(np.log(high / low) / np.log(CONSTANT))), 1) + 1)
+    return Knots(frequency, np.broadcast_to(matrix, (frequency.size, *matrix.shape)), 4.0 * CONSTANT_ERROR)
 
 
 def _missed(

@@ -8,6 +8,7 @@ from dynamics.ablation.ablate import Ablation as DynamicsAblation
 from dynamics.accuracy.frontier import Frontier as DynamicsFrontier
 from dynamics.linearize.forced_response import ForcedResponse as DynamicsForcedResponse
 from dynamics.linearize.modal_analysis import ModalAnalysis as DynamicsModalAnalysis
+from dynamics.noise.radiated_sound import RadiatedSound as DynamicsRadiatedSound
 from dynamics.periodic.steady_states import SteadyStates as DynamicsSteadyStates
 from dynamics.results import RunResult
 from dynamics.study.result import Study as DynamicsStudy
@@ -27,6 +28,7 @@ from service.studies.deflect.result import GearboxDeflection as ServiceGearboxDe
 from service.studies.flank.answer import FlankFigures as ServiceFlankFigures
 from service.studies.frontier.answer import FrontierFigures as ServiceFrontierFigures
 from service.studies.modes.answer import ModesFigures as ServiceModesFigures
+from service.studies.noise.answer import NoiseFigures as ServiceNoiseFigures
 from service.studies.optimize.answer import OptimizationFigures as ServiceOptimizationFigures
 from service.studies.response.answer import ResponseFigures as ServiceResponseFigures
 from service.studies.root_stress.answer import RootStressFigures as ServiceRootStressFigures
@@ -136,6 +138,16 @@ class Processes(Surface):
         speed_rpm: Sequence[float],
         orders: int = ...,
     ) -> DynamicsForcedResponse: ...
+    @_offered(ServiceNoiseFigures)
+    def noise(
+        self,
+        scene: SceneLike,
+        *,
+        speed_rpm: Sequence[float],
+        orders: int = ...,
+        radiation: Literal["monopoles", "equivalent_radiated_power"] = ...,
+        boundary_elements: bool = ...,
+    ) -> DynamicsRadiatedSound: ...
     @_offered(ServiceSteadyFigures)
     def steady(
         self,

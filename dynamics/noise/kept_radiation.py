@@ -1,0 +1,72 @@
+"""Radiation resistances kept on disk, by the hash of everything that decides them."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from contextlib import suppress
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from dynamics.acoustics import Air, RadiationModel
+from dynamics.errors import ResultError
+from dynamics.housing_modes.reduced_housing import ReducedHousing
+from dynamics.noise.housing_radiation import HousingRadiation, housing_radiation
+from model_studies.progress import Progress, silent
+
+RADIATION_VERSION = 1
+"""Raised with every change of the numbers of a resistance."""
+WORTH_KEEPING = 1.0
+"""CPU seconds."""
+
+
+def kept_radiation(
+    housing: ReducedHousing,
+    model: RadiationModel,
+    frequencies: ArrayLike,
+    air: Air | None = None,
+    cache: Path | None = None,
+    progress: Progress = silent,
+) -> HousingRadiation:
+    """Return `housing_radiation`, from the cache if it is there.
+
+    Parameters
+    ----------
+    cache : Path, optional
+        Directory of kept results; None: neither read nor written. What takes below a second is not kept.
+
+    Raises
+    ------
+    InputError
+        As `housing_radiation` does.
+    """
+    ends = float(np.min(frequencies)), float(np.max(frequencies))
+    file = None if cache is None else cache / f"radiation-{_content_key(housing, model, ends, air)}.nc"
+    if file is not None:
+        with suppress(ResultError):  # absent or damaged: computed again
+            kept = HousingRadiation.from_netcdf(file)
+            with suppress(OSError):  # of another owner
+                os.utime(file)  # its last use, by which caches are kept small
+            return kept
+    found = housing_radiation(housing, model, ends, air, lambda fraction: progress("radiation", fraction))
+    if file is not None and found.facts["seconds"] > WORTH_KEEPING:
+        with suppress(OSError):  # a directory that cannot be written is no reason to lose the result
+            file.parent.mkdir(parents=True, exist_ok=True)
+            found.to_netcdf(file)
+    return found
+
+
+def _content_key(
+    housing: ReducedHousing, model: RadiationModel, ends: tuple[float, float], air: Air | None
+) -> str:
+    """Return the SHA-256 of surface, modes, model, range and version, hexadecimal."""
+    digest = hashlib.sha256(repr((RADIATION_VERSION, model, ends, air or Air())).encode())
+    surface = housing.surface
+    arrays = () if surface is None else (surface.points, surface.triangles, surface.motion)
+    for array in (*arrays, housing.mass, housing.stiffness):
+        values = np.ascontiguousarray(array)
+        digest.update(f"{values.dtype.str} {values.shape}".encode())
+        digest.update(values.tobytes())
+    return digest.hexdigest()

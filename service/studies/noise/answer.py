@@ -1,0 +1,80 @@
+"""Figures of the sound power of a scene."""
+
+from __future__ import annotations
+
+from service.schemas.figures import Figures, Json, Part
+
+
+class BearingSound(Part):
+    """Levels by order, then by speed: by the force of a bearing alone, and of what is left without it."""
+
+    alone_db_a: list[list[float]]
+    without_db_a: list[list[float]]
+
+
+class HousingSound(Part):
+    """How a housing radiates: outer hull, radiation model, and the models where it is loudest."""
+
+    radiation: str
+    outer_area_m2: float
+    inner_area_m2: float
+    cap_area_m2: float
+    panels: int
+    resolved_hz: float
+    interpolation_error_db: float
+    models_db: dict[str, float]
+    model_error_db: dict[str, float]
+    models_left_out: dict[str, str]
+
+
+class LoudPoint(Part):
+    """An order at a speed at which it is louder than at the speeds beside it."""
+
+    order: float
+    speed_rpm: float
+    frequency_hz: float
+    level_db: float
+    level_db_a: float
+    radiation_efficiency: float
+    housing: str
+    mode: int
+    natural_frequency_hz: float
+    mode_share: float
+    bearing: str
+    bearing_alone_db_a: float
+    without_bearing_db_a: float
+    in_contact: bool
+
+
+class Equilibrium(Part):
+    """The loaded equilibrium."""
+
+    status: str
+    residual_n: float
+
+
+class NoiseFigures(Figures):
+    """Sound power levels re 1 pW by order, then by speed; third octaves; the loudest points."""
+
+    leading_shaft: str
+    speed_rpm: list[float]
+    order: list[float]
+    frequency_hz: list[list[float]]
+    level_db: list[list[float]]
+    level_db_a: list[list[float]]
+    total_level_db: list[float]
+    total_level_db_a: list[float]
+    third_octave_hz: list[float]
+    third_octave_db: list[list[float]]
+    radiation_efficiency: list[list[float]]
+    bearings: dict[str, BearingSound]
+    loudest: list[LoudPoint]
+    housings: dict[str, HousingSound]
+    natural_frequency_hz: list[float]
+    parting_rpm: list[float]
+    equilibrium: Equilibrium
+    cpu_seconds: dict[str, float]
+    effect_ledger: Json
+
+
+ANSWER = NoiseFigures

@@ -1,0 +1,124 @@
+"""The sound of a scene: map over speed and frequency, orders, third octaves, bearings, the loudest points."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from bounds import engineering
+from dynamics.noise import LoudPoint, RadiatedSound, loudest
+from service.convert.effect_lines import run_lines
+from service.drawing.figure import Table, number
+from service.drawing.page import Headline
+from service.studies.noise.drawings import RPM, bearing_levels, level_over_speed, sound_map, third_octaves
+from service.studies.presentation import Presentation, dynamics_page
+
+HEAD = (
+    "order",
+    "speed, rpm",
+    "frequency, Hz",
+    "dB(A)",
+    "mode",
+    "mode, Hz",
+    "share of the mode, %",
+    "bearing",
+    "alone, dB(A)",
+    "without it, dB(A)",
+)
+
+
+def loudest_table(sound: RadiatedSound) -> Table:
+    """List the loudest orders and speeds."""
+    return Table("Loudest points, A-weighted", HEAD, tuple(_row(point) for point in loudest(sound)))
+
+
+def _row(point: LoudPoint) -> tuple[str, ...]:
+    """Describe a point."""
+    return (
+        f"{point.order:g}",
+        number(point.speed / RPM, 5),
+        number(point.frequency, 5),
+        f"{point.weighted_level:.1f}" + ("" if point.in_contact else " (flanks part)"),
+        f"{point.mode}",
+        number(point.natural_frequency, 5),
+        number(100.0 * point.mode_share, 2),
+        point.bearing,
+        f"{point.bearing_level:.1f}",
+        f"{point.level_without_bearing:.1f}",
+    )
+
+
+def sentence(point: LoudPoint) -> str:
+    """Say what radiates there, and through what."""
+    return (
+        f"order {point.order:g} at {number(point.speed / RPM, 4)} rpm, {number(point.frequency, 4)} Hz: "
+        f"{point.weighted_level:.1f} dB(A) through mode {point.mode} of {point.mode_housing} "
+        f"({number(point.natural_frequency, 4)} Hz); bearing {point.bearing} alone "
+        f"{point.bearing_level:.1f} dB(A)"
+    )
+
+
+def headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
+    """Return the loudest speed, the loudest order, and where flanks part."""
+    total, points = sound.orders.total_weighted_level, loudest(sound, 1)
+    at = int(total.argmax())
+    where = f"at {number(float(sound.speed[at]) / RPM, 4)} rpm, all orders"
+    shown = [Headline("sound power level", f"{total[at]:.1f} dB(A)", where)]
+    shown += [
+        Headline("loudest order", f"{point.weighted_level:.1f} dB(A)", sentence(point)) for point in points
+    ]
+    parting = sound.speed[~sound.in_contact] / RPM
+    if parting.size:
+        first = f"from {number(float(parting[0]), 4)} rpm on"
+        shown.append(Headline("flanks part at", f"{parting.size} of {sound.speed.size} speeds", first))
+    return tuple(shown)
+
+
+def _figures(sound: RadiatedSound) -> tuple[object, ...]:
+    """Return all figures."""
+    return (
+        sound_map(sound, loudest_table(sound), [sentence(point) for point in loudest(sound, 1)]),
+        level_over_speed(sound),
+        third_octaves(sound),
+        bearing_levels(sound),
+    )
+
+
+def model_lines(sound: RadiatedSound) -> Iterator[str]:
+    """Say of each housing by what model it radiates, and what others say."""
+    for name in sound.housing:
+        about, compared = sound.facts["radiation"][name], sound.facts["models"][name]
+        yield (
+            f"{name}: {about['model_name'].replace('_', ' ')}, outer hull {number(about['area'], 3)} m², "
+            f"{number(about['inner_area'], 3)} m² of inner walls left out"
+        )
+        if about["resolved_frequency"] > 0.0 and sound.frequency.max() > about["resolved_frequency"]:
+            yield (
+                f"above {number(about['resolved_frequency'], 3)} Hz, which the mesh does not resolve, "
+                "equivalent radiated power"
+            )
+        levels = compared.get("level", {})
+        words = ", ".join(f"{model.replace('_', ' ')} {level:.1f} dB" for model, level in levels.items())
+        if words:
+            yield f"models at the loudest point: {words}"
+        for model, reason in compared.get("left_out", {}).items():
+            yield f"without {model.replace('_', ' ')}: {reason}"
+
+
+def _text(sound: RadiatedSound) -> Iterator[Table | str]:
+    """Yield the loudest points, the models, and what the linear answer does not hold."""
+    yield loudest_table(sound)
+    yield from (sentence(point) for point in loudest(sound, 1))
+    yield from model_lines(sound)
+    parting = sound.speed[~sound.in_contact] / RPM
+    if parting.size:
+        where = f"{parting[0]:.5g} to {parting[-1]:.5g} rpm"
+        yield f"flanks lift off at {parting.size} of {sound.speed.size} speeds, {where}: see loa steady"
+    yield f"cost {engineering(sum(sound.facts['seconds'].values()), 3)} CPU s"
+    yield from run_lines(sound.facts)
+
+
+PAGE = Presentation(
+    lambda sound: _figures(sound)[0],
+    lambda sound: dynamics_page("Sound power", _figures(sound), headlines(sound)),
+    _text,
+)

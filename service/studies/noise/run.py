@@ -1,0 +1,121 @@
+"""Sound power of the housings of a scene."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from typing import Any
+
+from dynamics.acoustics import BoundaryElements, ElementalRadiators, EquivalentRadiatedPower, RadiationModel
+from dynamics.assembly.assemble import assemble
+from dynamics.housing_modes import ReducedHousing
+from dynamics.linearize import ForcedResponse, forced_response
+from dynamics.noise import RadiatedSound, kept_radiation, loudest, models_at, radiated_sound, together
+from service.convert.case import boundary_errors
+from service.convert.scene import TabledScene
+from service.problems import BadInput
+from service.schemas.scene import SceneInput
+from service.studies.computation import Computation, Means
+from service.studies.noise import Inputs
+from service.studies.noise.figures import facts
+from service.studies.result_file import array_file
+from service.units import RPM
+
+Json = dict[str, Any]
+PLANE, MONOPOLES = EquivalentRadiatedPower(), ElementalRadiators()
+MODELS: dict[str, RadiationModel] = {model.model_name: model for model in (PLANE, MONOPOLES)}
+ADVICE = (
+    "Give a housing by step_file, mesh_file or modes_file: matrices alone do not say what the air touches."
+)
+
+
+def noise_of(subject: TabledScene, inputs: Inputs, means: Means) -> RadiatedSound:
+    """Return the sound power of the housings of a scene that have a surface.
+
+    Raises
+    ------
+    BadInput
+        No housing has a surface.
+    """
+    with boundary_errors():
+        response = forced_response(
+            assemble(subject.scene),
+            [value * RPM for value in inputs.speed_rpm],
+            inputs.orders,
+            progress=lambda fraction: means.report("response", fraction),
+        )
+        sounds, compared = [], {}
+        began = time.process_time()
+        for part in subject.scene.housings:
+            body = subject.housings.get(part.name)
+            if body is not None and body.surface is not None:
+                sound = _sound(response, body, part.name, part.bushings, inputs, means)
+                compared[part.name] = _compared(response, body, part.bushings, sound, inputs)
+                sounds.append(sound)
+    if not sounds:
+        raise _silent(subject.inputs)
+    whole = together(sounds)
+    about = response.facts
+    seconds = {**about["seconds"], "sound": time.process_time() - began}
+    own = {name: about[name] for name in ("leading_shaft", "equilibrium", "effect_ledger")}
+    return replace(whole, facts={**whole.facts, **own, "models": compared, "seconds": seconds})
+
+
+def _sound(
+    response: ForcedResponse,
+    body: ReducedHousing,
+    name: str,
+    bearings: tuple[str, ...],
+    inputs: Inputs,
+    means: Means,
+) -> RadiatedSound:
+    """Return the sound of one housing."""
+    model, cache = MODELS[inputs.radiation], means.home / "housings"
+    radiation = kept_radiation(body, model, response.frequency, cache=cache, progress=means.report)
+    return radiated_sound(response, body, bearings, radiation, name)
+
+
+def _compared(
+    response: ForcedResponse,
+    body: ReducedHousing,
+    bearings: tuple[str, ...],
+    sound: RadiatedSound,
+    inputs: Inputs,
+) -> Json:
+    """Return what the radiation models say where a housing is loudest; nothing if it is silent."""
+    points = loudest(sound, 1)
+    if not points:
+        return {}
+    models = (PLANE, MONOPOLES, *([BoundaryElements()] if inputs.boundary_elements else []))
+    at = points[0].speed_index, points[0].order_index
+    ladder = models_at(response, body, bearings, at, models)
+    return {
+        "order": points[0].order,
+        "speed": points[0].speed,
+        "level": {name: result.level for name, result in ladder.results.items()},
+        "error": ladder.errors,
+        "efficiency": {name: result.efficiency for name, result in ladder.results.items()},
+        "seconds": {name: result.cpu_seconds for name, result in ladder.results.items()},
+        "left_out": dict(ladder.left_out),
+    }
+
+
+def check(subject: SceneInput, _inputs: Inputs) -> None:
+    """Refuse a scene without a housing that has a surface."""
+    if not any(part.is_solid or part.modes_file is not None for part in subject.housings):
+        raise _silent(subject)
+
+
+def _silent(scene: SceneInput) -> BadInput:
+    """Return the error of a scene whose housings have no surface."""
+    names = [part.name for part in scene.housings]
+    return BadInput.of("housings", names, "at least one with a surface", ADVICE)
+
+
+RUN = Computation(
+    noise_of,
+    facts,
+    array_file(RadiatedSound),
+    check=check,
+    of_scene=lambda tabled: tabled,
+)

@@ -1,0 +1,103 @@
+"""``loa noise``: what it prints and writes, its levels, and how it refuses."""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from declared_figures import check_declared
+from hulls import box
+from scene_files import scene_file
+from sounding_housings import random_housing, smooth_motion, with_surface
+from typer.testing import CliRunner, Result
+
+from dynamics.acoustics import a_weighting
+from dynamics.noise import RadiatedSound, loudest
+from service.cli.commands import app
+from service.studies.noise.figures import facts
+
+SPEEDS = ("--speed-rpm", "300:6000:300", "--orders", 4)
+
+
+def loa(*arguments: object) -> Result:
+    return CliRunner().invoke(app, ["noise", *(str(argument) for argument in arguments)])
+
+
+@cache
+def housing():
+    bare = random_housing(("left", "right"), motions=3, positions=[(0.0, 0.0, 0.05), (0.08, 0.0, 0.05)])
+    hull = box((0.3, 0.2, 0.15), (8, 5, 4))
+    return with_surface(bare, hull, smooth_motion(hull, len(bare.stiffness)))
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> Path:
+    file = scene_file(tmp_path)
+    housing().to_netcdf(tmp_path / "case.nc")
+    file.write_text(f'{file.read_text()}[[housings]]\nname = "case"\nmodes_file = "case.nc"\n')
+    return file
+
+
+def test_json_holds_levels_by_order_and_speed_and_the_loudest_points(scene: Path) -> None:
+    result = loa(scene, *SPEEDS, "--json")
+    assert (result.exit_code, result.stderr) == (0, "")
+    answer = json.loads(result.stdout)
+    check_declared("noise", answer)
+    level, weighted = np.array(answer["level_db"]), np.array(answer["level_db_a"])
+    assert level.shape == (4, 20)
+    np.testing.assert_allclose(weighted - level, a_weighting(np.array(answer["frequency_hz"])), atol=1e-9)
+    total = 10.0 * np.log10(np.sum(10.0 ** (weighted / 10.0), axis=0))
+    np.testing.assert_allclose(answer["total_level_db_a"], total, atol=1e-9)
+    bands = 10.0 * np.log10(np.sum(10.0 ** (np.array(answer["third_octave_db"]) / 10.0), axis=0))
+    np.testing.assert_allclose(bands, answer["total_level_db"], atol=1e-6)
+    first = answer["loudest"][0]
+    assert first["level_db_a"] == pytest.approx(weighted.max())
+    assert first["bearing"] in answer["bearings"] and first["housing"] == "case"
+    own = answer["bearings"][first["bearing"]]["alone_db_a"]
+    at = answer["order"].index(first["order"]), answer["speed_rpm"].index(first["speed_rpm"])
+    assert own[at[0]][at[1]] == pytest.approx(first["bearing_alone_db_a"])
+    assert answer["housings"]["case"]["model_error_db"]["monopoles"] == 0.0
+
+
+def test_the_table_and_every_kind_of_file_say_the_same(scene: Path, tmp_path: Path) -> None:
+    files = {ending: tmp_path / f"noise.{ending}" for ending in ("nc", "json", "png", "html")}
+    for file in files.values():
+        result = loa(scene, *SPEEDS, "-o", file)
+        assert result.exit_code == 0, result.stderr
+    found = RadiatedSound.from_netcdf(files["nc"])
+    point = loudest(found)[0]
+    assert f"{point.weighted_level:.1f} dB(A) through mode {point.mode} of case" in result.stdout
+    assert "models at the loudest point: equivalent radiated power" in result.stdout
+    written = json.loads(files["json"].read_text())
+    assert written.pop("warnings") == []
+    for figures in (written, expected := facts(found)):
+        figures.pop("cpu_seconds")
+    assert written == expected
+    assert "Sound power in third octaves" in files["html"].read_text("utf-8")
+
+
+def test_equivalent_radiated_power_is_louder_where_the_housing_is_small(scene: Path) -> None:
+    by_plane = json.loads(loa(scene, *SPEEDS, "--radiation", "equivalent_radiated_power", "--json").stdout)
+    monopoles = json.loads(loa(scene, *SPEEDS, "--json").stdout)
+    low = np.array(by_plane["frequency_hz"]) < 300.0
+    more = np.array(by_plane["level_db"]) - np.array(monopoles["level_db"])
+    assert np.all(more[low] > 3.0)
+    np.testing.assert_allclose(np.array(by_plane["radiation_efficiency"]), 1.0, rtol=0.003)
+
+
+def test_a_scene_without_a_sounding_housing_is_refused(tmp_path: Path) -> None:
+    result = loa(scene_file(tmp_path), *SPEEDS)
+    assert result.exit_code == 2
+    assert "housings" in result.stderr and "step_file" in result.stderr
+
+
+def test_a_housing_of_matrices_alone_is_refused(scene: Path) -> None:
+    random_housing(("left", "right"), motions=3, positions=[(0.0, 0.0, 0.05), (0.08, 0.0, 0.05)]).to_netcdf(
+        scene.parent / "case.nc"
+    )
+    result = loa(scene, *SPEEDS)
+    assert result.exit_code == 2
+    assert "at least one with a surface" in result.stderr
