@@ -22,6 +22,7 @@ from dynamics.housing_modes.response import receptance
 from dynamics.housing_modes.scene_housing import scene_housing
 from dynamics.housing_modes.seats import SeatBore, SeatFrame
 from dynamics.housing_modes.step_mesh import mesh_step
+from dynamics.housing_modes.surface_file import write_surface
 from dynamics.housing_modes.tetrahedral_mesh import TetrahedralMesh
 from dynamics.solid_housing import CAST_ALUMINUM, GRAY_CAST_IRON, SPHEROIDAL_CAST_IRON, Material, Ring
 
@@ -58,4 +59,5 @@ __all__ = [
     "reduced_housing",
     "reduction_cost",
     "scene_housing",
+    "write_surface",
 ]

@@ -12,6 +12,7 @@ from dynamics.vibration.surface_shape import SurfaceShape, mode_shape, operating
 from dynamics.vibration.surface_weight import mean_square, normal_weight, surface_weight
 from dynamics.vibration.time_signal import motion_signal, point_signal
 from dynamics.vibration.transfer_functions import mean_square_mobility, transfer_functions
+from dynamics.vibration.vibration_analysis import VibrationAnalysis, analyze_vibration
 
 __all__ = [
     "HousingPower",
@@ -19,6 +20,8 @@ __all__ = [
     "MotionQuantity",
     "Parts",
     "SurfaceShape",
+    "VibrationAnalysis",
+    "analyze_vibration",
     "bearing_parts",
     "housing_motion",
     "housing_power",

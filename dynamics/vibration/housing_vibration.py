@@ -12,7 +12,7 @@ from dynamics.linearize import HarmonicResponse
 from dynamics.types import BoolArray, FloatArray
 from dynamics.vibration.housing_motion import housing_motion
 from dynamics.vibration.motion_quantity import MotionQuantity
-from dynamics.vibration.points import named_points
+from dynamics.vibration.points import point_rows
 from dynamics.vibration.seat_forces import ComplexArray, seat_forces
 from dynamics.vibration.surface_weight import mean_square, surface_weight
 
@@ -95,16 +95,15 @@ def housing_vibration(
     Raises
     ------
     InputError
-        As `seat_forces`, `named_points` and `housing_motion`.
+        As `seat_forces`, `point_rows` and `housing_motion`.
     """
     force = seat_forces(response, housing, bearings)
     motion = housing_motion(housing, response.frequency, force)
     rate = 2j * np.pi * response.frequency[..., None] * motion
-    chosen = named_points(housing, points) if housing.points or points else ()
-    rows = np.array([point.motion for point in chosen]).reshape(-1, 3, motion.shape[-1])
+    rows = point_rows(housing, points)
     weight = 0.0 * housing.mass if housing.surface is None else surface_weight(housing)
     return HousingVibration(
-        tuple(point.name for point in chosen),
+        tuple(point.name for point in housing.points) if points is None else tuple(points),
         response.speed,
         response.order,
         response.frequency,

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, square_wave_table
-from reduced_housings import random_housing
+from reduced_housings import PAIR, random_housing
 
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
@@ -15,6 +15,7 @@ from dynamics.housing_modes import scene_housing
 from dynamics.linearize import forced_response
 from dynamics.vibration import (
     MotionQuantity,
+    analyze_vibration,
     housing_motion,
     housing_vibration,
     overall,
@@ -66,3 +67,26 @@ def test_a_point_that_is_not_there_is_refused(response):
     with pytest.raises(InputError, match="named point"):
         housing_vibration(response, replace(random_housing(), points=()), points=("c",))
     assert housing_vibration(response, replace(random_housing(), points=())).velocity.shape == (0, 3, 3, 4)
+
+
+def test_an_analysis_looks_where_the_motion_is_largest_and_says_what_makes_it(response):
+    housing = random_housing()
+    found = analyze_vibration(response, housing, "case")
+    at = found.at_speed, found.at_order
+    assert at == found.vibration.largest()
+    hertz = response.frequency[at]
+    moved = np.einsum("ns,s->n", found.mobilities.point[1, 2], found.vibration.seat_force[at])
+    nearest = np.argmin(np.abs(found.mobilities.frequency - hertz))
+    assert abs(found.mobilities.frequency[nearest] - hertz) < hertz / 400.0
+    assert abs(moved[nearest]) == pytest.approx(abs(found.vibration.velocity[1, 2][at]), rel=0.1)
+    assert found.mobilities.seat[5] == "input.right x"
+    for shares in (found.bearings, found.modes):
+        np.testing.assert_allclose(shares.point.sum(axis=1), 1.0)
+        assert np.all(np.isnan(shares.surface))
+    assert found.bearings.name == PAIR
+    assert found.deflection is None
+    at_other = analyze_vibration(response, housing, "case", at=(0, 1), points=("b",))
+    assert (at_other.at_speed, at_other.at_order) == (0, 1)
+    assert at_other.bearings.point.shape == (1, 4)
+    with pytest.raises(InputError, match="surface or named points"):
+        analyze_vibration(response, replace(housing, points=()), "case")

@@ -1,0 +1,42 @@
+"""Files of fields on the surface of a housing, for ParaView and others that read VTK."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from tempfile import NamedTemporaryFile
+
+import numpy as np
+
+from dynamics.types import FloatArray, IntArray
+
+
+def write_surface(
+    path: str | Path, points: FloatArray, triangles: IntArray, fields: Mapping[str, FloatArray]
+) -> None:
+    """Write quadratic triangles with fields at their nodes as VTU; the file appears whole or not at all.
+
+    Parameters
+    ----------
+    path : str or Path
+    points : (p, 3) array
+        m.
+    triangles : (t, 6) int array
+        Corners, then mid-side nodes.
+    fields : mapping of str to (p,) or (p, 3) array
+    """
+    import meshio  # noqa: PLC0415 (start-up time)
+
+    file = Path(path)
+    mesh = meshio.Mesh(
+        points,
+        [("triangle6", triangles)],
+        point_data={name: np.ascontiguousarray(values) for name, values in fields.items()},
+    )
+    with NamedTemporaryFile(dir=file.parent, suffix=".vtu", delete=False) as temporary:
+        unfinished = Path(temporary.name)
+    try:
+        meshio.write(unfinished, mesh, file_format="vtu")
+        unfinished.replace(file)
+    finally:
+        unfinished.unlink(missing_ok=True)

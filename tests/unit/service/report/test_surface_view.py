@@ -1,0 +1,60 @@
+"""Pictures of surfaces: what is in front, edges in sight."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from lattice_meshes import box
+
+from service.drawing.surface_view import folds, rendered, surface_panel, view_of
+
+SIDES = (0.3, 0.2, 0.1)
+
+
+def block() -> tuple[np.ndarray, np.ndarray]:
+    """Points and triangles of a block."""
+    mesh = box(SIDES, (3, 2, 1))
+    nodes, triangles = np.unique(mesh.surface[:, :3], return_inverse=True)
+    return mesh.points[nodes], triangles.reshape(-1, 3)
+
+
+def test_a_block_shows_the_three_sides_that_face_the_eye_in_their_projected_areas() -> None:
+    points, triangles = block()
+    corner = points[triangles]
+    normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    side = np.argmax(np.abs(normal), axis=1) + np.where(normal.sum(axis=1) > 0.0, 0, 3)
+    eye = (1.0, 0.55, 0.65)
+    view = view_of(points, eye)
+    image, depth = rendered(view, corner, side.astype(float))
+    ahead = np.array(eye) / np.linalg.norm(eye)
+    x, y, z = SIDES
+    for axis, area in enumerate((y * z, x * z, x * y)):
+        seen = np.count_nonzero(image == axis) * view.step**2
+        assert seen == pytest.approx(area * ahead[axis], rel=0.02)
+    assert not np.any(image > 2.5)  # no side turned away
+    assert np.array_equal(np.isnan(image), np.isinf(depth))
+
+
+def test_folds_are_the_edges_of_the_block() -> None:
+    points, triangles = block()
+    ends = points[folds(points, triangles)]
+    assert np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum() == pytest.approx(4.0 * sum(SIDES))
+
+
+def test_a_panel_shows_the_moved_surface_and_the_nine_edges_in_sight_at_rest() -> None:
+    points, triangles = block()
+    size = np.linspace(0.0, 2.0, len(triangles))
+    still = surface_panel(points, triangles, np.zeros_like(points), size, "v, mm/s", "at rest")
+    away = surface_panel(points, triangles, np.full_like(points, 0.05), size, "v, mm/s", "moved")
+    assert still.equal
+    assert still.shade.largest == 2.0
+    assert np.nanmax(still.shade.z) <= 2.0
+    assert np.isnan(still.shade.z).any()
+    (line,) = still.lines
+    view = view_of(points)
+    ends = points[folds(points, triangles)] @ view.axes[:, :2]
+    whole = 1e3 * np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum()
+    drawn = np.nansum(np.hypot(np.diff(line.x), np.diff(line.y)))
+    assert drawn == pytest.approx(0.75 * whole, rel=0.02)  # three of twelve, one of each length, are behind
+    assert away.shade.z.shape[0] * (away.shade.y[1] - away.shade.y[0]) > still.shade.y[-1]
