@@ -13,7 +13,7 @@ from dynamics.joints import Housing
 from dynamics.mechanism.additions import HOUSING_AMPLITUDES
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.mechanism.modal_housing import ModalHousing, modal_housing
-from dynamics.mechanism.sampling import top_load_frequency, top_mesh_frequency
+from dynamics.mechanism.sampling import top_load_frequency, top_mesh_frequency, top_passing_frequency
 
 SHARE = 0.01
 """Least motion of a seat by the housing's inertia, over its static one, that calls for it."""
@@ -28,7 +28,7 @@ class HousingModes(RotorEffect):
     cost = "a freedom per row of the housing's matrices, a force element per bearing in it, implicit steps"
 
     def verdicts(self, rotors: Sequence[LoadedRotor]) -> Sequence[Verdict]:
-        """Call for it in housings whose first mode the mesh orders wanted, or a load, come near.
+        """Call for it in housings whose first mode mesh orders wanted, loads or passing elements come near.
 
         All shafts in a housing have its verdict, and where one sits in two, that of the one it is on in.
         Static motions are the same without it.
@@ -70,11 +70,15 @@ def _verdict(rotor: LoadedRotor, housing: Housing) -> Verdict:
     """
     scene, kinematics = rotor.mechanism.scene, rotor.mechanism.kinematics
     modal = modal_housing(housing)
-    orders = scene.outputs.mesh_orders * top_mesh_frequency(scene, kinematics)
-    highest, first = max(orders, top_load_frequency(scene, kinematics)), float(modal.frequency[0])
-    share = (highest / first) ** 2
+    content = {
+        "mesh orders": scene.outputs.mesh_orders * top_mesh_frequency(scene, kinematics),
+        "loads": top_load_frequency(scene, kinematics),
+        "passing elements": top_passing_frequency(scene, kinematics),
+    }
+    source, first = max(content, key=lambda name: content[name]), float(modal.frequency[0])
+    share = (content[source] / first) ** 2
     influence = min(share, 1.0) * _static_motion(rotor, modal)
-    reason = f"mesh orders and loads reach {highest:.4g} Hz, the first mode of {housing.name} {first:.4g} Hz"
+    reason = f"{source} reach {content[source]:.4g} Hz, the first mode of {housing.name} {first:.4g} Hz"
     if any(at.name in housing.bushings for at in rotor.mechanism.bearings):
         return Verdict(True, False, f"{reason}; it carries bearings that are not linear", influence)
     return Verdict(share > SHARE, True, reason, influence)

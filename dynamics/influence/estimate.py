@@ -9,7 +9,7 @@ import numpy as np
 from bounds import engineering
 from dynamics.assembly.assemble import System, assemble
 from dynamics.errors import InputError, SolveError
-from dynamics.influence.linear_figures import LinearFigures, linear_figures
+from dynamics.influence.linear_figures import COMPARED, LinearFigures, linear_figures
 from dynamics.influence.operating_conditions import operating_conditions
 from dynamics.linearize.speeds import leading_law
 from dynamics.scene import Scene
@@ -18,6 +18,11 @@ from model_studies import Record, in_unit
 
 ROUNDING = 1e-8
 """Relative change below which an estimate says nothing."""
+
+
+def _no_orders() -> FloatArray:
+    """Of estimates that older versions wrote."""
+    return np.zeros((0, COMPARED))
 
 
 @dataclass(frozen=True)
@@ -38,6 +43,12 @@ class Influence(Record):
         That it adds: freedoms, and local coordinates of force elements.
     on : bool
         Whether the scene has it on anywhere.
+    orders : (m, 5) array
+        Change of the largest amplitudes along the run of mesh orders 1 to 5 of the transmission error, m.
+    bearing_orders : (b, 5) array
+        Of the bearing forces, N.
+    relative_orders, relative_bearing_orders : (5,) arrays
+        The largest of each order over the largest amplitude of that order with the effect.
     """
 
     mean: FloatArray = field(metadata=in_unit("m", "curve"))
@@ -49,6 +60,10 @@ class Influence(Record):
     freedoms: int
     rows: int
     on: bool
+    orders: FloatArray = field(default_factory=_no_orders, metadata=in_unit("m", "curve", "order"))
+    bearing_orders: FloatArray = field(default_factory=_no_orders, metadata=in_unit("n", "bearing", "order"))
+    relative_orders: FloatArray = field(default_factory=_no_orders)
+    relative_bearing_orders: FloatArray = field(default_factory=_no_orders)
 
     @property
     def largest(self) -> float:
@@ -61,9 +76,14 @@ class Influence(Record):
         parts = (self.relative_mean, self.relative_peak_to_peak, self.relative_bearing_force)
         shares = (100 * part if part > ROUNDING else 0.0 for part in parts)
         mean, ripple, force = (f"{engineering(share, 2)} %" for share in shares)
-        return (
+        words = (
             f"{mean} of the mean, {ripple} of the peak-to-peak transmission error, {force} of bearing forces"
         )
+        if not self.relative_bearing_orders.size or self.relative_bearing_force <= ROUNDING:
+            return words
+        order = int(np.argmax(self.relative_bearing_orders))
+        most = engineering(100.0 * float(self.relative_bearing_orders[order]), 2)
+        return f"{words} ({most} % of their order {order + 1})"
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -132,6 +152,8 @@ def influence_of(system: System, on: bool, whole: LinearFigures, without: Linear
     """
     mean, ripple = without.mean - whole.mean, without.peak_to_peak - whole.peak_to_peak
     force = without.bearing_force - whole.bearing_force
+    orders = without.orders - whole.orders
+    bearing_orders = without.bearing_orders - whole.bearing_orders
     if whole.coasting and not without.coasting:
         ripple = np.maximum(ripple, _through(system, whole.parted))
     return Influence(
@@ -144,6 +166,10 @@ def influence_of(system: System, on: bool, whole: LinearFigures, without: Linear
         whole.freedoms - without.freedoms,
         whole.rows - without.rows,
         on,
+        orders,
+        bearing_orders,
+        _by_order(orders, whole.orders),
+        _by_order(bearing_orders, whole.bearing_orders),
     )
 
 
@@ -151,6 +177,14 @@ def _through(system: System, parted: FloatArray) -> FloatArray:
     """Travel of flanks beyond the backlash (m,), m; 0 where none is given."""
     room = [np.inf if mesh.coast is None else mesh.coast.backlash for mesh in system.scene.meshes]
     return np.asarray(np.maximum(parted - np.array(room), 0.0))
+
+
+def _by_order(change: FloatArray, value: FloatArray) -> FloatArray:
+    """Return the largest change of each order over its largest amplitude, (5,); 0 of orders not there."""
+    size = np.max(value, axis=0, initial=0.0)
+    most = np.max(np.abs(change), axis=0, initial=0.0)
+    there = size > ROUNDING * np.max(size, initial=0.0)
+    return np.divide(most, size, out=np.zeros(most.shape), where=there)
 
 
 def _largest(change: FloatArray, value: FloatArray | float) -> float:

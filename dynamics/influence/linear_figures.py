@@ -1,4 +1,4 @@
-"""Figures of a run by linear theory: mean and peak-to-peak transmission error, orders of bearing forces."""
+"""Figures of a run by linear theory: mean, peak-to-peak and orders of transmission error, bearing forces."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from dynamics.linearize.harmonic_response import HarmonicResponse, extremes
 from dynamics.linearize.modes import natural_modes
 from dynamics.linearize.parametric_response import parametric_response
 from dynamics.linearize.speeds import mesh_frequencies
-from dynamics.linearize.steady_vibration import Excited, excited
+from dynamics.linearize.steady_vibration import ComplexArray, Excited, excited
 from dynamics.mechanism.additions import SPEED_DEPENDENCE
 from dynamics.types import FloatArray
 
@@ -35,8 +35,10 @@ class LinearFigures:
     ----------
     mean, peak_to_peak : (m,) arrays
         Dynamic transmission error, m: over all speeds and loads together.
-    bearing_force : (b,) array
-        Root of the sum of squares of the largest amplitudes of mesh orders 1 to 5 and of all directions, N.
+    orders : (m, 5) array
+        Largest amplitudes of the mesh orders 1 to 5 of the dynamic transmission error, m.
+    bearing_orders : (b, 5) array
+        Of the bearing forces, root of the sum of squares of the directions, N.
     parted : (m,) array
         How far a linear mesh would pull where flanks part, m; 0 where all stay pressed.
     freedoms, rows : int
@@ -47,11 +49,17 @@ class LinearFigures:
 
     mean: FloatArray
     peak_to_peak: FloatArray
-    bearing_force: FloatArray
+    orders: FloatArray
+    bearing_orders: FloatArray
     parted: FloatArray
     freedoms: int
     rows: int
     coasting: bool
+
+    @property
+    def bearing_force(self) -> FloatArray:
+        """Root of the sum of squares of the mesh orders 1 to 5 of every bearing, (b,) N."""
+        return np.asarray(np.sqrt(np.sum(self.bearing_orders**2, axis=1)))
 
 
 def linear_figures(system: System, conditions: Sequence[OperatingCondition]) -> LinearFigures:
@@ -68,6 +76,7 @@ def linear_figures(system: System, conditions: Sequence[OperatingCondition]) -> 
     meshes, bearings = len(system.scene.meshes), len(system.supports.name)
     mean, low, high = np.zeros(meshes), np.full(meshes, np.inf), np.full(meshes, -np.inf)
     amplitude, parted = np.zeros((bearings, 3, COMPARED)), np.zeros(meshes)
+    orders = np.zeros((meshes, COMPARED))
     for some in conditions:
         at = excited(system, some.time, ORDERS, POSITIONS)
         condition = some.passing(resonances(at)) if some.speed.size > 1 else some
@@ -78,12 +87,13 @@ def linear_figures(system: System, conditions: Sequence[OperatingCondition]) -> 
         low = np.minimum(low, np.min(rest + least, axis=1))
         high = np.maximum(high, np.max(rest + most, axis=1))
         mean += rest @ condition.weight
-        amplitude = np.maximum(amplitude, bearing_orders(harmonics))
+        orders = np.maximum(orders, low_orders(harmonics.dynamic_transmission_error, harmonics))
+        amplitude = np.maximum(amplitude, low_orders(harmonics.bearing_force[:, :3], harmonics))
         pull = np.maximum(-np.min(harmonics.least_mesh_force, axis=1), 0.0)
         parted = np.maximum(parted, pull / np.maximum(harmonics.mean_stiffness, 1e-300))
     size = system.arrays.mass.shape[0], system.arrays.direction.shape[0]
-    force = np.sqrt(np.sum(amplitude**2, axis=(1, 2)))
-    return LinearFigures(mean, high - low, force, parted, *size, bool(system.flanks.coast))
+    forces = np.sqrt(np.sum(amplitude**2, axis=1))
+    return LinearFigures(mean, high - low, orders, forces, parted, *size, bool(system.flanks.coast))
 
 
 def resonances(at: Excited) -> FloatArray:
@@ -103,11 +113,11 @@ def resonances(at: Excited) -> FloatArray:
     return np.unique(reported[:, None, None] / (order[:, None] * per_speed))
 
 
-def bearing_orders(response: HarmonicResponse) -> FloatArray:
-    """Return the largest amplitude over the speeds of mesh orders 1 to 5 of every bearing, (b, 3, 5) N."""
-    largest = np.zeros((response.bearing_force.shape[0], 3, COMPARED))
+def low_orders(amplitude: ComplexArray, response: HarmonicResponse) -> FloatArray:
+    """Return the largest amplitude (..., 5) over the speeds of mesh orders 1 to 5 of (..., S, H)."""
+    largest = np.zeros((*amplitude.shape[:-2], COMPARED))
     for k in range(COMPARED):
         at = np.flatnonzero(np.abs(response.order - (k + 1)) < 1e-9)
         if at.size:
-            largest[..., k] = np.max(np.abs(response.bearing_force[:, :3, :, at[0]]), axis=2)
+            largest[..., k] = np.max(np.abs(amplitude[..., at[0]]), axis=-1)
     return largest

@@ -9,6 +9,7 @@ from typing import Protocol
 import numpy as np
 from scipy.linalg import eigh
 
+from dynamics.mechanism.cage_turns import cage_turns
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.load_phases import load_orders
 from dynamics.scene.scene import LEAST_RATE, Scene, check_samples
@@ -26,6 +27,8 @@ LEAST_FACTOR = 3
 """Inner samples per output sample at the least."""
 MESH_SHARE = 0.01
 """Share of a mode's strain energy in the meshes from which on they excite it."""
+PASSING_ORDERS = 4
+"""Multiples of the passing of elements that matter: the fifth is below 3 % of the first on loaded rows."""
 SPEED_POINTS = 257
 DIGITS = 3  # of a rate that is chosen
 
@@ -124,6 +127,20 @@ def top_mesh_frequency(scene: Scene, kinematics: Kinematics) -> float:
 def top_load_frequency(scene: Scene, kinematics: Kinematics) -> float:
     """Return the highest frequency at which a load excites in the kinematic motion, Hz; 0 without one."""
     return _highest(scene, load_orders(scene, kinematics))
+
+
+def top_passing_frequency(scene: Scene, kinematics: Kinematics) -> float:
+    """Return the highest frequency at which elements of rolling bearings by geometry pass, Hz; 0 without one.
+
+    It is that of a multiple, `PASSING_ORDERS`, of the passing itself.
+    """
+    names = frozenset(part.name for part in scene.rolling_bearings)
+    turns = cage_turns(scene, kinematics, names)
+    rows = [
+        part.row.count * np.abs([float(turn) for turn in cage])
+        for part, cage in zip(scene.rolling_bearings, turns, strict=True)
+    ]
+    return PASSING_ORDERS * _highest(scene, np.array(rows).reshape(len(rows), len(kinematics.law_shaft)))
 
 
 def _highest(scene: Scene, rate: FloatArray) -> float:

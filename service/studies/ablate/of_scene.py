@@ -12,7 +12,7 @@ from service.studies.ablate.look import Look, over_orders
 
 _HEAD = (
     "effect", "scene has it", "influence, µm", "mean DTE, µm", "estimated", "peak to peak, µm", "estimated",
-    "order 1, µm", "bearing force, order 1, N", "cost, x",
+    "order 1, µm", "bearing force, N", "estimated", "of order", "cost, x",
 )  # fmt: skip
 
 
@@ -26,7 +26,7 @@ def _table(ablation: Ablation) -> Table:
 
 def _row(entry: EffectAblation) -> tuple[str, ...]:
     """One effect."""
-    estimate, forces = entry.estimate, entry.bearing_order_change
+    estimate = entry.estimate
     return (
         entry.name,
         "on" if entry.on else "off",
@@ -36,9 +36,20 @@ def _row(entry: EffectAblation) -> tuple[str, ...]:
         _signed(1e6 * _most(entry.peak_to_peak_change)),
         "" if estimate is None else _signed(1e6 * _most(estimate.peak_to_peak)),
         _signed(1e6 * _most(entry.order_change[:, 0])),
-        _signed(_most(forces[:, 0])) if forces.size else "",
+        *_bearing_force(entry),
         number(entry.cost_ratio, 3),
     )
+
+
+def _bearing_force(entry: EffectAblation) -> tuple[str, str, str]:
+    """Return the largest change of an order of a bearing force, N, its estimate and the order."""
+    forces, estimate = entry.bearing_order_change, entry.estimate
+    if not forces.size:
+        return "", "", ""
+    bearing, order = np.unravel_index(int(np.argmax(np.abs(forces))), forces.shape)
+    known = estimate is not None and estimate.bearing_orders.size > 0
+    stated = _signed(float(estimate.bearing_orders[bearing, order])) if estimate and known else ""
+    return _signed(float(forces[bearing, order])), stated, str(order + 1)
 
 
 def _panels(ablation: Ablation) -> tuple[Panel, ...]:

@@ -53,21 +53,62 @@ def test_estimates_are_right_within_a_factor_of_two() -> None:
     json.dumps(made.to_json(), allow_nan=False)
 
 
-@pytest.mark.parametrize("rpm", [3000.0, 4000.0])
-def test_a_housing_is_estimated_as_ablation_shows_it(rpm: float) -> None:
-    """Four seats of 6.75 kg on springs, tied to each other: modes from 1061 to 1369 Hz."""
+def in_housing(speed: TimeLaw, duration: float = 0.1, inert: float = 6.75, **changes: object) -> Scene:
+    """A pair on four seats of 6.75 kg on springs, tied to each other: modes from 1061 to 1369 Hz."""
     tie = 4.0 * np.eye(4) - np.ones((4, 4))
-    stiffness, mass = np.kron(3e8 * np.eye(4) + 5e7 * tie, np.eye(3)), 6.75 * np.eye(12)
-    speed = TimeLaw.constant(rpm * RPM)
-    scene = gear_pair_scene(duration=0.1, outputs=QUICK, on_violation="report", speed=speed)
+    stiffness, mass = np.kron(3e8 * np.eye(4) + 5e7 * tie, np.eye(3)), inert * np.eye(12)
+    settings = {"outputs": QUICK, "on_violation": "report"} | changes
+    scene = gear_pair_scene(duration=duration, speed=speed, **settings)
     names = tuple(part.name for part in scene.bushings)
     housing = Housing("case", names, stiffness.tolist(), mass=mass.tolist(), damping_ratio=0.03)
-    (entry,) = ablate(replace(scene, housings=(housing,)), only=["housing_modes"]).effects
+    return replace(scene, housings=(housing,))
+
+
+@pytest.mark.parametrize("rpm", [3000.0, 4000.0])
+def test_a_housing_is_estimated_as_ablation_shows_it(rpm: float) -> None:
+    scene = in_housing(TimeLaw.constant(rpm * RPM))
+    (entry,) = ablate(scene, only=["housing_modes"]).effects
     assert entry.on and entry.estimate is not None
     assert (entry.estimate.freedoms, entry.estimate.rows) == (12, 12)
     assert abs(entry.peak_to_peak_change[0]) > 0.02 * entry.with_effect.peak_to_peak[0]
     assert entry.estimate.peak_to_peak[0] == pytest.approx(entry.peak_to_peak_change[0], rel=0.1)
     assert entry.estimate.mean[0] == pytest.approx(entry.mean_change[0], rel=0.1)
+    changed, estimated = entry.bearing_order_change, entry.estimate.bearing_orders
+    np.testing.assert_allclose(estimated, changed, rtol=0.05, atol=2e-3 * np.max(np.abs(changed)))
+    with_effect = np.max(entry.with_effect.bearing_orders, axis=0)
+    relative = np.max(np.abs(changed), axis=0) / with_effect
+    np.testing.assert_allclose(entry.estimate.relative_bearing_orders, relative, rtol=0.07)
+    assert relative[0] > 2.0  # the order that the housing's inertia holds down
+    size = np.max(entry.with_effect.orders)
+    np.testing.assert_allclose(entry.estimate.orders, entry.order_change, rtol=0.05, atol=2e-3 * size)
+    assert "% of their order 1)" in entry.estimate.words
+    json.dumps(entry.to_json(), allow_nan=False)
+
+
+def test_along_a_run_up_the_largest_of_each_order_is_estimated() -> None:
+    """Order 1 passes the modes and others come from above: sign and size within a factor of 1.6."""
+    scene = in_housing(TimeLaw((0.0, 1.0), (2000.0 * RPM, 5000.0 * RPM)), duration=1.0)
+    (entry,) = ablate(scene, only=["housing_modes"]).effects
+    assert entry.estimate is not None
+    changed, estimated = entry.bearing_order_change[0], entry.estimate.bearing_orders[0]
+    assert np.min(np.abs(changed) / entry.with_effect.bearing_orders[0]) > 0.1
+    assert np.all((estimated / changed > 1.0 / 1.6) & (estimated / changed < 1.6))
+
+
+@pytest.mark.parametrize(("rpm", "reach"), [(300.0, 0.095), (1000.0, 0.095), (3000.0, 0.095)])
+def test_what_the_scene_does_not_call_for_changes_no_run_by_a_percent(rpm: float, reach: float) -> None:
+    """Ten mesh orders just below a tenth of the first mode: the ledger leaves the effect off."""
+    first = 10.0 * 20.0 * rpm / 60.0 / reach
+    scene = in_housing(TimeLaw.constant(rpm * RPM), inert=3e8 / (2.0 * np.pi * first) ** 2)
+    (entry,) = ablate(scene, only=["housing_modes"]).effects
+    assert not entry.on and entry.estimate is not None
+    assert entry.estimate.largest < 0.01
+    for change, size in (
+        (entry.peak_to_peak_change, entry.with_effect.peak_to_peak),
+        (entry.order_change, np.max(entry.with_effect.orders)),
+        (entry.bearing_order_change, np.max(entry.with_effect.bearing_orders)),
+    ):
+        assert np.max(np.abs(change)) < 0.01 * np.max(size)
 
 
 def test_an_effect_without_which_nothing_holds_has_no_estimate() -> None:

@@ -21,7 +21,7 @@ from dynamics.linearize import forced_response, linearize, natural_modes, whirl_
 from dynamics.loads import AppliedForce
 from dynamics.motion.observation import local_state
 from dynamics.periodic import steady_states
-from dynamics.rolling_bearings import BallBearing
+from dynamics.rolling_bearings import BallBearing, RollerBearing
 from dynamics.rolling_bearings.row_law import row_law
 from dynamics.scene import Integration
 from dynamics.settings import Outputs
@@ -31,6 +31,7 @@ ON = {"lateral": "on", "axial": "on", "tilt": "on", "housing_modes": "on"}
 OFF = ON | {"housing_modes": "off"}
 NAMES = ("input.left", "input.right", "output.left", "output.right")
 STIFFNESS, MASS, GROUND, BLOCK = 1e6, 2.0, 2e6, 4.0
+ROLLERS = RollerBearing(17, 9e-3, 13.6e-3, 65e-3, clearance=-5e-6)
 BALLS = BallBearing(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3, clearance=1e-5)
 
 
@@ -156,7 +157,7 @@ def test_its_misalignment_is_that_of_the_housing_without_mass_by_cause():
     found, expected = (deflect(part, (LoadCase("load"),), 2).cases[0].meshes[0] for part in (curved, linear))
     assert abs(expected.misalignment) > 1e-6
     np.testing.assert_allclose(
-        found.causes, expected.causes, rtol=0.0, atol=1e-8 * abs(expected.misalignment)
+        found.causes, expected.causes, rtol=0.0, atol=1e-9 * abs(expected.misalignment)
     )
     assert abs(expected.causes[3]) > 0.05 * abs(expected.misalignment)
 
@@ -331,6 +332,22 @@ def test_the_ledger_calls_for_it_near_the_first_mode_and_where_bearings_are_not_
     )
     entry = next(part for part in assemble(curved).ledger.of("housing_modes") if part.part == "disc")
     assert entry.on and not entry.possible and "not linear" in entry.reason
+
+
+def test_the_ledger_calls_for_it_where_passing_elements_reach_the_first_mode():
+    """17 rollers pass 7.3 times a turn, counted to the fourth multiple: above the 20 teeth."""
+    first = 390.0
+    ground = BLOCK * (2.0 * math.pi * first) ** 2
+    scene = block(effects={"lateral": "on"}, speed=10.0, outputs=Outputs(mesh_orders=1))
+    scene = replace(scene, housings=(replace(scene.housings[0], stiffness=rows(ground * np.eye(3))),))
+    assert not assemble(scene).ledger.on("housing_modes", "disc")
+    left, *others = scene.bushings
+    roller = RollingBearing(left.name, left.shaft, ROLLERS, left.position)
+    passed = replace(scene, bushings=tuple(others), rolling_bearings=(roller,))
+    entry = next(part for part in assemble(passed).ledger.of("housing_modes") if part.part == "disc")
+    assert entry.on
+    passing = 4.0 * ROLLERS.count * ROLLERS.cage_ratio * 10.0 / (2.0 * math.pi)
+    assert f"passing elements reach {passing:.4g} Hz" in entry.reason
 
 
 def test_what_is_no_housing_with_mass_is_named():
