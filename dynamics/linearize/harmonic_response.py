@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from fractions import Fraction
 
 import numpy as np
 
 from dynamics.assembly.assemble import System
 from dynamics.checks import integer, one_of, positive
+from dynamics.linearize.common_period import LARGEST_DENOMINATOR
 from dynamics.linearize.flank_cycles import SAMPLES
 from dynamics.linearize.steady_vibration import (
     EXCITATIONS,
@@ -198,10 +200,17 @@ def _bearing_force(at: Excited, omega: FloatArray, u: ComplexArray) -> ComplexAr
     return np.asarray(force.reshape(*force.shape[:2], *u.shape[:2]))
 
 
+def _whole(order: FloatArray) -> IntArray:
+    """Return orders, fractions, as whole multiples of their largest common part."""
+    parts = [Fraction(value).limit_denominator(LARGEST_DENOMINATOR) for value in order.tolist()]
+    scale = math.lcm(*(part.denominator for part in parts))
+    multiples = [int(part * scale) for part in parts]
+    return np.array(multiples, dtype=np.int64) // max(math.gcd(*multiples), 1)
+
+
 def extremes(amplitude: ComplexArray, order: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the least and the largest sum of all harmonics (m, S, H) over the period, (m, S) each."""
-    base = float(np.min(np.diff(order, prepend=0.0))) if order.size else 1.0
-    harmonic = np.rint(order / base).astype(int)
+    harmonic = _whole(order)
     samples = 8 * int(harmonic[-1] + 1) if order.size else 1
     lines = np.zeros((*amplitude.shape[:2], samples // 2 + 1), dtype=complex)
     lines[..., harmonic] = amplitude * (samples / 2.0)

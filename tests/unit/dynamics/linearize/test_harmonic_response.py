@@ -21,6 +21,7 @@ from dynamics.assembly.assemble import assemble
 from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
 from dynamics.linearize import common_period, harmonic_response
+from dynamics.linearize.harmonic_response import extremes
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate
 
@@ -156,3 +157,13 @@ def test_bad_input_is_named():
         harmonic_response(system, [100.0, 0.0])
     with pytest.raises(InputError, match="excitation"):
         harmonic_response(system, [100.0], excitation="noise")
+
+
+def test_extremes_of_orders_are_those_of_their_wave():
+    """Orders 3/20 and 1 have a period of 20 pitches; no order is a multiple of the least."""
+    order = np.array([3.0 / 20.0, 1.0, 2.0])
+    amplitude = np.array([[[1.0 + 0.5j, 0.7 - 0.2j, 0.1j]]])
+    turns = 2.0j * np.pi * np.linspace(0.0, 20.0, 200_001)
+    wave = np.sum(np.real(amplitude[0, 0, :, None] * np.exp(order[:, None] * turns)), axis=0)
+    found = extremes(amplitude, order)
+    np.testing.assert_allclose(np.ravel(found), [wave.min(), wave.max()], rtol=0.02)
