@@ -34,7 +34,7 @@ class Influence(Record):
     mean, peak_to_peak : (m,) arrays
         Change of the dynamic transmission error, m.
     bearing_force : (b,) array
-        Change of the mesh orders 1 to 5 of each bearing's force together, N.
+        Change of the mesh orders 1 to 5 of each bearing's force and what loads excite, together, N.
     relative_mean, relative_peak_to_peak : float
         The largest of them over the value with the effect.
     relative_bearing_force : float
@@ -184,7 +184,7 @@ def _by_order(change: FloatArray, value: FloatArray) -> FloatArray:
     size = np.max(value, axis=0, initial=0.0)
     most = np.max(np.abs(change), axis=0, initial=0.0)
     there = size > ROUNDING * np.max(size, initial=0.0)
-    return np.divide(most, size, out=np.zeros(most.shape), where=there)
+    return np.asarray(np.divide(most, size, out=np.zeros(most.shape), where=there))
 
 
 def _largest(change: FloatArray, value: FloatArray | float) -> float:

@@ -10,6 +10,7 @@ import numpy as np
 from dynamics.assembly.assemble import System
 from dynamics.influence.operating_conditions import OperatingCondition
 from dynamics.linearize.harmonic_response import HarmonicResponse, extremes
+from dynamics.linearize.load_harmonics import load_multiples
 from dynamics.linearize.modes import natural_modes
 from dynamics.linearize.parametric_response import parametric_response
 from dynamics.linearize.speeds import mesh_frequencies
@@ -39,6 +40,8 @@ class LinearFigures:
         Largest amplitudes of the mesh orders 1 to 5 of the dynamic transmission error, m.
     bearing_orders : (b, 5) array
         Of the bearing forces, root of the sum of squares of the directions, N.
+    bearing_loads : (b,) array
+        Root of the sum of squares of the largest amplitudes that loads excite beside those orders, N.
     parted : (m,) array
         How far a linear mesh would pull where flanks part, m; 0 where all stay pressed.
     freedoms, rows : int
@@ -51,6 +54,7 @@ class LinearFigures:
     peak_to_peak: FloatArray
     orders: FloatArray
     bearing_orders: FloatArray
+    bearing_loads: FloatArray
     parted: FloatArray
     freedoms: int
     rows: int
@@ -58,8 +62,8 @@ class LinearFigures:
 
     @property
     def bearing_force(self) -> FloatArray:
-        """Root of the sum of squares of the mesh orders 1 to 5 of every bearing, (b,) N."""
-        return np.asarray(np.sqrt(np.sum(self.bearing_orders**2, axis=1)))
+        """Root of the sum of squares of mesh orders 1 to 5 and what loads excite, by bearing, (b,) N."""
+        return np.asarray(np.sqrt(np.sum(self.bearing_orders**2, axis=1) + self.bearing_loads**2))
 
 
 def linear_figures(system: System, conditions: Sequence[OperatingCondition]) -> LinearFigures:
@@ -76,7 +80,7 @@ def linear_figures(system: System, conditions: Sequence[OperatingCondition]) -> 
     meshes, bearings = len(system.scene.meshes), len(system.supports.name)
     mean, low, high = np.zeros(meshes), np.full(meshes, np.inf), np.full(meshes, -np.inf)
     amplitude, parted = np.zeros((bearings, 3, COMPARED)), np.zeros(meshes)
-    orders = np.zeros((meshes, COMPARED))
+    orders, loads = np.zeros((meshes, COMPARED)), np.zeros(bearings)
     for some in conditions:
         at = excited(system, some.time, ORDERS, POSITIONS)
         condition = some.passing(resonances(at)) if some.speed.size > 1 else some
@@ -89,15 +93,16 @@ def linear_figures(system: System, conditions: Sequence[OperatingCondition]) -> 
         mean += rest @ condition.weight
         orders = np.maximum(orders, low_orders(harmonics.dynamic_transmission_error, harmonics))
         amplitude = np.maximum(amplitude, low_orders(harmonics.bearing_force[:, :3], harmonics))
+        loads = np.maximum(loads, _by_loads(at, condition, harmonics))
         pull = np.maximum(-np.min(harmonics.least_mesh_force, axis=1), 0.0)
         parted = np.maximum(parted, pull / np.maximum(harmonics.mean_stiffness, 1e-300))
     size = system.arrays.mass.shape[0], system.arrays.direction.shape[0]
     forces = np.sqrt(np.sum(amplitude**2, axis=1))
-    return LinearFigures(mean, high - low, orders, forces, parted, *size, bool(system.flanks.coast))
+    return LinearFigures(mean, high - low, orders, forces, loads, parted, *size, bool(system.flanks.coast))
 
 
 def resonances(at: Excited) -> FloatArray:
-    """Return the speeds of the leading law at which low mesh orders meet the modes that meshes move most.
+    """Return the speeds of the leading law at which low mesh orders or loads meet modes.
 
     These are the modes of the largest (gradient^2/(stiffness 2 damping ratio)) along any line of action.
     """
@@ -108,9 +113,23 @@ def resonances(at: Excited) -> FloatArray:
     height = height / np.maximum(2.0 * modes.damping_ratio * stiffness, 1e-300)
     reported = modes.frequency[np.argsort(-height)[:MODES]]
     per_speed = np.unique(mesh_frequencies(at.system, np.ones(1)).ravel())
-    per_speed = per_speed[per_speed > 0.0]
-    order = np.arange(1, MET + 1)
-    return np.unique(reported[:, None, None] / (order[:, None] * per_speed))
+    order = np.arange(1, MET + 1)[:, None] * per_speed[per_speed > 0.0]
+    return np.unique(reported[:, None] / np.concatenate([order.ravel(), _load_frequencies(at)]))
+
+
+def _load_frequencies(at: Excited) -> FloatArray:
+    """Return the frequencies of loads per speed of the leading law, Hz per rad/s."""
+    multiples = load_multiples(at.system, at.period, 1.0, at.time)
+    return np.asarray(multiples / at.period.duration(1.0))
+
+
+def _by_loads(at: Excited, condition: OperatingCondition, response: HarmonicResponse) -> FloatArray:
+    """Return what loads alone excite of every bearing's force, (b,) N."""
+    multiples = load_multiples(at.system, at.period, float(condition.speed[-1]), at.time)
+    counted = np.arange(1, COMPARED + 1) * at.period.counted
+    own = np.isin(np.rint(response.order * at.period.counted), np.setdiff1d(multiples, counted))
+    largest = np.max(np.abs(response.bearing_force[:, :3, :, own]), axis=2)
+    return np.asarray(np.sqrt(np.sum(largest**2, axis=(1, 2))))
 
 
 def low_orders(amplitude: ComplexArray, response: HarmonicResponse) -> FloatArray:

@@ -47,6 +47,13 @@ def load_harmonics(
     return force
 
 
+def load_multiples(system: System, period: CommonPeriod, speed: float, time: float) -> IntArray:
+    """Return the multiples of the common period's frequency at which loads excite at `speed`, rising."""
+    multiples = np.arange(1, load_cycles(system, period) + 1, dtype=np.int64)
+    force = load_harmonics(system, period, np.array([speed]), multiples, time)
+    return multiples[np.any(force != 0.0, axis=(0, 2))]
+
+
 class _Course:
     """Courses of the loads of a system at speeds (S,) of the leading law, rad/s."""
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from dynamics.errors import SolveError
 from dynamics.linearize.harmonic_response import HarmonicResponse, extremes, response_of
+from dynamics.linearize.load_harmonics import load_multiples
 from dynamics.linearize.steady_vibration import ComplexArray, Excited, Steady, swept_vibration
 from dynamics.types import FloatArray, IntArray
 
@@ -51,7 +52,7 @@ class Family:
 def parametric_response(
     at: Excited, speed: FloatArray, rate: FloatArray, orders: int = 10, gyroscopic: bool = False
 ) -> ParametricResponse:
-    """Return the response of a system to its transmission errors, the stiffness varying with position.
+    """Return the response of a system to its errors and loads, the stiffness varying with position.
 
     M u'' + C u' + (K + sum k(t) g^T g) u = sum k(t) g STE(t). With k = k_0 + dk(t) and the receptances A of
     the system of mean stiffness, what makes force, w = g u - STE, is sought in the harmonics -H to H of the
@@ -72,7 +73,7 @@ def parametric_response(
     gyroscopic : bool
         With gyroscopic and frame terms.
     """
-    harmonics, meshes = _all_harmonics(at, orders), len(at.cycles)
+    harmonics, meshes = _all_harmonics(at, orders, float(np.max(np.abs(speed)))), len(at.cycles)
     steady = swept_vibration(at, speed, rate, harmonics, gyroscopic)
     u, extra = steady.displacement.copy(), np.zeros((meshes, *steady.omega.shape), dtype=complex)
     shift = np.zeros((meshes, speed.size))
@@ -92,9 +93,9 @@ def parametric_response(
     return ParametricResponse(replace(response, mesh_force=force, least_mesh_force=least), shift)
 
 
-def _all_harmonics(at: Excited, orders: int) -> IntArray:
-    """Return the multiples of the common period's frequency at which any mesh excites, up to `orders`."""
-    multiples: set[int] = set()
+def _all_harmonics(at: Excited, orders: int, speed: float) -> IntArray:
+    """Return the multiples of the common period's frequency at which meshes (to `orders`) or loads excite."""
+    multiples = set(load_multiples(at.system, at.period, speed, at.time).tolist())
     for pitches, mesh in zip(at.period.pitches, at.system.scene.meshes, strict=True):
         period = mesh.table.period
         step = abs(pitches) // period

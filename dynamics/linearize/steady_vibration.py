@@ -141,11 +141,13 @@ def swept_vibration(
     passed. With `gyroscopic`, gyroscopic and frame terms are in.
     """
     static, force = _excitation(at.system, at.cycles, at.period, harmonics, "static_error")
+    loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
+    pushed = _pushed(at, force) + loads if np.any(loads) else _pushed(at, force)
     omega = _omega(at, speed, harmonics)
     decay = SWEPT * np.sqrt(omega * (np.abs(rate) / np.abs(speed))[:, None])
     rows = at.system.arrays.direction[at.system.driving_rows]
     terms = gyroscopic_terms(at.system, speed) if gyroscopic else []
-    u, residual = _solve(at, _pushed(at, force), omega - 1j * decay, terms, rows)
+    u, residual = _solve(at, pushed, omega - 1j * decay, terms, rows)
     return Steady(harmonics, omega, static, force, u[..., 0], residual, u[..., 1:])
 
 

@@ -12,11 +12,13 @@ from geared_scenes import RPM, gear_pair_scene, spring_table, with_gear
 
 from dynamics.ablation import ablate
 from dynamics.bodies import BeamSection, TimeLaw
+from dynamics.bodies.load_course import Orders
 from dynamics.errors import InputError
 from dynamics.forces import RollingContact
 from dynamics.influence import decide_effects, estimate_influences
 from dynamics.influence.operating_conditions import operating_conditions
 from dynamics.joints import FreeRotation, Housing
+from dynamics.loads import AppliedForce
 from dynamics.scene import Outputs, Scene
 from dynamics.simulation import simulate
 
@@ -93,6 +95,35 @@ def test_along_a_run_up_the_largest_of_each_order_is_estimated() -> None:
     changed, estimated = entry.bearing_order_change[0], entry.estimate.bearing_orders[0]
     assert np.min(np.abs(changed) / entry.with_effect.bearing_orders[0]) > 0.1
     assert np.all((estimated / changed > 1.0 / 1.6) & (estimated / changed < 1.6))
+
+
+def shaken(order: float, **changes: object) -> Scene:
+    """The pair in its housing, on a mesh without ripple, shaken by a wave of an order of its shaft."""
+    course = Orders("input", (order,), (1.0,), (0.0,))
+    shake = AppliedForce("shake", "input", 0.1, (0.0, 200.0, 0.0), course=course)
+    spring = gear_pair_scene(spring_table(4e8)).meshes
+    return replace(in_housing(TimeLaw.constant(3000.0 * RPM)), meshes=spring, forces=(shake,), **changes)
+
+
+def test_what_loads_shake_is_estimated_as_ablation_shows_it() -> None:
+    """Order 20 of the shaft, which is the mesh's first: at 1000 Hz, below the modes of the housing."""
+    (entry,) = ablate(shaken(20.0), only=["housing_modes"]).effects
+    assert entry.estimate is not None
+    changed = entry.bearing_order_change[:, 0]
+    assert np.max(np.abs(changed)) > 0.1 * np.max(entry.with_effect.bearing_orders)
+    np.testing.assert_allclose(
+        entry.estimate.bearing_orders[:, 0], changed, rtol=0.05, atol=0.01 * np.max(np.abs(changed))
+    )
+
+
+def test_an_effect_that_only_loads_call_for_is_not_neglected_for_a_tolerance() -> None:
+    """Order 21 is none of the mesh; linear theory sees its share of the bearing forces."""
+    scene = shaken(21.0, tolerance=0.1)
+    influence = estimate_influences(scene)["housing_modes"]
+    assert np.max(np.abs(influence.bearing_orders)) < 1e-6 * np.max(np.abs(influence.bearing_force))
+    assert influence.relative_bearing_force > 0.1
+    decided = decide_effects(scene)
+    assert decided.scene.effects.get("housing_modes", "auto") == "auto"
 
 
 @pytest.mark.parametrize(("rpm", "reach"), [(300.0, 0.095), (1000.0, 0.095), (3000.0, 0.095)])
