@@ -26,7 +26,7 @@ from dynamics.acoustics.run_recording import (
     series_recording,
 )
 from dynamics.acoustics.sound_quality import SoundQuality, loudness_over_time, sound_quality
-from dynamics.acoustics.wav import common_full_scale, read_wav, write_wav
+from dynamics.acoustics.wav import common_full_scale, read_wav, wav_file, write_wav
 
 __all__ = [
     "Air",
@@ -70,5 +70,6 @@ __all__ = [
     "sound_quality",
     "sphere_efficiency",
     "surface_pressure",
+    "wav_file",
     "write_wav",
 ]

@@ -34,7 +34,12 @@ def common_full_scale(*recordings: Recording) -> float:
 
 
 def write_wav(path: Path | str, recording: Recording, full_scale: float) -> None:
-    """Write a recording; the sample 1.0 is `full_scale` in its unit.
+    """Write a recording to a file; parameters and errors are those of `wav_file`."""
+    Path(path).write_bytes(wav_file(recording, full_scale))
+
+
+def wav_file(recording: Recording, full_scale: float) -> bytes:
+    """Return the content of a WAV file whose sample 1.0 is `full_scale` in the recording's unit.
 
     Quantity, unit and full scale stand in the file as JSON (RIFF comment ICMT). Files of the same full scale
     play at their true relative level.
@@ -59,7 +64,7 @@ def write_wav(path: Path | str, recording: Recording, full_scale: float) -> None
     comment = json.dumps(dict(zip(COMMENT, words, strict=True))).encode("ascii")
     information = b"INFO" + _chunk(b"ICMT", comment + b"\0")
     body = sound.getvalue()[8:] + _chunk(b"LIST", information)
-    Path(path).write_bytes(_chunk(b"RIFF", body))
+    return _chunk(b"RIFF", body)
 
 
 def read_wav(path: Path | str) -> Recording:

@@ -32,7 +32,7 @@ def compare(files: Sequence[Path], view: RunView, torque: float | None = None) -
         is to be compared.
     """
     measured = [file for file in files if file.suffix.lower() in (".csv", *ENDINGS)]
-    results = dict(_named([file for file in files if file not in measured]))
+    results = dict(named_files([file for file in files if file not in measured]))
     if len(measured) > 1 or not results or not len(results) + len(measured) >= 2 or len(results) > 2:
         raise BadInput.of("files", ", ".join(map(str, files)) or None, _BOUND, _ADVICE)
     return compare_results(results, view, measured, torque)
@@ -77,7 +77,7 @@ def _measured(files: Sequence[Path], teeth: int, unit: str) -> MeasuredCurve | M
     return read_measured(files[0], teeth)
 
 
-def _named(files: Sequence[Path]) -> list[tuple[str, Path]]:
+def named_files(files: Sequence[Path]) -> list[tuple[str, Path]]:
     """Name results by their files: as short as tells them apart."""
     stems = [file.stem for file in files]
     short = len(set(stems)) == len(stems)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,8 +18,10 @@ from service.drawing.figure import Axis, Dash, Figure, Line, Panel, number
 from service.drawing.page import Headline, Page, Section
 from service.problems import BadInput
 from service.runs.levels_over_speed import DEPTH, largest_orders, order_blocks
-from service.runs.run_view import QUANTITIES, SCALES, RunView, Signal, decibels, run_axis, shown_signal
+from service.runs.run_view import SCALES, RunView, Signal, decibels, run_axis, same_view, shown_signal
+from service.runs.signal_recording import along_direction
 from service.runs.signal_spectrum import ORDERS, amplitude_spectrum, spectrum_window
+from service.runs.sound import Heard, sound_of
 
 _DASHES: tuple[Dash, ...] = ("solid", "dash")
 _ERRORS = {"bearing_force": "bearing_force_orders", "dynamic_transmission_error": "transmission_error_orders"}
@@ -28,11 +30,12 @@ _ERRORS = {"bearing_force": "bearing_force_orders", "dynamic_transmission_error"
 
 @dataclass(frozen=True)
 class _Side:
-    """One of the runs: its name, what is shown of it, and its blocks over mesh orders."""
+    """One of the runs: name, what is shown of it, the run along its direction, blocks over mesh orders."""
 
     name: str
     run: RunResult
     signal: Signal
+    seen: RunResult
     blocks: Waterfall
 
 
@@ -75,10 +78,9 @@ def _sides(runs: dict[str, RunResult], view: RunView) -> Iterator[_Side]:
             signal = shown_signal(run, view)
         except BadInput as error:
             raise error.within(name) from None
-        yield _Side(name, run, signal, order_blocks(run, signal))
-        quantity = next(key for key, value in QUANTITIES.items() if value is signal.quantity)
-        bearing = signal.part if signal.quantity.part == "bearing" else ""
-        view = replace(view, quantity=quantity, bearing=bearing)
+        seen = along_direction(run, signal)
+        yield _Side(name, run, signal, seen, order_blocks(seen, signal))
+        view = same_view(view, signal)
 
 
 def _differences(sides: tuple[_Side, ...], orders: tuple[int, ...]) -> Iterator[Difference]:
@@ -131,6 +133,7 @@ def _levels(sides: tuple[_Side, ...], orders: tuple[int, ...]) -> Figure:
         caption=f"{styles}. Overall: rms. Orders: {signal.scale} values.",
         alternative=f"The largest overall level changes by {change:+.1f} dB." if len(sides) == 2 else "",
         content=(Panel(axis, Axis(f"level, dB re 1 {signal.unit}"), tuple(lines)),),
+        sound=sound_of(tuple(Heard(side.name, side.run, side.signal) for side in sides), axis),
     )
 
 
@@ -139,7 +142,7 @@ def _spectra(sides: tuple[_Side, ...], measured: MeasuredOrders | None) -> Figur
     lines = []
     for side, color in zip(sides, COLORS, strict=False):
         window = spectrum_window(side.run.time)
-        frequency, amplitude = amplitude_spectrum(side.run, side.signal, window)
+        frequency, amplitude = amplitude_spectrum(side.seen, side.signal, window)
         order = frequency / float(np.median(side.run.mesh_frequency[side.signal.mesh, window]))
         shown = order <= ORDERS + 0.5
         lines.append(Line(side.name, order[shown], np.maximum(amplitude[shown], 1e-12), color, width=1.2))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -164,6 +164,44 @@ class Table:
 
 
 @dataclass(frozen=True)
+class Track:
+    """One of the sounds of a plot, and where on the horizontal axis of its first panel it is as it plays.
+
+    Attributes
+    ----------
+    name : str
+        Tells it from others of the plot.
+    time, along : (n,) arrays
+        s, increasing; values on the axis.
+    query : dict of str to str
+        What names it to the service's path of the sound of a result.
+    """
+
+    name: str
+    time: FloatArray
+    along: FloatArray
+    query: dict[str, str]
+
+
+@dataclass(frozen=True)
+class Sound:
+    """What a plot shows, to listen to.
+
+    Attributes
+    ----------
+    caption : str
+        Its quantity, and what it is not.
+    tracks : tuple of Track
+    files : callable
+        Returns a WAV file for each track, all of one full scale; none if they would be too large for a page.
+    """
+
+    caption: str
+    tracks: tuple[Track, ...]
+    files: Callable[[], tuple[bytes, ...]]
+
+
+@dataclass(frozen=True)
 class Figure:
     """A plot of one or more panels, from top to bottom.
 
@@ -178,6 +216,8 @@ class Figure:
     content : tuple of Panel
     table : Table or None
         The main numbers behind the plot.
+    sound : Sound or None
+        The plot to listen to.
     """
 
     key: str
@@ -186,6 +226,7 @@ class Figure:
     alternative: str
     content: tuple[Panel, ...]
     table: Table | None = None
+    sound: Sound | None = None
 
 
 DRAWING_WIDTH, TALLEST = 3.3, 2.0

@@ -12,6 +12,7 @@ from html import escape
 
 from service.drawing.figure import Figure, Table
 from service.drawing.interactive import plotly_figure
+from service.drawing.player import player, player_script
 from service.drawing.plotly_script import plotly_script
 from service.drawing.style import STYLE
 
@@ -93,6 +94,7 @@ def html(page: Page, images: dict[str, bytes]) -> str:
             f'<main id="main">\n{body}\n</main>',
             "<footer>Written by lineofaction. This page needs no network.</footer>",
             f"<script>{_SCRIPT}</script>",
+            player_script() if any(f.sound for section in page.sections for f in section.figures) else "",
             "</body>\n</html>\n",
         ]
     )
@@ -137,7 +139,7 @@ def _figure(figure: Figure, image: bytes) -> str:
         f'<div class="plot" role="img" aria-label="{alternative}" data-figure="{figure.key}-data"></div>'
         f'<img class="still" alt="{alternative}" src="data:image/png;base64,{still}">\n'
         f"<figcaption><strong>{escape(figure.alternative)}</strong> {escape(figure.caption)}</figcaption>\n"
-        f"{numbers}"
+        f"{player(figure)}{numbers}"
         f'<script type="application/json" id="{figure.key}-data">{_embedded(figure)}</script>\n</figure>'
     )
 

@@ -12,6 +12,7 @@ from typing import Any
 from service.drawing.figure import Figure, Table
 from service.drawing.interactive import plotly_figure
 from service.drawing.page import Page, Section
+from service.drawing.player import sound_json
 from service.report.content import page_of
 from service.report.inputs import read_inputs
 
@@ -55,6 +56,7 @@ def _figure(figure: Figure) -> Json:
         "alternative": figure.alternative,
         "plot": plotly_figure(figure),
         "table": None if figure.table is None else _table(figure.table),
+        "sound": None if figure.sound is None else sound_json(figure.sound),
     }
 
 

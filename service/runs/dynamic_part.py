@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from service.runs.campbell import campbell, frequency_blocks
 from service.runs.dynamic_error import dynamic_error
 from service.runs.dynamic_factor import dynamic_factor_figure
 from service.runs.levels_over_speed import levels_over_speed, order_blocks
+from service.runs.loudest import has_orders
 from service.runs.mode_shares import mode_shares
 from service.runs.octave_bands import octave_bands
 from service.runs.order_map import order_map
@@ -26,9 +28,10 @@ from service.runs.run_series import run_series
 from service.runs.run_view import RunView, Signal, shown_signal
 from service.runs.sideband_table import sideband_tables
 from service.runs.signal_over_time import signal_over_time
+from service.runs.signal_recording import along_direction
 from service.runs.signal_spectrum import signal_spectrum
+from service.runs.sound import Heard, sound_of
 
-LEAST_PITCHES = 64  # of a run whose orders are shown
 _ERRORS = {
     "time_step": ("step error", "nm rms"),
     "table_interpolation": ("table error", "nm rms"),
@@ -70,7 +73,8 @@ def dynamic_results(run: RunResult, view: RunView) -> tuple[Section, ...]:
     """
     signal = shown_signal(run, view)
     series = run_series(run, signal.mesh)
-    shown = (signal_over_time(run, series, signal), signal_spectrum(run, signal))
+    seen = along_direction(run, signal)
+    shown = (signal_over_time(run, series, signal), signal_spectrum(seen, signal))
     section = Section(signal.heading, figures=shown)
     if not run.mesh:
         return (section,)
@@ -96,12 +100,14 @@ def dynamic_making(run: RunResult) -> tuple[Section, ...]:
 
 def _orders(run: RunResult, signal: Signal) -> tuple[Section, ...]:
     """Show levels, bands and mesh orders over the run, for runs long enough to have them."""
-    if np.ptp(np.unwrap(run.position[signal.mesh], period=1.0)) < LEAST_PITCHES:
+    if not has_orders(run, signal.mesh):
         return ()
-    orders, frequencies = order_blocks(run, signal), frequency_blocks(run, signal)
+    seen = along_direction(run, signal)
+    orders, frequencies = order_blocks(seen, signal), frequency_blocks(seen, signal)
+    of_orders = order_map(run, signal, orders)
     figures = (
         levels_over_speed(run, signal, orders),
-        order_map(run, signal, orders),
+        replace(of_orders, sound=sound_of((Heard(signal.name, run, signal),), of_orders.content[0].x)),
         campbell(run, signal, frequencies),
         mode_shares(run, signal, frequencies),
         octave_bands(run, signal, frequencies),
@@ -113,7 +119,7 @@ def _orders(run: RunResult, signal: Signal) -> tuple[Section, ...]:
 def _forces(run: RunResult) -> tuple[Section, ...]:
     """Show how dynamic the mesh force is, and how planets share it."""
     figures = [] if planet_sharing(run) is None else [planet_sharing(run)]
-    if run.nominal_force[0] > 0.0 and np.ptp(np.unwrap(run.position[0], period=1.0)) >= LEAST_PITCHES:
+    if run.nominal_force[0] > 0.0 and has_orders(run):
         figures.insert(0, dynamic_factor_figure(run))
     shown = tuple(figure for figure in figures if figure is not None)
     return (Section("Mesh forces", figures=shown, tables=(_contact(run),)),)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -18,6 +18,9 @@ from service.runs.run_series import driving_shaft
 MONOTONE = 0.2  # least change of speed over the run, of the highest, for a speed axis
 SCALES = {"rms": float(np.sqrt(0.5)), "peak": 1.0}
 """Of an amplitude."""
+PRINCIPAL = "principal"
+DIRECTIONS = ("x", "y", "z", PRINCIPAL)
+"""Along which a quantity of bearings is taken; the principal one is that in which it varies most."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +64,9 @@ class RunView:
         Of the spectra.
     scale : str
         Whether amplitudes are effective or peak values.
+    direction : str
+        One of `DIRECTIONS`, along which a quantity of bearings is taken for orders and sound; empty: orders
+        of all three components in power, sound along the principal one.
     """
 
     quantity: str = ""
@@ -69,6 +75,7 @@ class RunView:
     orders: tuple[float, ...] = ()
     window: str = "hann"
     scale: str = "rms"
+    direction: str = ""
 
 
 @dataclass(frozen=True)
@@ -85,7 +92,7 @@ class Signal:
         Whose orders are shown.
     orders : tuple of int
         Those that were named.
-    window, scale : str
+    window, scale, direction : str
     """
 
     quantity: Quantity
@@ -95,12 +102,16 @@ class Signal:
     orders: tuple[int, ...]
     window: str
     scale: str
+    direction: str = ""
 
     @property
     def name(self) -> str:
-        """What and where."""
+        """What and where, and along which direction if that is named."""
         where = f"bearing {self.part}" if self.quantity.part == "bearing" else self.part
-        return f"{self.quantity.noun} {where}"
+        along = {"": "", PRINCIPAL: " along its principal direction"}.get(
+            self.direction, f" along {self.direction}"
+        )
+        return f"{self.quantity.noun} {where}{along}"
 
     @property
     def heading(self) -> str:
@@ -159,8 +170,18 @@ def shown_signal(run: RunResult, view: RunView) -> Signal:
     if quantity.part == "bearing":
         parts, row = run.bearing, int(np.argmax(np.var(values, axis=-1).sum(axis=-1)))
         row = _index("bearing", view.bearing, parts) if view.bearing else row
+    if view.direction and (view.direction not in DIRECTIONS or quantity.part != "bearing"):
+        bound = str(one_of(DIRECTIONS)) + ", of a quantity of bearings"
+        raise BadInput.of("direction", view.direction, bound)
     orders = _orders(run, view.orders, mesh)
-    return Signal(quantity, row, parts[row], mesh, orders, view.window, view.scale)
+    return Signal(quantity, row, parts[row], mesh, orders, view.window, view.scale, view.direction)
+
+
+def same_view(view: RunView, signal: Signal) -> RunView:
+    """Return the view that shows of another run what `signal` shows of the first."""
+    quantity = next(name for name, value in QUANTITIES.items() if value is signal.quantity)
+    bearing = signal.part if signal.quantity.part == "bearing" else ""
+    return replace(view, quantity=quantity, bearing=bearing)
 
 
 def _index(field: str, name: str, names: tuple[str, ...]) -> int:

@@ -24,6 +24,22 @@ class ReportPlot(BaseModel):
     layout: dict[str, Any] = Field(description="Layout of plotly.js")
 
 
+class ReportTrack(BaseModel):
+    """A sound of a plot."""
+
+    name: str
+    query: dict[str, str] = Field(description="Query of /v1/results/{hash}/sound")
+    time: list[float] = Field(description="s from its start")
+    along: list[float] = Field(description="Where it then is on the horizontal axis")
+
+
+class ReportSound(BaseModel):
+    """What a plot shows, to listen to."""
+
+    caption: str
+    tracks: list[ReportTrack]
+
+
 class ReportFigure(BaseModel):
     """A plot, with what stands in for it where it cannot be seen."""
 
@@ -33,6 +49,7 @@ class ReportFigure(BaseModel):
     alternative: str = Field(description="The plot in words")
     plot: ReportPlot
     table: ReportTable | None = Field(description="Its numbers; null: none")
+    sound: ReportSound | None = Field(None, description="The plot to listen to; null: it has no sound")
 
 
 class ReportSection(BaseModel):

@@ -2,16 +2,51 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from service.cli.guard import computing
+from service.cli.signature import grouped
 from service.cli.verbs.options import AsJson, TableService
 from service.cli.verbs.overrides import SceneFile, overridable
 
+if TYPE_CHECKING:
+    from service.runs.run_view import RunView
+
 verbs = typer.Typer()
+
+
+@dataclass(frozen=True)
+class HeardOptions:
+    """What of a run is heard."""
+
+    quantity: Annotated[
+        str,
+        typer.Option(
+            help="Quantity to hear: force, moment, acceleration, mesh_force, transmission_error.",
+            show_default="force",
+        ),
+    ] = ""
+    bearing: Annotated[str, typer.Option(help="Bearing to hear.", show_default="the loudest")] = ""
+    mesh: Annotated[
+        str, typer.Option(help="Mesh to hear, or whose orders are listed.", show_default="the first")
+    ] = ""
+    direction: Annotated[
+        str,
+        typer.Option(
+            help="Direction at the bearing: x, y, z or principal.", show_default="in which it varies most"
+        ),
+    ] = ""
+
+    @property
+    def view(self) -> RunView:
+        """The view that the options name."""
+        from service.runs.run_view import RunView  # noqa: PLC0415 (start-up time)
+
+        return RunView(self.quantity, self.bearing, self.mesh, direction=self.direction)
 
 
 @verbs.command(epilog="Example: loa simulate examples/palermo_scene.toml -o run.nc")
@@ -30,3 +65,22 @@ def simulate(
     from service.cli.simulate import run_simulate  # noqa: PLC0415 (start-up time)
 
     run_simulate(scene, output, service, resume=resume, as_json=json)
+
+
+@verbs.command(epilog="Example: loa listen before.nc after.nc -o sounds")
+@computing
+@grouped
+def listen(
+    *,
+    runs: Annotated[list[Path], typer.Argument(help="Runs (netCDF); several are written on one full scale.")],
+    output: Annotated[
+        Path,
+        typer.Option("-o", "--output", help="WAV file, or folder of one file per run, named as the run."),
+    ],
+    heard: HeardOptions,
+    json: AsJson = False,
+) -> None:
+    """Write runs as WAV files of stated quantity and level, to hear and to compare by ear."""
+    from service.cli.listen import run_listen  # noqa: PLC0415 (start-up time)
+
+    run_listen(runs, output, heard.view, as_json=json)

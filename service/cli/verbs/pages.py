@@ -41,6 +41,13 @@ class ViewOptions:
         str, typer.Option(help="Window of the spectra of a run: hann, flat_top, rectangular.")
     ] = "hann"
     scale: Annotated[str, typer.Option(help="Amplitudes of a run: rms or peak.")] = "rms"
+    direction: Annotated[
+        str,
+        typer.Option(
+            help="Direction of a quantity of bearings: x, y, z, or principal, in which it varies most.",
+            show_default="orders of all three in power",
+        ),
+    ] = ""
 
     @property
     def view(self) -> RunView:
@@ -49,7 +56,7 @@ class ViewOptions:
         from service.schemas.number_list import number_list  # noqa: PLC0415 (start-up time)
 
         cuts = tuple(number_list("--orders", self.orders)) if self.orders else ()
-        return RunView(self.quantity, self.bearing, self.mesh, cuts, self.window, self.scale)
+        return RunView(self.quantity, self.bearing, self.mesh, cuts, self.window, self.scale, self.direction)
 
 
 @verbs.command(epilog="Example: loa report ste.nc run.nc -o report.html")

@@ -1,0 +1,148 @@
+"""Sounds in pages: they load, the cursor is where they are, a click seeks, two play in turn at one speed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+from page_visit import PATIENCE
+from playwright.sync_api import Browser, Locator, Page, expect
+
+from service.comparison.compare import compare
+from service.report import write_report
+from service.report.write import write_whole
+from service.runs.run_view import RunView
+
+DURATION, TOP = 2.0, 900.0  # s, rpm of the run-up from standstill
+
+
+@pytest.fixture(scope="module")
+def folder(closed_forms: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    made = tmp_path_factory.mktemp("sound")
+    run = closed_forms.run_up(duration=DURATION, top_rpm=TOP)
+    run.to_netcdf(made / "loud.nc")
+    replace(run, bearing_force=0.5 * run.bearing_force).to_netcdf(made / "quiet.nc")
+    return made
+
+
+@pytest.fixture(scope="module")
+def order_map(browser: Browser, folder: Path) -> Iterator[Locator]:
+    """The order map of a report."""
+    write_report(folder / "loud.nc", folder / "report.html")
+    yield from figure(browser, folder / "report.html", "#order_map")
+
+
+@pytest.fixture(scope="module")
+def levels(browser: Browser, folder: Path) -> Iterator[Locator]:
+    """The levels of a comparison."""
+    write_whole(compare([folder / "loud.nc", folder / "quiet.nc"], RunView()), folder / "comparison.html")
+    yield from figure(browser, folder / "comparison.html", "#levels")
+
+
+def figure(browser: Browser, file: Path, name: str) -> Iterator[Locator]:
+    """Yield a figure of a page that is drawn and whose sounds are loaded; nothing is complained about."""
+    page, complaints = browser.new_page(viewport={"width": 1280, "height": 900}), []
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.goto(file.as_uri())
+    page.wait_for_selector("html[data-drawn=yes]", timeout=PATIENCE)
+    found = page.locator(name)
+    found.scroll_into_view_if_needed()
+    page.wait_for_function(f"[...document.querySelectorAll('{name} audio')].every((one) => one.readyState)")
+    yield found
+    assert complaints == []
+    page.close()
+
+
+def speed(of: Locator) -> float:
+    """Return the speed that is shown beside the player, rpm."""
+    value, unit = (of.locator("output").text_content() or "").split()
+    assert unit == "rpm"
+    return float(value)
+
+
+def times(of: Locator) -> list[float]:
+    """Return where the players are, s."""
+    found: list[float] = of.locator("audio").evaluate_all("all => all.map((one) => one.currentTime)")
+    return found
+
+
+def clicked(of: Locator, part: float) -> float:
+    """Click on a plot at a part of its width, between its curves; return the speed there by its axis."""
+    box = of.locator(".nsewdrag").first.bounding_box()
+    assert box is not None
+    of.page.mouse.click(box["x"] + part * box["width"], box["y"] + 0.6 * box["height"])
+    low, high = of.locator(".plot").evaluate("node => node.layout.xaxis.range")
+    return float(low + part * (high - low))
+
+
+def test_the_sound_lasts_as_long_as_the_run(order_map: Locator) -> None:
+    players = order_map.locator("audio")
+    assert players.count() == 1
+    assert players.evaluate("one => one.duration") == pytest.approx(DURATION, abs=1e-3)
+    expect(order_map).to_contain_text("no sound pressure")
+    expect(order_map).to_contain_text("Full scale: 28 N")
+
+
+def test_the_cursor_is_at_the_speed_of_the_sound(order_map: Locator) -> None:
+    order_map.locator("audio").evaluate("one => { one.currentTime = 1.2; }")
+    expect(order_map.locator("output")).to_have_text("540.0 rpm")  # TOP 1.2 / DURATION
+    low, high = order_map.locator(".plot").evaluate("node => node.layout.xaxis.range")
+    area, cursor = (order_map.locator(name).first.bounding_box() for name in (".nsewdrag", ".cursor"))
+    assert area is not None
+    assert cursor is not None
+    expected = area["x"] + (540.0 - low) / (high - low) * area["width"]
+    assert cursor["x"] + 1.0 == pytest.approx(expected, abs=1.5)
+    assert cursor["height"] == pytest.approx(area["height"], abs=1.0)
+
+
+def test_a_click_on_the_map_seeks(order_map: Locator) -> None:
+    there = clicked(order_map, 0.75)
+    order_map.page.wait_for_function("document.querySelector('#order_map audio').currentTime > 1.3")
+    assert speed(order_map) == pytest.approx(there, rel=2e-3)
+    assert times(order_map)[0] == pytest.approx(DURATION * there / TOP, rel=2e-3)
+
+
+def test_the_player_is_reached_by_the_keyboard(order_map: Locator) -> None:
+    order_map.locator("audio").focus()
+    before = times(order_map)[0]
+    order_map.page.keyboard.press("Home")
+    order_map.page.wait_for_function("document.querySelector('#order_map audio').currentTime < 0.1")
+    assert before > 0.1
+
+
+def test_two_designs_are_heard_in_turn_at_the_same_speed(levels: Locator) -> None:
+    players = levels.locator("audio")
+    assert players.count() == 2
+    there = clicked(levels, 0.5)
+    levels.page.wait_for_function("document.querySelector('#levels audio').currentTime > 0.5")
+    assert times(levels)[1] == 0.0
+    levels.get_by_role("radio", name="quiet").check()
+    expect(players.nth(0)).to_be_hidden()
+    expect(players.nth(1)).to_be_visible()
+    assert times(levels)[1] == pytest.approx(DURATION * there / TOP, rel=2e-3)
+    levels.get_by_role("radio", name="loud").check()
+    expect(players.nth(1)).to_be_hidden()
+
+
+def test_both_play_at_their_relative_level(levels: Locator) -> None:
+    """Decoded by the browser: the peaks are 1 and one half."""
+    page: Page = levels.page
+    peaks = page.evaluate(
+        """async () => Promise.all([...document.querySelectorAll("#levels audio")].map(async (one) => {
+          const bytes = Uint8Array.from(atob(one.src.split(",")[1]), (letter) => letter.charCodeAt(0));
+          const sound = await new OfflineAudioContext(1, 1, 24000).decodeAudioData(bytes.buffer);
+          return sound.getChannelData(0).reduce((most, value) => Math.max(most, Math.abs(value)), 0);
+        }))"""
+    )
+    assert peaks == pytest.approx([1.0, 0.5], rel=1e-6)
+
+
+def test_without_scripts_the_sound_can_be_played(browser: Browser, folder: Path, order_map: Locator) -> None:
+    context = browser.new_context(java_script_enabled=False)
+    page = context.new_page()
+    page.goto((folder / "report.html").as_uri())
+    assert page.locator("#order_map audio[controls]").is_visible()
+    context.close()
