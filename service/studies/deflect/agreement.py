@@ -69,7 +69,8 @@ def in_agreement(
     """
     if not contacts:
         return Agreement(first, 1, 0.0)
-    knots = {name: _first_knots(_misalignments(first, name)) for name in contacts}
+    stated = {mesh.name: mesh.misalignment for mesh in scene.meshes}
+    knots = {name: _first_knots(_misalignments(first, name), stated[name]) for name in contacts}
     last, deflection, change, passes = first, first, float("inf"), 0
     while passes < PASSES:
         passes += 1
@@ -96,11 +97,14 @@ def _misalignments(deflection: Deflection, mesh: str) -> list[float]:
     return [own.misalignment for case in deflection.cases for own in case.meshes if own.name == mesh]
 
 
-def _first_knots(misalignments: Sequence[float]) -> list[float]:
-    """Return knots from the misalignments without the moment of uneven loads, m, increasing."""
+def _first_knots(misalignments: Sequence[float], stated: float) -> list[float]:
+    """Return knots from the misalignments without the moment of uneven loads, m, increasing.
+
+    They reach to the misalignment that the scene states, at which its rest begins.
+    """
     low, high = min(misalignments), max(misalignments)
     margin = max(MARGIN * (high - low), MARGIN * max(abs(low), abs(high)), LEAST_MARGIN)
-    return with_knots([low - margin, high + margin], misalignments, 0.1 * margin)
+    return with_knots([min(low - margin, stated), max(high + margin, stated)], misalignments, 0.1 * margin)
 
 
 def with_knots(knots: Sequence[float], further: Sequence[float], closest: float = CLOSEST) -> list[float]:

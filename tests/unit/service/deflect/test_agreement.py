@@ -31,11 +31,11 @@ class SlicedContact:
         return sliced_database(tuple(misalignments), positions=6, forces=forces).force_table()
 
 
-def agreed(scene: Any) -> tuple[Any, dict[str, SlicedContact]]:
+def agreed(scene: Any, cases: tuple[LoadCase, ...] = CASES) -> tuple[Any, dict[str, SlicedContact]]:
     """The agreement of the two stages, and their contacts."""
     contacts: Any = {mesh.name: SlicedContact() for mesh in scene.meshes}
-    first = deflect(scene, CASES, POSITIONS)
-    return in_agreement(scene, CASES, POSITIONS, contacts, first), contacts
+    first = deflect(scene, cases, POSITIONS)
+    return in_agreement(scene, cases, POSITIONS, contacts, first), contacts
 
 
 def misalignments(deflection: Deflection, mesh: int) -> list[float]:
@@ -51,6 +51,16 @@ def test_every_mesh_runs_at_a_knot_of_its_table() -> None:
         last = np.array(contacts[mesh.name].knots[-1])
         for m in misalignments(result.deflection, k):
             assert np.min(np.abs(last - m)) <= TOLERANCE * max(abs(m), 1e-6)
+
+
+def test_a_load_case_alone_runs_as_among_others() -> None:
+    """Its tables are about its own misalignment and reach to that of the scene, where rest begins."""
+    alone, _ = agreed(two_stages(), CASES[:1])
+    among, _ = agreed(two_stages())
+    assert alone.reached
+    for k in range(2):
+        expected = pytest.approx(misalignments(among.deflection, k)[0], rel=2e-4)
+        assert misalignments(alone.deflection, k)[0] == expected
 
 
 def test_it_is_the_balance_on_a_fine_table() -> None:
