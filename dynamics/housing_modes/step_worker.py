@@ -21,6 +21,8 @@ RESET_BY_GMSH = ("SIGTERM", "SIGHUP", "SIGPIPE", "SIGINT")
 MILLIMETER = 1e-3
 ELEMENTS_A_TURN = 12
 FRONTAL_DELAUNAY = 6
+WORST = 0.05
+"""Quality below which a mesh is made again: Delaunay's method leaves slivers in the walls of castings."""
 
 
 def start_gmsh() -> Any:
@@ -56,8 +58,18 @@ def mesh(gmsh: Any, request: dict[str, Any]) -> dict[str, Any]:
     gmsh.option.setNumber("Mesh.MeshSizeMax", size / MILLIMETER)
     gmsh.model.addPhysicalGroup(3, [solids[0][1]])  # only its elements are written
     gmsh.model.mesh.generate(3)
+    if worst_element(gmsh) < WORST:
+        gmsh.option.setNumber("Mesh.OptimizeNetgen", 1)  # twice the time, a sixth more elements: on demand
+        gmsh.model.mesh.clear()
+        gmsh.model.mesh.generate(3)
     gmsh.write(request["mesh"])
     return {"solids": 1, "size": size}
+
+
+def worst_element(gmsh: Any) -> float:
+    """Return the least quality of a tetrahedron: its inverse condition number, 1 if it is regular."""
+    _, tags, _ = gmsh.model.mesh.getElements(3)
+    return float(min(quality.min() for quality in map(gmsh.model.mesh.getElementQualities, tags)))
 
 
 def wall_thickness(gmsh: Any, solid: int) -> float:
