@@ -13,10 +13,10 @@ from service.drawing import palette
 from service.drawing.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Table, number
 from service.drawing.page import Headline
 from service.studies.presentation import Presentation, dynamics_page
+from service.studies.response.power_figure import loses_power, power_figure, power_table
 
 RPM = np.pi / 30.0
 SHOWN_ORDERS, SHOWN_PEAKS = 6, 15
-LEAST_SHARE = 1e-3  # %, of what is listed
 
 WITH_MESHES = (
     "Peak amplitudes of the mesh orders about the static equilibrium, linear: mean mesh stiffness, no loss "
@@ -121,25 +121,6 @@ def peak_table(response: ForcedResponse) -> Table:
     return Table("Peaks over speed, the largest first", head, tuple(rows))
 
 
-def power_table(response: ForcedResponse) -> Table | None:
-    """List where the power goes at the speed at which most is lost; None where nothing is."""
-    power = response.power
-    by_part = np.sum(power.loss, axis=2)
-    total = np.sum(by_part, axis=0)
-    if not np.any(total > 0.0):
-        return None
-    at = int(np.argmax(total))
-    rows = []
-    for kind, lost in power.by_kind().items():
-        own = [part for part, each in enumerate(power.kind) if each == kind]
-        most = max(own, key=lambda part: by_part[part, at])
-        share = 100.0 * float(lost[at] / total[at])
-        if abs(share) >= LEAST_SHARE:
-            rows.append((kind, power.sink[most], number(float(lost[at]), 3), number(share, 3)))
-    title = f"Power lost at {number(float(response.speed[at]) / RPM, 4)} rpm, all orders"
-    return Table(title, ("lost in", "most in", "W", "%"), tuple(rows))
-
-
 def _words(response: ForcedResponse) -> str:
     """Say the largest amplitude, and where flanks part."""
     if not response.mesh:
@@ -176,6 +157,12 @@ def _largest(what: str, names: Sequence[str], size: FloatArray, response: Forced
     return Headline(f"largest {what} {names[part]}", f"{number(float(size[part, s, h]), 3)} N", at)
 
 
+def _figures(response: ForcedResponse) -> tuple[Figure, ...]:
+    """Return amplitudes, and the power lost if any is."""
+    figure = response_figure(response)
+    return (figure, power_figure(response)) if loses_power(response) else (figure,)
+
+
 def _text(response: ForcedResponse) -> Iterator[Table | str]:
     """Peaks, and what the linear answer does not hold."""
     yield peak_table(response)
@@ -188,9 +175,8 @@ def _text(response: ForcedResponse) -> Iterator[Table | str]:
         "first-order theory: the other excitation changes "
         f"amplitudes by up to {engineering(worst, 2)} % of the largest"
     )
-    lost = power_table(response)
-    if lost is not None:
-        yield lost
+    if loses_power(response):
+        yield power_table(response)
     left = response.power.residual
     yield f"residual of the solves {leftover(response.residual)}, of the power balance {leftover(left)}"
     yield f"cost {engineering(sum(response.facts['seconds'].values()), 3)} CPU s"
@@ -199,6 +185,6 @@ def _text(response: ForcedResponse) -> Iterator[Table | str]:
 
 PAGE = Presentation(
     response_figure,
-    lambda response: dynamics_page("Forced response", (response_figure(response),), headlines(response)),
+    lambda response: dynamics_page("Forced response", _figures(response), headlines(response)),
     _text,
 )
