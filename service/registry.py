@@ -50,6 +50,8 @@ class Study:
         Endings of files that the verb writes beside those of all studies. CSV can be printed too.
     several : bool
         Whether the verb takes several files.
+    housed : bool
+        Whether it is about a housing, which a scene then has by its solid.
     aliases : tuple of str
         Other names of the verb's option ``--output``.
     """
@@ -70,6 +72,7 @@ class Study:
     collection: str = ""
     further: tuple[str, ...] = ()
     several: bool = False
+    housed: bool = False
     aliases: tuple[str, ...] = ()
 
     @property
@@ -258,6 +261,21 @@ STUDIES: dict[str, Study] = {
             kind="noise",
             stages=(("analysis", 0.5), ("response", 0.1), ("radiation", 0.4)),
             version="1",
+            housed=True,
+        ),
+        Study(
+            "vibration",
+            "scene",
+            "Vibration of the housing",
+            "Find the vibration",
+            "Find the vibration of a housing under its bearings over speed: points and surface by order, "
+            "contributions, transfer functions, operating deflection.",
+            "scene.toml --speed-rpm 500:3000:25 -o deflection.png",
+            kind="vibration",
+            stages=(("housing", 0.5), ("analysis", 0.4), ("response", 0.1)),
+            version="1",
+            further=(".csv", ".vtu"),
+            housed=True,
         ),
         Study(
             "steady",

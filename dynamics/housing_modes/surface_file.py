@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from pathlib import Path
-from tempfile import NamedTemporaryFile
 
 import numpy as np
 
@@ -33,8 +33,7 @@ def write_surface(
         [("triangle6", triangles)],
         point_data={name: np.ascontiguousarray(values) for name, values in fields.items()},
     )
-    with NamedTemporaryFile(dir=file.parent, suffix=".vtu", delete=False) as temporary:
-        unfinished = Path(temporary.name)
+    unfinished = file.with_name(f".{file.name}.{os.getpid()}")
     try:
         meshio.write(unfinished, mesh, file_format="vtu")
         unfinished.replace(file)

@@ -66,11 +66,23 @@ class HousingVibration:
         """Return peak amplitudes of another quantity of the points, (k, 3, S, H)."""
         return self.velocity * (2j * np.pi * self.frequency) ** (quantity.rate - 1)
 
-    def largest(self) -> tuple[int, int]:
-        """Return the speed and the harmonic of the fastest point; of the surface where no point is named."""
+    def largest(self, speed: float | None = None, order: float | None = None) -> tuple[int, int]:
+        """Return the indices of speed and order at which a point moves fastest; without points, the surface.
+
+        Parameters
+        ----------
+        speed, order : float, optional
+            The nearest one alone, rad/s; what is valid comes first.
+        """
+        near = np.ones(self.frequency.shape, dtype=bool)
+        if speed is not None:
+            near &= (np.arange(self.speed.size) == np.argmin(np.abs(self.speed - speed)))[:, None]
+        if order is not None:
+            near &= np.arange(self.order.size) == np.argmin(np.abs(self.order - order))
+        near = near & self.valid if np.any(near & self.valid) else near
         size = self.rms.max(axis=0) if self.point else self.mean_square_velocity
-        speed, harmonic = np.unravel_index(int(np.argmax(np.where(self.valid, size, -1.0))), size.shape)
-        return int(speed), int(harmonic)
+        row, column = np.unravel_index(int(np.argmax(np.where(near, size, -1.0))), size.shape)
+        return int(row), int(column)
 
 
 def housing_vibration(

@@ -103,7 +103,8 @@ def analyze_vibration(
     *,
     bearings: Sequence[str] | None = None,
     points: Sequence[str] | None = None,
-    at: tuple[int, int] | None = None,
+    speed: float | None = None,
+    order: float | None = None,
 ) -> VibrationAnalysis:
     """Return vibration, transfer functions and contributions of a housing.
 
@@ -116,9 +117,9 @@ def analyze_vibration(
         Of the housing.
     bearings, points
         As in `housing_vibration`.
-    at : (int, int), optional
-        Indices of the speed and the order whose parts are wanted; by default where the motion is largest
-        within the valid frequencies.
+    speed, order : float, optional
+        Whose parts are wanted, the nearest ones, rad/s; by default where the motion is largest
+        (`HousingVibration.largest`).
 
     Raises
     ------
@@ -129,15 +130,14 @@ def analyze_vibration(
         advice = "Reduce it from its mesh or STEP file: matrices alone do not say what moves."
         raise InputError("housing", name, "one with a surface or named points", advice)
     vibration = housing_vibration(response, housing, bearings, points)
-    speed, order = vibration.largest() if at is None else at
-    hertz, force = float(vibration.frequency[speed, order]), vibration.seat_force[speed, order]
+    at = vibration.largest(speed, order)
+    hertz, force = float(vibration.frequency[at]), vibration.seat_force[at]
     rate = 2j * np.pi * hertz * housing_motion(housing, np.array(hertz), force)
     return VibrationAnalysis(
         name,
         vibration,
         mobilities(housing, float(vibration.frequency.max()), points),
-        speed,
-        order,
+        *at,
         _shares(housing, bearing_parts(housing, hertz, force), points),
         _shares(housing, mode_parts(housing, hertz, force), points),
         None if housing.surface is None else operating_deflection(housing, rate),

@@ -40,6 +40,8 @@ from service.studies.steady.answer import SteadyFigures as ServiceSteadyFigures
 from service.studies.study.answer import StudyFigures as ServiceStudyFigures
 from service.studies.sweep.answer import SweepFigures as ServiceSweepFigures
 from service.studies.sweep.run import SweepResult as ServiceSweepResult
+from service.studies.vibration.answer import VibrationFigures as ServiceVibrationFigures
+from service.studies.vibration.run import HousingVibrationResult as ServiceHousingVibrationResult
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -148,6 +150,18 @@ class Processes(Surface):
         radiation: Literal["monopoles", "equivalent_radiated_power"] = ...,
         boundary_elements: bool = ...,
     ) -> DynamicsRadiatedSound: ...
+    @_offered(ServiceVibrationFigures)
+    def vibration(
+        self,
+        scene: SceneLike,
+        *,
+        speed_rpm: Sequence[float],
+        orders: int = ...,
+        housing: str | None = ...,
+        at_rpm: float | None = ...,
+        at_order: float | None = ...,
+        mode: int | None = ...,
+    ) -> ServiceHousingVibrationResult: ...
     @_offered(ServiceSteadyFigures)
     def steady(
         self,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from base64 import b64encode
 from typing import Any
+from zlib import compress
 
 from service.registry import STUDIES, Study
 
@@ -47,9 +48,28 @@ SCENE: Json = {
 }
 
 
+HOUSED_SCENE: Json = SCENE | {
+    "housings": [
+        {
+            "name": "case",
+            "step_file": {"name": "case.step", "content": b64encode(compress(b"ISO-10303-21;")).decode()},
+            "material": "gray_cast_iron",
+            "seats": [
+                {"bearing": bushing["name"], "bore_diameter_mm": 62.0, "bore_length_mm": 18.0}
+                for bushing in SCENE["bushings"]
+            ],
+            "feet": [{"name": "base", "point_mm": [0.0, -60.0, 0.0], "normal": [0.0, -1.0, 0.0]}],
+            "points": [{"name": "cover", "position_mm": [40.0, 60.0, 100.0]}],
+        }
+    ]
+}
+"""The scene in a housing by its solid, of whose file only the beginning is shown."""
+
+
 def _example(study: Study) -> Json:
     """Return inputs of a study: every field that has an example."""
-    subject = {"scene": SCENE} if study.subject == "scene" else {"case": CASE}
+    scene = HOUSED_SCENE if study.housed else SCENE
+    subject = {"scene": scene} if study.subject == "scene" else {"case": CASE}
     fields = study.inputs.model_fields.items()
     return subject | {name: field.examples[0] for name, field in fields if field.examples}
 

@@ -24,7 +24,7 @@ def folder() -> Iterator[Path]:
         yield made
 
 
-LONG = {"ripple-map", "tolerances"}  # half a minute each; no other page uses what they make
+LONG = {"ripple-map", "tolerances", "vibration"}  # half a minute each; no other page uses what they make
 PAGES = [
     pytest.param(page, id=page.stem, marks=[pytest.mark.nightly] * (page.stem in LONG))
     for page in manual.pages()

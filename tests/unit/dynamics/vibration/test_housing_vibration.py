@@ -59,6 +59,8 @@ def test_harmonics_above_seven_tenths_of_the_highest_mode_are_not_valid_nor_the_
     loud = replace(found, velocity=np.where(found.valid, found.velocity, 1e3))
     assert loud.valid[loud.largest()]
     assert found.rms.max(axis=0)[found.largest()] == np.max(found.rms.max(axis=0)[found.valid])
+    assert found.largest(speed=500.0, order=3.0) == (2, 2)  # what is asked for may be beyond
+    assert found.largest(speed=100.0)[0] == 0
 
 
 def test_a_point_that_is_not_there_is_refused(response):
@@ -85,7 +87,7 @@ def test_an_analysis_looks_where_the_motion_is_largest_and_says_what_makes_it(re
         assert np.all(np.isnan(shares.surface))
     assert found.bearings.name == PAIR
     assert found.deflection is None
-    at_other = analyze_vibration(response, housing, "case", at=(0, 1), points=("b",))
+    at_other = analyze_vibration(response, housing, "case", speed=61.0, order=2.2, points=("b",))
     assert (at_other.at_speed, at_other.at_order) == (0, 1)
     assert at_other.bearings.point.shape == (1, 4)
     with pytest.raises(InputError, match="surface or named points"):

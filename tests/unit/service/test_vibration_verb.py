@@ -1,0 +1,153 @@
+"""``loa vibration``: what it prints and writes, and how it refuses."""
+
+from __future__ import annotations
+
+import json
+import struct
+from pathlib import Path
+from typing import Any
+
+import meshio
+import numpy as np
+import pytest
+from declared_figures import check_declared
+from housing_solid import housed_scene, write_block
+from scene_files import scene_file
+from typer.testing import CliRunner, Result
+
+from dynamics.vibration import vibration_level
+from service.cli.commands import app
+from service.report import write_report
+from service.studies.vibration.run import RUN, facts
+
+SPEEDS = ("--speed-rpm", "1500:3000:250", "--orders", 4)
+
+
+def loa(*arguments: object) -> Result:
+    return CliRunner().invoke(app, ["vibration", *(str(argument) for argument in arguments)])
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the scene of a block with two bores."""
+    folder = tmp_path_factory.mktemp("vibration")
+    write_block(folder / "block.step")
+    (folder / "scene.json").write_text(json.dumps(housed_scene(folder, modes=6)))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("cache")
+
+
+@pytest.fixture
+def scene(folder: Path, cache: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(cache))
+    return folder / "scene.json"
+
+
+def test_every_kind_of_output_says_the_same(scene: Path, tmp_path: Path) -> None:
+    files = {
+        ending: tmp_path / f"vibration.{ending}" for ending in ("nc", "json", "png", "html", "csv", "vtu")
+    }
+    for file in files.values():
+        result = loa(scene, *SPEEDS, "-o", file)
+        assert (result.exit_code, result.stderr) == (0, "")
+    found = RUN.file.read(files["nc"])
+    written = json.loads(files["json"].read_text())
+    check_declared("vibration", written)
+    for name in ("warnings", "cpu_seconds"):
+        written.pop(name)
+    assert written == {name: value for name, value in facts(found).items() if name in written}
+    width, height = struct.unpack(">II", files["png"].read_bytes()[16:24])
+    assert width > 1000 and height > 1000
+    head, *rows = (line.split(",") for line in files["csv"].read_text().splitlines())
+    assert head[:4] == ["speed_rpm", "order", "frequency_hz", "valid"]
+    speeds, orders = written["speed_rpm"], written["order"]
+    assert len(rows) == len(speeds) * len(orders)
+    first = dict(zip(head, map(float, rows[1]), strict=True))
+    along = [first[f"cover_{axis}_mm_per_s"] for axis in "xyz"]
+    assert np.linalg.norm(along) == pytest.approx(written["points"]["cover"]["velocity_mm_per_s"][1][0])
+    surface = meshio.read(files["vtu"])
+    assert [cells.type for cells in surface.cells] == ["triangle6"]
+    size = surface.point_data["velocity_magnitude"]
+    parts = surface.point_data["velocity_real"], surface.point_data["velocity_imaginary"]
+    np.testing.assert_allclose(size, np.hypot(*parts))
+    np.testing.assert_allclose(size, np.abs(found.shape.motion))
+    page = tmp_path / "page.html"
+    write_report(files["nc"], page)
+    for text in ("housing_velocity", "housing_shape", "housing_contributions", "housing_transfer"):
+        assert text in page.read_text() and text in files["html"].read_text()
+
+
+def test_figures_are_root_mean_squares_and_contributions_add_up(scene: Path) -> None:
+    answer = told(scene)
+    cover = answer["points"]["cover"]
+    velocity = np.array(cover["velocity_mm_per_s"])
+    assert velocity.shape == (4, 7)
+    along = np.array(cover["velocity_xyz_mm_per_s"])
+    np.testing.assert_allclose(np.sqrt((along**2).sum(axis=0)), velocity)
+    np.testing.assert_allclose(np.sqrt((velocity**2).sum(axis=0)), cover["overall_mm_per_s"])
+    np.testing.assert_allclose(cover["level_db"], vibration_level(1e-3 * velocity))
+    shown = answer["contributions"]
+    order, speed = answer["order"].index(shown["order"]), answer["speed_rpm"].index(shown["speed_rpm"])
+    assert velocity[order, speed] == velocity.max()
+    for parts in (shown["bearings"], shown["modes"]):
+        assert sum(part["points"]["cover"] for part in parts) == pytest.approx(1.0)
+        assert sum(part["surface"] for part in parts) == pytest.approx(1.0)
+    assert [part["name"] for part in shown["bearings"]] == ["input left", "output left"]
+    assert answer["highest_valid_frequency_hz"] == pytest.approx(0.7 * answer["natural_frequency_hz"][-1])
+
+
+def test_parts_are_those_of_the_order_and_speed_asked_for(scene: Path) -> None:
+    shown = told(scene, "--at-rpm", 2600, "--at-order", 2.9)["contributions"]
+    assert (shown["speed_rpm"], shown["order"]) == (pytest.approx(2500.0), 3.0)
+    assert shown["frequency_hz"] == pytest.approx(2500.0 / 60.0 * 20 * 3)
+
+
+def test_orders_that_the_modes_kept_do_not_carry_are_named(folder: Path, scene: Path) -> None:
+    few = folder / "few.json"
+    few.write_text(json.dumps(housed_scene(folder, modes=1)))
+    result = loa(few, "--speed-rpm", "2500,6000", "--orders", 4)
+    assert result.exit_code == 0
+    answer = json.loads(loa(few, "--speed-rpm", "2500,6000", "--orders", 4, "--json").stdout)
+    beyond = [order for order in answer["order"] if order * 2000.0 > answer["highest_valid_frequency_hz"]]
+    assert answer["orders_beyond"] == beyond != []
+    assert f"orders {', '.join(f'{order:g}' for order in beyond)} go beyond" in result.stdout
+
+
+def test_a_mode_is_drawn_in_place_of_the_deflection(scene: Path, tmp_path: Path) -> None:
+    assert loa(scene, *SPEEDS, "--mode", 2, "-o", tmp_path / "mode.vtu").exit_code == 0
+    motion = meshio.read(tmp_path / "mode.vtu").point_data["mode_2_real"]
+    assert np.linalg.norm(motion, axis=1).max() == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--mode", 7), ("mode = 7", "from 1 to 6")),
+        (("--housing", "other"), ("housing = 'other'", "one of case")),
+        (("--at-order", 0), ("at_order",)),
+    ],
+)
+def test_what_is_not_there_is_refused(scene: Path, options: tuple[Any, ...], words: tuple[str, ...]) -> None:
+    result = loa(scene, *SPEEDS, *options)
+    assert result.exit_code == 2
+    for word in words:
+        assert word in " ".join(result.stderr.split()), result.stderr
+
+
+def test_a_scene_without_a_housing_that_moves_is_refused_with_advice(tmp_path: Path) -> None:
+    result = loa(scene_file(tmp_path), *SPEEDS)
+    assert result.exit_code == 2
+    assert "housings" in result.stderr and "step_file" in result.stderr
+
+
+def told(scene: Path, *options: object) -> Any:
+    """Return what is printed as JSON."""
+    result = loa(scene, *SPEEDS, *options, "--json")
+    assert (result.exit_code, result.stderr) == (0, "")
+    answer = json.loads(result.stdout)
+    check_declared("vibration", answer)
+    return answer
