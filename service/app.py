@@ -34,6 +34,7 @@ from service.routes import (
     queries,
     results,
     scenes,
+    sounds,
     units,
 )
 from service.routes.access import Access
@@ -111,7 +112,7 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
 def _route(app: FastAPI, offered: Registry) -> None:
     """Add all routes, in the order of the description."""
     jobs_shown = (landing.router, processes_router(offered), jobs.router, job_results_router(offered))
-    stored = (databases.router, results.router, figures.router, queries.router, live.router)
+    stored = (databases.router, results.router, figures.router, sounds.router, queries.router, live.router)
     grouped = (batches.router, events.router)
     converted = (cases.router, scenes.router, units.router, effects.router, former_results.router)
     for router in (*jobs_shown, *stored, *grouped, *converted):

@@ -108,6 +108,40 @@ class ResultCalls(Surface):
         return (yield from self.session.exchange.read(Report.model_validate, "GET", path, params=parameters))
 
     @operation
+    def sound(
+        self,
+        key: str,
+        *,
+        quantity: str = "",
+        bearing: str = "",
+        mesh: str = "",
+        direction: str = "",
+        against: str | None = None,
+    ) -> Steps[bytes]:
+        """Return a run as a WAV file, as ``loa listen`` writes it; it states quantity and full scale.
+
+        Parameters
+        ----------
+        key : str
+            Content hash of the run.
+        quantity, bearing, mesh, direction : str
+            As the options of ``loa listen``; empty: chosen as there.
+        against : str, optional
+            Another run, whose sound is then on the same full scale.
+
+        Raises
+        ------
+        BadInput
+            The run does not hold that, it is silent, or longer than five minutes.
+        NotFound, QueueFull, LiveUnavailable, Unreachable, ServiceError
+        """
+        named = {"quantity": quantity, "bearing": bearing, "mesh": mesh, "direction": direction}
+        parameters = {name: value for name, value in (named | {"against": against or ""}).items() if value}
+        path = f"{RESULTS}/{key}/sound"
+        answer = yield from self.session.exchange.request("GET", path, params=parameters)
+        return answer.content
+
+    @operation
     def query(
         self,
         key: str,

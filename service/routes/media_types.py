@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 JSON, CBOR, RAW = "application/json", "application/cbor", "application/octet-stream"
+WAV = "audio/wav"
 PROBLEM = "application/problem+json"
 OPENAPI = "application/vnd.oai.openapi+json;version=3.1"
 OPENAPI_30 = "application/vnd.oai.openapi+json;version=3.0"

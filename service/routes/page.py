@@ -17,6 +17,7 @@ _POLICY = "; ".join(
         "script-src 'self'",
         "style-src 'self' 'unsafe-inline'",  # plotly.js writes its styles into what it draws
         "img-src 'self' data: blob:",  # a plot becomes a PNG by way of them
+        "media-src blob:",  # sounds come with the caller's key, as all else
         "connect-src 'self'",
         "base-uri 'none'",
         "form-action 'none'",

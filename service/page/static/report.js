@@ -3,6 +3,7 @@
 import { Problem, file, get, patiently } from "./api.js";
 import { dataTable, figures, folded, make, save } from "./elements.js";
 import { figureBlock, painted, plot } from "./plots.js";
+import { soundBlock } from "./sound.js";
 
 /**
  * Show the report of a result.
@@ -22,7 +23,7 @@ export async function showReport(target, result, { making = false, signal, first
   const alarms = report.alarms.map((text) => make("p", { class: "alarm", role: "alert" }, text));
   const drawn = [];
   const shown = report.sections.filter((one) => making || one.part === "results" || one.figures.length);
-  const sections = shown.map((one) => sectionBlock(one, drawn));
+  const sections = shown.map((one) => sectionBlock(one, drawn, result));
   const lead = report.lead ? `${report.title}: ${report.lead.replace(/\.$/, "")}.` : `${report.title}.`;
   target.replaceChildren(
     make("p", { class: "lead" }, lead), ...alarms, head, files(result, figuresAt), ...sections,
@@ -36,9 +37,10 @@ export async function showReport(target, result, { making = false, signal, first
   return report;
 }
 
-function sectionBlock(section, drawn) {
+function sectionBlock(section, drawn, result) {
   const parts = section.figures.map((figure) => {
     const { block, node } = figureBlock(figure);
+    if (figure.sound) block.append(soundBlock(node, figure, result));
     drawn.push([node, figure.plot]);
     return block;
   });

@@ -1,0 +1,79 @@
+"""Stored runs to listen to, as `loa listen` writes them."""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+import hashlib
+import json
+from typing import Annotated
+
+from fastapi import APIRouter, Query, Request
+from starlette.concurrency import run_in_threadpool
+from starlette.responses import Response
+
+from service.access import Scope
+from service.live.order import LiveOrder
+from service.problems import BadInput, DamagedFile, LiveUnavailable, NotFound, QueueFull
+from service.routes.context import Ctx
+from service.routes.media_types import WAV
+from service.routes.refusals import documented
+from service.routes.response_headers import described_headers
+from service.routes.results import FILE, HASH, Key, known_result
+from service.routes.scopes import ScopedRoute, needs
+from service.version import program_tag
+
+SOUND = "service.runs.stored_sound:stored_sound"
+_NAME = 200  # characters
+_VERSION = ("ETag", "Cache-Control")
+
+router = APIRouter(tags=["results"], route_class=ScopedRoute)
+
+
+def _named(description: str) -> object:
+    """Return a parameter that names a part of the run; empty: it is chosen as `loa listen` does."""
+    return Query(max_length=_NAME, description=description)
+
+
+@router.get(
+    "/results/{key}/sound",
+    summary="The sound of a run",
+    response_class=Response,
+    responses={
+        200: {
+            "description": "The WAV file: 32-bit floats, 48 kHz; its comment states quantity and full scale",
+            "content": {WAV: {"schema": FILE}},
+            "headers": described_headers(*_VERSION),
+        },
+        304: {"description": "Not modified", "headers": described_headers(*_VERSION)},
+        **documented(NotFound, BadInput, QueueFull, LiveUnavailable, DamagedFile),
+    },
+)
+@needs(Scope.READ)
+async def result_sound(
+    key: Key,
+    request: Request,
+    context: Ctx,
+    quantity: Annotated[str, _named("force, moment, acceleration, mesh_force, transmission_error")] = "",
+    bearing: Annotated[str, _named("Bearing; left out: where the quantity varies most")] = "",
+    mesh: Annotated[str, _named("Mesh; left out: the first")] = "",
+    direction: Annotated[str, _named("x, y, z; left out: in which it varies most")] = "",
+    against: Annotated[
+        str | None, Query(pattern=HASH, description="Another run, whose sound is then on the same full scale")
+    ] = None,
+) -> Response:
+    """Return forces or motions of a run made audible: no sound pressure."""
+    stored = [await run_in_threadpool(known_result, context, one, "run") for one in (key, against) if one]
+    view = {"quantity": quantity, "bearing": bearing, "mesh": mesh, "direction": direction}
+    named = json.dumps([*(one.sha256 for one in stored), view, program_tag()])
+    tag = f'"{hashlib.sha256(named.encode()).hexdigest()}-sound"'
+    headers = {"ETag": tag, "Cache-Control": "no-cache"}
+    if tag in request.headers.get("if-none-match", ""):
+        return Response(status_code=304, headers=headers)
+    body = await run_in_threadpool(context.kept.find, tag)
+    if body is None:
+        order = LiveOrder(SOUND, {"files": [str(one.path) for one in stored], "view": view})
+        answer = await asyncio.wrap_future(context.live.ask(order))
+        body = base64.b64decode(json.loads(answer)["wav"])
+        await run_in_threadpool(context.kept.keep, tag, body)
+    return Response(body, media_type=WAV, headers=headers)
