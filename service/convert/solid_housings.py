@@ -39,6 +39,8 @@ from service.convert.errors import named
 from service.convert.solid_file import solid_file
 from service.problems import BadInput, JobFailed
 from service.schemas.scene import SceneInput
+from service.schemas.scene_bearings import RollingBearingInput
+from service.schemas.scene_bodies import BushingInput
 from service.schemas.scene_housings import HousingInput
 from service.schemas.scene_solids import HousingFootInput, HousingSeatInput
 from service.units import MM
@@ -166,11 +168,10 @@ def _meshed(housing: HousingInput, scene: SceneInput, mesh: TetrahedralMesh) -> 
 
 def _seat(seat: HousingSeatInput, scene: SceneInput) -> SeatBore:
     """Return the bore of a seat, about the axis of its bearing and where that is."""
-    bearings = {part.name: part for part in (*scene.bushings, *scene.rolling_bearings)}
-    origins = {shaft.name: shaft.origin_mm for shaft in scene.shafts}
-    bearing = bearings[seat.bearing]
-    x, y, z = origins[bearing.shaft]
-    middle = _si((x, y, z + bearing.position_mm))  # type: ignore[union-attr]
+    parts: tuple[BushingInput | RollingBearingInput, ...] = (*scene.bushings, *scene.rolling_bearings)
+    bearing = next(part for part in parts if part.name == seat.bearing)
+    x, y, z = next(shaft.origin_mm for shaft in scene.shafts if shaft.name == bearing.shaft)
+    middle = _si((x, y, z + bearing.position_mm))
     bore = Bore(middle, (0.0, 0.0, 1.0), seat.bore_diameter_mm * MM, seat.bore_length_mm * MM)
     return SeatBore(seat.bearing, bore, Ring(seat.ring))
 

@@ -39,6 +39,7 @@ class RollingBearingInput(BoundaryModel):
 
     name: Name = Field(description="Name of the bearing", examples=["input left"])
     shaft: Name = Field(description="The shaft it carries", examples=["input"])
+    position_mm: float
     ball: BallRowInput | None = Field(
         default=None,
         description="Its balls and grooves",

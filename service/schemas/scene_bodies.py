@@ -189,6 +189,7 @@ class BearingInput(BoundaryModel):
 class BushingInput(BearingInput):
     """A linear bearing between a shaft and the ground."""
 
+    position_mm: float
     preload_force_n: Annotated[tuple[Number, ...], Strict(False)] | None = Field(
         default=None,
         min_length=3,
