@@ -205,8 +205,8 @@ def test_a_housing_has_its_mass_from_the_file() -> None:
     np.testing.assert_array_equal(found.mass, MASS)
     assert found.damping_ratio == 0.01
     bare = validated(SceneInput, copy.deepcopy(EXAMPLE) | {"housings": [housing_of(EXAMPLE)]})
-    later = {"mass_matrix", "damping_ratio", "modal_coordinates", "seat_positions_mm"}
-    assert later.isdisjoint(bare.model_dump(mode="json")["housings"][0])
+    earlier = {"name", "bushings", "stiffness_matrix", "damping_matrix"}  # stored results keep their address
+    assert set(bare.model_dump(mode="json")["housings"][0]) == earlier
 
 
 def housing_of(table: dict[str, Any], **fields: Any) -> dict[str, Any]:
