@@ -37,7 +37,7 @@ class Heard:
     def query(self) -> dict[str, str]:
         """Return what names the signal to the service."""
         name = next(key for key, value in QUANTITIES.items() if value is self.signal.quantity)
-        part = {self.signal.quantity.part: self.signal.part}
+        part: dict[str, str] = {self.signal.quantity.part: self.signal.part}
         along = {"direction": self.signal.direction} if self.signal.direction else {}
         return {"quantity": name, **part, **along}
 
