@@ -105,14 +105,14 @@ def force_recording(
         raise InputError("bearing", bearing, "one of a run that holds forces on bearings", advice)
     one_of("bearing", bearing, run.bearing)
     force = run.bearing_force[run.bearing.index(bearing)]
-    axis = principal_direction(force, run.sample_rate)[0] if direction is None else _unit(direction)
+    axis = principal_direction(force, run.sample_rate)[0] if direction is None else unit_vector(direction)
     x, y, z = axis
     quantity = f"force on bearing {bearing} along ({x:.3f}, {y:.3f}, {z:.3f}); no sound pressure"
     return series_recording(axis @ force, run.sample_rate, quantity, "N", to_rate)
 
 
-def _unit(direction: FloatArray) -> FloatArray:
-    """Return a direction of length 1."""
+def unit_vector(direction: FloatArray) -> FloatArray:
+    """Return a direction (3,) of length 1; refuse one that has none."""
     axis = np.asarray(direction, dtype=float)
     if axis.shape != (3,) or not np.all(np.isfinite(axis)) or not np.any(axis):
         raise InputError("direction", axis.tolist(), "three finite components, not all zero")

@@ -6,6 +6,7 @@ from dynamics.noise.kept_radiation import kept_radiation
 from dynamics.noise.loudest import LoudPoint, loudest
 from dynamics.noise.model_comparison import models_at, panels_at
 from dynamics.noise.outer_hull import OuterHull, outer_hull
+from dynamics.noise.point_recording import velocity_recording
 from dynamics.noise.radiated_sound import RadiatedSound, radiated_sound
 from dynamics.noise.several_housings import together
 
@@ -25,4 +26,5 @@ __all__ = [
     "radiated_sound",
     "radiating_hull",
     "together",
+    "velocity_recording",
 ]

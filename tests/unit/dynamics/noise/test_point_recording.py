@@ -1,0 +1,75 @@
+"""The velocity of a point of a housing as a recording: the force through the transfer function."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import cast
+
+import numpy as np
+import pytest
+from reduced_housings import PAIR, random_housing
+
+from dynamics.errors import InputError
+from dynamics.noise import velocity_recording
+from dynamics.results import RunResult
+from dynamics.vibration import housing_motion, run_seat_forces
+
+RATE, HERTZ = 25_600.0, (400.0, 800.0, 2000.0, 10_000.0)  # the last: 2.56 samples per period
+TENTH_DB = 10.0 ** (0.1 / 20.0) - 1.0
+AXIS = np.array([2.0, -1.0, 0.5])
+
+
+def run_of(scale: float = 1.0) -> RunResult:
+    """A run of 1 s at constant speed; orders, their amplitudes and phases random on each bearing."""
+    time = np.arange(round(RATE) + 1) / RATE
+    draw = np.random.default_rng(3).normal(size=(len(HERTZ), len(PAIR), 3, 2)) @ np.array([1.0, 1j])
+    waves = np.exp(2j * np.pi * np.outer(HERTZ, time))
+    force = 50.0 * scale * np.real(np.einsum("fbc,ft->bct", draw, waves))
+    run = SimpleNamespace(
+        time=time,
+        sample_rate=RATE,
+        bearing=PAIR,
+        bearing_force=force,
+        bearing_moment=np.empty((0, 3, time.size)),
+    )
+    return cast(RunResult, run)
+
+
+def amplitude(samples: np.ndarray, rate: float, hertz: float) -> np.ndarray:
+    """Complex peak amplitudes (...,) over the middle of a signal (..., T), a whole number of periods."""
+    time = np.arange(samples.shape[-1]) / rate
+    inner = slice(round(0.4 * rate), round(0.8 * rate))
+    return np.asarray(2.0 * np.mean(samples[..., inner] * np.exp(-2j * np.pi * hertz * time[inner]), axis=-1))
+
+
+@pytest.mark.parametrize("coupled", [False, True])
+def test_its_orders_are_those_of_the_force_through_the_transfer_function(coupled: bool) -> None:
+    housing, run = random_housing(coupled=coupled), run_of()
+    heard = velocity_recording(housing, run, "b", AXIS)
+    assert heard.unit == "m/s"
+    assert heard.quantity == "velocity of point b along (0.873, -0.436, 0.218); no sound pressure"
+    force = run_seat_forces(run, housing).T
+    for hertz in HERTZ:
+        motion = housing_motion(housing, np.array([hertz]), amplitude(force, RATE, hertz)[None])[0]
+        velocity = 2j * np.pi * hertz * (housing.points[1].motion @ motion)
+        expected = abs(AXIS @ velocity) / np.linalg.norm(AXIS)
+        found = abs(amplitude(heard.samples, heard.sample_rate, hertz))
+        assert found == pytest.approx(expected, rel=TENTH_DB), hertz
+
+
+def test_it_scales_with_the_load_and_is_heard_where_it_varies_most() -> None:
+    housing = random_housing()
+    once, twice = (velocity_recording(housing, run_of(scale), "a") for scale in (1.0, 2.0))
+    np.testing.assert_allclose(twice.samples, 2.0 * once.samples, atol=1e-9 * twice.peak)
+    along = [velocity_recording(housing, run_of(), "a", axis).samples for axis in np.eye(3)]
+    assert np.std(once.samples) >= max(np.std(samples) for samples in along)
+
+
+def test_what_the_housing_or_the_run_does_not_have_is_refused() -> None:
+    housing, run = random_housing(), run_of()
+    with pytest.raises(InputError, match="one of a, b"):
+        velocity_recording(housing, run, "lid")
+    with pytest.raises(InputError, match="one per seat"):
+        velocity_recording(housing, run, "a", bearings=PAIR[:2])
+    with pytest.raises(InputError, match="not all zero"):
+        velocity_recording(housing, run, "a", np.zeros(3))
