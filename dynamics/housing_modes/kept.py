@@ -22,7 +22,7 @@ from dynamics.types import FloatArray, IntArray
 from model_studies.array_file import UnreadableFile
 from model_studies.record_file import read_record, write_record
 
-REDUCTION_VERSION = 2
+REDUCTION_VERSION = 3
 """Raised with every change of the numbers of a reduction."""
 MESH_VERSION = 1
 """Raised with every change of the mesh of a STEP file."""

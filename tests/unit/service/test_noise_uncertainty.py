@@ -1,0 +1,128 @@
+"""Bands and sensitivities of a scene with a solid housing: guesses, flanks, and what is left out."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from housing_solid import housed_scene, write_block
+
+from dynamics.acoustics import EquivalentRadiatedPower
+from dynamics.noise import GUESSES, SoundModel, forced_power, housing_radiation, largest_level
+from service.cli.scene_tables import tabled_scene
+from service.client.portable import scene_of
+from service.convert.scene import TabledScene
+from service.problems import BadInput
+from service.schemas import validated
+from service.schemas.noise_ranges import RANGES, NoiseRanges
+from service.studies.computation import Means
+from service.studies.noise.flank_figures import flank_scenes
+from service.studies.noise.uncertainty import (
+    band_json,
+    band_of,
+    sensitivities_of,
+    sensitivity_json,
+)
+
+SPEED = np.linspace(100.0, 400.0, 12)
+GEAR = {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0, "thickness_allowance_um": 90.0}
+RELIEVED = GEAR | {"tip_relief_um": 10.0, "tip_relief_length_mm": 1.5}
+CASE: dict[str, Any] = {
+    "pair": {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": RELIEVED, "wheel": GEAR},
+    "load": {"torque_n_m": [50.0, 100.0]},
+    "accuracy": {"level": "draft", "positions": 16, "model": "plane_strain", "receipt": "minimal"},
+}
+
+
+RELIEF = "meshes.mesh.case.pair.pinion.tip_relief_um"
+
+
+def quiet(_stage: str, _fraction: float) -> None:
+    """Report nothing."""
+
+
+def made_from(folder: Path, **pair: Any) -> TabledScene:
+    """Return the scene of a block with the case of its mesh written out."""
+    write_block(folder / "block.step")
+    scene: dict[str, Any] = housed_scene(folder)
+    del scene["meshes"][0]["database_file"]
+    scene["meshes"][0]["case"] = CASE | {"pair": CASE["pair"] | pair}
+    file = folder / "scene.json"
+    file.write_text(json.dumps(scene))
+    return tabled_scene(*scene_of(file), None, quiet)
+
+
+@pytest.fixture(scope="module")
+def subject(tmp_path_factory: pytest.TempPathFactory) -> TabledScene:
+    """The scene as it stands."""
+    return made_from(tmp_path_factory.mktemp("scene"))
+
+
+@pytest.fixture(scope="module")
+def model(subject: TabledScene) -> SoundModel:
+    """The scene with the plane waves of its housing."""
+    (housing,) = subject.housings.values()
+    radiation = housing_radiation(housing, EquivalentRadiatedPower(), (50.0, 10e3))
+    return SoundModel(subject.scene, subject.housings, {"case": radiation})
+
+
+def test_flanks_and_guesses_are_ranked_by_what_they_change(
+    subject: TabledScene, model: SoundModel, tmp_path: Path
+) -> None:
+    rows, left_out = sensitivities_of(subject, model, SPEED, 3, Means(tmp_path, quiet))
+    names = [row.figure.name for row in rows]
+    assert {"housing_damping", "bearing_stiffness", "mesh_damping", "housing_frequency"} <= set(names)
+    assert "mount_stiffness" not in names
+    pair = "meshes.mesh.case.pair"
+    assert {f"{pair}.pinion.tip_relief_um", f"{pair}.wheel.profile_crowning_um"} <= set(names)
+    assert f"{pair}.wheel.tip_relief_um" not in {*names, *left_out}
+    assert "plane" in left_out[f"{pair}.wheel.helix_crowning_um"]
+    sizes = [abs(row.change) for row in rows]
+    assert sizes == sorted(sizes, reverse=True)
+    (relief,) = (row for row in rows if row.figure.name == f"{pair}.pinion.tip_relief_um")
+    assert (relief.figure.value, relief.figure.step) == (10.0, 2.0)
+    assert abs(relief.change) > 0.01
+    json.dumps([sensitivity_json(row) for row in rows], allow_nan=False)
+
+
+def test_a_step_of_a_relief_changes_the_level_as_a_scene_with_that_relief_does(
+    subject: TabledScene, model: SoundModel, tmp_path: Path
+) -> None:
+    """Between two tables solved from the start, and between those on the compliance of the first."""
+    scenes = flank_scenes(subject, RELIEF, tmp_path)
+    other = made_from(tmp_path, pinion=RELIEVED | {"tip_relief_um": 14.0})
+    levels = [
+        largest_level(SPEED, forced_power(replace(model, scene=scene), SPEED, 3)[1])
+        for scene in (
+            subject.scene,
+            other.scene,
+            scenes.scene({RELIEF: 10.0}),
+            scenes.scene({RELIEF: 14.0}),
+        )
+    ]
+    assert abs(levels[1] - levels[0]) > 0.5
+    assert levels[3] - levels[2] == pytest.approx(levels[1] - levels[0], abs=0.1)
+
+
+def test_bands_go_to_json(subject: TabledScene, model: SoundModel, tmp_path: Path) -> None:
+    louder = replace(model, resistance={"case": replace(model.resistance["case"])})
+    band = band_of(model, louder, SPEED, 2, NoiseRanges(), Means(tmp_path, quiet))
+    told = json.loads(json.dumps(band_json(band), allow_nan=False))
+    assert len(told["total_low_db_a"]) == SPEED.size
+    for level in (told["largest_total"], *(row["largest"] for row in told["orders"])):
+        assert level["low_db_a"] <= level["level_db_a"] <= level["high_db_a"]
+        assert set(level["above_db"]) >= {"housing_damping", "jointly", "mode_number", "radiation_model"}
+        assert "mount_stiffness" not in level["above_db"]
+
+
+def test_ranges_are_those_of_the_library_and_hold_what_the_scene_states() -> None:
+    assert tuple(GUESSES) == RANGES
+    for name, guess in GUESSES.items():
+        assert getattr(NoiseRanges(), name) == (guess.usual.low, guess.usual.high)
+    with pytest.raises(BadInput, match="the first at most 1") as caught:
+        validated(NoiseRanges, {"mesh_damping": [1.1, 2.0]})
+    assert caught.value.faults[0].field == "mesh_damping"
