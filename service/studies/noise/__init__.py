@@ -6,11 +6,12 @@ from typing import Annotated, Literal
 
 from pydantic import Field, Strict
 
+from service.schemas.noise_ranges import NoiseRanges
 from service.schemas.speeds import MOST_SPEEDS, Orders, OverSpeeds, TurningSpeed
 
 
-class Inputs(OverSpeeds):
-    """Speeds at which the sound of the housings is looked for, and the radiation model."""
+class Inputs(NoiseRanges, OverSpeeds):
+    """Speeds at which the sound of the housings is looked for, the radiation model, and ranges of guesses."""
 
     speed_rpm: Annotated[tuple[TurningSpeed, ...], Strict(False)] = Field(
         min_length=1,

@@ -46,6 +46,49 @@ class LoudPoint(Part):
     in_contact: bool
 
 
+class LevelBandFigures(Part):
+    """A level, its band, and the deviations that make it by what is guessed."""
+
+    level_db_a: float
+    low_db_a: float
+    high_db_a: float
+    below_db: dict[str, float]
+    above_db: dict[str, float]
+
+
+class OrderBand(Part):
+    """Bands of an order: of its largest level over the speeds, and of that at its loudest speed."""
+
+    order: float
+    largest: LevelBandFigures
+    speed_rpm: float
+    there: LevelBandFigures
+
+
+class SoundBandFigures(Part):
+    """Bands of levels: the largest total, orders, and the total by speed."""
+
+    largest_total: LevelBandFigures
+    orders: list[OrderBand]
+    total_low_db_a: list[float]
+    total_high_db_a: list[float]
+
+
+class SensitivityFigures(Part):
+    """What steps of a figure change of the largest level; None: without end."""
+
+    figure: str
+    unit: str
+    value: float
+    step: float
+    change_db: float
+    change_of_two_steps_db: float
+    slope_db: float
+    for_one_db_less: float | None
+    linear_range: float | None
+    linear: bool
+
+
 class Equilibrium(Part):
     """The loaded equilibrium."""
 
@@ -72,6 +115,9 @@ class NoiseFigures(Figures):
     housings: dict[str, HousingSound]
     natural_frequency_hz: list[float]
     parting_rpm: list[float]
+    band: SoundBandFigures | None
+    sensitivities: list[SensitivityFigures]
+    sensitivities_left_out: dict[str, str]
     equilibrium: Equilibrium
     cpu_seconds: dict[str, float]
     effect_ledger: Json

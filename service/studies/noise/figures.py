@@ -38,6 +38,9 @@ def facts(sound: RadiatedSound) -> Json:
             "status": about["equilibrium"]["status"].lower(),
             "residual_n": about["equilibrium"]["residual"],
         },
+        "band": about["band"],
+        "sensitivities": about["sensitivities"],
+        "sensitivities_left_out": about["sensitivities_left_out"],
         "cpu_seconds": about["seconds"],
         "effect_ledger": about["effect_ledger"],
     }

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from bounds import engineering
 from dynamics.noise import LoudPoint, RadiatedSound, loudest
 from service.convert.effect_lines import run_lines
 from service.drawing.figure import Table, number
-from service.drawing.page import Headline
+from service.drawing.page import Headline, Page, Section
 from service.studies.noise.drawings import RPM, bearing_levels, level_over_speed, sound_map, third_octaves
+from service.studies.noise.uncertainty_tables import uncertainty_tables
 from service.studies.presentation import Presentation, dynamics_page
 
 HEAD = (
@@ -62,6 +64,9 @@ def headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
     total, points = sound.orders.total_weighted_level, loudest(sound, 1)
     at = int(total.argmax())
     where = f"at {number(float(sound.speed[at]) / RPM, 4)} rpm, all orders"
+    if (band := sound.facts["band"]) is not None:
+        total_band = band["largest_total"]
+        where += f"; {total_band['low_db_a']:.1f} to {total_band['high_db_a']:.1f} over the ranges of guesses"
     shown = [Headline("sound power level", f"{total[at]:.1f} dB(A)", where)]
     shown += [
         Headline("loudest order", f"{point.weighted_level:.1f} dB(A)", sentence(point)) for point in points
@@ -109,6 +114,10 @@ def _text(sound: RadiatedSound) -> Iterator[Table | str]:
     yield loudest_table(sound)
     yield from (sentence(point) for point in loudest(sound, 1))
     yield from model_lines(sound)
+    yield from uncertainty_tables(sound.facts)
+    yield from (
+        f"no sensitivity to {name}: {why}" for name, why in sound.facts["sensitivities_left_out"].items()
+    )
     parting = sound.speed[~sound.in_contact] / RPM
     if parting.size:
         where = f"{parting[0]:.5g} to {parting[-1]:.5g} rpm"
@@ -117,8 +126,16 @@ def _text(sound: RadiatedSound) -> Iterator[Table | str]:
     yield from run_lines(sound.facts)
 
 
+def page(sound: RadiatedSound) -> Page:
+    """Return the report: figures, then bands and sensitivities."""
+    whole = dynamics_page("Sound power", _figures(sound), headlines(sound))
+    tables = tuple(uncertainty_tables(sound.facts))
+    further = (Section("Bands, and what 1 dB costs", tables=tables),) if tables else ()
+    return replace(whole, sections=(*whole.sections, *further))
+
+
 PAGE = Presentation(
     lambda sound: _figures(sound)[0],
-    lambda sound: dynamics_page("Sound power", _figures(sound), headlines(sound)),
+    page,
     _text,
 )

@@ -10,7 +10,15 @@ from dynamics.acoustics import BoundaryElements, ElementalRadiators, EquivalentR
 from dynamics.assembly.assemble import assemble
 from dynamics.housing_modes import ReducedHousing
 from dynamics.linearize import ForcedResponse, forced_response
-from dynamics.noise import RadiatedSound, kept_radiation, loudest, models_at, radiated_sound, together
+from dynamics.noise import (
+    HousingRadiation,
+    RadiatedSound,
+    kept_radiation,
+    loudest,
+    models_at,
+    radiated_sound,
+    together,
+)
 from service.convert.case import boundary_errors
 from service.convert.scene import TabledScene
 from service.problems import BadInput
@@ -18,6 +26,7 @@ from service.schemas.scene import SceneInput
 from service.studies.computation import Computation, Means
 from service.studies.noise import Inputs
 from service.studies.noise.figures import facts
+from service.studies.noise.uncertainty import uncertainty
 from service.studies.result_file import array_file
 from service.units import RPM
 
@@ -44,12 +53,13 @@ def noise_of(subject: TabledScene, inputs: Inputs, means: Means) -> RadiatedSoun
             inputs.orders,
             progress=lambda fraction: means.report("response", fraction),
         )
-        sounds, compared = [], {}
+        sounds, compared, radiation = [], {}, {}
         began = time.process_time()
         for part in subject.scene.housings:
             body = subject.housings.get(part.name)
             if body is not None and body.surface is not None:
-                sound = _sound(response, body, part.name, part.bushings, inputs, means)
+                radiation[part.name] = _radiation(response, body, inputs, means)
+                sound = radiated_sound(response, body, part.bushings, radiation[part.name], part.name)
                 compared[part.name] = _compared(response, body, part.bushings, sound, inputs)
                 sounds.append(sound)
     if not sounds:
@@ -58,21 +68,17 @@ def noise_of(subject: TabledScene, inputs: Inputs, means: Means) -> RadiatedSoun
     about = response.facts
     seconds = {**about["seconds"], "sound": time.process_time() - began}
     own = {name: about[name] for name in ("leading_shaft", "equilibrium", "effect_ledger")}
-    return replace(whole, facts={**whole.facts, **own, "models": compared, "seconds": seconds})
+    known = {**whole.facts, **own, "models": compared, "seconds": seconds}
+    whole = replace(whole, facts=known)
+    return replace(whole, facts={**known, **uncertainty(subject, whole, radiation, inputs, means)})
 
 
-def _sound(
-    response: ForcedResponse,
-    body: ReducedHousing,
-    name: str,
-    bearings: tuple[str, ...],
-    inputs: Inputs,
-    means: Means,
-) -> RadiatedSound:
-    """Return the sound of one housing."""
+def _radiation(
+    response: ForcedResponse, body: ReducedHousing, inputs: Inputs, means: Means
+) -> HousingRadiation:
+    """Return the radiation resistance of one housing."""
     model, cache = MODELS[inputs.radiation], means.home / "housings"
-    radiation = kept_radiation(body, model, response.frequency, cache=cache, progress=means.report)
-    return radiated_sound(response, body, bearings, radiation, name)
+    return kept_radiation(body, model, response.frequency, cache=cache, progress=means.report)
 
 
 def _compared(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -13,6 +14,8 @@ from dynamics.errors import DynamicsError
 from dynamics.noise import (
     GUESSES,
     DesignFigure,
+    HousingRadiation,
+    RadiatedSound,
     Sensitivity,
     SoundBand,
     SoundModel,
@@ -24,9 +27,11 @@ from dynamics.noise import (
 )
 from dynamics.types import FloatArray
 from model_studies.variants import run_variants
+from service.convert.case import boundary_errors
 from service.convert.scene import TabledScene
 from service.schemas.noise_ranges import RANGES, NoiseRanges
 from service.studies.computation import Means
+from service.studies.noise import Inputs
 from service.studies.noise.flank_figures import flank_figures, flank_scenes
 from service.units import RPM
 
@@ -36,14 +41,45 @@ STEP = 0.1
 """Of factors."""
 
 
+def uncertainty(
+    subject: TabledScene,
+    sound: RadiatedSound,
+    radiation: Mapping[str, HousingRadiation],
+    inputs: Inputs,
+    means: Means,
+) -> Json:
+    """Return the facts `band`, `sensitivities`, `sensitivities_left_out` and the CPU time, as requested."""
+    housings = {name: subject.housings[name] for name in radiation}
+    model = SoundModel(subject.scene, housings, radiation)
+    told: Json = {"band": None, "sensitivities": [], "sensitivities_left_out": {}}
+    began = time.process_time()
+    with boundary_errors():
+        if inputs.band:
+            band = band_of(model, sound.speed, inputs.orders, inputs, means)
+            missed = _between_models(sound.facts["models"])
+            told["band"] = band_json(band.with_error("radiation_model", missed, missed))
+        if inputs.sensitivities:
+            rows, left_out = sensitivities_of(subject, model, sound.speed, inputs.orders, means)
+            told["sensitivities"] = [sensitivity_json(row) for row in rows]
+            told["sensitivities_left_out"] = left_out
+    if inputs.band or inputs.sensitivities:
+        told["seconds"] = {**sound.facts["seconds"], "uncertainty": time.process_time() - began}
+    return told
+
+
+def _between_models(compared: Mapping[str, Json]) -> float:
+    """Return how far radiation models lie apart where a housing is loudest, dB, the most of all housings."""
+    levels = [list(about["level"].values()) for about in compared.values() if about.get("level")]
+    return max((max(of) - min(of) for of in levels), default=0.0)
+
+
 def band_of(
-    model: SoundModel, other: SoundModel, speed: FloatArray, orders: int, ranges: NoiseRanges, means: Means
+    model: SoundModel, speed: FloatArray, orders: int, ranges: NoiseRanges, means: Means
 ) -> SoundBand:
-    """Return the bands over the ranges; `other` has the resistance of another radiation model."""
+    """Return the bands over the ranges."""
     factors = {name: getattr(ranges, name) for name in RANGES}
     spans = {name: Range(low, 1.0, high) for name, (low, high) in factors.items()}
-    alternatives = {"radiation_model": other}
-    return sound_band(model, speed, orders, spans, alternatives=alternatives, progress=means.report)
+    return sound_band(model, speed, orders, spans, progress=means.report)
 
 
 def sensitivities_of(

@@ -34,7 +34,7 @@ RELIEVED = GEAR | {"tip_relief_um": 10.0, "tip_relief_length_mm": 1.5}
 CASE: dict[str, Any] = {
     "pair": {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": RELIEVED, "wheel": GEAR},
     "load": {"torque_n_m": [50.0, 100.0]},
-    "accuracy": {"level": "draft", "positions": 16, "model": "plane_strain", "receipt": "minimal"},
+    "accuracy": {"level": "draft", "positions": 128, "model": "plane_strain", "receipt": "minimal"},
 }
 
 
@@ -94,14 +94,14 @@ def test_a_step_of_a_relief_changes_the_level_as_a_scene_with_that_relief_does(
 ) -> None:
     """Between two tables solved from the start, and between those on the compliance of the first."""
     scenes = flank_scenes(subject, RELIEF, tmp_path)
-    other = made_from(tmp_path, pinion=RELIEVED | {"tip_relief_um": 14.0})
+    other = made_from(tmp_path, pinion=RELIEVED | {"tip_relief_um": 40.0})
     levels = [
         largest_level(SPEED, forced_power(replace(model, scene=scene), SPEED, 3)[1])
         for scene in (
             subject.scene,
             other.scene,
             scenes.scene({RELIEF: 10.0}),
-            scenes.scene({RELIEF: 14.0}),
+            scenes.scene({RELIEF: 40.0}),
         )
     ]
     assert abs(levels[1] - levels[0]) > 0.5
@@ -109,13 +109,12 @@ def test_a_step_of_a_relief_changes_the_level_as_a_scene_with_that_relief_does(
 
 
 def test_bands_go_to_json(subject: TabledScene, model: SoundModel, tmp_path: Path) -> None:
-    louder = replace(model, resistance={"case": replace(model.resistance["case"])})
-    band = band_of(model, louder, SPEED, 2, NoiseRanges(), Means(tmp_path, quiet))
+    band = band_of(model, SPEED, 2, NoiseRanges(), Means(tmp_path, quiet))
     told = json.loads(json.dumps(band_json(band), allow_nan=False))
     assert len(told["total_low_db_a"]) == SPEED.size
     for level in (told["largest_total"], *(row["largest"] for row in told["orders"])):
         assert level["low_db_a"] <= level["level_db_a"] <= level["high_db_a"]
-        assert set(level["above_db"]) >= {"housing_damping", "jointly", "mode_number", "radiation_model"}
+        assert set(level["above_db"]) >= {"housing_damping", "jointly", "mode_number"}
         assert "mount_stiffness" not in level["above_db"]
 
 

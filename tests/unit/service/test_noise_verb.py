@@ -19,7 +19,8 @@ from dynamics.noise import RadiatedSound, loudest
 from service.cli.commands import app
 from service.studies.noise.figures import facts
 
-SPEEDS = ("--speed-rpm", "300:6000:300", "--orders", 4)
+BANDS = ("--speed-rpm", "300:6000:300", "--orders", 4)
+SPEEDS = (*BANDS, "--no-band")
 
 
 def loa(*arguments: object) -> Result:
@@ -101,3 +102,38 @@ def test_a_housing_of_matrices_alone_is_refused(scene: Path) -> None:
     result = loa(scene, *SPEEDS)
     assert result.exit_code == 2
     assert "at least one with a surface" in result.stderr
+
+
+def test_levels_have_a_band_unless_it_is_left_out(scene: Path) -> None:
+    answer = json.loads(loa(scene, *BANDS, "--housing-damping", "0.5,1.5", "--json").stdout)
+    check_declared("noise", answer)
+    total, orders = answer["band"]["largest_total"], answer["band"]["orders"]
+    assert total["level_db_a"] == pytest.approx(max(answer["total_level_db_a"]), abs=1e-6)
+    assert total["low_db_a"] < total["level_db_a"] < total["high_db_a"]
+    assert [row["order"] for row in orders] == answer["order"]
+    spread = answer["housings"]["case"]["models_db"].values()
+    assert total["above_db"]["radiation_model"] == pytest.approx(max(spread) - min(spread))
+    assert answer["sensitivities"] == []
+    assert json.loads(loa(scene, *SPEEDS, "--json").stdout)["band"] is None
+
+
+def test_what_one_decibel_costs_is_ranked(scene: Path, tmp_path: Path) -> None:
+    report, file = tmp_path / "noise.html", tmp_path / "noise.nc"
+    for target in (report, file):
+        result = loa(scene, *SPEEDS, "--sensitivities", "-o", target)
+        assert result.exit_code == 0, result.stderr
+        assert "What 1 dB costs" in result.stdout
+    assert "What 1 dB costs" in report.read_text("utf-8")
+    rows = RadiatedSound.from_netcdf(file).facts["sensitivities"]
+    expected = {"housing_damping", "housing_frequency", "bearing_stiffness", "mesh_damping"}
+    assert {row["figure"] for row in rows} == expected
+    for row in rows:
+        assert row["for_one_db_less"] == pytest.approx(-1.0 / row["slope_db"])
+    (damping,) = (row for row in rows if row["figure"] == "housing_damping")
+    assert damping["change_db"] < 0.0
+
+
+def test_a_range_without_what_the_scene_states_is_refused(scene: Path) -> None:
+    result = loa(scene, *SPEEDS, "--mesh-damping", "1.1,2")
+    assert result.exit_code == 2
+    assert "mesh_damping" in result.stderr and "at most 1" in result.stderr
