@@ -6,11 +6,13 @@ long as the product.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
+from dynamics.arrays.modal_freedoms import ModalFreedoms, modal_freedoms, subtract_modal_resistance
 from dynamics.forces.compiled import inner
 from dynamics.types import FloatArray, IntArray
 
@@ -38,19 +40,25 @@ class SparseMatrices(NamedTuple):
     ----------
     damping, stiffness, direction, turn : SparseRows
         Of `SystemArrays`. The first two have the same entries: those where either matrix is not 0.
+    bodies : SparseRows
+        The entries of `direction` before the modal freedoms.
     mobility : SparseRows
         Inverse of the mass matrix.
     coupling : SparseRows
         Where the inverse of any sum of mass, damping and stiffness has entries: two freedoms that a chain of
         entries joins. Weights are 1.
+    modal : ModalFreedoms
+        The last freedoms, where each of them is alone in the first two matrices.
     """
 
     damping: SparseRows
     stiffness: SparseRows
     direction: SparseRows
     turn: SparseRows
+    bodies: SparseRows
     mobility: SparseRows
     coupling: SparseRows
+    modal: ModalFreedoms
 
 
 def sparse_rows(matrix: FloatArray, entries: FloatArray | None = None) -> SparseRows:
@@ -61,18 +69,30 @@ def sparse_rows(matrix: FloatArray, entries: FloatArray | None = None) -> Sparse
 
 
 def sparse_matrices(
-    mass: FloatArray, damping: FloatArray, stiffness: FloatArray, direction: FloatArray, turn: FloatArray
+    mass: FloatArray,
+    damping: FloatArray,
+    stiffness: FloatArray,
+    direction: FloatArray,
+    turn: FloatArray,
+    others: Sequence[FloatArray] = (),
 ) -> SparseMatrices:
-    """Lay out the matrices of a system: (n, n), the last two (R, n) and (m, n)."""
+    """Lay out the matrices of a system: (n, n), `direction` (R, n) and `turn` (m, n).
+
+    `others` (..., n) are all further rows that act on its freedoms, or that these act on.
+    """
     joined = connected_components((mass != 0.0) | (damping != 0.0) | (stiffness != 0.0))[1]
     coupling = joined[:, None] == joined
     alone = connected_components(mass != 0.0)[1]
     mobility = np.where(alone[:, None] == alone, np.linalg.inv(mass), 0.0)
     either = (damping != 0.0) | (stiffness != 0.0)
-    others = (direction, turn, mobility, coupling.astype(float))
-    return SparseMatrices(
-        sparse_rows(damping, either), sparse_rows(stiffness, either), *map(sparse_rows, others)
-    )
+    modal = modal_freedoms(mass, damping, stiffness, direction, np.concatenate([turn, *others]))
+    entries = (direction, turn, direction[:, : modal.first], mobility, coupling.astype(float))
+    rows = (sparse_rows(damping, either), sparse_rows(stiffness, either), *map(sparse_rows, entries))
+    return SparseMatrices(*rows, modal)
+
+
+NO_ENTRIES = sparse_matrices(*(np.zeros((0, 0)) for _ in range(5)))
+"""Of a system without freedoms."""
 
 
 @inner
@@ -101,9 +121,10 @@ def row_products(
 def subtract_resistance(sparse: SparseMatrices, q: FloatArray, v: FloatArray, force: FloatArray) -> None:
     """Subtract what dampers and springs exert at `q` and `v` (n,) from `force`."""
     damping, stiffness = sparse.damping.weight, sparse.stiffness.weight
-    for i in range(force.size):
+    for i in range(sparse.modal.first):
         damped, held = row_products(sparse.damping, i, damping, v, stiffness, q)
         force[i] -= damped + held
+    subtract_modal_resistance(sparse.modal, q, v, force)
 
 
 @inner

@@ -28,16 +28,23 @@ class BearingForce(NamedTuple):
         N or N m per unit.
     constant : (S,) array
         N or N m.
+    freedoms : int
+        n.
     """
 
     first: IntArray
     column: IntArray
     weight: FloatArray
     constant: FloatArray
+    freedoms: int
 
     def of(self, local: FloatArray, q: FloatArray, v: FloatArray) -> FloatArray:
-        """Return the signals (S, T) of the local forces (R, T), `q` and `v` (T, n)."""
-        state = [*local, *q.T, *v.T]
+        """Return the signals (S, T) of the local forces (R, T), `q` and `v` (T, n).
+
+        Freedoms that move no support may be missing at the end of `q` and `v`.
+        """
+        missing = [None] * (self.freedoms - q.shape[1])
+        state = [*local, *q.T, *missing, *v.T]
         signals, part = np.repeat(self.constant[:, None], q.shape[0], axis=1), np.empty(q.shape[0])
         for signal, (start, end) in enumerate(zip(self.first[:-1], self.first[1:], strict=True)):
             for entry in range(start, end):
@@ -75,5 +82,5 @@ def bearing_force_map(
     signal, column = np.nonzero(flat)
     starts = np.searchsorted(signal, np.arange(count * rows + 1))
     return BearingForce(
-        starts.astype(np.int64), column.astype(np.int64), flat[signal, column], constant.ravel()
+        starts.astype(np.int64), column.astype(np.int64), flat[signal, column], constant.ravel(), n
     )

@@ -9,7 +9,7 @@ import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.arrays.elements import Element, gradients, pack_elements
-from dynamics.arrays.sparse_rows import sparse_matrices
+from dynamics.arrays.sparse_rows import NO_ENTRIES
 from dynamics.assembly.model import Model
 from dynamics.assembly.phases import phases
 from dynamics.assembly.references import drive_springs, lay_out_drives, lay_out_loads, lay_out_reference
@@ -56,7 +56,7 @@ def system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) 
         stiffness,
         direction,
         turn,
-        sparse_matrices(mass, damping, stiffness, direction, turn),
+        NO_ENTRIES,
         constant,
         freedoms.keep(-times_mass(rotors, vectors)),
         np.ascontiguousarray(times_mass(rotors, vectors) @ vectors.T),
@@ -67,7 +67,7 @@ def system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) 
         lay_out_reference(mechanism, freedoms),
         lay_out_loads(mechanism, freedoms),
     )
-    return by_address(arrays)
+    return by_address(arrays.with_matrices())
 
 
 def _turns(mechanism: Mechanism) -> FloatArray:

@@ -22,3 +22,6 @@ compiled = _numba(cache=True)
 # Callable from compiled functions only: no wrappers, no cache entry of its own, which halves the compile
 # time.
 inner = _numba(no_cpython_wrapper=True, no_cfunc_wrapper=True)
+
+# The same for sums of many products, which may be taken in any order: side by side in vector registers.
+inner_sums = _numba(no_cpython_wrapper=True, no_cfunc_wrapper=True, fastmath={"reassoc", "contract"})

@@ -151,6 +151,18 @@ def prepare_laws(elements: Elements) -> None:
 
 
 @inner
+def is_linear(elements: Elements, e: int) -> bool:
+    """Return whether forces are constant matrices times coordinates and rates: stages eliminate them."""
+    return bool(elements.law[e] == LINEAR_BEARING)
+
+
+@inner
+def evaluate_linear(elements: Elements, local: LocalState, e: int) -> None:
+    """Do what `evaluate` does for an element that `is_linear`."""
+    linear_bearing(elements.laws.linear_bearing, elements.entry[e], local, elements.first[e])
+
+
+@inner
 def evaluate(elements: Elements, local: LocalState, e: int) -> None:
     """Write forces and derivatives of element `e` at the coordinates, rates and position in `local`."""
     row, entry, laws = elements.first[e], elements.entry[e], elements.laws
@@ -187,7 +199,7 @@ def evaluate(elements: Elements, local: LocalState, e: int) -> None:
     elif kind == UNBALANCE:
         unbalance(laws.unbalance, entry, local, row)
     elif kind == LINEAR_BEARING:
-        linear_bearing(laws.linear_bearing, entry, local, row)
+        evaluate_linear(elements, local, e)
 
 
 @inner

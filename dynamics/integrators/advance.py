@@ -136,12 +136,14 @@ def _move_on(work: Workspace, implicit: bool, step: float, end: float) -> None:
     A motion that has died away is at rest: processors take a hundred times as long for numbers that
     underflow.
     """
-    weights = IMPLICIT_WEIGHTS if implicit else EXPLICIT_WEIGHTS
+    weights, mean = IMPLICIT_WEIGHTS if implicit else EXPLICIT_WEIGHTS, work.external
+    for i in range(mean.size):
+        mean[i] = 0.0
+    for stage in range(weights.size):
+        for i in range(mean.size):
+            mean[i] += weights[stage] * work.stage_a[stage, i]
     for i in range(work.q.size):
-        gained = 0.0
-        for stage in range(weights.size):
-            gained += weights[stage] * work.stage_a[stage, i]
-        gained = step * gained + work.v_rest[i]
+        gained = step * mean[i] + work.v_rest[i]
         rate = work.v[i] + gained
         work.v_rest[i] = gained - (rate - work.v[i])
         work.q[i], work.v[i], work.a[i] = work.q_new[i], rate, work.a_new[i]

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from dynamics.arrays.arrays import SystemArrays
+from dynamics.arrays.modal_freedoms import subtract_modal_forces
 from dynamics.arrays.sparse_rows import row_product, subtract_columns, subtract_resistance
+from dynamics.forces.compiled import inner
 from dynamics.forces.element_laws import has_unbalance
 from dynamics.forces.routine import routine
+from dynamics.integrators.linear_elements import apply_linear, hold_linear
 from dynamics.integrators.local_newton import solve_local_forces
 from dynamics.integrators.powers import write_powers
 from dynamics.integrators.stage import add_stages, finish_step, set_motion
@@ -20,6 +25,7 @@ from dynamics.integrators.tableaus import (
 from dynamics.integrators.workspace import Count, Workspace
 from dynamics.motion.accelerations import set_acceleration
 from dynamics.motion.motion import add_motion
+from dynamics.types import FloatArray
 
 STAGE_COUNT = 6
 
@@ -66,10 +72,9 @@ def solve_stage(system: SystemArrays, work: Workspace, level: int, stage: int, t
     add_stages(IMPLICIT_STAGES, stage, step, work.stage_a, v)
     for i in range(size):
         q[i] += span * v[i]
-    sparse, inverse, linear = system.sparse, work.inverse[level], work.linear
+    sparse, linear = system.sparse, work.unloaded
     subtract_resistance(sparse, q, v, work.external)
-    for i in range(size):
-        linear[i] = row_product(sparse.coupling, inverse, i, work.external)
+    _accelerate(system, work, level, linear)
     for i in range(size):
         v[i] += span * linear[i]
         q[i] += span * span * linear[i]
@@ -77,11 +82,27 @@ def solve_stage(system: SystemArrays, work: Workspace, level: int, stage: int, t
     add_motion(system, q, v, work.free_position, work.free, work.free_rate)
     if has_unbalance(system.elements):
         set_acceleration(system, work.motion, linear, work.free_acceleration)
+    hold_linear(system, work, level, span)
     iterations = solve_local_forces(system, work, level, span, tolerance, stage == 1)
-    subtract_columns(sparse.direction, work.force, work.external)
+    apply_linear(work)
+    subtract_columns(sparse.bodies, work.force, work.external)
+    subtract_modal_forces(sparse.modal, work.force, work.external)
+    pushed = work.stage_a[stage]
+    _accelerate(system, work, level, pushed)
     for i in range(size):
-        pushed = row_product(sparse.coupling, inverse, i, work.external)
-        q[i] += span * span * pushed
-        v[i] += span * pushed
-        work.stage_a[stage, i], work.stage_v[stage, i] = linear[i] + pushed, v[i]
+        q[i] += span * span * pushed[i]
+        v[i] += span * pushed[i]
+        work.stage_a[stage, i], work.stage_v[stage, i] = linear[i] + pushed[i], v[i]
     return iterations
+
+
+@inner
+def _accelerate(system: SystemArrays, work: Workspace, level: int, acceleration: FloatArray) -> None:
+    """Write the accelerations by the forces in ``work.external``: modal freedoms answer for themselves."""
+    coupling, inverse = system.sparse.coupling, work.inverse[level]
+    for i in range(system.sparse.modal.first):
+        acceleration[i] = row_product(coupling, inverse, i, work.external)
+    first = np.uint64(system.sparse.modal.first)
+    entry = np.uint64(coupling.first[first])
+    for i in range(np.uint64(system.sparse.modal.damping.size)):
+        acceleration[first + i] = inverse[entry + i] * work.external[first + i]

@@ -12,7 +12,8 @@ import math
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.forces.compiled import inner
-from dynamics.forces.element_laws import evaluate
+from dynamics.forces.element_laws import evaluate, is_linear
+from dynamics.integrators.equations import invert_equations
 from dynamics.integrators.workspace import Workspace
 
 ITERATION_LIMIT = 25
@@ -31,8 +32,9 @@ def solve_local_forces(
     On entry ``work.free``, ``free_rate`` and ``free_position`` hold the motion without local forces, and
     ``work.force`` is a first guess; on exit ``work.local`` holds the motion with them. `first` says whether
     this is the first stage of its step. The change of the positions with the forces is followed but left out
-    of the equations: it is of the order of a deflection over a base pitch. An update leaves the part of
-    itself that it was of the one before; returns -1 if that did not fall to `tolerance` (N).
+    of the equations: it is of the order of a deflection over a base pitch. Forces of linear elements are
+    part of the motion (`hold_linear`). An update leaves the part of itself that it was of the one before;
+    returns -1 if that did not fall to `tolerance` (N).
     """
     fresh, last, left = first, math.inf, 1.0
     if first:  # later stages begin with the forces and the answer to them that the one before ended with
@@ -40,7 +42,8 @@ def solve_local_forces(
     for iteration in range(ITERATION_LIMIT):
         _move(work, span)
         for e in range(system.elements.law.size):
-            evaluate(system.elements, work.local, e)
+            if not is_linear(system.elements, e):
+                evaluate(system.elements, work.local, e)
         if fresh:
             _invert_equations(system, work, level, span)
         size = _update_forces(work)
@@ -117,26 +120,7 @@ def _invert_equations(system: SystemArrays, work: Workspace, level: int, span: f
                     total += _gain(work, span, k, j) * approach[level, first + j, work.solved[a]]
                 work.jacobian[a, b] = total
                 work.jacobian[a, size + b] = 1.0 if a == b else 0.0
-    _invert(work, size)
-
-
-@inner
-def _invert(work: Workspace, size: int) -> None:
-    """Turn [A, I] in the first `size` rows into [I, inverse], with row pivoting (Gauss and Jordan)."""
-    matrix = work.jacobian
-    for p in range(size):
-        best = p
-        for i in range(p + 1, size):
-            if abs(matrix[i, p]) > abs(matrix[best, p]):
-                best = i
-        pivot = 1.0 / matrix[best, p]
-        for j in range(2 * size):
-            matrix[best, j], matrix[p, j] = matrix[p, j], matrix[best, j] * pivot
-        for i in range(size):
-            factor = matrix[i, p]
-            if i != p and factor != 0.0:
-                for j in range(2 * size):
-                    matrix[i, j] -= factor * matrix[p, j]
+    invert_equations(work.jacobian, size)
 
 
 @inner

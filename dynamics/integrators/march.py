@@ -79,7 +79,7 @@ class March:
     @property
     def widths(self) -> Widths:
         """Sizes of the sampled states."""
-        channels, rows = self.ring.point.shape[1], self.ring.local.force.size
+        channels, rows = self.sampler.filtered, self.ring.local.force.size
         return Widths(self.work.q.size, self.work.moved.size, channels, rows)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dynamics.arrays.arrays import SystemArrays
+from dynamics.arrays.modal_freedoms import modal_loss
 from dynamics.arrays.sparse_rows import row_product
 from dynamics.forces.compiled import inner
 from dynamics.forces.element_laws import (
@@ -32,7 +33,7 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
     and the change of its speed count with the position.
     """
     velocity = work.stage_v[stage]
-    laws = work.motion.shape[0]
+    laws, modal = work.motion.shape[0], system.sparse.modal
     drives, loads = 0.0, 0.0
     for k in range(laws):
         drives += _drive_torque(system, work, k, velocity, time) * work.motion[k, SPEED]
@@ -41,7 +42,7 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
         rate = 0.0
         for k in range(laws):
             rate += system.load.reference[load, k] * work.motion[k, SPEED]
-        for i in range(velocity.size):
+        for i in range(modal.first):
             rate += system.load.direction[load, i] * velocity[i]
         loads += value * rate
     lost_in_bearings, mesh, friction, supplied, kept = _in_elements(system, work)
@@ -49,8 +50,9 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
     loads += supplied
     drives -= kept
     damping = system.sparse.damping
-    for i in range(velocity.size):
+    for i in range(modal.first):
         bushing += velocity[i] * row_product(damping, damping.weight, i, velocity)
+    bushing += modal_loss(modal, velocity)
     axes, position = 0.0, 0.0
     for e in range(system.elements.law.size):
         axes -= power_along_axes(system.elements, work.local, e)
@@ -126,7 +128,7 @@ def _drive_torque(
     for load in range(system.load.direction.shape[0]):
         if system.load.drive[load, law] != 0.0:
             torque -= system.load.drive[load, law] * law_value(system.load.torque, load, time)
-    for i in range(velocity.size):
+    for i in range(system.sparse.modal.first):
         torque += drive.stiffness[law, i] * work.q_new[i] + drive.damping[law, i] * velocity[i]
     for r in range(work.force.size):
         torque += drive.direction[law, r] * work.force[r]

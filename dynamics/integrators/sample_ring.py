@@ -32,6 +32,11 @@ class Sampler(NamedTuple):
     nominal_force : (m,) array
         N.
     bearings : BearingForce
+        Of the channels of a point.
+    bodies : int
+        Freedoms that are not modal.
+    filtered : int
+        Channels that the filter takes: without the amplitudes of modal freedoms where no output has them.
     """
 
     taps: FloatArray
@@ -40,6 +45,8 @@ class Sampler(NamedTuple):
     static: PackedTables
     nominal_force: FloatArray
     bearings: BearingForce
+    bodies: int
+    filtered: int
 
 
 class Peaks(NamedTuple):
@@ -62,8 +69,8 @@ class Peaks(NamedTuple):
 class SampleRing(NamedTuple):
     """Points of the inner grid: L as the filter has taps, n freedoms, R local coordinates, m meshes, k laws.
 
-    A point's C channels are the R local forces, q, v and the m static deflections. Local coordinates are
-    linear in q.
+    A point's C channels are the R local forces, q and v of all freedoms but the modal ones, the m static
+    deflections, then q and v of the modal ones. Local coordinates are linear in q.
 
     Attributes
     ----------
@@ -102,8 +109,22 @@ def make_sampler(system: System) -> Sampler:
     """Gather what the compiled loop needs."""
     sampling = system.sampling
     static, nominal = system.flanks.static, system.flanks.nominal_force
-    taps = sampling.filter_taps()
-    return Sampler(taps, sampling.factor, sampling.inner_rate, static, nominal, system.bearing_map)
+    rows, n = system.arrays.direction.shape
+    bodies, outputs = system.arrays.sparse.modal.first, system.scene.outputs
+    column = channels_of(rows, n, bodies, nominal.size)[system.bearing_map.column]
+    bearings = system.bearing_map._replace(column=column)
+    amplitudes = n - bodies if outputs.displacements or outputs.accelerations else 0
+    filtered = rows + 2 * (bodies + amplitudes) + nominal.size
+    rest = (bearings, bodies, filtered)
+    return Sampler(sampling.filter_taps(), sampling.factor, sampling.inner_rate, static, nominal, *rest)
+
+
+def channels_of(rows: int, freedoms: int, bodies: int, meshes: int) -> IntArray:
+    """Return the channels of R local forces, q (n,) and v (n,); `bodies` of the freedoms are not modal."""
+    forces, own = np.arange(rows), np.arange(bodies)
+    modal = np.arange(rows + 2 * bodies + meshes, rows + 2 * freedoms + meshes)
+    q, v = np.split(modal, 2)
+    return np.concatenate([forces, rows + own, q, rows + bodies + own, v])
 
 
 def make_ring(arrays: SystemArrays, sampler: Sampler) -> SampleRing:

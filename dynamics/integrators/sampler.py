@@ -62,7 +62,7 @@ def sample_step(
         point = counts[Count.POINT]
         time = point / sampler.rate
         row = point % sampler.taps.size
-        _interpolate(work, ring, step, time - work.time[0])
+        _interpolate(work, ring, step, time - work.time[0], has_unbalance(system.elements))
         _look(system, work, sampler, ring, time, row)
         if point <= sampler.taps.size // 2:
             _mirror(ring, 0, point, -point)
@@ -107,24 +107,26 @@ def move_sampled_trains(system: SystemArrays, work: Workspace, ring: SampleRing)
         if count == 0:
             continue
         for row in range(ring.point.shape[0]):
-            for i in range(work.q.size):
+            for i in range(system.sparse.modal.first):
                 ring.point[row, first + i] -= system.reference.vector[k, i] * (count * QUANTUM)
 
 
 @inner
-def _interpolate(work: Workspace, ring: SampleRing, step: float, elapsed: float) -> None:
+def _interpolate(work: Workspace, ring: SampleRing, step: float, elapsed: float, accelerations: bool) -> None:
     """Cubic Hermite interpolation of displacements (with rates) and of rates (with accelerations).
 
-    Accelerations are the derivative of the latter.
+    Where laws depend on `accelerations`, these are the derivative of the latter.
     """
     u = elapsed / step
     end = u * u * (3.0 - 2.0 * u)
     first, last = step * u * (1.0 - u) ** 2, -step * u * u * (1.0 - u)
     q, v = ring.q, ring.v
-    slope = 6.0 * u * (1.0 - u) / step
+    if accelerations:
+        slope = 6.0 * u * (1.0 - u) / step
+        for i in range(q.size):
+            ring.a[i] = slope * (work.v_new[i] - work.v[i])
+            ring.a[i] += (1.0 - u) * (1.0 - 3.0 * u) * work.a[i] + u * (3.0 * u - 2.0) * work.a_new[i]
     for i in range(q.size):
-        ring.a[i] = slope * (work.v_new[i] - work.v[i])
-        ring.a[i] += (1.0 - u) * (1.0 - 3.0 * u) * work.a[i] + u * (3.0 * u - 2.0) * work.a_new[i]
         q[i] = work.q[i] + end * (work.q_new[i] - work.q[i]) + first * work.v[i] + last * work.v_new[i]
         v[i] = work.v[i] + end * (work.v_new[i] - work.v[i]) + first * work.a[i] + last * work.a_new[i]
 
@@ -143,14 +145,18 @@ def _look(
         set_acceleration(system, ring.motion, ring.a, local.acceleration)
     for e in range(system.elements.law.size):
         evaluate(system.elements, local, e)
-    rows, n = local.force.size, q.size
+    rows, n, point = local.force.size, sampler.bodies, ring.point[row]
+    modes, meshes = q.size - n, sampler.nominal_force.size
     for r in range(rows):
-        ring.point[row, r] = local.force[r]
+        point[r] = local.force[r]
     for i in range(n):
-        ring.point[row, rows + i], ring.point[row, rows + n + i] = q[i], v[i]
-    for m in range(sampler.nominal_force.size):
+        point[rows + i], point[rows + n + i] = q[i], v[i]
+    for m in range(meshes):
         static = table_deflection(sampler.static, m, local.position[m], sampler.nominal_force[m])
-        ring.point[row, rows + 2 * n + m] = static
+        point[rows + 2 * n + m] = static
+    first = rows + 2 * n + meshes
+    for i in range(modes):
+        point[first + i], point[first + modes + i] = q[n + i], v[n + i]
 
 
 @inner
@@ -189,9 +195,13 @@ def _store_if_due(work: Workspace, sampler: Sampler, ring: SampleRing, point: in
     taps = sampler.taps.size
     center = middle % taps
     _filter(ring, sampler.taps, center, out.filtered[row])
-    rows, n = ring.local.force.size, ring.q.size
+    rows, n = ring.local.force.size, sampler.bodies
     for i in range(n):
         out.q[row, i], out.v[row, i] = ring.point[center, rows + i], ring.point[center, rows + n + i]
+    first, modes = rows + 2 * n + sampler.nominal_force.size, ring.q.size - n
+    for i in range(modes):
+        out.q[row, n + i] = ring.point[center, first + i]
+        out.v[row, n + i] = ring.point[center, first + modes + i]
     for k in range(work.moved.size):
         out.moved[row, k] = work.moved[k]
     _see_extremes(ring, sampler.factor, center, out, row)

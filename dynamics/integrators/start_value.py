@@ -136,9 +136,9 @@ def widened(states: States, rows_of: IntArray, march: March) -> States:
     Their rows have the indices `rows_of` (R,); elements beside them carried no force.
     """
     rows = march.ring.local.force.size
-    to = _channels(march, rows_of)
-    filtered = np.zeros((states.q.shape[0], march.ring.point.shape[1]))
-    filtered[:, to] = states.filtered
+    to, kept = _channels(march, rows_of), states.filtered.shape[1]
+    filtered = np.zeros((states.q.shape[0], march.sampler.filtered))
+    filtered[:, to[:kept]] = states.filtered
     least, largest = (np.zeros((states.q.shape[0], rows)) for _ in range(2))
     least[:, rows_of], largest[:, rows_of] = states.least, states.largest
     return States(states.q, states.v, states.moved, filtered, least, largest)
@@ -146,10 +146,8 @@ def widened(states: States, rows_of: IntArray, march: March) -> States:
 
 def _channels(march: March, rows_of: IntArray) -> IntArray:
     """Return the channels of `march` that those of a march with rows `rows_of` (R,) are."""
-    rows, n = march.ring.local.force.size, march.work.q.size
-    meshes = march.sampler.nominal_force.size
-    state, static = np.arange(rows, rows + 2 * n), np.arange(meshes) + rows + 2 * n
-    return np.concatenate([rows_of, state, static])
+    rows, channels = march.ring.local.force.size, march.ring.point.shape[1]
+    return np.concatenate([rows_of, np.arange(rows, channels)])
 
 
 def added_rows(before: System, after: System) -> IntArray | None:

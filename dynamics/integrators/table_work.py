@@ -25,7 +25,7 @@ def keep_motion(system: SystemArrays, work: Workspace, end: StepEnd) -> None:
     """Write the motion in ``work.local``, whose rates are ``work.v_new``, into one end of a step."""
     for m in range(work.local.position.size):
         end.position[m], end.pace[m] = work.local.position[m], work.local.pace[m]
-        for i in range(work.v_new.size):
+        for i in range(system.sparse.modal.first):
             end.pace[m] += system.turn[m, i] * work.v_new[i]
     for r in range(work.local.coordinate.size):
         end.coordinate[r], end.rate[r] = work.local.coordinate[r], work.local.rate[r]

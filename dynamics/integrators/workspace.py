@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
-from dynamics.forces.element_laws import make_local
+from dynamics.forces.element_laws import Elements, is_linear, make_local
 from dynamics.forces.local_state import LocalState
 from dynamics.motion.motion import MOTION_COLUMNS
 from dynamics.types import BoolArray, FloatArray, IntArray
@@ -84,7 +84,7 @@ class Workspace(NamedTuple):
         accelerations.
     q_new, v_new, a_new, q_error, v_error : (n,) arrays
         At the end of the step tried.
-    external, linear : (n,) arrays
+    external, unloaded : (n,) arrays
         Scratch: external force; acceleration without the elements' forces.
     stage_v, stage_a : (STAGES, n) arrays
     force : (R,) array
@@ -97,6 +97,10 @@ class Workspace(NamedTuple):
         Local coordinates, their rates and accelerations without the elements' forces.
     free_position : (m,) array
         Positions without them.
+    linear : (p, 3) int array
+        Rows of linear elements, and the first and the end among these p of the element of each.
+    resting : (2 p,) array
+        Scratch: coordinates and rates of these rows without any local force.
     response : (R + m,) array
         Accelerations of coordinates and positions by the local forces in `force`.
     motion : (k, 4) array
@@ -119,14 +123,17 @@ class Workspace(NamedTuple):
         See `Count`.
     step_sizes : (r,) array
         Step sizes, falling, s; then the one that lands on a law's knot.
-    matrix : (n, n) array
-        Scratch: the matrix to invert.
+    matrix : (a, a) array
+        Scratch: the matrix to invert, of the freedoms that are not modal.
     ready : (r,) bool array
         Whether the matrices of a level are there.
     inverse : (r, L) array
         Entries of the inverse of M + h g C + (h g)^2 K.
     approach : (r, R, R + m) array
-        Accelerations of local coordinates, then of positions, per local force.
+        Accelerations of local coordinates, then of positions, per local force; linear elements follow, so
+        that their own rows are 0.
+    held : (r, R + m, 2 p) array
+        Accelerations by the linear elements, per coordinate and per rate of their rows without local forces.
     """
 
     time: FloatArray
@@ -142,7 +149,7 @@ class Workspace(NamedTuple):
     q_error: FloatArray
     v_error: FloatArray
     external: FloatArray
-    linear: FloatArray
+    unloaded: FloatArray
     stage_v: FloatArray
     stage_a: FloatArray
     force: FloatArray
@@ -153,6 +160,8 @@ class Workspace(NamedTuple):
     free_rate: FloatArray
     free_acceleration: FloatArray
     free_position: FloatArray
+    linear: IntArray
+    resting: FloatArray
     response: FloatArray
     motion: FloatArray
     moved: IntArray
@@ -170,6 +179,7 @@ class Workspace(NamedTuple):
     ready: BoolArray
     inverse: FloatArray
     approach: FloatArray
+    held: FloatArray
 
 
 def geometric_steps(largest: float, smallest: float) -> FloatArray:
@@ -186,11 +196,23 @@ def make_workspace(
 ) -> Workspace:
     """Allocate for a run that starts at t = 0 at rest in the displacements `q` (n,)."""
     n, rows, meshes, r = q.size, system.direction.shape[0], system.turn.shape[0], step_sizes.size
-    laws = system.inertial.shape[0]
+    laws, bodies = system.inertial.shape[0], system.sparse.modal.first
     counts = np.zeros(len(Count), dtype=np.int64)
     counts[Count.LEVEL] = min(int(np.searchsorted(-step_sizes, -first_step)), r - 2)
     counts[Count.SMALLEST_LEVEL] = r - 1
-    per_freedom = ("v", "v_rest", "a", "q_new", "v_new", "a_new", "q_error", "v_error", "external", "linear")
+    per_freedom = (
+        "v",
+        "v_rest",
+        "a",
+        "q_new",
+        "v_new",
+        "a_new",
+        "q_error",
+        "v_error",
+        "external",
+        "unloaded",
+    )
+    linear = _linear_rows(system.elements)
     per_row = ("force", "free", "free_rate", "free_acceleration", "update", "correction")
     return Workspace(
         time=np.zeros(1),
@@ -205,6 +227,8 @@ def make_workspace(
         before=_step_end(meshes, rows, laws),
         after=_step_end(meshes, rows, laws),
         free_position=np.zeros(meshes),
+        linear=linear,
+        resting=np.zeros(2 * len(linear)),
         response=np.zeros(rows + meshes),
         motion=np.zeros((laws, MOTION_COLUMNS)),
         moved=np.zeros(laws, dtype=np.int64),
@@ -216,11 +240,23 @@ def make_workspace(
         fallen=np.zeros(len(LOSSES)),
         counts=counts,
         step_sizes=step_sizes,
-        matrix=np.zeros((n, n)),
+        matrix=np.zeros((bodies, bodies)),
         ready=np.zeros(r, dtype=np.bool_),
         inverse=np.zeros((r, system.sparse.coupling.column.size)),
         approach=np.zeros((r, rows, rows + meshes)),
+        held=np.zeros((r, rows + meshes, 2 * len(linear))),
     )
+
+
+def _linear_rows(elements: Elements) -> IntArray:
+    """Return ``Workspace.linear``."""
+    rows: list[tuple[int, int, int]] = []
+    for e in range(elements.law.size):
+        if is_linear.py_func(elements, e):
+            first, count = int(elements.first[e]), int(elements.first[e + 1] - elements.first[e])
+            start = len(rows)
+            rows += [(first + k, start, start + count) for k in range(count)]
+    return np.array(rows, dtype=np.int64).reshape(-1, 3)
 
 
 def _step_end(meshes: int, rows: int, laws: int) -> StepEnd:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
-from dynamics.arrays.sparse_rows import sparse_rows
+from dynamics.arrays.sparse_rows import sparse_matrices
 from dynamics.assembly.assemble import System
 from dynamics.forces.by_address import by_address
 from dynamics.forces.local_state import LocalState
@@ -92,10 +92,11 @@ def _by_coordinates(arrays: SystemArrays) -> SystemArrays:
     """Return arrays whose freedoms are the R local coordinates and the m positions themselves."""
     rows, meshes = arrays.direction.shape[0], arrays.turn.shape[0]
     direction, turn = np.eye(rows, rows + meshes), np.eye(meshes, rows + meshes, rows)
+    none = np.zeros((rows + meshes, rows + meshes))
     return arrays._replace(
         direction=direction,
         turn=np.ascontiguousarray(turn),
-        sparse=arrays.sparse._replace(direction=sparse_rows(direction), turn=sparse_rows(turn)),
+        sparse=sparse_matrices(np.eye(rows + meshes), none, none, direction, turn),
         elements=arrays.elements._replace(offset=np.zeros(rows)),
     )
 

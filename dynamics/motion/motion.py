@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from dynamics.arrays.arrays import LawArrays, Reference, SystemArrays
+from dynamics.arrays.modal_freedoms import add_modal_motion
 from dynamics.arrays.sparse_rows import row_product, row_products
 from dynamics.forces.compiled import compiled, inner
 from dynamics.forces.element_laws import Elements
@@ -126,10 +127,12 @@ def add_motion(
     rate: FloatArray,
 ) -> None:
     """Add `q` to the positions, and write the elements' local coordinates and their rates."""
-    direction, turn = system.sparse.direction, system.sparse.turn
+    bodies, modal, turn = system.sparse.bodies, system.sparse.modal, system.sparse.turn
     for r in range(coordinate.size):
-        moved, moving = row_products(direction, r, direction.weight, q, direction.weight, v)
+        moved, moving = row_products(bodies, r, bodies.weight, q, bodies.weight, v)
         coordinate[r], rate[r] = system.elements.offset[r] + moved, moving
+    add_modal_motion(modal, q, coordinate)
+    add_modal_motion(modal, v, rate)
     for m in range(position.size):
         position[m] += row_product(turn, turn.weight, m, q)
 
@@ -167,9 +170,9 @@ def external_force(system: SystemArrays, time: float, motion: FloatArray, force:
     for i in range(force.size):
         force[i] = system.constant[i]
     for k in range(motion.shape[0]):
-        for i in range(force.size):
+        for i in range(system.sparse.modal.first):
             force[i] += system.inertial[k, i] * motion[k, ACCELERATION]
     for load in range(system.load.direction.shape[0]):
         torque = law_value(system.load.torque, load, time)
-        for i in range(force.size):
+        for i in range(system.sparse.modal.first):
             force[i] += system.load.direction[load, i] * torque

@@ -27,7 +27,7 @@ def resolved_case(system: System) -> Json:
         "speed_torques": [asdict(torque) for torque in scene.speed_torques],
         "forces": [asdict(force) for force in scene.forces],
         "unbalances": [asdict(part) for part in scene.unbalances],
-        "housings": [asdict(housing) for housing in scene.housings],
+        "housings": [vars(housing) for housing in scene.housings],  # as it is: matrices of 10^4 numbers
         "rolling_contacts": [asdict(part) for part in scene.rolling_contacts],
         "spring_curves": [asdict(part) for part in scene.spring_curves],
         "rolling_bearings": [asdict(part) for part in scene.rolling_bearings],

@@ -23,6 +23,7 @@ class Signals(NamedTuple):
     Attributes
     ----------
     q, v : (T, n) arrays
+        Modal freedoms may be missing at their end.
     coordinate, force : (R, T) arrays
         Of the elements.
     static : (m, T) array
@@ -42,13 +43,24 @@ def unfiltered(system: System, seen: Observed, states: States) -> Signals:
     return Signals(states.q, states.v, seen.coordinate, seen.force, _static(system, position))
 
 
-def filtered(system: System, states: States) -> Signals:
-    """Return the signals behind the anti-alias filter."""
-    n, rows, channels = states.q.shape[1], states.least.shape[1], states.filtered
-    force, q, v, static = np.split(channels, np.cumsum([rows, n, n]), axis=1)
-    coordinate = system.arrays.elements.offset + q @ system.arrays.direction.T
-    across = (np.ascontiguousarray(part.T) for part in (coordinate, force, static))
-    return Signals(np.ascontiguousarray(q), np.ascontiguousarray(v), *across)
+def filtered(system: System, states: States, seen: Observed) -> Signals:
+    """Return the signals behind the anti-alias filter.
+
+    Modal freedoms that the filter has not taken are left out, and the coordinates they move are those of the
+    motion's points, as `seen`: no output has them.
+    """
+    rows, channels, modal = states.least.shape[1], states.filtered, system.arrays.sparse.modal
+    n, meshes = modal.first, system.flanks.nominal_force.size
+    force, q, v, static, amplitudes = np.split(channels, np.cumsum([rows, n, n, meshes]), axis=1)
+    coordinate = system.arrays.elements.offset + q @ system.arrays.direction[:, :n].T
+    coordinate, force, static = (np.ascontiguousarray(part.T) for part in (coordinate, force, static))
+    displacement, rate = np.split(amplitudes, 2, axis=1)
+    if amplitudes.shape[1] > 0:
+        coordinate += system.arrays.direction[:, n:] @ displacement.T
+    else:
+        coordinate[modal.row] = seen.coordinate[modal.row]
+    whole = (np.concatenate(parts, axis=1) for parts in ((q, displacement), (v, rate)))
+    return Signals(*whole, coordinate, force, static)
 
 
 def histories(
@@ -192,6 +204,7 @@ def _coupling_torque(system: System, q: FloatArray, v: FloatArray) -> FloatArray
     """Torque about +z from the first shaft of each coupling on the second, (c, T)."""
     couplings = system.couplings
     strains = system.freedoms.keep(couplings.motion)
+    strains = strains[..., : q.shape[1]]
     elastic = np.einsum("cl,cln,tn->ct", couplings.stiffness[:, ROTATION], strains, q)
     viscous = np.einsum("cl,cln,tn->ct", couplings.damping[:, ROTATION], strains, v)
     return np.ascontiguousarray(-elastic - viscous)
@@ -245,7 +258,8 @@ def _drive_torque(
     """Torque that imposes the motion of each drive, (d, T): balance of its shaft, or its spring's."""
     drive = system.arrays.drive
     torque = drive.inertia @ acceleration + drive.direction @ force - drive.constant[:, None]
-    torque += drive.stiffness @ q.T + drive.damping @ v.T
+    freedoms = q.shape[1]
+    torque += drive.stiffness[:, :freedoms] @ q.T + drive.damping[:, :freedoms] @ v.T
     for row, load in enumerate(system.scene.loads):
         torque -= system.arrays.load.drive[row][:, None] * load.torque(time)
     return np.ascontiguousarray(torque[: len(system.scene.drives)])

@@ -95,7 +95,7 @@ def series_of(system: System, time: FloatArray, states: States) -> tuple[dict[st
     if system.sampling.stop_band == 0.0:
         points = histories(system, time, states, seen, unfiltered(system, seen, states))
         return points, points
-    series = histories(system, time, states, seen, filtered(system, states))
+    series = histories(system, time, states, seen, filtered(system, states, seen))
     return series, checked_series(system, time, states, seen)
 
 

@@ -60,7 +60,8 @@ def test_local_coordinates_follow_from_the_filtered_state(made, stored, points):
     """Transmission errors are not filtered by themselves: they are linear in displacements that are."""
     seen = observe(made.arrays, points.time, points.q, points.v, points.moved)
     expected, first = behind_the_filter(made.sampling, seen.coordinate.T)
-    ours = filtered(made, stored.states).coordinate.T[first : first + expected.shape[0]]
+    there = observe(made.arrays, stored.time, stored.q, stored.v, stored.moved)
+    ours = filtered(made, stored.states, there).coordinate.T[first : first + expected.shape[0]]
     assert np.ptp(expected[:, 0]) > 1e-7
     assert np.max(np.abs(ours - expected)) < 1e-12 * np.max(np.abs(expected))
 
