@@ -15,6 +15,7 @@ from dynamics.linearize.common_period import CommonPeriod, common_period
 from dynamics.linearize.flank_cycles import SAMPLES, FlankCycle, averaged, flank_cycles
 from dynamics.linearize.linear_system import LinearSystem, about_running, linearize
 from dynamics.linearize.load_harmonics import load_harmonics
+from dynamics.linearize.modal_elimination import modal_elimination
 from dynamics.linearize.speeds import law_speeds
 from dynamics.linearize.whirl import terms_at
 from dynamics.types import BoolArray, FloatArray, IntArray
@@ -223,7 +224,6 @@ def _solve(
     `rows` (f, n). `terms` are those of `gyroscopic_terms` at each speed; none: nothing.
     """
     linear, per_meter = at.linear, 1.0 / at.linear.scale
-    size = per_meter.size
     mass, damping, total = (
         per_meter[:, None] * a * per_meter for a in (linear.mass, linear.damping, linear.stiffness)
     )
@@ -232,25 +232,43 @@ def _solve(
         each = np.broadcast_to((rows * per_meter).T, (*pushed.shape[:3], rows.shape[0]))
         pushed = np.concatenate([pushed, each], axis=-1)
     displacement = np.empty((*omega.shape, *pushed.shape[2:]), dtype=complex)
-    parts = np.stack([total, mass, damping]).reshape(3, -1).astype(complex)
-    block = max(BLOCK // max(omega.shape[1] * size**2, 1), 1)
+    modal = at.system.arrays.sparse.modal
+    small = None if terms else modal_elimination(modal, per_meter, total, damping, mass)
+    parts = np.stack([total, mass, damping]).astype(complex)
+    block = max(BLOCK // max(omega.shape[1] * per_meter.size**2, 1), 1)
     left = 0.0
     for start in range(0, omega.shape[0], block):
         part = slice(start, start + block)
-        w = omega[part, :, None, None]
-        by_part = np.concatenate([np.ones_like(w), -w * w, 1j * w], axis=-1)
-        matrix = (by_part[..., 0, :] @ parts).reshape(*w.shape[:2], *total.shape)
-        if terms:
-            swept = [
-                np.stack([per_meter[:, None] * term[k] * per_meter for term in terms[part]]) for k in (0, 1)
-            ]
-            matrix += 1j * w * swept[0][:, None] + swept[1][:, None]
         exciting = pushed if pushed.shape[0] == 1 else pushed[part]
-        right = np.broadcast_to(exciting, (*matrix.shape[:-1], pushed.shape[-1]))
-        solved = np.linalg.solve(matrix, right)
-        miss = np.abs(np.einsum("shij,shj->shi", matrix, solved[..., 0]) - right[..., 0])
+        right = np.broadcast_to(exciting, (*omega[part].shape, *pushed.shape[2:]))
+        if small is None:
+            swept = [
+                np.stack([per_meter[:, None] * term[k] * per_meter for term in terms[part]])
+                for k in (0, 1)
+                if terms
+            ]
+            solved, miss = _dense(parts, omega[part], swept, right)
+        else:
+            solved = small.solve(omega[part], right)
+            miss = np.abs(small.product(omega[part], solved[..., :1]) - right[..., :1])
         left = max(left, float(np.max(miss, initial=0.0)))
         displacement[part] = solved * per_meter[:, None]
         if progress is not None:
             progress(min(start + block, omega.shape[0]) / omega.shape[0])
     return displacement, left / max(float(np.max(np.abs(pushed[..., 0]), initial=0.0)), 1e-300)
+
+
+def _dense(
+    parts: ComplexArray, omega: FloatArray | ComplexArray, swept: Sequence[FloatArray], right: ComplexArray
+) -> tuple[ComplexArray, FloatArray]:
+    """Return the displacements (S, H, n, f) under `right`, and how far the first ones miss it.
+
+    `parts` are K, M, C (3, n, n); `swept` are gyroscopic and frame terms (S, n, n), or nothing.
+    """
+    w, size = omega[:, :, None, None], parts.shape[1]
+    by_part = np.concatenate([np.ones_like(w), -w * w, 1j * w], axis=-1)
+    matrix = (by_part[..., 0, :] @ parts.reshape(3, -1)).reshape(*w.shape[:2], size, size)
+    if swept:
+        matrix += 1j * w * swept[0][:, None] + swept[1][:, None]
+    solved = np.linalg.solve(matrix, right)
+    return solved, np.abs(np.einsum("shij,shj->shi", matrix, solved[..., 0]) - right[..., 0])
