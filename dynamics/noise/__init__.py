@@ -2,7 +2,7 @@
 
 from dynamics.noise.coarse_hull import RadiatingHull, coarse_hull, radiating_hull
 from dynamics.noise.housing_radiation import HousingRadiation, housing_radiation
-from dynamics.noise.kept_radiation import kept_radiation
+from dynamics.noise.kept import kept_radiation
 from dynamics.noise.loudest import LoudPoint, loudest
 from dynamics.noise.model_comparison import models_at, panels_at
 from dynamics.noise.outer_hull import OuterHull, outer_hull

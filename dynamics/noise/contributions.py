@@ -26,9 +26,9 @@ class Contributions:
 
 
 def contributions(
-    frequency: FloatArray, parts: ComplexArray, housing: ReducedHousing, radiation: HousingRadiation
+    frequency: FloatArray, amplitudes: ComplexArray, housing: ReducedHousing, radiation: HousingRadiation
 ) -> Contributions:
-    """Return the power of the sum of `parts`, their shares, and those of the modes.
+    """Return the power of the motion in the modes under all bearings, and the shares of both.
 
     The share of a part u of the velocity v is Re(u^H R v) / 2: shares add up to the power v^H R v / 2.
 
@@ -36,19 +36,20 @@ def contributions(
     ----------
     frequency : (S, H) array
         Hz.
-    parts : (b, S, H, r) array
-        Complex peak amplitudes of the velocity by bearing.
+    amplitudes : (S H, b, m) array
+        Complex peak amplitudes of `ReducedHousing.modes` by bearing.
     """
     grid, hertz = frequency.shape, frequency.ravel()
-    by_bearing = parts.reshape(len(parts), hertz.size, -1)
+    natural, shape = housing.modes
+    rates = 2j * np.pi * hertz[:, None, None] * amplitudes
+    by_bearing = np.moveaxis(rates @ shape.T, 1, 0)
     velocity = by_bearing.sum(axis=0)
     force = radiation.reaction(hertz, velocity)
     power = np.maximum(_power(velocity, force), 0.0)
-    natural, shape = housing.modes
     kept = slice(0, housing.frequency.size)
-    amplitude = velocity @ (housing.mass @ shape[:, kept])
-    mode_share = 0.5 * (amplitude.conj() * (force @ shape[:, kept])).real
-    mode_alone = 0.5 * np.abs(amplitude) ** 2 * radiation.alone(hertz, shape[:, kept])
+    rate = rates.sum(axis=1)[:, kept]
+    mode_share = 0.5 * (rate.conj() * (force @ shape[:, kept])).real
+    mode_alone = 0.5 * np.abs(rate) ** 2 * radiation.alone(hertz, shape[:, kept])
     alone = [_power(part, radiation.reaction(hertz, part)) for part in by_bearing]
     return Contributions(
         power.reshape(grid),

@@ -16,7 +16,9 @@ from dynamics.noise.contributions import Contributions, contributions
 from dynamics.noise.housing_radiation import HousingRadiation
 from dynamics.results.array_file import ArrayFile, Stored
 from dynamics.types import BoolArray, FloatArray, Json
-from dynamics.vibration import housing_motion, seat_forces
+from dynamics.vibration import seat_forces
+from dynamics.vibration.housing_vibration import VALID
+from dynamics.vibration.modal_amplitudes import modal_amplitudes
 
 POWER = ("speed", "order")
 STORED = {
@@ -63,7 +65,8 @@ class RadiatedSound(ArrayFile):
     in_contact : (S,) bool array
         Whether the flanks stay in contact; where not, no linear answer holds.
     facts : dict
-        Plain JSON: `radiation` by housing (`HousingRadiation.facts`, `model_name`, `area`).
+        Plain JSON: `radiation` by housing (`HousingRadiation.facts`, `model_name`, `area`, and
+        `valid_frequency` in Hz, to which the modes kept carry the motion).
     """
 
     SCHEMA = "lineofaction radiated sound"
@@ -126,7 +129,7 @@ def radiated_sound(
     Raises
     ------
     InputError
-        As `seat_forces` and `housing_motion` do, or the radiation is of another housing or range.
+        As `seat_forces` and `modal_amplitudes` do, or the radiation is of another housing or range.
     """
     names = tuple(seat.name for seat in housing.seats) if bearings is None else tuple(bearings)
     if radiation.matrix.shape[1] != len(housing.stiffness):
@@ -135,18 +138,17 @@ def radiated_sound(
             radiation.matrix.shape[1],
             f"one of {len(housing.stiffness)} coordinates, the housing's",
         )
-    parts = _parts(response, housing, names)
-    found = contributions(response.frequency, parts, housing, radiation)
+    amplitudes = _amplitudes(response, housing, names)
+    found = contributions(response.frequency, amplitudes, housing, radiation)
     return _result(response, housing, names, found, radiation, name)
 
 
-def _parts(response: HarmonicResponse, housing: ReducedHousing, names: tuple[str, ...]) -> ComplexArray:
-    """Return the velocity of the coordinates under the force of each bearing alone, (b, S, H, r), m/s."""
-    force = seat_forces(response, housing, names)
+def _amplitudes(response: HarmonicResponse, housing: ReducedHousing, names: tuple[str, ...]) -> ComplexArray:
+    """Return the amplitudes of the housing's modes under the force of each bearing alone, (S H, b, m)."""
+    force = seat_forces(response, housing, names).reshape(response.frequency.size, 1, -1)
     owner = np.repeat(np.arange(len(names)), [len(seat.motions) for seat in housing.seats])
-    spin = 2j * np.pi * response.frequency[..., None]
-    alone = (np.where(owner == bearing, force, 0.0) for bearing in range(len(names)))
-    return np.stack([spin * housing_motion(housing, response.frequency, part) for part in alone])
+    alone = np.where(owner == np.arange(len(names))[:, None], force, 0.0)
+    return modal_amplitudes(housing, response.frequency.ravel(), alone)
 
 
 def _result(
@@ -158,7 +160,8 @@ def _result(
     name: str,
 ) -> RadiatedSound:
     """Put the result of one housing together."""
-    about = {"model_name": radiation.model_name, "area": radiation.area, **radiation.facts}
+    valid = VALID * float(np.max(housing.frequency, initial=0.0))
+    about = {"model_name": radiation.model_name, "area": radiation.area, "valid_frequency": valid}
     return RadiatedSound(
         (name,),
         names,
@@ -174,5 +177,5 @@ def _result(
         found.mode_alone,
         found.natural_frequency,
         response.in_contact,
-        {"radiation": {name: about}},
+        {"radiation": {name: about | radiation.facts}},
     )

@@ -8,7 +8,7 @@ import { showFailure } from "./job.js";
 
 const WHAT = [
   ["simulate", "Run over time"], ["modes", "Modes over speed"], ["response", "Forced response over speed"],
-  ["steady", "Steady states over speed"], ["deflect", "Deflection under its loads"],
+  ["noise", "Sound power over speed"], ["steady", "Steady states over speed"], ["deflect", "Deflection under its loads"],
   ["study", "Many runs, at constant speeds"],
 ];
 const FIELDS = [

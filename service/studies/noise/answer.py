@@ -21,6 +21,7 @@ class HousingSound(Part):
     cap_area_m2: float
     panels: int
     resolved_hz: float
+    valid_hz: float
     interpolation_error_db: float
     models_db: dict[str, float]
     model_error_db: dict[str, float]

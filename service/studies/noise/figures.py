@@ -66,6 +66,7 @@ def _housing(about: Json, name: str) -> Json:
         "cap_area_m2": radiation["cap_area"],
         "panels": radiation["panels"],
         "resolved_hz": radiation["resolved_frequency"],
+        "valid_hz": radiation["valid_frequency"],
         "interpolation_error_db": radiation["interpolation_error"],
         "models_db": compared.get("level", {}),
         "model_error_db": compared.get("error", {}),

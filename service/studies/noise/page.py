@@ -101,6 +101,9 @@ def model_lines(sound: RadiatedSound) -> Iterator[str]:
                 f"above {number(about['resolved_frequency'], 3)} Hz, which the mesh does not resolve, "
                 "equivalent radiated power"
             )
+        if sound.frequency.max() > about["valid_frequency"]:
+            valid = number(about["valid_frequency"], 3)
+            yield f"above {valid} Hz, 0.7 of the highest mode kept, modes are missing: keep more"
         levels = compared.get("level", {})
         words = ", ".join(f"{model.replace('_', ' ')} {level:.1f} dB" for model, level in levels.items())
         if words:

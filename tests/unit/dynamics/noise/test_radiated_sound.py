@@ -3,52 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
-from geared_scenes import gear_pair_scene, square_wave_table
-from hulls import box, sphere
-from sounding_housings import (
-    NAMES,
-    part_of_scene,
-    random_housing,
-    rigid_housing,
-    smooth_motion,
-    with_surface,
-)
+from geared_scenes import gear_pair_scene, spring_table
+from sounding_housings import NAMES, part_of_scene, random_housing
+from sounding_scene import ON, SPEEDS, housing, oscillating, radiation, response, sound
 
-from dynamics.acoustics import Air, ElementalRadiators, EquivalentRadiatedPower, monopoles_efficiency
+from dynamics.acoustics import (
+    Air,
+    ElementalRadiators,
+    EquivalentRadiatedPower,
+    OrderPower,
+    monopoles_efficiency,
+)
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.linearize import forced_response
 from dynamics.noise import RadiatedSound, housing_radiation, radiated_sound
 
-ON = {"lateral": "on", "axial": "on", "tilt": "on", "housing_modes": "on"}
-SPEEDS = np.array([60.0, 150.0, 420.0])
 AIR = Air()
-
-
-@cache
-def housing():
-    bare, hull = random_housing(), box((0.36, 0.24, 0.18), (9, 6, 5))
-    return with_surface(bare, hull, smooth_motion(hull, len(bare.stiffness)))
-
-
-@cache
-def response():
-    scene = gear_pair_scene(square_wave_table(), effects=ON)
-    return forced_response(assemble(replace(scene, housings=(part_of_scene(housing()),))), SPEEDS, orders=4)
-
-
-@cache
-def radiation():
-    return housing_radiation(housing(), ElementalRadiators(), response().frequency, AIR)
-
-
-@cache
-def sound() -> RadiatedSound:
-    return radiated_sound(response(), housing(), None, radiation())
 
 
 def scaled(factor: float, bearings=slice(None)):
@@ -83,31 +57,37 @@ def test_shares_add_up_to_the_power() -> None:
         np.testing.assert_allclose(sound().mode_share.sum(axis=0), sound().power, rtol=1e-9)
 
 
+@pytest.mark.parametrize("amplitude", [0.5e-6, 2e-6])
+def test_flanks_of_twice_the_transmission_error_are_6_db_louder(amplitude: float) -> None:
+    tables = [spring_table(3e8, factor * amplitude) for factor in (1.0, 2.0)]
+    scenes = [gear_pair_scene(table, effects=ON) for table in tables]
+    parts = (part_of_scene(housing()),)
+    levels = []
+    for scene in scenes:
+        driven = forced_response(assemble(replace(scene, housings=parts)), SPEEDS, orders=1)
+        levels.append(radiated_sound(driven, housing(), None, radiation()).orders.weighted_level)
+    np.testing.assert_allclose(levels[1] - levels[0], 20.0 * np.log10(2.0), atol=1e-6)
+
+
+def test_air_acts_from_one_motion_on_another_as_the_other_way_round() -> None:
+    """Reciprocity of the radiation resistance, interpolated too."""
+    matrix = radiation().matrix
+    np.testing.assert_allclose(matrix, np.swapaxes(matrix, 1, 2), rtol=0.0, atol=1e-9 * np.abs(matrix).max())
+    draw = np.random.default_rng(7)
+    first, second = draw.normal(size=(2, len(housing().stiffness)))
+    hertz = np.full(2, radiation().frequency[3] * 1.01)
+    force = radiation().reaction(hertz, np.stack([first, second]) + 0j)
+    assert second @ force[0] == pytest.approx(first @ force[1], rel=1e-9)
+
+
+def test_a_frequency_of_1_khz_is_not_weighted() -> None:
+    tone = OrderPower(np.array([[1000.0]]), np.array([[1e-6]]))
+    assert tone.weighted_level == pytest.approx(tone.level, abs=1e-9)
+
+
 def test_third_octaves_add_up_to_the_total() -> None:
     orders = sound().orders
     np.testing.assert_allclose(orders.third_octaves()[1].sum(axis=0), orders.power.sum(axis=0), rtol=1e-12)
-
-
-def oscillating(mass: float, stiffness: float):
-    """A rigid sphere of radius 0.1 m on springs, under forces on its one bearing, and what theory says."""
-    radius, damping, hertz = 0.1, 0.02, np.array([[150.0, 400.0], [300.0, 800.0]])
-    body = rigid_housing(mass, stiffness, damping, sphere(16, radius))
-    signals = np.zeros((1, 6, 2, 2), dtype=complex)
-    signals[0, 1] = 3.0  # N, along y
-    driven = replace(
-        response(),
-        bearing=("seat",),
-        bearing_force=signals,
-        frequency=hertz,
-        speed=SPEEDS[:2],
-        order=np.array([1.0, 2.0]),
-        least_mesh_force=np.ones((1, 2)),
-    )
-    omega = 2.0 * np.pi * hertz
-    loss = 2.0 * damping * np.sqrt(stiffness * mass)
-    velocity = 3.0 * omega / np.abs(stiffness - mass * omega**2 + 1j * omega * loss)
-    plane = AIR.impedance * 4.0 * np.pi * radius**2 * velocity**2 / 6.0  # mean of cos^2, half for the peak
-    return body, driven, plane, omega / AIR.sound_speed * radius
 
 
 def test_a_rigid_sphere_on_springs_radiates_as_theory_says() -> None:
