@@ -5,7 +5,7 @@ from dynamics.acoustics.boundary_elements import BoundaryElements, SurfacePressu
 from dynamics.acoustics.elemental_radiators import ElementalRadiators
 from dynamics.acoustics.equivalent_radiated_power import EquivalentRadiatedPower, panel_power
 from dynamics.acoustics.hull import Hull
-from dynamics.acoustics.level_band import LevelBand, Range, level_band
+from dynamics.acoustics.level_band import LevelBand, Range, level_band, level_bands
 from dynamics.acoustics.levels import a_weighting, free_field_pressure, level_sum, sound_power_level
 from dynamics.acoustics.modal_resistance import ModalResistance, modal_resistance
 from dynamics.acoustics.model_ladder import ModelLadder, ModelResult, compare_models
@@ -52,6 +52,7 @@ __all__ = [
     "force_recording",
     "free_field_pressure",
     "level_band",
+    "level_bands",
     "level_sum",
     "loudness_over_time",
     "mean_square_velocity",

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.checks import integer
 from dynamics.errors import InputError
 from dynamics.types import FloatArray
 
 STEPS = 9
 """Values of a range that are tried, ends included: a resonance may lie inside it."""
+JOINTLY = "jointly"
+"""Contribution of parameters that act on each other."""
+SEED = 22
+"""Of the joint cases: bands are the same each time."""
 
 
 @dataclass(frozen=True)
@@ -81,22 +86,78 @@ def level_band(level: Callable[[Mapping[str, float]], float], ranges: Mapping[st
         From the values of all parameters by name to a level in dB.
     ranges : mapping of str to Range
     """
+    return level_bands(lambda values: np.array([level(values)]), ranges)[0]
+
+
+def level_bands(
+    levels: Callable[[Mapping[str, float]], FloatArray],
+    ranges: Mapping[str, Range],
+    steps: int = STEPS,
+    joint: int = 0,
+) -> tuple[LevelBand, ...]:
+    """Return the bands of several levels, as `level_band` does that of one.
+
+    Where parameters act on each other, as one resonance that meets another, sums in squares fall short: the
+    bands then reach as far as the levels of `joint` cases, all parameters at once, spread evenly over the
+    ranges. What that adds is the contribution `JOINTLY`.
+
+    Parameters
+    ----------
+    levels : callable
+        From the values of all parameters by name to levels in dB, (L,).
+    ranges : mapping of str to Range
+    steps : int
+        Values of each range that are tried, at least its ends.
+    joint : int
+        Joint cases, best a power of two.
+
+    Raises
+    ------
+    InputError
+        Fewer than two steps, or a negative number of cases.
+    """
+    integer("steps", steps, 2, 1000)
+    integer("joint", joint, 0, 4096)
     nominal = {name: span.nominal for name, span in ranges.items()}
-    middle = level(nominal)
-    varied = {
-        name: _levels(level, nominal, name, np.linspace(span.low, span.high, STEPS))
+    middle = levels(nominal)
+    deviation = {
+        name: [levels({**nominal, name: float(value)}) - middle for value in _tried(span, steps)]
         for name, span in ranges.items()
     }
-    below = {name: max(middle - float(np.min(levels)), 0.0) for name, levels in varied.items()}
-    above = {name: max(float(np.max(levels)) - middle, 0.0) for name, levels in varied.items()}
-    return LevelBand(middle, below, above)
+    below = {name: -np.min([0.0 * middle, *rows], axis=0) for name, rows in deviation.items()}
+    above = {name: np.max([0.0 * middle, *rows], axis=0) for name, rows in deviation.items()}
+    if joint and len(ranges) > 1:
+        together = np.array([levels(values) for values in _cases(ranges, joint)]) - middle
+        below[JOINTLY] = _beyond(-together.min(axis=0), below)
+        above[JOINTLY] = _beyond(together.max(axis=0), above)
+    return tuple(
+        LevelBand(float(middle[k]), _entries(below, k), _entries(above, k)) for k in range(middle.size)
+    )
 
 
-def _levels(
-    level: Callable[[Mapping[str, float]], float],
-    nominal: Mapping[str, float],
-    name: str,
-    values: Sequence[float] | FloatArray,
-) -> FloatArray:
-    """Return the levels for values of one parameter, the others as they are."""
-    return np.array([level({**nominal, name: float(value)}) for value in values])
+def _tried(span: Range, steps: int) -> FloatArray:
+    """Return values of a range but for its nominal one, which is the middle of the band."""
+    values = np.linspace(span.low, span.high, steps)
+    return values[values != span.nominal]
+
+
+def _cases(ranges: Mapping[str, Range], count: int) -> Iterator[dict[str, float]]:
+    """Yield values of all parameters, spread evenly: scrambled points of Sobol's sequence."""
+    from scipy.stats.qmc import Sobol  # noqa: PLC0415 (start-up time)
+
+    for shares in Sobol(len(ranges), seed=SEED).random(count):
+        yield {
+            name: span.low + share * (span.high - span.low)
+            for share, (name, span) in zip(shares.tolist(), ranges.items(), strict=True)
+        }
+
+
+def _beyond(reached: FloatArray, deviations: Mapping[str, FloatArray]) -> FloatArray:
+    """Return what is to be added in squares to the deviations so that they reach as far."""
+    squares = np.sum([value**2 for value in deviations.values()], axis=0)
+    return np.asarray(np.sqrt(np.maximum(np.maximum(reached, 0.0) ** 2 - squares, 0.0)))
+
+
+def _entries(deviations: Mapping[str, FloatArray], index: int) -> dict[str, float]:
+    """Return the deviations of one level by parameter."""
+    return {name: float(values[index]) for name, values in deviations.items()}

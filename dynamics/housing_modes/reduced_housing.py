@@ -102,6 +102,10 @@ class ReducedHousing:
     points : tuple of PointMotion
     mount_damping : (r, r) array or None
         What of `damping` is that of the mounts; None: nothing, or not known apart.
+    mount_stiffness : (r, r) array or None
+        What of `stiffness` is that of the mounts; the same.
+    loss_factor : float or None
+        Of the material, where the rest of `damping` follows from it (`MaterialDamping`).
     """
 
     mass: FloatArray
@@ -115,6 +119,8 @@ class ReducedHousing:
     surface: SurfaceMotion | None = None
     points: tuple[PointMotion, ...] = ()
     mount_damping: FloatArray | None = None
+    mount_stiffness: FloatArray | None = None
+    loss_factor: float | None = None
 
     @property
     def motions(self) -> int:

@@ -9,6 +9,7 @@ from scipy.linalg import eigh, null_space
 
 from dynamics.errors import InputError, SolveError
 from dynamics.housing_modes.assembled_housing import AssembledHousing, assemble
+from dynamics.housing_modes.damping import MaterialDamping
 from dynamics.housing_modes.free_modes import ACCEPTED, FreeModes, ModeStatus, free_modes
 from dynamics.housing_modes.meshed_housing import MeshedHousing
 from dynamics.housing_modes.quadrature import over_surface
@@ -52,8 +53,9 @@ def reduce_housing(housing: MeshedHousing) -> ReducedHousing:
     space = _independent(assembled, modes)
     coordinates = _craig_bampton(assembled, space)
     frequency = np.concatenate([np.zeros(modes.rigid.shape[1]), modes.frequency])
-    ratio, own = _own_damping(housing, assembled, coordinates)
-    mounts = _symmetric(coordinates.motion.T @ (assembled.mounts[1] @ coordinates.motion))
+    motion, law = coordinates.motion, housing.damping
+    springs, mounts = (_symmetric(motion.T @ (part @ motion)) for part in assembled.mounts)
+    ratio, own = _own_damping(housing, assembled, coordinates, springs)
     return ReducedHousing(
         coordinates.mass,
         coordinates.stiffness,
@@ -66,6 +68,8 @@ def reduce_housing(housing: MeshedHousing) -> ReducedHousing:
         _surface(housing, assembled, coordinates),
         _points(housing, assembled, coordinates),
         mounts if np.any(mounts) else None,
+        springs if np.any(springs) else None,
+        law.loss_factor if isinstance(law, MaterialDamping) else None,
     )
 
 
@@ -117,12 +121,11 @@ def _craig_bampton(housing: AssembledHousing, space: FloatArray) -> Coordinates:
 
 
 def _own_damping(
-    housing: MeshedHousing, assembled: AssembledHousing, coordinates: Coordinates
+    housing: MeshedHousing, assembled: AssembledHousing, coordinates: Coordinates, springs: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return damping ratios of all reduced modes, and their damping matrix, without that of the mounts."""
     square, shape = eigh(coordinates.stiffness, coordinates.mass)
     square[: assembled.loose.shape[1]] = 0.0
-    springs = coordinates.motion.T @ (assembled.mounts[0] @ coordinates.motion)
     energy = np.einsum("rm,rs,sm->m", shape, springs, shape, optimize=True)
     share = np.where(square > 0.0, 1.0 - energy / np.where(square > 0.0, square, 1.0), 0.0)
     ratio = housing.damping.ratios(np.clip(share, 0.0, 1.0))

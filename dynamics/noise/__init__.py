@@ -1,6 +1,7 @@
-"""Sound of housings in a scene: outer hull, radiation resistance, sound power by order and speed, shares."""
+"""Sound of housings in a scene: outer hull, resistance, sound power by order and speed, shares, bands."""
 
 from dynamics.noise.coarse_hull import RadiatingHull, coarse_hull, radiating_hull
+from dynamics.noise.guesses import GUESSES, Guess
 from dynamics.noise.housing_radiation import HousingRadiation, housing_radiation
 from dynamics.noise.kept import kept_radiation
 from dynamics.noise.loudest import LoudPoint, loudest
@@ -9,22 +10,36 @@ from dynamics.noise.outer_hull import OuterHull, outer_hull
 from dynamics.noise.point_recording import velocity_recording
 from dynamics.noise.radiated_sound import RadiatedSound, radiated_sound
 from dynamics.noise.several_housings import together
+from dynamics.noise.sensitivities import DesignFigure, Sensitivity, sensitivities
+from dynamics.noise.sound_band import SoundBand, sound_band, usual_ranges
+from dynamics.noise.sound_model import SoundModel, forced_power, radiated_power
 
 __all__ = [
+    "GUESSES",
+    "DesignFigure",
+    "Guess",
     "HousingRadiation",
     "LoudPoint",
     "OuterHull",
     "RadiatedSound",
     "RadiatingHull",
+    "Sensitivity",
+    "SoundBand",
+    "SoundModel",
     "coarse_hull",
+    "forced_power",
     "housing_radiation",
     "kept_radiation",
     "loudest",
     "models_at",
     "outer_hull",
     "panels_at",
+    "radiated_power",
     "radiated_sound",
     "radiating_hull",
+    "sensitivities",
+    "sound_band",
     "together",
+    "usual_ranges",
     "velocity_recording",
 ]
