@@ -9,9 +9,9 @@ from dynamics.noise.model_comparison import models_at, panels_at
 from dynamics.noise.outer_hull import OuterHull, outer_hull
 from dynamics.noise.point_recording import velocity_recording
 from dynamics.noise.radiated_sound import RadiatedSound, radiated_sound
+from dynamics.noise.sensitivities import DesignFigure, Sensitivity, ranked, sensitivity
 from dynamics.noise.several_housings import together
-from dynamics.noise.sensitivities import DesignFigure, Sensitivity, sensitivities
-from dynamics.noise.sound_band import SoundBand, sound_band, usual_ranges
+from dynamics.noise.sound_band import SoundBand, largest_level, sound_band, usual_ranges
 from dynamics.noise.sound_model import SoundModel, forced_power, radiated_power
 
 __all__ = [
@@ -30,6 +30,7 @@ __all__ = [
     "forced_power",
     "housing_radiation",
     "kept_radiation",
+    "largest_level",
     "loudest",
     "models_at",
     "outer_hull",
@@ -37,7 +38,8 @@ __all__ = [
     "radiated_power",
     "radiated_sound",
     "radiating_hull",
-    "sensitivities",
+    "ranked",
+    "sensitivity",
     "sound_band",
     "together",
     "usual_ranges",

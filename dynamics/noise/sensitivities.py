@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from dynamics.checks import finite
 from dynamics.errors import InputError
-from model_studies.progress import Progress, silent
 
 CURVED = 0.25
 """Share of the change by slope that the curvature may add where a level counts as linear."""
@@ -78,27 +77,20 @@ class Sensitivity:
         return abs(self.for_one_db_less) <= self.linear_range
 
 
-def sensitivities(
-    level: Callable[[DesignFigure, float], float],
-    figures: Sequence[DesignFigure],
-    nominal: float,
-    progress: Progress = silent,
-) -> tuple[Sensitivity, ...]:
-    """Return the sensitivities of a level, those of the largest change per step first.
+def sensitivity(figure: DesignFigure, level: Callable[[float], float]) -> Sensitivity:
+    """Return the sensitivity of a level to a figure.
 
     Parameters
     ----------
+    figure : DesignFigure
     level : callable
-        From a figure and its value to a level, dB, all others as they are.
-    figures : sequence of DesignFigure
-    nominal : float
-        The level with all of them as they are, dB.
-    progress : callable
-        Called as progress("sensitivities", fraction).
+        From a value of the figure to the level, dB, all else as it is. It is called three times: smooth in
+        the value, as `largest_level` is and a level at a fixed speed near a resonance is not.
     """
-    rows = []
-    for index, figure in enumerate(figures):
-        levels = [level(figure, figure.value + count * figure.step) for count in (1.0, 2.0)]
-        rows.append(Sensitivity(figure, levels[0] - nominal, levels[1] - nominal))
-        progress("sensitivities", (index + 1) / len(figures))
+    nominal, one, two = (level(figure.value + count * figure.step) for count in range(3))
+    return Sensitivity(figure, one - nominal, two - nominal)
+
+
+def ranked(rows: Iterable[Sensitivity]) -> tuple[Sensitivity, ...]:
+    """Return sensitivities by what a step changes, the largest first."""
     return tuple(sorted(rows, key=lambda row: -abs(row.change)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -23,6 +24,7 @@ MOST_MISSED = 10.0
 """dB; speeds that miss more are no map of a resonance."""
 
 Powers = Callable[[SoundModel], tuple[FloatArray, OrderPower]]
+Levels = Callable[[Mapping[str, float]], FloatArray]
 
 
 @dataclass(frozen=True)
@@ -78,6 +80,7 @@ def sound_band(
     *,
     steps: int = STEPS,
     joint: int = JOINT,
+    alternatives: Mapping[str, SoundModel] | None = None,
     progress: Progress = silent,
 ) -> SoundBand:
     """Return the bands of the levels that a scene radiates in its linear response.
@@ -99,6 +102,9 @@ def sound_band(
         mounts, contribute nothing.
     steps, joint : int
         Values of each range that are tried, and joint cases: see `level_bands`.
+    alternatives : mapping of str to SoundModel, optional
+        Further models that may be right, e.g. with the resistance of another radiation model, by the name of
+        their contribution: their difference, both ways.
     progress : callable
         Called as progress("band", fraction).
 
@@ -113,7 +119,8 @@ def sound_band(
     for name in ranges:
         one_of("ranges", name, GUESSES)
     ranges = {name: span for name, span in ranges.items() if _has(model, name)}
-    count, done = 2 + len(ranges) * (steps - 1) + joint, [0]
+    others = {"mode_number": with_half_of_modes(model), **(alternatives or {})}
+    count, done = 1 + len(others) + len(ranges) * (steps - 1) + joint, [0]
 
     def powers(varied: SoundModel) -> tuple[FloatArray, OrderPower]:
         result = forced_power(varied, speed, orders)
@@ -121,7 +128,8 @@ def sound_band(
         progress("band", min(done[0] / count, 1.0))
         return result
 
-    return _band(model, np.asarray(speed, dtype=float), ranges, (steps, joint), powers)
+    varied = partial(level_bands, ranges=ranges, steps=steps, joint=joint)
+    return _band(model, np.asarray(speed, dtype=float), varied, others, powers)
 
 
 def _has(model: SoundModel, name: str) -> bool:
@@ -135,32 +143,31 @@ def usual_ranges() -> dict[str, Range]:
 
 
 def _band(
-    model: SoundModel, speed: FloatArray, ranges: Mapping[str, Range], tried: tuple[int, int], powers: Powers
+    model: SoundModel,
+    speed: FloatArray,
+    varied: Callable[[Levels], tuple[LevelBand, ...]],
+    others: Mapping[str, SoundModel],
+    powers: Powers,
 ) -> SoundBand:
     """Vary the model and put the bands together."""
     order, nominal = powers(model)
     loudest = np.argmax(nominal.weighted_power, axis=1)
 
     def levels(values: Mapping[str, float]) -> FloatArray:
-        varied = model
-        for name, value in values.items():
-            varied = varied if value == 1.0 else GUESSES[name].varied(varied, value)
-        own = (order, nominal) if varied is model else powers(varied)
-        return _levels(order, loudest, *own)
+        own = _with_values(model, values)
+        return _levels(order, loudest, *((order, nominal) if own is model else powers(own)))
 
-    bands = level_bands(levels, ranges, *tried)
-    half = _levels(order, loudest, *powers(_with_half(model)))
-    missing = np.abs(half - [band.nominal for band in bands])
-    numbered = [
-        band.with_error("mode_number", missed, missed)
-        for band, missed in zip(bands, missing.tolist(), strict=True)
-    ]
+    bands = list(varied(levels))
+    for name, other in others.items():
+        difference = _levels(order, loudest, *powers(other)) - levels({})
+        for index, missed in enumerate(np.abs(difference).tolist()):
+            bands[index] = bands[index].with_error(name, missed, missed)
     peaks = np.array([nominal.weighted_power.sum(axis=0), *nominal.weighted_power])
     for index, row in enumerate(peaks):
-        numbered[index] = numbered[index].with_error("speed_steps", 0.0, missed_between(speed, row))
+        bands[index] = bands[index].with_error("speed_steps", 0.0, missed_between(speed, row))
     parts = np.cumsum([1, order.size, order.size])
     total, largest, there, each = (
-        tuple(numbered[first:end]) for first, end in zip([0, *parts], [*parts, len(numbered)], strict=True)
+        tuple(bands[first:end]) for first, end in zip([0, *parts], [*parts, len(bands)], strict=True)
     )
     return SoundBand(speed, order, total[0], largest, speed[loudest], there, each)
 
@@ -182,6 +189,22 @@ def missed_between(speed: FloatArray, power: FloatArray) -> float:
     return float(-10.0 * np.log10(np.clip(least, 10.0 ** (-MOST_MISSED / 10.0), 1.0)))
 
 
+def largest_level(speed: FloatArray, power: OrderPower) -> float:
+    """Return the largest A-weighted level of all orders together, dB(A), a peak between the speeds counted.
+
+    Smooth in whatever shifts a resonance, where the speeds resolve it.
+    """
+    total = power.weighted_power.sum(axis=0)
+    return float(sound_power_level(total.max())) + missed_between(speed, total)
+
+
+def _with_values(model: SoundModel, values: Mapping[str, float]) -> SoundModel:
+    """Return the model at values of guesses; the same object at what it states."""
+    for name, value in values.items():
+        model = model if value == 1.0 else GUESSES[name].varied(model, value)
+    return model
+
+
 def _levels(order: FloatArray, loudest: FloatArray, own: FloatArray, power: OrderPower) -> FloatArray:
     """Return the levels that have bands, dB(A): largest total, orders' largest, orders there, totals."""
     weighted = np.zeros((order.size, power.power.shape[1]))
@@ -192,8 +215,8 @@ def _levels(order: FloatArray, loudest: FloatArray, own: FloatArray, power: Orde
     return sound_power_level(np.concatenate([[total.max()], weighted.max(axis=1), there, total]))
 
 
-def _with_half(model: SoundModel) -> SoundModel:
-    """Return the model whose housings keep half of their modes."""
+def with_half_of_modes(model: SoundModel) -> SoundModel:
+    """Return the model whose housings keep half of their modes, at least one."""
     for name, housing in model.housings.items():
         model = model.with_housing(name, with_modes(housing, max(len(housing.frequency) // 2, 1)))
     return model

@@ -99,6 +99,15 @@ def test_a_peak_between_speeds_is_seen_by_its_flanks():
     assert missed_between(speed[:1], speed[:1]) == 0.0
 
 
+def test_an_alternative_counts_by_its_difference(model):
+    louder = replace(model.resistance["case"], matrix=2.0 * model.resistance["case"].matrix)
+    other = replace(model, resistance={"case": louder})
+    band = sound_band(model, SPEED[:6], 2, NONE, joint=0, alternatives={"radiation_model": other})
+    for each in bands_of(band):
+        assert each.above["radiation_model"] == pytest.approx(10.0 * np.log10(2.0))
+        assert each.below["radiation_model"] == each.above["radiation_model"]
+
+
 def test_no_other_parameter_is_varied(model):
     with pytest.raises(InputError, match="ranges"):
         sound_band(model, SPEED, 2, {"color": Range(1.0, 1.0, 1.0)})
