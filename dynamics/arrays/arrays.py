@@ -161,7 +161,8 @@ class SystemArrays(NamedTuple):
     def with_matrices(self, **matrices: Any) -> SystemArrays:
         """Return these arrays with others of the matrices that `sparse` holds, and their entries."""
         changed = self._replace(**matrices)
-        matrices = (changed.mass, changed.damping, changed.stiffness, changed.direction, changed.turn)
-        others = (changed.inertial, changed.reference.vector, changed.load.direction)
         springs = (changed.drive.stiffness, changed.drive.damping)
-        return changed._replace(sparse=sparse_matrices(*matrices, (*others, *springs)))
+        others = (changed.inertial, changed.reference.vector, changed.load.direction, *springs)
+        own = (changed.mass, changed.damping, changed.stiffness)
+        sparse = sparse_matrices(*own, changed.direction, changed.turn, others)
+        return changed._replace(sparse=sparse)

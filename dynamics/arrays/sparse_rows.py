@@ -86,12 +86,20 @@ def sparse_matrices(
     mobility = np.where(alone[:, None] == alone, np.linalg.inv(mass), 0.0)
     either = (damping != 0.0) | (stiffness != 0.0)
     modal = modal_freedoms(mass, damping, stiffness, direction, np.concatenate([turn, *others]))
-    entries = (direction, turn, direction[:, : modal.first], mobility, coupling.astype(float))
-    rows = (sparse_rows(damping, either), sparse_rows(stiffness, either), *map(sparse_rows, entries))
-    return SparseMatrices(*rows, modal)
+    return SparseMatrices(
+        damping=sparse_rows(damping, either),
+        stiffness=sparse_rows(stiffness, either),
+        direction=sparse_rows(direction),
+        turn=sparse_rows(turn),
+        bodies=sparse_rows(direction[:, : modal.first]),
+        mobility=sparse_rows(mobility),
+        coupling=sparse_rows(coupling.astype(float)),
+        modal=modal,
+    )
 
 
-NO_ENTRIES = sparse_matrices(*(np.zeros((0, 0)) for _ in range(5)))
+_NONE = np.zeros((0, 0))
+NO_ENTRIES = sparse_matrices(_NONE, _NONE, _NONE, _NONE, _NONE)
 """Of a system without freedoms."""
 
 

@@ -38,7 +38,7 @@ class ModalElimination:
     inward: FloatArray
     along: FloatArray
 
-    def solve(self, omega: ComplexArray, right: ComplexArray) -> ComplexArray:
+    def solve(self, omega: FloatArray | ComplexArray, right: ComplexArray) -> ComplexArray:
         """Return the displacements (..., n, f) under the forces `right` (..., n, f) at `omega` (...,)."""
         first, w = self.bodies.shape[1], omega[..., None, None]
         own = _sum(omega[..., None], self.modal)
@@ -54,7 +54,7 @@ class ModalElimination:
         force = into @ moved + along @ along_rows
         return np.concatenate([moved, answer - (self.shape.T @ force) / own[..., None]], axis=-2)
 
-    def product(self, omega: ComplexArray, moved: ComplexArray) -> ComplexArray:
+    def product(self, omega: FloatArray | ComplexArray, moved: ComplexArray) -> ComplexArray:
         """Return the forces (..., n, f) that the displacements `moved` (..., n, f) take."""
         first, w = self.bodies.shape[1], omega[..., None, None]
         out, into, along = (_sum(w, part) for part in (self.outward, self.inward, self.along))
@@ -65,7 +65,7 @@ class ModalElimination:
         return np.concatenate([_sum(w, self.bodies) @ bodies + out @ rows, pushed], axis=-2)
 
 
-def _sum(omega: ComplexArray, parts: FloatArray) -> ComplexArray:
+def _sum(omega: FloatArray | ComplexArray, parts: FloatArray) -> ComplexArray:
     """Return K + i w C - w^2 M of `parts` K, C and, if it has, M."""
     total = parts[0] + 1j * omega * parts[1]
     return np.asarray(total - omega * omega * parts[2] if len(parts) > 2 else total)

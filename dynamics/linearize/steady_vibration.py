@@ -270,5 +270,6 @@ def _dense(
     matrix = (by_part[..., 0, :] @ parts.reshape(3, -1)).reshape(*w.shape[:2], size, size)
     if swept:
         matrix += 1j * w * swept[0][:, None] + swept[1][:, None]
-    solved = np.linalg.solve(matrix, right)
-    return solved, np.abs(np.einsum("shij,shj->shi", matrix, solved[..., 0]) - right[..., 0])
+    solved = np.asarray(np.linalg.solve(matrix, right), dtype=complex)
+    miss = np.abs(np.einsum("shij,shj->shi", matrix, solved[..., 0]) - right[..., 0])
+    return solved, np.asarray(miss, dtype=float)

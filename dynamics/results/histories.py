@@ -59,8 +59,8 @@ def filtered(system: System, states: States, seen: Observed) -> Signals:
         coordinate += system.arrays.direction[:, n:] @ displacement.T
     else:
         coordinate[modal.row] = seen.coordinate[modal.row]
-    whole = (np.concatenate(parts, axis=1) for parts in ((q, displacement), (v, rate)))
-    return Signals(*whole, coordinate, force, static)
+    q, v = (np.concatenate(parts, axis=1) for parts in ((q, displacement), (v, rate)))
+    return Signals(q, v, coordinate, force, static)
 
 
 def histories(
