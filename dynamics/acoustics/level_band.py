@@ -138,7 +138,7 @@ def level_bands(
 def _tried(span: Range, steps: int) -> FloatArray:
     """Return values of a range but for its nominal one, which is the middle of the band."""
     values = np.linspace(span.low, span.high, steps)
-    return values[values != span.nominal]
+    return np.asarray(values[values != span.nominal])
 
 
 def _cases(ranges: Mapping[str, Range], count: int) -> Iterator[dict[str, float]]:

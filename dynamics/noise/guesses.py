@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 from dynamics.acoustics import Range
 from dynamics.forces import GearMesh, RollingContact, SpringCurve
@@ -11,6 +12,8 @@ from dynamics.housing_modes.modification import with_damping, with_frequencies, 
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.joints import Bushing, PlanetBearing
 from dynamics.noise.sound_model import SoundModel
+
+Bearing = TypeVar("Bearing", Bushing, PlanetBearing)
 
 
 @dataclass(frozen=True)
@@ -72,16 +75,19 @@ def _mesh_damping(model: SoundModel, factor: float) -> SoundModel:
 def _bearing_stiffness(model: SoundModel, factor: float) -> SoundModel:
     """Scale linear bearings, curves and contacts; rows by their geometry follow from their load."""
     scene = model.scene
-    parts = {
-        "bushings": tuple(_stiffened(part, factor) for part in scene.bushings),
-        "planet_bearings": tuple(_stiffened(part, factor) for part in scene.planet_bearings),
-        "rolling_contacts": tuple(_pressed(part, factor) for part in scene.rolling_contacts),
-        "spring_curves": tuple(_steeper(part, factor) for part in scene.spring_curves),
-    }
-    return replace(model, scene=replace(scene, **parts)) if any(parts.values()) else model
+    if not (scene.bushings or scene.planet_bearings or scene.rolling_contacts or scene.spring_curves):
+        return model
+    stiffer = replace(
+        scene,
+        bushings=tuple(_stiffened(part, factor) for part in scene.bushings),
+        planet_bearings=tuple(_stiffened(part, factor) for part in scene.planet_bearings),
+        rolling_contacts=tuple(_pressed(part, factor) for part in scene.rolling_contacts),
+        spring_curves=tuple(_steeper(part, factor) for part in scene.spring_curves),
+    )
+    return replace(model, scene=stiffer)
 
 
-def _stiffened(bearing: Bushing | PlanetBearing, factor: float) -> Bushing | PlanetBearing:
+def _stiffened(bearing: Bearing, factor: float) -> Bearing:
     matrix = bearing.stiffness and tuple(tuple(factor * value for value in row) for row in bearing.stiffness)
     return replace(
         bearing,

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dynamics.acoustics import ModalResistance, OrderPower, order_power
+from dynamics.acoustics.hull import ComplexArray
 from dynamics.assembly.assemble import assemble
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.housing_modes.scene_housing import scene_housing
@@ -76,7 +77,7 @@ def forced_power(model: SoundModel, speed: FloatArray, orders: int) -> tuple[Flo
     return response.order, radiated_power(model, response)
 
 
-def _velocity(housing: ReducedHousing, response: HarmonicResponse, bearings: tuple[str, ...]) -> FloatArray:
+def _velocity(housing: ReducedHousing, response: HarmonicResponse, bearings: tuple[str, ...]) -> ComplexArray:
     """Return the velocities of the reduced coordinates, (H, S, r)."""
     motion = housing_motion(housing, response.frequency, seat_forces(response, housing, bearings))
     velocity = 2j * np.pi * response.frequency[..., None] * motion
