@@ -20,6 +20,8 @@ occ = gmsh.model.occ
 block = occ.addBox(-40, -40, 85, 160, 80, 30)
 bores = [(3, occ.addCylinder(x, 0, 80, 0, 0, 40, 20)) for x in (0, 80)]
 cut, _ = occ.cut([(3, block)], bores)
+if sys.argv[2:] == ["small"]:
+    occ.dilate(cut, 0, 0, 0, 0.25, 0.25, 0.25)
 if sys.argv[2:] == ["two"]:
     occ.addBox(500, 0, 0, 10, 10, 10)
 occ.synchronize()
@@ -31,7 +33,7 @@ SEAT = {"bore_diameter_mm": 40.0, "bore_length_mm": 30.0}
 
 
 def write_block(file: Path, *options: str) -> Path:
-    """Write the STEP file of a block with a bore about each shaft; with "two", another solid beside it."""
+    """Write the STEP file of a block with two bores; "small": at a quarter; "two": with another solid."""
     command = [sys.executable, "-c", WRITE_BLOCK, str(file), *options]
     subprocess.run(command, check=True, capture_output=True)
     return file

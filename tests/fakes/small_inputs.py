@@ -3,8 +3,14 @@
 from __future__ import annotations
 
 import copy
+import tempfile
+from functools import cache
+from pathlib import Path
 from typing import Any
 
+from housing_solid import write_block
+
+from service.schemas.file_content import FileContentInput
 from service.schemas.request_examples import INPUTS
 
 Json = dict[str, Any]
@@ -27,6 +33,8 @@ _FEW: dict[str, Json] = {
     "sweep": {"over": ["torque=0.5:1:0.5"], "show": ["peak_to_peak"]},
     "modes": {"speed_rpm": [0.0]},
     "response": {"speed_rpm": [300.0]},
+    "vibration": {"speed_rpm": [300.0], "mode": 1},
+    "noise": {"speed_rpm": [300.0]},
     "steady": {"speed_rpm": [300.0], "branch": False, "settling_periods": 1},
     "study": {
         "factors": [{"path": "loads.brake.torque_n_m", "levels": [0.5, 1.0]}],
@@ -54,4 +62,26 @@ def _small_scene(scene: Json) -> Json:
     for gear in scene["gears"]:
         gear["bore_diameter_mm"] = 10.0
     scene["loads"][0]["torque_n_m"] = [1.0]
+    for housing in scene.get("housings", ()):
+        _around_two_bearings(scene, housing)
     return scene
+
+
+def _around_two_bearings(scene: Json, housing: Json) -> None:
+    """Let a housing be a small block around the first bearing of each shaft."""
+    held = [bushing for bushing in scene["bushings"] if bushing["position_mm"] == 0.0]
+    for bushing in held:
+        bushing["position_mm"] = 25.0
+    housing["seats"] = [
+        {"bearing": bushing["name"], "bore_diameter_mm": 10.0, "bore_length_mm": 7.5} for bushing in held
+    ]
+    housing["feet"][0]["point_mm"] = [0.0, -10.0, 0.0]
+    housing["points"][0]["position_mm"] = [10.0, 10.0, 25.0]
+    housing |= {"step_file": _block(), "modes": 4, "element_size_mm": 6.0}
+
+
+@cache
+def _block() -> Json:
+    """Return the file of the block's solid."""
+    with tempfile.TemporaryDirectory() as folder:
+        return FileContentInput.of(write_block(Path(folder) / "block.step", "small")).model_dump()
