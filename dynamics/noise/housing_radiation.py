@@ -25,6 +25,8 @@ from dynamics.types import FloatArray, Json
 
 BAND = 10.0**0.05
 """Half a third octave: the range grows to edges of bands."""
+ROUNDED_DOWN = 1.0 - 1e-12
+"""Of a limit in Hz whose wavenumber must not be above that of the limit."""
 
 STORED = {
     "frequency": Stored(("frequency",), "Hz", "frequency"),
@@ -157,4 +159,4 @@ def _resolved(outer: OuterHull, model: RadiationModel, air: Air) -> float:
     """Return the frequency up to which the panels resolve the wavelength, Hz; ERP needs no model."""
     if isinstance(model, EquivalentRadiatedPower):
         return 0.0
-    return outer.hull.highest_wavenumber * air.sound_speed / (2.0 * np.pi)
+    return outer.hull.highest_wavenumber * air.sound_speed / (2.0 * np.pi) * ROUNDED_DOWN

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, spring_table
-from sounding_housings import NAMES, part_of_scene, random_housing
+from hulls import box
+from sounding_housings import NAMES, part_of_scene, random_housing, rigid_housing
 from sounding_scene import ON, SPEEDS, housing, oscillating, radiation, response, sound
 
 from dynamics.acoustics import (
@@ -132,3 +133,18 @@ def test_what_does_not_belong_together_is_refused() -> None:
     high = replace(response(), frequency=10.0 * response().frequency)
     with pytest.raises(InputError, match="frequency"):
         radiated_sound(high, housing(), None, radiation())
+
+
+def rounds_up(hull) -> bool:
+    """Whether the limit of a hull, in Hz and back, is above itself by rounding."""
+    limit = hull.highest_wavenumber * AIR.sound_speed / (2.0 * np.pi)
+    return 2.0 * np.pi * limit / AIR.sound_speed > hull.highest_wavenumber
+
+
+def test_a_mesh_that_resolves_no_more_gives_way_to_the_plane_whatever_is_rounded() -> None:
+    cubes = (box((length, length, length), (2, 2, 2)) for length in np.linspace(0.2, 0.3, 100))
+    coarse = rigid_housing(10.0, 1e6, 0.02, next(hull for hull in cubes if rounds_up(hull)))
+    found = housing_radiation(coarse, ElementalRadiators(), [100.0, 5000.0], AIR)
+    limit = found.facts["resolved_frequency"]
+    assert 100.0 < limit < 5000.0
+    assert limit == pytest.approx(found.frequency[np.searchsorted(found.frequency, limit)], rel=1e-9)
