@@ -1,7 +1,7 @@
-"""A two-stage unit from its REXS file: opened, deflected, its worse stage optimized, deflected again, run up.
+"""A two-stage unit from its REXS file to its sound: in a case, deflected, optimized, heard, run up.
 
-    python examples/two_stage/unit.py -o unit            # writes unit/*.html, prints a table
-    python examples/two_stage/unit.py -o unit --quick    # few designs, a short run: 6 CPU minutes
+    python examples/two_stage/unit.py -o unit            # writes unit/*, prints tables
+    python examples/two_stage/unit.py -o unit --quick    # coarse case, few designs, one load case, no runs
 
 Every step is a verb of `loa`; the files between them are those that a user of the command line would have.
 """
@@ -19,7 +19,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from gear_case import housing_of, seats_of
+from pictures import write_pictures
+from sound import levels, write_sounds
 
+from dynamics.noise import RadiatedSound
 from dynamics.orders import order_track
 from dynamics.results import RunResult
 from service.convert.toml import toml_text
@@ -27,6 +31,10 @@ from service.convert.toml import toml_text
 UNIT = Path(__file__).parent
 ORDERS = 3
 """Multiples of each mesh frequency that are compared."""
+ORDER_OF = {"first stage": 1.0, "second stage": 21.0 / 63.0}
+"""Mesh frequencies over that of the first stage: teeth of pinion 2 over those of wheel 1."""
+SPEEDS = 500.0, 6000.0
+"""Of the run-up, rpm of the input."""
 
 
 @dataclass(frozen=True)
@@ -38,16 +46,34 @@ class Effort:
     evaluations : int
         Most designs of the search.
     duration : float
-        Of the run-up, s.
+        Of the run-up, s; 0: none.
+    load_cases : int
+        Of the spectrum, the largest shares of time first.
+    element_size_mm : float
+        Of the mesh of the case.
+    modes : int
+        Of the case that are kept.
+    speed_rpm : str
+        Speeds at which the sound is found.
+    orders : int
+        Multiples of the first mesh's frequency in it.
     """
 
     evaluations: int
     duration: float
+    load_cases: int
+    element_size_mm: float
+    modes: int
+    speed_rpm: str
+    orders: int
 
 
 ACCURACY = {"level": "draft"}
 """Of the cases: REXS states none."""
-THOROUGH, QUICK = Effort(120, 1.0), Effort(12, 0.1)
+THOROUGH = Effort(120, 1.0, 4, 20.0, 80, "500:6000:25", 3)
+QUICK = Effort(8, 0.0, 1, 40.0, 40, "500:6000:50", 1)
+HEARD = 5.0
+"""Duration of the run-ups to listen to, s."""
 
 
 def loa(*arguments: object) -> str:
@@ -63,12 +89,27 @@ def amend(case: Path, **tables: Any) -> None:
     case.write_text(toml_text(content), encoding="utf-8")
 
 
-def opened(folder: Path) -> Path:
-    """Open the REXS file and return the scene; every case gets its accuracy."""
+def opened(folder: Path, effort: Effort) -> Path:
+    """Open the REXS file and return the scene; every case gets its accuracy, the scene its gear case."""
     loa("open", UNIT / "two_stage.rexs", "--out", folder)
     for case in folder.glob("*_stage.toml"):
         amend(case, accuracy=ACCURACY)
+    loads = tomllib.loads((folder / "load_cases.toml").read_text("utf-8"))["load_cases"]
+    longest = sorted(loads, key=lambda load: -load["share"])[: effort.load_cases]
+    amend(folder / "load_cases.toml", load_cases=[load for load in loads if load in longest])
+    housed(folder / "scene.toml", effort)
     return folder / "scene.toml"
+
+
+def housed(scene: Path, effort: Effort) -> None:
+    """Write the gear case and put it in place of the stiffness that the REXS file states."""
+    step = scene.with_name("gear_case.step")
+    subprocess.run(
+        [sys.executable, UNIT / "gear_case.py", scene, step], stdout=subprocess.DEVNULL, check=True
+    )
+    seats = seats_of(tomllib.loads(scene.read_text("utf-8")))
+    settings = {"modes": effort.modes, "element_size_mm": effort.element_size_mm}
+    amend(scene, housings=[housing_of(seats, step.name, **settings)])
 
 
 def deflected(scene: Path, output: Path) -> dict[str, Any]:
@@ -93,20 +134,22 @@ def optimized(stage: str, output: Path, effort: Effort) -> Path:
     return output / "best.toml"
 
 
-def run_up(scene: Path, facts: dict[str, Any], duration: float) -> Path:
-    """Run the input from 500 to 6000 rpm at the torque of the scene and return the run.
+def aligned(scene: Path, facts: dict[str, Any]) -> None:
+    """Set both stages to the mean misalignment that the deflection found."""
+    meshes = tomllib.loads(scene.read_text("utf-8"))["meshes"]
+    for mesh, found in zip(meshes, facts["meshes"], strict=True):
+        mesh["misalignment_um"] = round(found["mean_misalignment_um"], 3)
+        amend(scene.with_name(mesh["case_file"]), errors={"misalignment_um": [mesh["misalignment_um"]]})
+    amend(scene, meshes=meshes)
 
-    Both stages run at the mean misalignment that the deflection found.
-    """
+
+def run_up(scene: Path, duration: float) -> Path:
+    """Run the input from 500 to 6000 rpm at the torque of the scene and return the run."""
     settings = {
         "run.duration_s": duration,
         "drives.motor.time_s": [0.0, duration],
-        "drives.motor.speed_rpm": [500.0, 6000.0],
+        "drives.motor.speed_rpm": list(SPEEDS),
     }
-    for mesh in facts["meshes"]:
-        misalignment = round(mesh["mean_misalignment_um"], 3)
-        amend(scene.with_name(file_of(mesh["name"])), errors={"misalignment_um": [misalignment]})
-        settings[f"meshes.{mesh['name']}.misalignment_um"] = misalignment
     run = scene.with_name("run.nc")
     loa("simulate", scene, "-o", run, *(f"--set={name}={value}" for name, value in settings.items()))
     return run
@@ -123,40 +166,58 @@ def peak_levels(path: Path) -> dict[str, float]:
     return levels
 
 
-def lines(before: dict[str, Any], after: dict[str, Any], runs: tuple[Path, Path]) -> list[str]:
-    """Return the table: ripple of both stages over the spectrum, then the peaks of bearing forces."""
-    rows = [f"{'':34}{'before':>10}{'after':>10}"]
+def ripples(before: dict[str, Any], after: dict[str, Any]) -> list[str]:
+    """Return the table of both stages' ripple over the spectrum."""
+    rows = [f"{'':44}{'before':>10}{'after':>10}"]
     for old, new in zip(before["meshes"], after["meshes"], strict=True):
         pair = old["mean_peak_to_peak_um"], new["mean_peak_to_peak_um"]
-        rows.append(f"{old['name'] + ', peak-to-peak STE, um':34}{pair[0]:10.3f}{pair[1]:10.3f}")
-    levels = [peak_levels(run) for run in runs]
-    for name in levels[0]:
-        rows.append(f"{name + ', N':34}{levels[0][name]:10.1f}{levels[1][name]:10.1f}")
+        rows.append(f"{old['name'] + ', peak-to-peak STE, um':44}{pair[0]:10.3f}{pair[1]:10.3f}")
     return rows
 
 
+def force_peaks(runs: tuple[Path, Path]) -> list[str]:
+    """Return the rows of the peaks of bearing forces in two runs."""
+    before, after = (peak_levels(run) for run in runs)
+    return [f"{name + ', N':44}{before[name]:10.1f}{after[name]:10.1f}" for name in before]
+
+
+def heard(scene: Path, effort: Effort) -> RadiatedSound:
+    """Find the sound power of a scene over speed, with its map and page."""
+    file = scene.with_name("sound.nc")
+    loa("noise", scene, "--speed-rpm", effort.speed_rpm, "--orders", effort.orders, "-o", file)
+    loa("report", file, "-o", file.with_suffix(".html"), "--images", file.with_name("sound"))
+    return RadiatedSound.from_netcdf(file)
+
+
 def main() -> None:
-    """Open, deflect, optimize, deflect, run up, compare."""
+    """Open, deflect, optimize, deflect, run up, listen, compare."""
     parser = argparse.ArgumentParser(description="A two-stage unit over its load spectrum.")
     parser.add_argument("-o", "--output", type=Path, default=Path("two_stage"), help="folder to write")
-    parser.add_argument("--quick", action="store_true", help="few designs, a short run")
+    parser.add_argument("--quick", action="store_true", help="coarse case, few designs, no runs")
     options = parser.parse_args()
     effort, folder = QUICK if options.quick else THOROUGH, options.output
 
-    scene = opened(folder / "before")
+    scene = opened(folder / "before", effort)
     before = deflected(scene, folder / "deflected")
     worst = max(before["meshes"], key=lambda mesh: float(mesh["mean_peak_to_peak_um"]))["name"]
     best = optimized(worst, folder / "deflected", effort)
     better = shutil.copytree(folder / "before", folder / "after", dirs_exist_ok=True) / "scene.toml"
     shutil.copy(best, better.with_name(file_of(worst)))
     after = deflected(better, folder / "deflected_after")
-    print(
-        f"deflected in {before['cpu_seconds']:.1f} and {after['cpu_seconds']:.1f} CPU s; optimized: {worst}"
-    )
-    runs = run_up(scene, before, effort.duration), run_up(better, after, effort.duration)
-    print(*lines(before, after, runs), sep="\n")
-    for name, run in zip(("before", "after"), runs, strict=True):
-        loa("report", run, "-o", folder / f"run_up_{name}.html")
+    seconds = before["cpu_seconds"], after["cpu_seconds"]
+    print(f"deflected in {seconds[0]:.1f} and {seconds[1]:.1f} CPU s; optimized: {worst}")
+    print(*ripples(before, after), sep="\n")
+    aligned(scene, before)
+    aligned(better, after)
+    sounds = {name: heard(folder / name / "scene.toml", effort) for name in ("before", "after")}
+    print(*levels(sounds["before"], sounds["after"], ORDER_OF), sep="\n")
+    write_sounds(folder, sounds, HEARD)
+    write_pictures(folder, scene, sounds["before"], effort.orders)
+    if effort.duration:
+        runs = run_up(scene, effort.duration), run_up(better, effort.duration)
+        print(*force_peaks(runs), sep="\n")
+        for name, run in zip(("before", "after"), runs, strict=True):
+            loa("report", run, "-o", folder / f"run_up_{name}.html")
 
 
 if __name__ == "__main__":

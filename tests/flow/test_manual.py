@@ -24,7 +24,7 @@ def folder() -> Iterator[Path]:
         yield made
 
 
-LONG = {"ripple-map", "tolerances", "vibration"}  # half a minute each; no other page uses what they make
+LONG = {"hear-a-gearbox", "ripple-map", "tolerances", "vibration"}  # half a minute and more, for none else
 PAGES = [
     pytest.param(page, id=page.stem, marks=[pytest.mark.nightly] * (page.stem in LONG))
     for page in manual.pages()
