@@ -8,7 +8,7 @@ from dataclasses import replace
 from bounds import engineering
 from dynamics.noise import LoudPoint, RadiatedSound, loudest
 from service.convert.effect_lines import run_lines
-from service.drawing.figure import Table, number
+from service.drawing.figure import Figure, Table, number
 from service.drawing.page import Headline, Page, Section
 from service.studies.noise.drawings import RPM, bearing_levels, level_over_speed, sound_map, third_octaves
 from service.studies.noise.uncertainty_tables import uncertainty_tables
@@ -78,7 +78,7 @@ def headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
     return tuple(shown)
 
 
-def _figures(sound: RadiatedSound) -> tuple[object, ...]:
+def _figures(sound: RadiatedSound) -> tuple[Figure, ...]:
     """Return all figures."""
     return (
         sound_map(sound, loudest_table(sound), [sentence(point) for point in loudest(sound, 1)]),

@@ -92,7 +92,8 @@ def _compared(
     points = loudest(sound, 1)
     if not points:
         return {}
-    models = (PLANE, MONOPOLES, *([BoundaryElements()] if inputs.boundary_elements else []))
+    finest = (BoundaryElements(),) if inputs.boundary_elements else ()
+    models: tuple[RadiationModel, ...] = (PLANE, MONOPOLES, *finest)
     at = points[0].speed_index, points[0].order_index
     ladder = models_at(response, body, bearings, at, models)
     return {
