@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from benchmarks.boxed_scene import boxed_scene
 from benchmarks.figures import Figure
 from benchmarks.service_process import cpu_seconds, running
 from service.client import LineOfActionClient
@@ -81,6 +82,9 @@ def orders() -> Iterator[tuple[str, str, dict[str, Any]]]:
     yield "deflect, the scene's own loads", "deflect", scene
     yield "response, 20 speeds", "response", scene | {"speed_rpm": _SPEEDS}
     yield "steady, 20 speeds", "steady", scene | {"speed_rpm": _SPEEDS}
+    boxed = boxed_scene(scene) | {"speed_rpm": _SPEEDS, "orders": 3}
+    yield "vibration of a cast box, 20 speeds", "vibration", boxed
+    yield "noise of the same, no bands", "noise", boxed | {"band": False}
     speeds = {"path": "drives.motor.speed_rpm", "levels": _SPEEDS}
     varied = {"factors": [speeds], "responses": [{"quantity": "dte_rms"}]}
     yield "study, 20 speeds", "study", scene | varied
