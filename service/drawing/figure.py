@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -192,13 +192,13 @@ class Sound:
     caption : str
         Its quantity, and what it is not.
     tracks : tuple of Track
-    files : callable
-        Returns a WAV file for each track, all of one full scale; none if they would be too large for a page.
+    files : tuple of bytes
+        A WAV file for each track, all of one full scale; none if they would be too large for a page.
     """
 
     caption: str
     tracks: tuple[Track, ...]
-    files: Callable[[], tuple[bytes, ...]]
+    files: tuple[bytes, ...]
 
 
 @dataclass(frozen=True)

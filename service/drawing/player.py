@@ -26,7 +26,7 @@ def player(figure: Figure) -> str:
     """Return the players of a plot's sound; in place of files that are too large a sentence."""
     if figure.sound is None:
         return ""
-    files = figure.sound.files()
+    files = figure.sound.files
     caption = f"<p>{escape(figure.sound.caption)}</p>"
     if not files:
         return f"{caption}<p>Too long for this page: write it to a file by loa listen.</p>"

@@ -90,7 +90,7 @@ def sound_of(heard: tuple[Heard, ...], axis: Axis) -> Sound | None:
     return Sound(
         _caption(heard, recordings, scale),
         tuple(_track(one, axis) for one in heard),
-        lambda: tuple(wav_file(one, scale) for one in recordings) if fits else (),
+        tuple(wav_file(one, scale) for one in recordings) if fits else (),
     )
 
 
