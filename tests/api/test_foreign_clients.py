@@ -24,6 +24,7 @@ from small_inputs import small_inputs
 from written_service import Service, running_service, written_service
 
 from service.registry import NETCDF
+from service.routes.media_types import RAW, WAV
 from service.schemas.ogc import class_name
 from service.schemas.request_examples import INPUTS
 from service.worker.catalogue import default_registry
@@ -33,7 +34,7 @@ Json = dict[str, Any]
 GENERATOR = Path(sys.prefix) / "generator" / "bin" / "openapi-python-client"
 PACKAGE = "generated_client"
 CONFIG = {
-    "content_type_overrides": dict.fromkeys(("application/cbor", NETCDF), "application/octet-stream"),
+    "content_type_overrides": dict.fromkeys(("application/cbor", NETCDF, WAV), RAW),
     "post_hooks": [],
 }
 
