@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import NoReturn, Protocol
 
 import numpy as np
 
@@ -81,23 +81,34 @@ class Bore:
         level = np.all(np.abs(along) <= self.length / 2.0 + near, axis=1)
         normal, area = _normals(mesh, surface)
         toward = -np.einsum("ti,ti->t", normal, radial.mean(axis=1)) / np.maximum(radius.mean(axis=1), 1e-300)
-        wall = level & (toward >= INWARD)
-        chosen = wall & np.all(np.abs(radius - self.diameter / 2.0) <= near, axis=1)
-        self._check(float(area[chosen].sum()), radius[wall])
+        facing = toward >= INWARD
+        wall = facing & np.all(np.abs(radius - self.diameter / 2.0) <= near, axis=1)
+        chosen = wall & level
+        if area[chosen].sum() < COVERED * np.pi * self.diameter * self.length:
+            across = (along.min(axis=1) < self.length / 2.0) & (along.max(axis=1) > -self.length / 2.0)
+            self._check_length(float(area[wall & across].sum()), along[wall & across])
+            self._refuse(float(area[chosen].sum()), radius[facing & level])
         return np.asarray(surface[chosen])
 
-    def _check(self, area: float, radii: FloatArray) -> None:
-        """Refuse a bore of which too little is there."""
-        whole = np.pi * self.diameter * self.length
-        if area >= COVERED * whole:
+    def _check_length(self, area: float, along: FloatArray) -> None:
+        """Refuse a bore whose wall is there, of elements that reach beyond its stated length."""
+        if area < COVERED * np.pi * self.diameter * self.length:
             return
+        element = Quantity(float(np.ptp(along, axis=1).max()), "m", digits=3)
+        bound = "one between whose ends elements of the wall lie"
+        there = Text.of("The wall of this diameter is there, of elements up to ", element, " along the axis ")
+        advice = "that reach beyond this length. State the whole length of the wall, or mesh it finer."
+        raise InputError("length", self.length, bound, Text.of(there, advice))
+
+    def _refuse(self, area: float, radii: FloatArray) -> NoReturn:
+        """Refuse a bore of which too little is there."""
+        share = area / (np.pi * self.diameter * self.length)
         others = Text.of("no wall faces the axis there")
         if radii.size:
-            nearest = Quantity(2.0 * float(radii.min()), "m", digits=6)
+            nearest = Quantity(2.0 * float(radii.min()), "m", digits=3)
             others = Text.of("the nearest wall that faces the axis has a diameter of ", nearest)
-        bound = (
-            f"that of a bore of the mesh, of which at least {COVERED:.0%} is there ({area / whole:.0%} is)"
-        )
+        there = f" ({share:.0%} is)" if share > 0.0 else ""
+        bound = f"that of a bore of the mesh, of which at least {COVERED:.0%} is there{there}"
         x, y, z = (Quantity(value, "m", digits=6) for value in self.position)
         place = Text.of("Its middle is expected at ", x, ", ", y, ", ", z, ". Check ")
         advice = Text.of(place, "position, axis, length and the unit of the mesh: ", others, ".")

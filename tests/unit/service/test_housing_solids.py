@@ -181,6 +181,11 @@ WRONG: dict[str, tuple[dict[str, Any], str, str]] = {
         "housings[0].seats[1].bore_diameter_mm",
         "80 mm, 0 mm, 100 mm",
     ),
+    "too short a bore": (
+        {"seats": [SEATS[0] | {"bore_length_mm": 3.0}, SEATS[1]]},
+        "housings[0].seats[0].bore_length_mm",
+        "elements up to 10 mm along the axis",
+    ),
     "no foot there": (
         {"feet": [FOOT | {"point_mm": [0, 0, 0]}]},
         "housings[0].feet[0].point_mm",

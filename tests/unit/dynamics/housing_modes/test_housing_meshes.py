@@ -200,6 +200,18 @@ def test_a_step_file_is_meshed_and_its_bores_are_seats(tmp_path: Path) -> None:
     )
 
 
+def test_a_bore_shorter_than_the_elements_of_its_wall_is_a_fault_of_its_length() -> None:
+    """Two layers of 50 mm: a length of 30 mm holds none, whatever the diameter says."""
+    short = Bore((0.0, 0.0, 0.05), (0.0, 0.0, 1.0), 0.08, 0.03)
+    with pytest.raises(InputError, match=r"elements up to 0\.05 m along the axis") as caught:
+        short.triangles(MESH)
+    assert (caught.value.field, caught.value.value) == ("length", 0.03)
+    with pytest.raises(InputError, match=r"has a diameter of 0\.08 m") as wrong:
+        Bore((0.0, 0.0, 0.05), (0.0, 0.0, 1.0), 0.09, 0.1).triangles(MESH)
+    assert wrong.value.field == "diameter"
+    assert "(0% is)" not in str(wrong.value)
+
+
 def test_without_a_size_elements_fit_the_wall(tmp_path: Path) -> None:
     step = write_step(tmp_path / "block.step")
     assert mesh_step(step).freedoms > mesh_step(step, 0.1).freedoms

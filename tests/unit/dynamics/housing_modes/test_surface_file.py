@@ -28,6 +28,8 @@ def test_a_reader_finds_quadratic_triangles_with_their_fields(tmp_path: Path) ->
         ends = found.points[cells.data[:, [corner, (corner + 1) % 3]]].mean(axis=1)
         np.testing.assert_allclose(found.points[cells.data[:, middle]], ends, atol=1e-12)
     assert [each.name for each in tmp_path.iterdir()] == ["mode.vtu"]
+    (plain := tmp_path / "plain").write_text("made as every file")
+    assert file.stat().st_mode == plain.stat().st_mode
 
 
 def test_what_cannot_be_written_leaves_no_file(tmp_path: Path) -> None:
