@@ -12,6 +12,8 @@ import pytest
 from page_visit import Visit, shown
 from playwright.sync_api import Browser, Route, expect
 
+from service.registry import studies_of
+
 UNIT = Path(__file__).parents[2] / "examples" / "two_stage_gearbox.rexs"
 EXAMPLE = Path(__file__).parents[2] / "examples" / "planetary_scene.toml"
 
@@ -41,6 +43,12 @@ def test_the_scene_of_the_pair_is_edited_and_computed_over_speed(visit: Visit, a
     expect(plot).to_have_attribute("data-drawn", "yes")
     speeds = page.locator("#scene-body .js-plotly-plot").evaluate("node => node.data[0].x.length")
     assert speeds == 5
+
+
+def test_a_run_and_every_study_of_a_scene_are_offered(visit: Visit) -> None:
+    offered = visit.page.get_by_label("Compute", exact=True).locator("option")
+    names = offered.evaluate_all("options => options.map((option) => option.value)")
+    assert sorted(names) == sorted(["simulate", *studies_of("scene")])
 
 
 def test_many_runs_at_constant_speeds_are_drawn_over_speed(visit: Visit, analyzed: str) -> None:

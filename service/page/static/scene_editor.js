@@ -8,7 +8,8 @@ import { showFailure } from "./job.js";
 
 const WHAT = [
   ["simulate", "Run over time"], ["modes", "Modes over speed"], ["response", "Forced response over speed"],
-  ["noise", "Sound power over speed"], ["steady", "Steady states over speed"], ["deflect", "Deflection under its loads"],
+  ["vibration", "Vibration of the housing over speed"], ["noise", "Sound power over speed"],
+  ["steady", "Steady states over speed"], ["deflect", "Deflection under its loads"],
   ["study", "Many runs, at constant speeds"],
 ];
 const FIELDS = [
