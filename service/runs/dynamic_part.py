@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -95,7 +96,7 @@ def dynamic_making(run: RunResult) -> tuple[Section, ...]:
     scene = Section("Scene", text, folded=(facts("Scene", run.case),), part=Part.INPUT)
     steps = facts("Step statistics", run.statistics.to_json())
     receipt = Section("Receipt of the run", tables=(_seconds(run),), folded=(steps,), part=Part.RECEIPT)
-    return _effects(run), accuracy, scene, receipt
+    return ledger_section(run.effect_ledger), accuracy, scene, receipt
 
 
 def _orders(run: RunResult, signal: Signal) -> tuple[Section, ...]:
@@ -143,8 +144,8 @@ def _contact(run: RunResult) -> Table:
     return Table("Contact state, share of the samples", head, rows)
 
 
-def _effects(run: RunResult) -> Section:
-    """Tabulate what was simulated and what the model leaves out."""
+def ledger_section(ledger: Mapping[str, Any]) -> Section:
+    """Tabulate what was simulated and what the model leaves out, by the effect ledger of a scene."""
     rows = [
         EffectRow(
             entry["effect"],
@@ -153,9 +154,9 @@ def _effects(run: RunResult) -> Section:
             f"{number(1e6 * float(entry['worth']), 3)} µm at the line of action",
             entry["reason"],
         )
-        for entry in run.effect_ledger.get("entries", ())
+        for entry in ledger.get("entries", ())
     ]
-    left_out = run.effect_ledger.get("left_out", {})
+    left_out = ledger.get("left_out", {})
     return effects_section("", rows, (facts("Not in the model of the run", left_out),))
 
 

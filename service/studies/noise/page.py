@@ -9,7 +9,8 @@ from bounds import engineering
 from dynamics.noise import LoudPoint, RadiatedSound, loudest
 from service.convert.effect_lines import run_lines
 from service.drawing.figure import Figure, Table, number
-from service.drawing.page import Headline, Page, Section
+from service.drawing.page import Headline, Page, Part, Section
+from service.runs.dynamic_part import ledger_section
 from service.studies.noise.drawings import RPM, bearing_levels, level_over_speed, sound_map, third_octaves
 from service.studies.noise.uncertainty_tables import uncertainty_tables
 from service.studies.presentation import Presentation, dynamics_page
@@ -88,53 +89,66 @@ def _figures(sound: RadiatedSound) -> tuple[Figure, ...]:
     )
 
 
-def model_lines(sound: RadiatedSound) -> Iterator[str]:
-    """Say of each housing by what model it radiates, and what others say."""
+def limits(sound: RadiatedSound) -> Iterator[tuple[str, str]]:
+    """Say of each housing by what model it radiates, what others say, and what the answer does not hold."""
     for name in sound.housing:
-        about, compared = sound.facts["radiation"][name], sound.facts["models"][name]
-        yield (
-            f"{name}: {about['model_name'].replace('_', ' ')}, outer hull {number(about['area'], 3)} m², "
-            f"{number(about['inner_area'], 3)} m² of inner walls left out"
-        )
-        if about["resolved_frequency"] > 0.0 and sound.frequency.max() > about["resolved_frequency"]:
-            yield (
-                f"above {number(about['resolved_frequency'], 3)} Hz, which the mesh does not resolve, "
-                "equivalent radiated power"
-            )
-        if sound.frequency.max() > about["valid_frequency"]:
-            valid = number(about["valid_frequency"], 3)
-            yield f"above {valid} Hz, 0.7 of the highest mode kept, modes are missing: keep more"
-        levels = compared.get("level", {})
-        words = ", ".join(f"{model.replace('_', ' ')} {level:.1f} dB" for model, level in levels.items())
-        if words:
-            yield f"models at the loudest point: {words}"
-        for model, reason in compared.get("left_out", {}).items():
-            yield f"without {model.replace('_', ' ')}: {reason}"
-
-
-def _text(sound: RadiatedSound) -> Iterator[Table | str]:
-    """Yield the loudest points, the models, and what the linear answer does not hold."""
-    yield loudest_table(sound)
-    yield from (sentence(point) for point in loudest(sound, 1))
-    yield from model_lines(sound)
-    yield from uncertainty_tables(sound.facts)
-    yield from (
-        f"no sensitivity to {name}: {why}" for name, why in sound.facts["sensitivities_left_out"].items()
-    )
+        yield from _radiation_limits(sound, name)
     parting = sound.speed[~sound.in_contact] / RPM
     if parting.size:
         where = f"{parting[0]:.5g} to {parting[-1]:.5g} rpm"
-        yield f"flanks lift off at {parting.size} of {sound.speed.size} speeds, {where}: see loa steady"
+        yield "flanks lift off", f"at {parting.size} of {sound.speed.size} speeds, {where}: see loa steady"
+
+
+def _radiation_limits(sound: RadiatedSound, housing: str) -> Iterator[tuple[str, str]]:
+    """Say the same of one housing."""
+    about, compared = sound.facts["radiation"][housing], sound.facts["models"][housing]
+    resolved, valid, highest = about["resolved_frequency"], about["valid_frequency"], sound.frequency.max()
+    yield (
+        housing,
+        f"{about['model_name'].replace('_', ' ')}, outer hull {number(about['area'], 3)} m², "
+        f"{number(about['inner_area'], 3)} m² of inner walls left out",
+    )
+    if highest > resolved > 0.0:
+        words = "which the mesh does not resolve, equivalent radiated power"
+        yield f"above {number(resolved, 3)} Hz", words
+    if highest > valid:
+        words = "0.7 of the highest mode kept, modes are missing: keep more"
+        yield f"above {number(valid, 3)} Hz", words
+    levels = compared.get("level", {})
+    words = ", ".join(f"{model.replace('_', ' ')} {level:.1f} dB" for model, level in levels.items())
+    if words:
+        yield "models at the loudest point", words
+    for model, reason in compared.get("left_out", {}).items():
+        yield f"without {model.replace('_', ' ')}", reason
+
+
+def _text(sound: RadiatedSound) -> Iterator[Table | str]:
+    """Yield the loudest points, what the levels rest on, bands, sensitivities and the cost."""
+    yield loudest_table(sound)
+    yield from (sentence(point) for point in loudest(sound, 1))
+    yield from (f"{what}: {words}" for what, words in limits(sound))
+    yield from uncertainty_tables(sound.facts)
+    yield from (f"no sensitivity to {name}: {why}" for name, why in _missing(sound))
     yield f"cost {engineering(sum(sound.facts['seconds'].values()), 3)} CPU s"
     yield from run_lines(sound.facts)
 
 
+def _missing(sound: RadiatedSound) -> tuple[tuple[str, str], ...]:
+    """Return the figures without a sensitivity, and why."""
+    return tuple(sound.facts["sensitivities_left_out"].items())
+
+
 def page(sound: RadiatedSound) -> Page:
-    """Return the report: figures, then bands and sensitivities."""
+    """Return the report: figures, bands and sensitivities, effects, and what the levels rest on."""
     whole = dynamics_page("Sound power", _figures(sound), headlines(sound))
     tables = tuple(uncertainty_tables(sound.facts))
-    further = (Section("Bands, and what 1 dB costs", tables=tables),) if tables else ()
-    return replace(whole, sections=(*whole.sections, *further))
+    if missing := _missing(sound):
+        tables += (Table("No sensitivity", ("to", "because"), missing),)
+    bands = (Section("Bands, and what 1 dB costs", tables=tables),) if tables else ()
+    rests = Table("Radiation models, and what the levels do not hold", ("what", "how"), tuple(limits(sound)))
+    accuracy = Section("Accuracy of the levels", tables=(rests,), part=Part.ACCURACY)
+    sections = (*whole.sections, *bands, ledger_section(sound.facts["effect_ledger"]), accuracy)
+    return replace(whole, sections=sections, alarms=tuple(run_lines(sound.facts)))
 
 
 PAGE = Presentation(
