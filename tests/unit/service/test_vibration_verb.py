@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import struct
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import meshio
 import numpy as np
 import pytest
+from computed_once import computed_once
 from declared_figures import check_declared
 from housing_solid import housed_scene, write_block
 from scene_files import scene_file
@@ -17,8 +19,10 @@ from typer.testing import CliRunner, Result
 
 from dynamics.vibration import vibration_level
 from service.cli.commands import app
+from service.drawing import surface_view
 from service.report import write_report
-from service.studies.vibration.run import RUN, facts
+from service.studies.vibration import run
+from service.studies.vibration.run import facts
 
 SPEEDS = ("--speed-rpm", "1500:3000:250", "--orders", 4)
 
@@ -34,6 +38,14 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     write_block(folder / "block.step")
     (folder / "scene.json").write_text(json.dumps(housed_scene(folder, modes=6)))
     return folder
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _once() -> Iterator[None]:
+    """Compute what equal calls ask for once; pictures of surfaces are coarse."""
+    with computed_once(run), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(surface_view, "ACROSS", 90)
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +66,7 @@ def test_every_kind_of_output_says_the_same(scene: Path, tmp_path: Path) -> None
     for file in files.values():
         result = loa(scene, *SPEEDS, "-o", file)
         assert (result.exit_code, result.stderr) == (0, "")
-    found = RUN.file.read(files["nc"])
+    found = run.RUN.file.read(files["nc"])
     written = json.loads(files["json"].read_text())
     check_declared("vibration", written)
     for name in ("warnings", "cpu_seconds"):

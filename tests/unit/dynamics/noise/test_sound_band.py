@@ -75,7 +75,7 @@ def test_a_resonance_that_only_the_housing_damps_falls_by_the_ratio():
 
 
 @pytest.mark.parametrize(
-    ("speeds", "mounts", "cases"), [(50, 2, 40), pytest.param(135, 20, 200, marks=pytest.mark.nightly)]
+    ("speeds", "mounts", "cases"), [(24, 1, 20), pytest.param(135, 20, 200, marks=pytest.mark.nightly)]
 )
 def test_the_band_holds_nine_of_ten_blind_variations(speeds, mounts, cases):
     """A finer mesh, more modes, other mounts, dampings and bearings: none of them made the band."""
