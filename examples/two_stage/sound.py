@@ -20,15 +20,26 @@ from service.units import RPM
 
 LISTED = 5
 """Orders that are compared."""
+FOLLOWED = 3.0
+"""An order whose level falls by so many dB less than that of its STE has another cause."""
+
+
+def multiples(order: float, ratios: Mapping[str, float]) -> dict[str, int]:
+    """Return of which mesh frequencies an order is which multiple; `ratios` are the orders of these."""
+    times = {name: order / ratio for name, ratio in ratios.items()}
+    return {name: round(value) for name, value in times.items() if abs(value - round(value)) < 1e-6}
 
 
 def order_name(order: float, ratios: Mapping[str, float]) -> str:
-    """Return an order by the meshes it is a multiple of; `ratios` are the orders of their frequencies."""
-    multiples = {name: order / ratio for name, ratio in ratios.items()}
-    whole = [
-        f"{name} x {round(times)}" for name, times in multiples.items() if abs(times - round(times)) < 1e-6
-    ]
+    """Return an order by the meshes it is a multiple of."""
+    whole = [f"{name} x {times}" for name, times in multiples(order, ratios).items()]
     return " = ".join(whole) or f"order {order:.3f}"
+
+
+def deciding(sound: RadiatedSound, ratios: Mapping[str, float]) -> tuple[str, int]:
+    """Return the mesh that makes the loudest order, and its harmonic; of several the lowest."""
+    (point,) = loudest(sound, 1)
+    return min(multiples(point.order, ratios).items(), key=lambda harmonic: harmonic[1])
 
 
 def levels(before: RadiatedSound, after: RadiatedSound, ratios: Mapping[str, float]) -> list[str]:
@@ -57,6 +68,41 @@ def causes(name: str, sound: RadiatedSound, ratios: Mapping[str, float]) -> list
         f"{point.weighted_level:.1f} dB(A), {point.mode_share:.0%} through the mode at "
         f"{point.natural_frequency:.0f} Hz; {point.bearing} alone {point.bearing_level:.1f} dB(A)"
     ]
+
+
+Pair = tuple[RadiatedSound, RadiatedSound]
+
+
+def verdict(
+    source: tuple[str, int],
+    ratios: Mapping[str, float],
+    harmonics: tuple[float, float],
+    sounds: Pair,
+    sounds_of_ste: Pair,
+) -> list[str]:
+    """Say whether the deciding order follows its harmonic of the STE, and what it follows if not.
+
+    Pairs are before and after: harmonics in um, sounds, sounds without the load's travel along the face.
+    """
+    (stage, number), before, after = source, *harmonics
+    order = number * ratios[stage]
+    full, ste = ([order_level(sound, order) for sound in pair] for pair in (sounds, sounds_of_ste))
+    change, travel = full[1] - full[0], [whole - part for whole, part in zip(full, ste, strict=True)]
+    lines = [
+        f"{stage} x {number}: harmonic of the STE {20.0 * np.log10(after / before):+.1f} dB",
+        f"sound of the STE alone {ste[1] - ste[0]:+.1f} dB, {ste[0]:.1f} to {ste[1]:.1f} dB(A)",
+        f"sound with the load's travel along the face {change:+.1f} dB, {full[0]:.1f} to {full[1]:.1f} dB(A)",
+    ]
+    if change > ste[1] - ste[0] + FOLLOWED:
+        lines.append(
+            f"the travel adds {travel[0]:.1f} and {travel[1]:.1f} dB: less ripple does not quiet this order"
+        )
+    return lines
+
+
+def order_level(sound: RadiatedSound, order: float) -> float:
+    """Return the largest A-weighted level of an order over speed, dB."""
+    return float(sound.orders.weighted_level[np.argmin(np.abs(sound.order - order))].max())
 
 
 def pressure(sound: RadiatedSound, duration: float) -> Recording:

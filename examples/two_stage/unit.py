@@ -14,19 +14,19 @@ import shutil
 import subprocess
 import sys
 import tomllib
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from effort import QUICK, THOROUGH, Effort
 from gear_case import housing_of, seats_of
-from pictures import write_pictures
-from sound import levels, write_sounds
+from sound import deciding, levels, verdict, write_sounds
 
-from dynamics.noise import RadiatedSound
+from dynamics.noise import RadiatedSound, loudest
 from dynamics.orders import order_track
 from dynamics.results import RunResult
 from service.convert.toml import toml_text
+from service.units import RPM
 
 UNIT = Path(__file__).parent
 ORDERS = 3
@@ -36,42 +36,10 @@ ORDER_OF = {"first stage": 1.0, "second stage": 21.0 / 63.0}
 SPEEDS = 500.0, 6000.0
 """Of the run-up, rpm of the input."""
 
-
-@dataclass(frozen=True)
-class Effort:
-    """What the steps spend.
-
-    Attributes
-    ----------
-    evaluations : int
-        Most designs of the search.
-    duration : float
-        Of the run-up, s; 0: none.
-    load_cases : int
-        Of the spectrum, the largest shares of time first.
-    element_size_mm : float
-        Of the mesh of the case.
-    modes : int
-        Of the case that are kept.
-    speed_rpm : str
-        Speeds at which the sound is found.
-    orders : int
-        Multiples of the first mesh's frequency in it.
-    """
-
-    evaluations: int
-    duration: float
-    load_cases: int
-    element_size_mm: float
-    modes: int
-    speed_rpm: str
-    orders: int
-
-
 ACCURACY = {"level": "draft"}
 """Of the cases: REXS states none."""
-THOROUGH = Effort(120, 1.0, 4, 20.0, 80, "500:6000:25", 3)
-QUICK = Effort(8, 0.0, 1, 40.0, 40, "500:6000:50", 1)
+TRAVEL = "effects.moving_application_point"
+"""Travel of the load along the face, which excites shafts and bearings beside the transmission error."""
 HEARD = 5.0
 """Duration of the run-ups to listen to, s."""
 
@@ -129,17 +97,24 @@ def optimized(stage: str, output: Path, effort: Effort) -> Path:
     study = output / "study.toml"
     spectrum = case.with_name(f"{case.stem}_optimize.toml").read_text("utf-8")
     flanks = (UNIT / "flanks.toml").read_text("utf-8")
-    study.write_text(f"{spectrum}\n{flanks}\n[search]\nevaluations = {effort.evaluations}\n", "utf-8")
+    study.write_text(f"{spectrum}\n{flanks}\n{toml_text({'search': effort.search})}", "utf-8")
     loa("optimize", case, study, "-o", output / "best.toml")
     return output / "best.toml"
 
 
+def at_load(facts: dict[str, Any]) -> dict[str, Any]:
+    """Return the figures under the load of the scene: the load case of the largest share."""
+    return dict(max(facts["load_cases"], key=lambda case: float(case["share"])))
+
+
 def aligned(scene: Path, facts: dict[str, Any]) -> None:
-    """Set both stages to the mean misalignment that the deflection found."""
+    """Give both meshes tables at the misalignment that the deflection found at the load of the scene."""
     meshes = tomllib.loads(scene.read_text("utf-8"))["meshes"]
-    for mesh, found in zip(meshes, facts["meshes"], strict=True):
-        mesh["misalignment_um"] = round(found["mean_misalignment_um"], 3)
-        amend(scene.with_name(mesh["case_file"]), errors={"misalignment_um": [mesh["misalignment_um"]]})
+    for mesh, found in zip(meshes, at_load(facts)["meshes"], strict=True):
+        misalignment, case = round(found["misalignment_um"], 3), scene.with_name(mesh.pop("case_file"))
+        table = case.with_suffix(".nc")
+        loa("analyze", case, f"--set=errors.misalignment_um=[{misalignment}]", "-o", table)
+        mesh |= {"database_file": table.name, "misalignment_um": misalignment}
     amend(scene, meshes=meshes)
 
 
@@ -166,31 +141,55 @@ def peak_levels(path: Path) -> dict[str, float]:
     return levels
 
 
-def ripples(before: dict[str, Any], after: dict[str, Any]) -> list[str]:
-    """Return the table of both stages' ripple over the spectrum."""
-    rows = [f"{'':44}{'before':>10}{'after':>10}"]
-    for old, new in zip(before["meshes"], after["meshes"], strict=True):
-        pair = old["mean_peak_to_peak_um"], new["mean_peak_to_peak_um"]
-        rows.append(f"{old['name'] + ', peak-to-peak STE, um':44}{pair[0]:10.3f}{pair[1]:10.3f}")
-    return rows
+def harmonic(facts: dict[str, Any], stage: str, number: int) -> float:
+    """Return a harmonic, one of the first five, of a stage's STE at the load of the scene, um."""
+    mesh = next(mesh for mesh in at_load(facts)["meshes"] if mesh["name"] == stage)
+    return float(mesh["flanks"]["harmonics_um"][number - 1])
 
 
-def force_peaks(runs: tuple[Path, Path]) -> list[str]:
+def ripples(before: dict[str, Any], after: dict[str, Any], source: tuple[str, int]) -> list[str]:
+    """Return the table of both stages' ripple over the spectrum, and of the harmonic that is heard."""
+    rows = {
+        f"{old['name']}, peak-to-peak STE, um": (old["mean_peak_to_peak_um"], new["mean_peak_to_peak_um"])
+        for old, new in zip(before["meshes"], after["meshes"], strict=True)
+    }
+    stage, number = source
+    rows[f"{stage}, harmonic {number} when heard, um"] = harmonic(before, *source), harmonic(after, *source)
+    table = [f"{name:44}{old:10.3f}{new:10.3f}" for name, (old, new) in rows.items()]
+    return [f"{'':44}{'before':>10}{'after':>10}", *table]
+
+
+def force_peaks(*runs: Path) -> list[str]:
     """Return the rows of the peaks of bearing forces in two runs."""
-    before, after = (peak_levels(run) for run in runs)
+    before, after = map(peak_levels, runs)
     return [f"{name + ', N':44}{before[name]:10.1f}{after[name]:10.1f}" for name in before]
 
 
-def heard(scene: Path, effort: Effort) -> RadiatedSound:
-    """Find the sound power of a scene over speed, with its map and page."""
-    file = scene.with_name("sound.nc")
-    loa("noise", scene, "--speed-rpm", effort.speed_rpm, "--orders", effort.orders, "-o", file)
-    loa("report", file, "-o", file.with_suffix(".html"), "--images", file.with_name("sound"))
+def heard(scene: Path, effort: Effort, name: str, *settings: str) -> RadiatedSound:
+    """Find the sound power of a scene over speed and write it beside the scene."""
+    file = scene.with_name(f"{name}.nc")
+    loa("noise", scene, "--speed-rpm", effort.speed_rpm, "--orders", effort.orders, *settings, "-o", file)
     return RadiatedSound.from_netcdf(file)
 
 
+def sounds_of(scene: Path, effort: Effort) -> tuple[RadiatedSound, RadiatedSound]:
+    """Return the sound of a scene, with its map and page, and that of its transmission errors alone."""
+    sound, images = heard(scene, effort, "sound", effort.band), scene.with_name("sound")
+    loa("report", f"{images}.nc", "-o", f"{images}.html", "--images", images)
+    return sound, heard(scene, effort, "sound_of_ste", "--no-band", f"--set={TRAVEL}=off")
+
+
+def pictured(folder: Path, scene: Path, sound: RadiatedSound, effort: Effort) -> None:
+    """Draw the first mode of the case, and how it moves in its loudest order."""
+    (point,) = loudest(sound, 1)
+    at = "--speed-rpm", point.speed / RPM, "--orders", effort.orders, "--at-order", point.order
+    for name, shape in {"mode_1": (*at, "--mode", 1), "velocity": at}.items():
+        loa("vibration", scene, *shape, "-o", folder / f"{name}.png")
+    loa("vibration", scene, *at, "-o", folder / "velocity.vtu")
+
+
 def main() -> None:
-    """Open, deflect, optimize, deflect, run up, listen, compare."""
+    """Open, deflect, listen, optimize the stage that is heard, deflect and listen again, run up, compare."""
     parser = argparse.ArgumentParser(description="A two-stage unit over its load spectrum.")
     parser.add_argument("-o", "--output", type=Path, default=Path("two_stage"), help="folder to write")
     parser.add_argument("--quick", action="store_true", help="coarse case, few designs, no runs")
@@ -198,26 +197,33 @@ def main() -> None:
     effort, folder = QUICK if options.quick else THOROUGH, options.output
 
     scene = opened(folder / "before", effort)
-    before = deflected(scene, folder / "deflected")
-    worst = max(before["meshes"], key=lambda mesh: float(mesh["mean_peak_to_peak_um"]))["name"]
-    best = optimized(worst, folder / "deflected", effort)
     better = shutil.copytree(folder / "before", folder / "after", dirs_exist_ok=True) / "scene.toml"
-    shutil.copy(best, better.with_name(file_of(worst)))
-    after = deflected(better, folder / "deflected_after")
-    seconds = before["cpu_seconds"], after["cpu_seconds"]
-    print(f"deflected in {seconds[0]:.1f} and {seconds[1]:.1f} CPU s; optimized: {worst}")
-    print(*ripples(before, after), sep="\n")
+    before = deflected(scene, folder / "deflected")
     aligned(scene, before)
+    old, old_ste = sounds_of(scene, effort)
+    source = deciding(old, ORDER_OF)
+    stage, _ = source
+    shutil.copy(optimized(stage, folder / "deflected", effort), better.with_name(file_of(stage)))
+    after = deflected(better, folder / "deflected_after")
     aligned(better, after)
-    sounds = {name: heard(folder / name / "scene.toml", effort) for name in ("before", "after")}
-    print(*levels(sounds["before"], sounds["after"], ORDER_OF), sep="\n")
-    write_sounds(folder, sounds, HEARD)
-    write_pictures(folder, scene, sounds["before"], effort.orders)
+    new, new_ste = sounds_of(better, effort)
+    print(f"optimized: {stage}")
+    print(*ripples(before, after, source), sep="\n")
+    print(*levels(old, new, ORDER_OF), sep="\n")
+    harmonics = harmonic(before, *source), harmonic(after, *source)
+    print(*verdict(source, ORDER_OF, harmonics, (old, new), (old_ste, new_ste)), sep="\n")
+    write_sounds(folder, {"before": old, "after": new}, HEARD)
+    pictured(folder, scene, old, effort)
     if effort.duration:
-        runs = run_up(scene, effort.duration), run_up(better, effort.duration)
-        print(*force_peaks(runs), sep="\n")
-        for name, run in zip(("before", "after"), runs, strict=True):
-            loa("report", run, "-o", folder / f"run_up_{name}.html")
+        run_ups(folder, {"before": scene, "after": better}, effort.duration)
+
+
+def run_ups(folder: Path, scenes: dict[str, Path], duration: float) -> None:
+    """Run both designs up, print the peaks of their bearing forces, write their pages."""
+    runs = {name: run_up(scene, duration) for name, scene in scenes.items()}
+    print(*force_peaks(runs["before"], runs["after"]), sep="\n")
+    for name, run in runs.items():
+        loa("report", run, "-o", folder / f"run_up_{name}.html")
 
 
 if __name__ == "__main__":
