@@ -43,7 +43,9 @@ BODIES: dict[str, Any] = {
 
 
 def key_at(walked: WalkedRoute) -> str:
-    """Return the hash of the result that a route is about: redirections are by kind."""
+    """Return the hash of the result that a route is about: redirections are by kind, sounds of runs."""
+    if walked.path.endswith("/sound"):
+        return FORMER["runs"]
     return FORMER.get(walked.path.removeprefix("/v1/").partition("/")[0], KEY)
 
 

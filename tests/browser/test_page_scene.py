@@ -41,7 +41,7 @@ def test_the_scene_of_the_pair_is_edited_and_computed_over_speed(visit: Visit, a
     page.get_by_role("button", name="Compute the scene").press("Enter")
     plot = page.locator("#scene-body [data-figure=response] .plot")
     expect(plot).to_have_attribute("data-drawn", "yes")
-    speeds = page.locator("#scene-body .js-plotly-plot").evaluate("node => node.data[0].x.length")
+    speeds = page.locator("#scene-body .js-plotly-plot").first.evaluate("node => node.data[0].x.length")
     assert speeds == 5
 
 
