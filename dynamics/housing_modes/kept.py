@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
-from contextlib import suppress
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -20,6 +18,7 @@ from dynamics.housing_modes.step_mesh import WALL_ELEMENTS, mesh_step
 from dynamics.housing_modes.tetrahedral_mesh import TetrahedralMesh
 from dynamics.types import FloatArray, IntArray
 from model_studies.array_file import UnreadableFile
+from model_studies.kept_file import kept_in
 from model_studies.record_file import read_record, write_record
 
 REDUCTION_VERSION = 3
@@ -54,18 +53,18 @@ def meshed_step(
         facts = repr([MESH_VERSION, WALL_ELEMENTS, version("gmsh"), version("meshio"), element_size])
         content = hashlib.sha256(Path(path).read_bytes() + facts.encode()).hexdigest()
         file = cache / f"mesh-{content}.nc"
-    if file is not None:
-        with suppress(UnreadableFile):  # absent or damaged: meshed again
-            kept = read_record(file, {MESH_SCHEMA: KeptMesh})
-            with suppress(OSError):  # of another owner
-                os.utime(file)
-            return TetrahedralMesh(kept.points, kept.tetrahedra)
-    mesh = mesh_step(path, element_size)
-    if file is not None:
-        with suppress(OSError):
-            file.parent.mkdir(parents=True, exist_ok=True)
-            write_record(KeptMesh(mesh.points, mesh.tetrahedra), file, MESH_SCHEMA)
-    return mesh
+    return kept_in(file, _read_mesh, lambda: mesh_step(path, element_size), _write_mesh, UnreadableFile)
+
+
+def _read_mesh(file: Path) -> TetrahedralMesh:
+    """Return a kept mesh."""
+    kept = read_record(file, {MESH_SCHEMA: KeptMesh})
+    return TetrahedralMesh(kept.points, kept.tetrahedra)
+
+
+def _write_mesh(mesh: TetrahedralMesh, file: Path) -> None:
+    """Keep a mesh."""
+    write_record(KeptMesh(mesh.points, mesh.tetrahedra), file, MESH_SCHEMA)
 
 
 def reduced_housing(
@@ -89,19 +88,14 @@ def reduced_housing(
         As `reduce_housing`.
     """
     file = None if cache is None else cache / f"housing-{content_key(housing)}.nc"
-    if file is not None:
-        with suppress(ResultError):  # absent or damaged: computed again
-            kept = ReducedHousing.from_netcdf(file)
-            with suppress(OSError):  # of another owner
-                os.utime(file)  # its last use, by which caches are kept small
-            return kept
+    read, write = ReducedHousing.from_netcdf, ReducedHousing.to_netcdf
+    return kept_in(file, read, lambda: _reduced(housing, limit), write, ResultError)
+
+
+def _reduced(housing: MeshedHousing, limit: CostLimit | None) -> ReducedHousing:
+    """Reduce a housing unless it costs too much."""
     check_cost(housing, limit or CostLimit())
-    reduced = reduce_housing(housing)
-    if file is not None:
-        with suppress(OSError):  # a directory that cannot be written is no reason to lose the result
-            file.parent.mkdir(parents=True, exist_ok=True)
-            reduced.to_netcdf(file)
-    return reduced
+    return reduce_housing(housing)
 
 
 def content_key(housing: MeshedHousing) -> str:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
-from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +12,7 @@ from dynamics.acoustics import Air, RadiationModel
 from dynamics.errors import ResultError
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.noise.housing_radiation import HousingRadiation, housing_radiation
+from model_studies.kept_file import kept_in
 from model_studies.progress import Progress, silent
 
 RADIATION_VERSION = 1
@@ -44,18 +43,15 @@ def kept_radiation(
     """
     ends = float(np.min(frequencies)), float(np.max(frequencies))
     file = None if cache is None else cache / f"radiation-{_content_key(housing, model, ends, air)}.nc"
-    if file is not None:
-        with suppress(ResultError):  # absent or damaged: computed again
-            kept = HousingRadiation.from_netcdf(file)
-            with suppress(OSError):  # of another owner
-                os.utime(file)  # its last use, by which caches are kept small
-            return kept
-    found = housing_radiation(housing, model, ends, air, lambda fraction: progress("radiation", fraction))
-    if file is not None and found.facts["seconds"] > WORTH_KEEPING:
-        with suppress(OSError):  # a directory that cannot be written is no reason to lose the result
-            file.parent.mkdir(parents=True, exist_ok=True)
-            found.to_netcdf(file)
-    return found
+
+    def computed() -> HousingRadiation:
+        return housing_radiation(housing, model, ends, air, lambda fraction: progress("radiation", fraction))
+
+    def worth(made: HousingRadiation) -> bool:
+        return bool(made.facts["seconds"] > WORTH_KEEPING)
+
+    read, write = HousingRadiation.from_netcdf, HousingRadiation.to_netcdf
+    return kept_in(file, read, computed, write, ResultError, worth)
 
 
 def _content_key(

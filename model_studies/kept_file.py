@@ -1,0 +1,51 @@
+"""Results kept in files that are named by the content of what they come from."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import TypeVar
+
+Kept = TypeVar("Kept")
+
+
+def kept_in(
+    file: Path | None,
+    read: Callable[[Path], Kept],
+    make: Callable[[], Kept],
+    write: Callable[[Kept, Path], object],
+    unreadable: type[Exception],
+    worth: Callable[[Kept], bool] = lambda _made: True,
+) -> Kept:
+    """Return what a file keeps; made and written where it is absent or damaged.
+
+    A folder that cannot be written is no reason to lose a result.
+
+    Parameters
+    ----------
+    file : Path or None
+        None: neither read nor written.
+    read, write : callable
+        Of the file.
+    make : callable
+        Computes the result.
+    unreadable : type of Exception
+        What `read` raises of a file that is absent or damaged.
+    worth : callable
+        Whether a result is worth a file.
+    """
+    if file is None:
+        return make()
+    with suppress(unreadable):
+        kept = read(file)
+        with suppress(OSError):  # of another owner
+            os.utime(file)  # its last use, by which caches are kept small
+        return kept
+    made = make()
+    if worth(made):
+        with suppress(OSError):
+            file.parent.mkdir(parents=True, exist_ok=True)
+            write(made, file)
+    return made
