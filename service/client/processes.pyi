@@ -146,6 +146,7 @@ class Processes(Surface):
         scene: SceneLike,
         *,
         speed_rpm: Sequence[float],
+        orders: int = ...,
         band: bool = ...,
         sensitivities: bool = ...,
         housing_damping: Sequence[float] = ...,
@@ -153,7 +154,6 @@ class Processes(Surface):
         mount_stiffness: Sequence[float] = ...,
         bearing_stiffness: Sequence[float] = ...,
         mesh_damping: Sequence[float] = ...,
-        orders: int = ...,
         radiation: Literal["monopoles", "equivalent_radiated_power"] = ...,
         boundary_elements: bool = ...,
     ) -> DynamicsRadiatedSound: ...

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import Annotated, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, Strict, model_validator
 
 from service.schemas.model import BoundaryModel, refuse
 
@@ -27,3 +27,15 @@ class OverSpeeds(BoundaryModel):
             shown = list(self.speed_rpm)[:8]
             refuse("speed_rpm", shown, "strictly increasing", "Sort the list and drop repeats.")
         return self
+
+
+class OverOrders(OverSpeeds):
+    """Inputs of a study of mesh orders over speeds at which the shafts turn."""
+
+    speed_rpm: Annotated[tuple[TurningSpeed, ...], Strict(False)] = Field(
+        min_length=1,
+        max_length=MOST_SPEEDS,
+        description="Speeds of the first driven shaft in rpm, increasing",
+        examples=[[300.0, 600.0, 900.0]],
+    )
+    orders: Orders = Field(default=10, description="Harmonics of the mesh frequency", examples=[10])

@@ -7,9 +7,8 @@ from dataclasses import replace
 from typing import Any
 
 from dynamics.acoustics import BoundaryElements, ElementalRadiators, EquivalentRadiatedPower, RadiationModel
-from dynamics.assembly.assemble import assemble
 from dynamics.housing_modes import ReducedHousing
-from dynamics.linearize import ForcedResponse, forced_response
+from dynamics.linearize import ForcedResponse
 from dynamics.noise import (
     HousingRadiation,
     RadiatedSound,
@@ -27,8 +26,8 @@ from service.studies.computation import Computation, Means
 from service.studies.noise import Inputs
 from service.studies.noise.figures import facts
 from service.studies.noise.uncertainty import uncertainty
+from service.studies.response.run import response_of
 from service.studies.result_file import array_file
-from service.units import RPM
 
 Json = dict[str, Any]
 PLANE, MONOPOLES = EquivalentRadiatedPower(), ElementalRadiators()
@@ -47,12 +46,7 @@ def noise_of(subject: TabledScene, inputs: Inputs, means: Means) -> RadiatedSoun
         No housing has a surface.
     """
     with boundary_errors():
-        response = forced_response(
-            assemble(subject.scene),
-            [value * RPM for value in inputs.speed_rpm],
-            inputs.orders,
-            progress=lambda fraction: means.report("response", fraction),
-        )
+        response = response_of(subject.scene, inputs, means)
         sounds, compared, radiation = [], {}, {}
         began = time.process_time()
         for part in subject.scene.housings:

@@ -10,15 +10,15 @@ from dynamics.assembly.assemble import assemble
 from dynamics.linearize import ForcedResponse, Peak, PowerBalance, forced_response, peaks
 from dynamics.scene import Scene
 from service.convert.case import boundary_errors
+from service.schemas.speeds import OverOrders
 from service.studies.computation import Computation, Means
-from service.studies.response import Inputs
 from service.studies.result_file import array_file
 from service.units import N_PER_UM, RPM, UM
 
 Json = dict[str, Any]
 
 
-def response_of(scene: Scene, inputs: Inputs, means: Means) -> ForcedResponse:
+def response_of(scene: Scene, inputs: OverOrders, means: Means) -> ForcedResponse:
     """Return the forced response of a scene."""
     with boundary_errors():
         return forced_response(

@@ -2,23 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from pydantic import Field
 
-from pydantic import Field, Strict
-
-from service.schemas.speeds import MOST_SPEEDS, Orders, OverSpeeds, TurningSpeed
+from service.schemas.speeds import OverOrders
 
 
-class Inputs(OverSpeeds):
+class Inputs(OverOrders):
     """Speeds at which a housing's vibration is looked for, and where its parts are."""
 
-    speed_rpm: Annotated[tuple[TurningSpeed, ...], Strict(False)] = Field(
-        min_length=1,
-        max_length=MOST_SPEEDS,
-        description="Speeds of the first driven shaft in rpm, increasing",
-        examples=[[300.0, 600.0, 900.0]],
-    )
-    orders: Orders = Field(default=10, description="Harmonics of the mesh frequency", examples=[10])
     housing: str | None = Field(
         default=None, max_length=255, description="Name of the housing; default: the first with a surface"
     )

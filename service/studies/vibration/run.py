@@ -10,9 +10,7 @@ from typing import Any
 import numpy as np
 
 from bounds.types import FloatArray, Json
-from dynamics.assembly.assemble import assemble
 from dynamics.housing_modes import ReducedHousing, write_surface
-from dynamics.linearize import forced_response
 from dynamics.vibration import (
     SurfaceShape,
     VibrationAnalysis,
@@ -28,6 +26,7 @@ from service.convert.scene import TabledScene
 from service.problems import BadInput
 from service.schemas.scene import SceneInput
 from service.studies.computation import Computation, Means
+from service.studies.response.run import response_of
 from service.studies.result_file import record_file
 from service.studies.vibration import Inputs
 from service.units import RPM
@@ -71,12 +70,7 @@ def vibration_of(tabled: TabledScene, inputs: Inputs, means: Means) -> HousingVi
     """
     name, housing = chosen(tabled, inputs.housing)
     with boundary_errors():
-        response = forced_response(
-            assemble(tabled.scene),
-            [value * RPM for value in inputs.speed_rpm],
-            inputs.orders,
-            progress=lambda fraction: means.report("response", fraction),
-        )
+        response = response_of(tabled.scene, inputs, means)
         began = time.process_time()
         found = analyze_vibration(
             response,
