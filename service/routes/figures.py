@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request
@@ -13,6 +12,7 @@ from service.access import Scope
 from service.live.order import LiveOrder
 from service.problems import DamagedFile, LiveUnavailable, NotFound, QueueFull
 from service.routes.context import Ctx
+from service.routes.kept_answers import VERSION, kept_answer
 from service.routes.refusals import documented
 from service.routes.response_headers import described_headers
 from service.routes.results import HASH, Key, known_result
@@ -22,7 +22,6 @@ from service.version import program_tag
 
 FIGURES = "service.report.as_json:stored_figures"
 COMPARISON = "service.comparison.as_json:stored_comparison"
-_VERSION = ("ETag", "Cache-Control")
 
 router = APIRouter(tags=["results"], route_class=ScopedRoute)
 
@@ -35,9 +34,9 @@ router = APIRouter(tags=["results"], route_class=ScopedRoute)
         200: {
             "model": ReportBody,
             "description": "The report",
-            "headers": described_headers(*_VERSION),
+            "headers": described_headers(*VERSION),
         },
-        304: {"description": "Not modified", "headers": described_headers(*_VERSION)},
+        304: {"description": "Not modified", "headers": described_headers(*VERSION)},
         **documented(NotFound, QueueFull, LiveUnavailable, DamagedFile),
     },
 )
@@ -61,11 +60,4 @@ async def result_figures(
         other = await run_in_threadpool(known_result, context, against)
         tag, order = tag + other.sha256, LiveOrder(COMPARISON, {"files": [str(stored.path), str(other.path)]})
     tag = f'"{tag}-figures-{program_tag()}"'
-    headers = {"ETag": tag, "Cache-Control": "no-cache"}
-    if tag in request.headers.get("if-none-match", ""):
-        return Response(status_code=304, headers=headers)
-    body = await run_in_threadpool(context.kept.find, tag)
-    if body is None:
-        body = await asyncio.wrap_future(context.live.ask(order))
-        await run_in_threadpool(context.kept.keep, tag, body)
-    return Response(body, media_type="application/json", headers=headers)
+    return await kept_answer(request, context, tag, order, "application/json")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import base64
 import hashlib
 import json
@@ -16,6 +15,7 @@ from service.access import Scope
 from service.live.order import LiveOrder
 from service.problems import BadInput, DamagedFile, LiveUnavailable, NotFound, QueueFull
 from service.routes.context import Ctx
+from service.routes.kept_answers import VERSION, kept_answer
 from service.routes.media_types import WAV
 from service.routes.refusals import documented
 from service.routes.response_headers import described_headers
@@ -25,7 +25,6 @@ from service.version import program_tag
 
 SOUND = "service.runs.stored_sound:stored_sound"
 _NAME = 200  # characters
-_VERSION = ("ETag", "Cache-Control")
 
 router = APIRouter(tags=["results"], route_class=ScopedRoute)
 
@@ -43,9 +42,9 @@ def _named(description: str) -> object:
         200: {
             "description": "The WAV file: 32-bit floats, 48 kHz; its comment states quantity and full scale",
             "content": {WAV: {"schema": FILE}},
-            "headers": described_headers(*_VERSION),
+            "headers": described_headers(*VERSION),
         },
-        304: {"description": "Not modified", "headers": described_headers(*_VERSION)},
+        304: {"description": "Not modified", "headers": described_headers(*VERSION)},
         **documented(NotFound, BadInput, QueueFull, LiveUnavailable, DamagedFile),
     },
 )
@@ -67,13 +66,10 @@ async def result_sound(
     view = {"quantity": quantity, "bearing": bearing, "mesh": mesh, "direction": direction}
     named = json.dumps([*(one.sha256 for one in stored), view, program_tag()])
     tag = f'"{hashlib.sha256(named.encode()).hexdigest()}-sound"'
-    headers = {"ETag": tag, "Cache-Control": "no-cache"}
-    if tag in request.headers.get("if-none-match", ""):
-        return Response(status_code=304, headers=headers)
-    body = await run_in_threadpool(context.kept.find, tag)
-    if body is None:
-        order = LiveOrder(SOUND, {"files": [str(one.path) for one in stored], "view": view})
-        answer = await asyncio.wrap_future(context.live.ask(order))
-        body = base64.b64decode(json.loads(answer)["wav"])
-        await run_in_threadpool(context.kept.keep, tag, body)
-    return Response(body, media_type=WAV, headers=headers)
+    order = LiveOrder(SOUND, {"files": [str(one.path) for one in stored], "view": view})
+    return await kept_answer(request, context, tag, order, WAV, _wav)
+
+
+def _wav(answer: bytes) -> bytes:
+    """Return the file in the answer of a worker."""
+    return base64.b64decode(json.loads(answer)["wav"])
