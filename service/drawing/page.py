@@ -12,7 +12,7 @@ from html import escape
 
 from service.drawing.figure import Figure, Table
 from service.drawing.interactive import plotly_figure
-from service.drawing.player import player, player_script
+from service.drawing.player import player, player_script, player_style
 from service.drawing.plotly_script import plotly_script
 from service.drawing.style import STYLE
 
@@ -82,11 +82,13 @@ Promise.all(drawn).then(() => { document.documentElement.dataset.drawn = "yes"; 
 def html(page: Page, images: dict[str, bytes]) -> str:
     """Write `page`; `images` are the PNG bytes of every figure by its key."""
     body = "\n".join(_section(section, index, images) for index, section in enumerate(page.sections, start=1))
+    heard = any(figure.sound for section in page.sections for figure in section.figures)
+    style = STYLE + player_style() if heard else STYLE
     return "\n".join(
         [
             '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
-            f'<title>{escape(page.title)}</title>\n<link rel="icon" href="data:,">\n<style>{STYLE}</style>',
+            f'<title>{escape(page.title)}</title>\n<link rel="icon" href="data:,">\n<style>{style}</style>',
             "<noscript><style>.plot { display: none; } .still { display: block; }</style></noscript>",
             f"<script>{plotly_script()}</script>\n</head>\n<body>",
             '<a class="skip" href="#main">Skip to the results</a>',
@@ -94,7 +96,7 @@ def html(page: Page, images: dict[str, bytes]) -> str:
             f'<main id="main">\n{body}\n</main>',
             "<footer>Written by lineofaction. This page needs no network.</footer>",
             f"<script>{_SCRIPT}</script>",
-            player_script() if any(f.sound for section in page.sections for f in section.figures) else "",
+            player_script() if heard else "",
             "</body>\n</html>\n",
         ]
     )

@@ -11,7 +11,7 @@ from service.drawing.figure import Figure, Sound, numbers
 from service.page.files import page_file
 
 Json = dict[str, Any]
-SCRIPT = "player.js"
+SCRIPT, STYLE_SHEET = "player.js", "player.css"
 """The page of the service has the same."""
 # In this page players stand in the document: the script joins them to their plot once that is drawn.
 _JOINED = """
@@ -52,6 +52,16 @@ def sound_json(sound: Sound) -> Json:
 
 def player_script() -> str:
     """Return the script that joins players and plots, as a module."""
-    file = page_file(SCRIPT)
-    assert file is not None, SCRIPT
-    return f'<script type="module">{file.content.decode("utf-8")}{_JOINED}</script>'
+    return f'<script type="module">{_text(SCRIPT)}{_JOINED}</script>'
+
+
+def player_style() -> str:
+    """Return the style sheet of players and cursor."""
+    return _text(STYLE_SHEET)
+
+
+def _text(name: str) -> str:
+    """Return a file of the service's page."""
+    file = page_file(name)
+    assert file is not None, name
+    return file.content.decode("utf-8")

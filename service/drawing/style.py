@@ -29,16 +29,8 @@ nav ol { columns: 2; padding-left: 1.3rem; margin: .3rem 0; }
 figure { margin: 1.2rem 0 2.2rem; }
 figcaption { max-width: 44rem; color: var(--muted); font-size: .92rem; }
 .plot { width: 100%; }
-.cursor { position: absolute; width: 2px; margin-left: -1px; background: #d55e00; pointer-events: none; }
 .player { margin: .6rem 0; }
-.player label { display: block; margin: .3rem 0; }
-.player fieldset { border: 0; padding: 0; margin: 0; }
-.player legend { float: left; margin-right: 1rem; }
-.player fieldset label { display: inline-block; margin: 0 1rem 0 0; }
-.player audio { vertical-align: middle; max-width: 100%; }
-.player output { font-variant-numeric: tabular-nums; }
 .player p { color: var(--muted); font-size: .92rem; }
-.player [hidden] { display: none; }
 .still { display: none; max-width: 100%; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-size: .92rem; font-variant-numeric: tabular-nums;
