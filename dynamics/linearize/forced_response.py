@@ -134,18 +134,24 @@ def forced_response(
         "effect_ledger": ledger,
         **system.corrections,
     }
-    plain = {f.name: getattr(response, f.name) for f in fields(response)}
     return ForcedResponse(
-        **plain,
+        **{f.name: getattr(response, f.name) for f in fields(response)},
         excitation_difference=_difference(response, other),
         natural_frequency=frequency,
-        power_source=power.source,
-        power_input=power.input,
-        power_sink=power.sink,
-        power_sink_kind=power.kind,
-        power_loss=power.loss,
+        **_power_fields(power),
         facts=facts,
     )
+
+
+def _power_fields(power: PowerBalance) -> Json:
+    """Return the fields of a forced response that keep its power balance."""
+    return {
+        "power_source": power.source,
+        "power_input": power.input,
+        "power_sink": power.sink,
+        "power_sink_kind": power.kind,
+        "power_loss": power.loss,
+    }
 
 
 def _halves(progress: Callable[[float], None] | None) -> Callable[[float], Callable[[float], None] | None]:

@@ -18,7 +18,7 @@ from dynamics.checks import positive
 from dynamics.errors import InputError
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.noise.coarse_hull import RadiatingHull, radiating_hull
-from dynamics.noise.knots import constant_knots, knots_between
+from dynamics.noise.knots import Knots, constant_knots, knots_between
 from dynamics.noise.outer_hull import OuterHull, outer_hull
 from dynamics.results.array_file import ArrayFile, Stored
 from dynamics.types import FloatArray, Json
@@ -106,19 +106,16 @@ def housing_radiation(
     began = time.process_time()
     outer = outer_hull(housing)
     surface = outer.shapes.T @ (outer.hull.areas[:, None] * outer.shapes)
-    plane = cast(ComplexArray, air.impedance * surface)
     resolved = _resolved(outer, model, air)
-    modes, parts, most = housing.modes[1], [], 0
-    for first, last in _octaves(low, min(high, resolved)):
-        hull = radiating_hull(outer, last, air.sound_speed)
-        by_model = partial(_resistance, model, hull, air)
-        parts.append(knots_between(first, last, by_model, modes))
-        most = max(most, len(hull.hull.triangles))
-        if progress is not None:
-            progress(((last - low) / (high - low)) ** 2)
+    done = progress or (lambda _fraction: None)
+
+    def reached(frequency: float) -> None:
+        done(((frequency - low) / (high - low)) ** 2)
+
+    parts, most = _resolved_parts(outer, model, air, (low, min(high, resolved)), housing.modes[1], reached)
     if high > resolved:
         first = max(low, float(np.nextafter(resolved, np.inf)))
-        parts.append(constant_knots(first, high, plane))
+        parts.append(constant_knots(first, high, cast(ComplexArray, air.impedance * surface)))
     facts: Json = {
         "resolved_frequency": resolved,
         "interpolation_error": 0.25 * max(part.error for part in parts),
@@ -136,6 +133,24 @@ def housing_radiation(
         model.model_name,
         facts,
     )
+
+
+def _resolved_parts(
+    outer: OuterHull,
+    model: RadiationModel,
+    air: Air,
+    band: tuple[float, float],
+    modes: FloatArray,
+    reached: Callable[[float], None],
+) -> tuple[list[Knots], int]:
+    """Return the knots of each octave of a band, Hz, and the most panels of one."""
+    parts, most = [], 0
+    for first, last in _octaves(*band):
+        hull = radiating_hull(outer, last, air.sound_speed)
+        parts.append(knots_between(first, last, partial(_resistance, model, hull, air), modes))
+        most = max(most, len(hull.hull.triangles))
+        reached(last)
+    return parts, most
 
 
 def _octaves(low: float, high: float) -> list[tuple[float, float]]:

@@ -163,19 +163,13 @@ def _result(
     valid = VALID * float(np.max(housing.frequency, initial=0.0))
     about = {"model_name": radiation.model_name, "area": radiation.area, "valid_frequency": valid}
     return RadiatedSound(
-        (name,),
-        names,
-        (name,) * found.natural_frequency.size,
-        response.speed,
-        response.order,
-        response.frequency,
-        found.power,
-        found.efficiency,
-        found.bearing_share,
-        found.bearing_alone,
-        found.mode_share,
-        found.mode_alone,
-        found.natural_frequency,
-        response.in_contact,
-        {"radiation": {name: about | radiation.facts}},
+        housing=(name,),
+        bearing=names,
+        mode_housing=(name,) * found.natural_frequency.size,
+        speed=response.speed,
+        order=response.order,
+        frequency=response.frequency,
+        in_contact=response.in_contact,
+        facts={"radiation": {name: about | radiation.facts}},
+        **vars(found),
     )
