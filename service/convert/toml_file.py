@@ -1,12 +1,15 @@
-"""The text of a case or scene file, read as routes answer it; by a worker if the text is long."""
+"""The text of a case or scene file with the files that it names, read as routes answer it."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from service.convert.case import case_json
 from service.schemas import Case
-from service.schemas.reading import validated
+from service.schemas.file_content import FileContentInput
+from service.schemas.named_files import Find, given_files, own_name
+from service.schemas.reading import read_text, validated, written_out
 from service.schemas.scene import SceneInput
 from service.schemas.toml_table import toml_table
 
@@ -14,11 +17,46 @@ Json = dict[str, Any]
 
 
 def case_of_toml(inputs: Json) -> Json:
-    """Return the case in a text with all defaults; raises `BadInput`."""
-    return {"case": case_json(validated(Case, toml_table(inputs["toml"], "toml")))}
+    """Return the case in ``{"toml": ..., "files": [...]}`` with all defaults; raises `BadInput`."""
+    return {"case": case_json(validated(Case, _table(inputs, written_out)))}
 
 
 def scene_of_toml(inputs: Json) -> Json:
-    """Return the scene in a text as it was written, without defaults; raises `BadInput`."""
-    scene = validated(SceneInput, toml_table(inputs["toml"], "toml"))
+    """Return the scene in ``{"toml": ..., "files": [...]}`` as it was written, without defaults.
+
+    The names of case files that are not among the files stay: a scene read elsewhere may have them.
+
+    Raises
+    ------
+    BadInput
+        With every fault of the text, or a file that it names is missing, damaged or holds something else.
+    """
+    names = {own_name(file["name"]) for file in inputs["files"]}
+    scene = validated(SceneInput, _table(inputs, lambda table, find: _with_cases(table, find, names)))
     return {"scene": scene.model_dump(mode="json", exclude_unset=True)}
+
+
+def _table(inputs: Json, with_files: Callable[[Json, Find], Json]) -> Json:
+    """Return the table of a text with what it names as files."""
+    with given_files([validated(FileContentInput, file) for file in inputs["files"]]) as find:
+        return with_files(toml_table(inputs["toml"], "toml"), find)
+
+
+def _with_cases(table: Json, find: Find, names: set[str]) -> Json:
+    """Return the table of a scene with all that it names written out, of cases those among `names`."""
+    table, meshes = written_out(table, find), table.get("meshes")
+    if not isinstance(meshes, list):
+        return table
+    return table | {
+        "meshes": [_with_case(mesh, find, names, f"meshes[{i}]") for i, mesh in enumerate(meshes)]
+    }
+
+
+def _with_case(mesh: object, find: Find, names: set[str], field: str) -> object:
+    """Return the table of a mesh with its case in place of the name of its file."""
+    name = mesh.get("case_file") if isinstance(mesh, dict) else None
+    if not isinstance(mesh, dict) or not isinstance(name, str) or own_name(name) not in names:
+        return mesh
+    field = f"{field}.case_file"
+    case = written_out(toml_table(read_text(find(name, field)), field), find)
+    return {key: value for key, value in mesh.items() if key != "case_file"} | {"case": case}

@@ -6,7 +6,7 @@ import asyncio
 from typing import Annotated, Any
 
 from fastapi import APIRouter
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, Field, Strict
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import JSONResponse, Response
 
@@ -20,6 +20,7 @@ from service.routes.media_types import JSON
 from service.routes.refusals import documented
 from service.routes.scopes import ScopedRoute, needs
 from service.schemas import Case
+from service.schemas.file_content import FileContentInput
 from service.schemas.model import BoundaryModel
 from service.schemas.named import Named
 from service.schemas.offers import ExampleBody
@@ -29,6 +30,7 @@ from service.worker.process import on_demand
 
 _LONGEST_READ_HERE = 65_536
 """Characters; so many take 0.1 s at most."""
+_MOST_FILES = 16
 
 router = APIRouter(tags=["cases"], route_class=ScopedRoute)
 case_json, outline_json = (
@@ -52,6 +54,17 @@ class TomlBody(BoundaryModel):
     """The text of a case file."""
 
     toml: str = Field(max_length=4_000_000, description="TOML", examples=["[pair]\nnormal_module_mm = 4.0\n"])
+
+
+class CaseText(TomlBody):
+    """The text of a case file, and the files that it names."""
+
+    files: Annotated[tuple[FileContentInput, ...], Strict(False)] = Field(
+        default=(),
+        max_length=_MOST_FILES,
+        description="The files that the text names, found by their names without folders",
+        examples=[[]],
+    )
 
 
 class CaseBody(BaseModel):
@@ -81,15 +94,15 @@ def case_outline(body: CaseRequest) -> Response:
     responses=documented(QueueFull, LiveUnavailable),
 )
 @needs(Scope.READ)
-async def case_from_toml(body: TomlBody, context: Ctx) -> Response:
-    """Read the case in a file's text, with all defaults; files that it names cannot be read here."""
+async def case_from_toml(body: CaseText, context: Ctx) -> Response:
+    """Read the case in a file's text and in the files that it names, with all defaults."""
     return await read_toml("service.convert.toml_file:case_of_toml", body, context)
 
 
-async def read_toml(entry: str, body: TomlBody, context: Context) -> Response:
-    """Read a short text in a thread, a long one in a process of its own, for reading holds all others up."""
-    inputs = {"toml": body.toml}
-    if len(body.toml) <= _LONGEST_READ_HERE:
+async def read_toml(entry: str, body: CaseText, context: Context) -> Response:
+    """Read a short text in a thread, else in a process of its own: reading holds all others up."""
+    inputs = body.model_dump(mode="json")
+    if len(body.toml) <= _LONGEST_READ_HERE and not body.files:
         return JSONResponse(await run_in_threadpool(on_demand(entry), inputs))
     answer = await asyncio.wrap_future(context.reader.ask(LiveOrder(entry, inputs)))
     return Response(answer, media_type=JSON)
@@ -114,5 +127,5 @@ def explained(handler: Any, model: type[BaseModel]) -> None:
 
 
 explained(case_outline, CaseRequest)
-explained(case_from_toml, TomlBody)
+explained(case_from_toml, CaseText)
 explained(case_to_toml, CaseRequest)

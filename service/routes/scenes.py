@@ -11,7 +11,7 @@ from starlette.responses import Response
 from service.access import Scope
 from service.convert.toml import toml_text
 from service.problems import LiveUnavailable, QueueFull
-from service.routes.cases import TomlBody, explained, read_toml
+from service.routes.cases import CaseText, TomlBody, explained, read_toml
 from service.routes.context import Ctx
 from service.routes.refusals import documented
 from service.routes.scopes import ScopedRoute, needs
@@ -38,6 +38,10 @@ class SceneToml(TomlBody):
     """The text of a scene file."""
 
 
+class SceneText(CaseText):
+    """The text of a scene file, and the files that it names."""
+
+
 class SceneBody(BaseModel):
     """A scene as it was given, without defaults."""
 
@@ -51,8 +55,8 @@ class SceneBody(BaseModel):
     responses=documented(QueueFull, LiveUnavailable),
 )
 @needs(Scope.READ)
-async def scene_from_toml(body: SceneToml, context: Ctx) -> Response:
-    """Read the scene in a file's text; files that it names cannot be read here."""
+async def scene_from_toml(body: SceneText, context: Ctx) -> Response:
+    """Read the scene in a file's text and in the files that it names; names of cases not given stay."""
     return await read_toml("service.convert.toml_file:scene_of_toml", body, context)
 
 
@@ -63,5 +67,5 @@ def scene_to_toml(body: SceneRequest) -> SceneToml:
     return SceneToml(toml=toml_text(body.inputs.scene.model_dump(mode="json", exclude_unset=True)))
 
 
-explained(scene_from_toml, SceneToml)
+explained(scene_from_toml, SceneText)
 explained(scene_to_toml, SceneRequest)

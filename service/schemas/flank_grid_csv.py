@@ -1,6 +1,6 @@
 """Free-form flanks as CSV files beside a case file: read and written out in the case.
 
-Only files on the caller's own disk name other files; what goes over HTTP holds the grid itself.
+What is sent to be computed holds the grid itself.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from service.problems import BadInput
+from service.schemas.named_files import Find
 
 FIELD = "flank_grid_csv"
 COLUMNS = ("roll_length_mm", "face_position_mm", "removed_um")
@@ -20,7 +21,7 @@ Table = dict[str, Any]
 
 
 def with_flank_grids(
-    table: Table, folder: Path, read_text: Callable[[Path], str], prefix: str = ""
+    table: Table, find: Find, read_text: Callable[[Path], str], prefix: str = ""
 ) -> dict[str, Any]:
     """Return `table` with `flank_grid` in place of every `flank_grid_csv`, at any depth.
 
@@ -28,8 +29,8 @@ def with_flank_grids(
     ----------
     table : dict
         A case or scene as read from a file.
-    folder : Path
-        What the names of the CSV files are relative to.
+    find : callable
+        Returns where the CSV file of a name is.
     read_text : callable
         Returns the text of a file or raises `BadInput`.
     place : str
@@ -40,7 +41,7 @@ def with_flank_grids(
     BadInput
         A file that cannot be read or holds no complete grid.
     """
-    resolved = {key: _inside(value, folder, read_text, _joined(prefix, key)) for key, value in table.items()}
+    resolved = {key: _inside(value, find, read_text, _joined(prefix, key)) for key, value in table.items()}
     if FIELD not in table:
         return resolved
     field, name = _joined(prefix, FIELD), resolved.pop(FIELD)
@@ -48,19 +49,20 @@ def with_flank_grids(
         raise BadInput.of(field, name, "the name of a CSV file in quotes", _HELP)
     if "flank_grid" in table:
         raise BadInput.of(field, name, "left out when flank_grid is given", "Give one of the two.")
+    file = find(name, field)
     try:
-        text = read_text(folder / name)
+        text = read_text(file)
     except BadInput as error:
         raise error.within(field) from None
     return resolved | {"flank_grid": flank_grid(text, field, name)}
 
 
-def _inside(value: object, folder: Path, read_text: Callable[[Path], str], prefix: str) -> object:
+def _inside(value: object, find: Find, read_text: Callable[[Path], str], prefix: str) -> object:
     """Look for grids inside a table or a list."""
     if isinstance(value, dict):
-        return with_flank_grids(value, folder, read_text, prefix)
+        return with_flank_grids(value, find, read_text, prefix)
     if isinstance(value, list):
-        return [_inside(item, folder, read_text, f"{prefix}[{i}]") for i, item in enumerate(value)]
+        return [_inside(item, find, read_text, f"{prefix}[{i}]") for i, item in enumerate(value)]
     return value
 
 

@@ -1,6 +1,6 @@
 """Housings as files beside a scene file: matrices and solids are read and written out in the scene.
 
-Only files on the caller's own disk name other files; what goes over HTTP holds their content itself.
+What is sent to be computed holds their content itself.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from dynamics.solid_housing import MESH_SUFFIXES, STEP_SUFFIXES
 from host import MissingExtra
 from service.problems import BadInput
 from service.schemas.file_content import FileContentInput
+from service.schemas.named_files import Find
 from service.units import MM, as_typed
 
 ROWS = "stiffness_matrix"
@@ -22,7 +23,7 @@ STEP_FILE, MESH_FILE = "step_file", "mesh_file"
 Table = dict[str, Any]
 
 
-def with_housing_files(table: Table, folder: Path) -> Table:
+def with_housing_files(table: Table, find: Find) -> Table:
     """Return the table of a scene with the content of the housings' files in place of their names.
 
     Raises
@@ -33,10 +34,10 @@ def with_housing_files(table: Table, folder: Path) -> Table:
     housings = table.get("housings")
     if not isinstance(housings, list):
         return table
-    return table | {"housings": [_written_out(housing, folder, i) for i, housing in enumerate(housings)]}
+    return table | {"housings": [_written_out(housing, find, i) for i, housing in enumerate(housings)]}
 
 
-def _written_out(housing: object, folder: Path, index: int) -> object:
+def _written_out(housing: object, find: Find, index: int) -> object:
     """One housing with the content of its file."""
     named = [field for field in READERS if isinstance(housing, dict) and not _is_content(housing.get(field))]
     if not isinstance(housing, dict) or not named:
@@ -48,7 +49,7 @@ def _written_out(housing: object, folder: Path, index: int) -> object:
         others = " and ".join((ROWS, *(other for other in READERS if other != named[0])))
         raise BadInput.of(field, name, f"left out when {others} is given", "Keep one of them.")
     own = {key: value for key, value in housing.items() if key != named[0] or key == MODES_FILE}
-    return READERS[named[0]](own, folder / name, field)
+    return READERS[named[0]](own, find(name, field), field)
 
 
 def _is_content(value: object) -> bool:

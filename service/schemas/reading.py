@@ -14,6 +14,7 @@ from service.schemas.faults import faults_of
 from service.schemas.flank_grid_csv import with_flank_grids
 from service.schemas.housing_file import with_housing_files
 from service.schemas.lines import located
+from service.schemas.named_files import Find, beside
 from service.schemas.toml_table import toml_table
 
 M = TypeVar("M", bound=BaseModel)
@@ -103,5 +104,15 @@ def read_model(model: type[M], source: Path | InputFile) -> M:
     table = read_table(file)
     _check_kind(model, table, file.path)
     with located(file):
-        table = with_flank_grids(table, file.folder, read_text)
-        return validated(model, with_housing_files(table, file.folder))
+        return validated(model, written_out(table, beside(file.folder)))
+
+
+def written_out(table: dict[str, Any], find: Find) -> dict[str, Any]:
+    """Return a table with the content of the flank grids and housings that it names as files.
+
+    Raises
+    ------
+    BadInput
+        A file is missing, or holds something else.
+    """
+    return with_housing_files(with_flank_grids(table, find, read_text), find)

@@ -82,6 +82,28 @@ def test_a_scene_file_is_opened_and_what_it_names_by_file_is_refused(visit: Visi
     assert visit.complaints == []
 
 
+def test_files_chosen_with_a_scene_go_with_it(visit: Visit) -> None:
+    page = visit.page
+    scene, case = (EXAMPLE.with_name(f"{name}.toml") for name in ("palermo_scene", "palermo_spur_20_20"))
+    page.locator("#scene-file").set_input_files([case, scene])
+    expect(page.get_by_label("Scene, TOML")).to_have_value(scene.read_text(encoding="utf-8"))
+    expect(page.get_by_text("With palermo_spur_20_20.toml.")).to_be_visible()
+    sent: list[Any] = []
+
+    def refuse(route: Route) -> None:
+        sent.append(route.request.post_data_json["inputs"]["scene"])
+        route.fulfill(status=422, json={"title": "Not now", "status": 422})
+
+    page.route("**/processes/simulate/execution", refuse)
+    page.get_by_label("Compute", exact=True).select_option("simulate")
+    page.get_by_role("button", name="Compute the scene").press("Enter")
+    expect(page.locator("#scene-body [role=alert]")).to_contain_text("Not now")
+    page.unroute("**/processes/simulate/execution")
+    (mesh,) = sent[0]["meshes"]
+    assert mesh["case"]["pair"]["pinion"]["teeth"] == 20
+    assert mesh.get("case_file") is None
+
+
 def test_a_gear_unit_is_deflected_under_the_load_cases_of_its_file(visit: Visit) -> None:
     page = visit.page
     sent: list[Any] = []

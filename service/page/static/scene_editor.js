@@ -5,6 +5,7 @@ import { card } from "./card.js";
 import { evenly, usualScene } from "./dynamics.js";
 import { byId, make, save } from "./elements.js";
 import { showFailure } from "./job.js";
+import { textAndFiles } from "./named_files.js";
 
 const WHAT = [
   ["simulate", "Run over time"], ["modes", "Modes over speed"], ["response", "Forced response over speed"],
@@ -12,6 +13,8 @@ const WHAT = [
   ["steady", "Steady states over speed"], ["deflect", "Deflection under its loads"],
   ["study", "Many runs, at constant speeds"],
 ];
+/** By which the text of a scene is known. */
+const SCENE = /^\s*\[\[\s*shafts\s*\]\]/m;
 const FIELDS = [
   { name: "process", label: "Compute", choices: WHAT },
   { name: "from", label: "Speeds from, rpm", value: "300" },
@@ -27,7 +30,10 @@ export class SceneEditor {
     });
     this.refusal = make("div");
     this.spectrum = make("p", { class: "hint", role: "status" });
+    this.chosen = make("p", { class: "hint", role: "status" });
     this.cases = [];
+    /** Files that the scene names, as they go with its text. */
+    this.files = [];
     this.fromPair = make("button", { type: "button", disabled: true, onclick: () => this.write() }, "Write the scene of the pair above");
     byId("scene-body").replaceChildren(card(
       { title: "A scene of your own", action: "Compute the scene", text: HELP, fields: FIELDS, more: this.parts() },
@@ -44,7 +50,8 @@ export class SceneEditor {
 
   parts() {
     const chosen = make("input", {
-      class: "hidden-file", id: "scene-file", type: "file", accept: ".toml", "aria-label": "Open a scene file, TOML",
+      class: "hidden-file", id: "scene-file", type: "file", multiple: true,
+      "aria-label": "Open a scene file, TOML, and the files that it names",
       onchange: () => this.opened(chosen),
     });
     const row = make(
@@ -53,7 +60,7 @@ export class SceneEditor {
       make("button", { type: "button", onclick: () => save(this.text.value, "scene.toml", "application/toml") }, "Save scene"),
     );
     const label = make("label", { for: "scene-text", class: "above" }, "Scene, TOML");
-    return [row, label, this.text, this.spectrum, this.refusal];
+    return [row, this.chosen, label, this.text, this.spectrum, this.refusal];
   }
 
   /**
@@ -71,6 +78,7 @@ export class SceneEditor {
   async put(scene, name = "", cases = []) {
     await this.careful(async () => {
       this.text.value = (await post("/v1/scenes/to-toml", { inputs: { scene } })).toml;
+      this.with([]);
       this.under(name, cases);
       document.dispatchEvent(new Event("typed"));
     });
@@ -84,12 +92,23 @@ export class SceneEditor {
     this.spectrum.replaceChildren(...(cases.length ? [words, leave] : []));
   }
 
+  /** Say which files go with the text. */
+  with(files) {
+    this.files = files;
+    this.chosen.replaceChildren(...(files.length ? [`With ${files.map(({ name }) => name).join(", ")}.`] : []));
+  }
+
+  /** Open a scene with the files that it names; files without one belong to the scene that is here. */
   async opened(chosen) {
-    const [given] = chosen.files;
-    if (!given) return;
-    this.text.value = await given.text();
-    this.under("", []);
+    if (!chosen.files.length) return;
+    const { text, name, files } = await textAndFiles(chosen.files, SCENE);
     chosen.value = "";
+    const others = this.files.filter((known) => !files.some((file) => file.name === known.name));
+    this.with(name ? files : [...others, ...files]);
+    if (name) {
+      this.text.value = text;
+      this.under("", []);
+    }
     document.dispatchEvent(new Event("typed"));
     await this.careful(() => this.read());
   }
@@ -99,7 +118,7 @@ export class SceneEditor {
   }
 
   async read() {
-    return (await post("/v1/scenes/from-toml", { toml: this.text.value })).scene;
+    return (await post("/v1/scenes/from-toml", { toml: this.text.value, files: this.files })).scene;
   }
 
   /** Do something that the service may refuse; say so under the text. */
@@ -140,5 +159,6 @@ const RESPONSES = [
 ];
 
 const HELP = "Shafts, gears, bearings, meshes, drives and loads as in a scene file. A mesh carries its pair written out "
-  + "([meshes.case]) or names a result of this service (database_hash); files that it names are not read here. "
+  + "([meshes.case]), names a result of this service (database_hash) or a file: choose the files of cases, flanks "
+  + "and housings (STEP, mesh) together with the scene. "
   + "Speeds are those of the first driven shaft.";

@@ -20,6 +20,7 @@ from service.convert.outline import outline_json
 from service.convert.toml import toml_text
 from service.page.examples import examples
 from service.schemas import Case
+from service.schemas.file_content import FileContentInput
 from service.schemas.reading import validated
 from service.schemas.scene import SceneInput
 from service.settings import Settings
@@ -157,6 +158,13 @@ def test_a_scene_file_read_and_written_is_the_same_scene(client: TestClient, nam
     written = client.post("/v1/scenes/to-toml", json={"inputs": {"scene": read}}).json()["toml"]
     assert validated(SceneInput, tomllib.loads(written)) == validated(SceneInput, tomllib.loads(text))
     assert "sample_rate_hz" not in written or "sample_rate_hz" in text, "no defaults are added"
+
+
+def test_the_files_that_a_scene_names_are_read_with_it(client: TestClient) -> None:
+    scene, case = (ROOT / "examples" / f"{name}.toml" for name in ("palermo_scene", "palermo_spur_20_20"))
+    files = [FileContentInput.of(case).model_dump(mode="json")]
+    read = client.post("/v1/scenes/from-toml", json={"toml": scene.read_text("utf-8"), "files": files})
+    assert read.json()["scene"]["meshes"][0]["case"]["pair"]["pinion"]["teeth"] == 20
 
 
 def test_a_scene_that_is_none_is_refused_by_field(client: TestClient) -> None:

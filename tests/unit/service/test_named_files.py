@@ -1,0 +1,84 @@
+"""Texts with the files that they name: read as beside one another on disk, and nothing else is read."""
+
+from __future__ import annotations
+
+import base64
+import zlib
+from pathlib import Path
+
+import pytest
+
+from service.convert.toml_file import case_of_toml, scene_of_toml
+from service.problems import BadInput
+from service.schemas import Case, SceneInput, read_model
+from service.schemas.file_content import FileContentInput
+
+ROOT = Path(__file__).parents[3]
+SCENE = ROOT / "examples" / "palermo_scene.toml"
+CASE = SCENE.with_name("palermo_spur_20_20.toml")
+BOX = """
+[[housings]]
+name = "box"
+material = "gray_cast_iron"
+step_file = "cad/box.step"
+seats = [{bearing = "input left", bore_diameter_mm = 62.0, bore_length_mm = 18.0}]
+feet = [{name = "base", point_mm = [0.0, -80.0, 0.0], normal = [0.0, -1.0, 0.0]}]
+"""
+GRID = "roll_length_mm,face_position_mm,removed_um\n10,0,0\n10,20,1\n20,0,2\n20,20,3\n"
+
+
+def packed(name: str, content: bytes) -> dict[str, str]:
+    return {"name": name, "content": base64.b64encode(zlib.compress(content)).decode()}
+
+
+def test_the_case_of_a_mesh_is_written_out():
+    files = [packed(CASE.name, CASE.read_bytes())]
+    scene = scene_of_toml({"toml": SCENE.read_text("utf-8"), "files": files})["scene"]
+    assert SceneInput.model_validate(scene).meshes[0].case == read_model(Case, CASE)
+    assert "case_file" not in scene["meshes"][0]
+
+
+def test_a_case_that_is_not_given_stays_a_name():
+    scene = scene_of_toml({"toml": SCENE.read_text("utf-8"), "files": []})["scene"]
+    assert scene["meshes"][0]["case_file"] == CASE.name
+
+
+def test_the_solid_of_a_housing_is_written_out_by_its_own_name():
+    content = b"ISO-10303-21;\n" * 50
+    given = {"toml": SCENE.read_text("utf-8") + BOX, "files": [packed(r"C:\parts\box.step", content)]}
+    (housing,) = scene_of_toml(given)["scene"]["housings"]
+    assert housing["step_file"]["name"] == "box.step"
+    assert FileContentInput.model_validate(housing["step_file"]).unpacked() == content
+
+
+def test_a_flank_of_a_case_is_read_from_its_file():
+    text = CASE.read_text("utf-8").replace("[pair.pinion]", '[pair.pinion]\nflank_grid_csv = "flank.csv"')
+    case = case_of_toml({"toml": text, "files": [packed("flank.csv", GRID.encode())]})["case"]
+    assert case["pair"]["pinion"]["flank_grid"]["removed_um"] == [[0.0, 1.0], [2.0, 3.0]]
+
+
+@pytest.mark.parametrize("name", ["/etc/hostname.step", "../box.step", "box.stp", "..", ""])
+def test_nothing_is_read_but_what_is_given(tmp_path, monkeypatch, name):
+    (tmp_path / "inner").mkdir()
+    (tmp_path / "box.step").write_text("solid")
+    monkeypatch.chdir(tmp_path / "inner")
+    text = SCENE.read_text("utf-8") + BOX.replace("cad/box.step", name)
+    for files in ([], [packed("other.step", b"solid")]):
+        with pytest.raises(BadInput) as refused:
+            scene_of_toml({"toml": text, "files": files})
+        assert [fault.field for fault in refused.value.faults] == ["housings[0].step_file"]
+
+
+@pytest.mark.parametrize(
+    ("files", "field"),
+    [
+        ([packed("a.step", b"1"), packed("folder/a.step", b"2")], "files[1].name"),
+        ([packed("..", b"1")], "files[0].name"),
+        ([packed("a\0.step", b"1")], "files[0].name"),
+        ([{"name": "a.step", "content": "no zlib"}], "files[0].content"),
+    ],
+)
+def test_files_that_are_none_are_refused_by_field(files, field):
+    with pytest.raises(BadInput) as refused:
+        scene_of_toml({"toml": "", "files": files})
+    assert [fault.field for fault in refused.value.faults] == [field]
