@@ -39,6 +39,11 @@ class ElementalRadiators:
         """Return the name by which results are listed."""
         return "rayleigh_integral" if self.baffled else "monopoles"
 
+    @property
+    def solid_angle(self) -> float:
+        """Return that into which each panel radiates, sr."""
+        return 2.0 * np.pi if self.baffled else 4.0 * np.pi
+
     def resistance(self, hull: Hull, frequency: float, shapes: ComplexArray, air: Air) -> ComplexArray:
         """Return rho c k^2 / (2 pi or 4 pi) Q^H [sin(kr)/(kr)] Q with the volume velocities Q = S v_n.
 
@@ -54,8 +59,8 @@ class ElementalRadiators:
             total = mutual_resistance(hull.centers, volume_velocity, wavenumber)
         else:
             total = self._by_pairs(hull, volume_velocity, wavenumber)
-        solid_angle = 2.0 * np.pi if self.baffled else 4.0 * np.pi
-        return np.asarray(air.impedance * wavenumber**2 / solid_angle * 0.5 * (total + total.conj().T))
+        scale = 0.5 * air.impedance * wavenumber**2 / self.solid_angle
+        return np.asarray(scale * (total + total.conj().T))
 
     def _by_pairs(self, hull: Hull, volume_velocity: ComplexArray, wavenumber: float) -> ComplexArray:
         """Return Q^H [sin(kr)/(kr)] Q over all pairs of panels."""

@@ -101,10 +101,15 @@ class Hull:
         """Return the lengths of the edges, (T, 3), m."""
         return np.asarray(np.linalg.norm(self.corners - np.roll(self.corners, 1, axis=1), axis=2))
 
+    @property
+    def longest_edge(self) -> float:
+        """Return the length of the longest edge, m."""
+        return float(self._edges.max())
+
     @cached_property
     def highest_wavenumber(self) -> float:
         """Return the wavenumber at which `PANELS_PER_WAVELENGTH` longest edges make a wavelength, 1/m."""
-        return float(2.0 * np.pi / (PANELS_PER_WAVELENGTH * self._edges.max()))
+        return float(2.0 * np.pi / (PANELS_PER_WAVELENGTH * self.longest_edge))
 
     @property
     def closed(self) -> bool:

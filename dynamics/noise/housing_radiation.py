@@ -106,7 +106,7 @@ def housing_radiation(
     began = time.process_time()
     outer = outer_hull(housing)
     surface = outer.shapes.T @ (outer.hull.areas[:, None] * outer.shapes)
-    resolved = _resolved(outer, model, air)
+    resolved = 0.0 if isinstance(model, EquivalentRadiatedPower) else resolved_frequency(outer, air)
     done = progress or (lambda _fraction: None)
 
     def reached(frequency: float) -> None:
@@ -170,8 +170,6 @@ def _resistance(model: RadiationModel, hull: RadiatingHull, air: Air, frequency:
     return resistance(model, hull.hull, frequency, cast(ComplexArray, hull.shapes), air)
 
 
-def _resolved(outer: OuterHull, model: RadiationModel, air: Air) -> float:
-    """Return the frequency up to which the panels resolve the wavelength, Hz; ERP needs no model."""
-    if isinstance(model, EquivalentRadiatedPower):
-        return 0.0
+def resolved_frequency(outer: OuterHull, air: Air) -> float:
+    """Return the frequency up to which the panels resolve the wavelength, Hz."""
     return outer.hull.highest_wavenumber * air.sound_speed / (2.0 * np.pi) * ROUNDED_DOWN

@@ -17,7 +17,6 @@ from dynamics.noise.housing_radiation import HousingRadiation
 from dynamics.results.array_file import ArrayFile, Stored
 from dynamics.types import BoolArray, FloatArray, Json
 from dynamics.vibration import seat_forces
-from dynamics.vibration.housing_vibration import VALID
 from dynamics.vibration.modal_amplitudes import modal_amplitudes
 
 POWER = ("speed", "order")
@@ -160,8 +159,11 @@ def _result(
     name: str,
 ) -> RadiatedSound:
     """Put the result of one housing together."""
-    valid = VALID * float(np.max(housing.frequency, initial=0.0))
-    about = {"model_name": radiation.model_name, "area": radiation.area, "valid_frequency": valid}
+    about = {
+        "model_name": radiation.model_name,
+        "area": radiation.area,
+        "valid_frequency": housing.valid_frequency,
+    }
     return RadiatedSound(
         housing=(name,),
         bearing=names,

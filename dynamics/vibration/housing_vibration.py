@@ -16,9 +16,6 @@ from dynamics.vibration.points import point_rows
 from dynamics.vibration.seat_forces import ComplexArray, seat_forces
 from dynamics.vibration.surface_weight import mean_square, surface_weight
 
-VALID = 0.7
-"""Of the highest frequency kept: to it a reduction follows the whole mesh within 1 %."""
-
 
 @dataclass(frozen=True)
 class HousingVibration:
@@ -40,7 +37,7 @@ class HousingVibration:
     mean_square_velocity : (S, H) array
         Of the surface, normal to it, mean over area and time, m^2/s^2; 0 without a surface.
     highest_valid_frequency : float
-        `VALID` times the highest frequency kept, Hz.
+        `ReducedHousing.valid_frequency`, Hz.
     """
 
     point: tuple[str, ...]
@@ -122,5 +119,5 @@ def housing_vibration(
         force,
         np.einsum("kcr,shr->kcsh", rows, rate),
         mean_square(rate, weight),
-        VALID * float(np.max(housing.frequency, initial=0.0)),
+        housing.valid_frequency,
     )

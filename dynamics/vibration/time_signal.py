@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import factorial
 
@@ -116,15 +116,28 @@ def motion_signal(
     InputError
         Shapes differ, times are not uniform, a force is no number, or the housing has no mass.
     """
+    return np.concatenate(list(motion_pieces(housing, time, force, rows, quantity)))
+
+
+def motion_pieces(
+    housing: ReducedHousing,
+    time: FloatArray,
+    force: FloatArray,
+    rows: FloatArray,
+    quantity: MotionQuantity = MotionQuantity.VELOCITY,
+) -> Iterator[FloatArray]:
+    """Yield what `motion_signal` returns in pieces (P, q) of at most `PIECE` samples, one after the other.
+
+    Many rows of a long run then take little memory. Parameters and errors are those of `motion_signal`.
+    """
     times, forces = np.asarray(time, dtype=float), np.asarray(force, dtype=float)
     step = _checked_step(times, forces, housing)
     natural, shape = housing.modes
     damping = shape.T @ housing.damping @ shape
-    push = shape[: housing.motions].T
+    push, seen = shape[: housing.motions].T, (np.asarray(rows) @ shape).T
     propagator = _propagator(natural, damping, push, step)
     derivatives = _derivatives(times, forces, step)
     state = np.concatenate([_at_rest(natural, push @ forces[0]) * propagator.scale, np.zeros(natural.size)])
-    response = np.empty((times.size, len(rows)))
     for first in range(0, times.size, PIECE):
         states, state = _advance(propagator, derivatives[:, first : first + PIECE], state)
         amplitude = states[:, : natural.size] / propagator.scale
@@ -132,8 +145,7 @@ def motion_signal(
         if quantity is MotionQuantity.ACCELERATION:
             amplitude = forces[first : first + PIECE] @ push.T - rate @ damping.T - amplitude * natural**2
         chosen = rate if quantity is MotionQuantity.VELOCITY else amplitude
-        response[first : first + PIECE] = chosen @ (np.asarray(rows) @ shape).T
-    return response
+        yield chosen @ seen
 
 
 def _checked_step(time: FloatArray, force: FloatArray, housing: ReducedHousing) -> float:
