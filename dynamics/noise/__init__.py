@@ -3,16 +3,17 @@
 from dynamics.noise.coarse_hull import RadiatingHull, coarse_hull, radiating_hull
 from dynamics.noise.guesses import GUESSES, Guess
 from dynamics.noise.housing_radiation import HousingRadiation, housing_radiation
+from dynamics.noise.housing_recordings import pressure_recording, velocity_recording
 from dynamics.noise.kept import kept_radiation
 from dynamics.noise.loudest import LoudPoint, loudest
 from dynamics.noise.model_comparison import models_at, panels_at
 from dynamics.noise.outer_hull import OuterHull, outer_hull
-from dynamics.noise.point_recording import velocity_recording
 from dynamics.noise.radiated_sound import RadiatedSound, radiated_sound
 from dynamics.noise.sensitivities import DesignFigure, Sensitivity, ranked, sensitivity
 from dynamics.noise.several_housings import together
 from dynamics.noise.sound_band import SoundBand, largest_level, sound_band, usual_ranges
 from dynamics.noise.sound_model import SoundModel, forced_power, radiated_power
+from dynamics.noise.sound_pressure import pressure_signal, pressure_transfer, sound_limit
 
 __all__ = [
     "GUESSES",
@@ -35,12 +36,16 @@ __all__ = [
     "models_at",
     "outer_hull",
     "panels_at",
+    "pressure_recording",
+    "pressure_signal",
+    "pressure_transfer",
     "radiated_power",
     "radiated_sound",
     "radiating_hull",
     "ranked",
     "sensitivity",
     "sound_band",
+    "sound_limit",
     "together",
     "usual_ranges",
     "velocity_recording",

@@ -1,22 +1,27 @@
-"""The velocity of a point of a housing as a recording: the force through the transfer function."""
+"""What a housing makes of a run, as recordings: the force through transfer functions."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+from functools import cache
 from types import SimpleNamespace
 from typing import cast
 
 import numpy as np
 import pytest
+from hulls import box
 from reduced_housings import PAIR, random_housing
+from sounding_housings import smooth_motion, with_surface
 
 from dynamics.errors import InputError
-from dynamics.noise import velocity_recording
+from dynamics.noise import pressure_recording, pressure_transfer, sound_limit, velocity_recording
 from dynamics.results import RunResult
 from dynamics.vibration import housing_motion, run_seat_forces
 
 RATE, HERTZ = 25_600.0, (400.0, 800.0, 2000.0, 10_000.0)  # the last: 2.56 samples per period
 TENTH_DB = 10.0 ** (0.1 / 20.0) - 1.0
 AXIS = np.array([2.0, -1.0, 0.5])
+MICROPHONE = np.array([0.6, 0.8, -0.2])
 
 
 def run_of(scale: float = 1.0) -> RunResult:
@@ -73,3 +78,47 @@ def test_what_the_housing_or_the_run_does_not_have_is_refused() -> None:
         velocity_recording(housing, run, "a", bearings=PAIR[:2])
     with pytest.raises(InputError, match="not all zero"):
         velocity_recording(housing, run, "a", np.zeros(3))
+
+
+@cache
+def sounding():
+    """A box valid up to some 2100 Hz."""
+    bare, hull = random_housing(), box((0.36, 0.24, 0.18), (9, 6, 5))
+    return with_surface(bare, hull, smooth_motion(hull, len(bare.stiffness)))
+
+
+def test_orders_of_the_sound_pressure_are_those_of_the_force_through_the_transfer_function() -> None:
+    housing, run = sounding(), run_of()
+    heard = pressure_recording(housing, run, MICROPHONE)
+    assert heard.unit == "Pa"
+    where = "sound pressure at (0.600, 0.800, -0.200) m in the free field, panels as monopoles"
+    assert heard.quantity == f"{where}, up to {sound_limit(housing):.0f} Hz"
+    force = run_seat_forces(run, housing).T
+    for hertz in HERTZ:
+        found = abs(amplitude(heard.samples, heard.sample_rate, hertz))
+        transfer = pressure_transfer(housing, MICROPHONE, np.array([hertz]))[0]
+        expected = abs(transfer @ amplitude(force, RATE, hertz))
+        if hertz < sound_limit(housing):
+            assert found == pytest.approx(expected, rel=TENTH_DB), hertz
+        else:
+            assert found < 1e-4 * expected
+
+
+def test_the_sound_pressure_of_bearings_adds_up_with_its_phase() -> None:
+    housing, run = sounding(), run_of()
+    parts = []
+    for silent in (slice(0, 1), slice(1, None)):
+        alone = run_of()
+        alone.bearing_force[silent] = 0.0
+        parts.append(pressure_recording(housing, alone, MICROPHONE).samples)
+    whole = pressure_recording(housing, run, MICROPHONE)
+    np.testing.assert_allclose(whole.samples, np.sum(parts, axis=0), atol=1e-9 * whole.peak)
+
+
+def test_housings_that_do_not_sound_are_refused() -> None:
+    run = run_of()
+    with pytest.raises(InputError, match="with a surface"):
+        pressure_recording(random_housing(), run, MICROPHONE)
+    stiff = replace(sounding(), frequency=np.empty(0))
+    with pytest.raises(InputError, match="valid_frequency"):
+        pressure_recording(stiff, run, MICROPHONE)
