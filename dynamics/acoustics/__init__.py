@@ -25,6 +25,7 @@ from dynamics.acoustics.run_recording import (
     principal_direction,
     series_recording,
 )
+from dynamics.acoustics.sound_pressure_level import sound_pressure_level
 from dynamics.acoustics.sound_quality import SoundQuality, loudness_over_time, sound_quality
 from dynamics.acoustics.wav import common_full_scale, read_wav, wav_file, write_wav
 
@@ -68,6 +69,7 @@ __all__ = [
     "series_recording",
     "sound_power",
     "sound_power_level",
+    "sound_pressure_level",
     "sound_quality",
     "sphere_efficiency",
     "surface_pressure",

@@ -72,8 +72,9 @@ def pressure_recording(
     """Return the sound pressure at a microphone in the free field over a run, in Pa.
 
     Its orders are those of the forces through `pressure_transfer` within 0.1 dB, delayed by the way through
-    the air. It holds nothing above `sound_limit`, which its quantity states: there modes or panels are
-    missing. As in `velocity_recording`, the run may have moved in another housing.
+    the air. It holds nothing above `sound_limit`, where modes or panels are missing, nor above the pass
+    frequency of the run's output; its quantity states the lower. As in `velocity_recording`, the run may
+    have moved in another housing.
 
     Parameters
     ----------
@@ -91,7 +92,8 @@ def pressure_recording(
     InputError
         As `run_seat_forces`, `pressure_signal` and `series_recording`; or the housing has no modes.
     """
-    rate, limit = FINER * run.sample_rate, positive("valid_frequency", sound_limit(housing, air))
+    rate, valid = FINER * run.sample_rate, positive("valid_frequency", sound_limit(housing, air))
+    limit = min(valid, float(run.receipt["sampling"]["pass_frequency"]))
     time, force = _finer_forces(run, housing, bearings)
     pressure = pressure_signal(housing, time, force, microphone, model, air)
     x, y, z = np.asarray(microphone, dtype=float)

@@ -10,36 +10,36 @@ from typing import Any
 from bounds import engineering
 from dynamics.acoustics import Recording, wav_file
 from dynamics.results import RunResult
+from service.cli.listen_sounds import RunSound, bearing_sounds
+from service.cli.listen_through_housing import HousingReceiver, housing_sounds
 from service.cli.output import check_writable, console, print_json, table
 from service.comparison.compare import named_files
-from service.drawing.figure import number, unit_of
+from service.drawing.figure import number
 from service.problems import BadInput
 from service.report.inputs import read_result
-from service.runs.loudest import Loudest, loudest
 from service.runs.run_view import RunView
-from service.runs.sound import Heard, full_scale_of, heard_runs
+from service.runs.sound import full_scale_of
 
 Json = dict[str, Any]
-FAINT = 1e-3
-"""Of the overall level: weaker orders are not printed."""
 
 
-def run_listen(files: Sequence[Path], output: Path, view: RunView, *, as_json: bool) -> None:
+def run_listen(
+    files: Sequence[Path], output: Path, view: RunView, receiver: HousingReceiver | None, *, as_json: bool
+) -> None:
     """Read the runs, write a WAV file of each on one full scale, print what they hold."""
     paths = _outputs(files, output)
-    heard = heard_runs({name: _run(file) for name, file in named_files(files)}, view)
-    recordings = [one.recording() for one in heard]
-    scale = full_scale_of(recordings)
+    runs = {name: _run(file) for name, file in named_files(files)}
+    sounds, remark = bearing_sounds(runs, view) if receiver is None else housing_sounds(runs, receiver, view)
+    scale = full_scale_of([sound.recording for sound in sounds])
     if output.suffix != ".wav":
         output.mkdir(exist_ok=True)
-    for path, recording in zip(paths, recordings, strict=True):
-        path.write_bytes(wav_file(recording, scale))
-    moments = [loudest(one.run, one.signal) for one in heard]
+    for path, sound in zip(paths, sounds, strict=True):
+        path.write_bytes(wav_file(sound.recording, scale))
     if as_json:
-        listed = zip(paths, recordings, moments, strict=True)
-        print_json({"full_scale": scale, "files": [_facts(*one) for one in listed]})
+        listed = [_facts(path, sound) for path, sound in zip(paths, sounds, strict=True)]
+        print_json({"full_scale": scale, "remark": remark, "files": listed})
         return
-    _show(heard, recordings, moments, scale)
+    _show(sounds, scale, remark)
     for path in paths:
         console().print(f"written to {path}", highlight=False)
 
@@ -80,53 +80,35 @@ def _rms(recording: Recording) -> float:
     return math.sqrt(float((recording.samples**2).mean()))
 
 
-def _facts(path: Path, recording: Recording, moment: Loudest | None) -> Json:
+def _facts(path: Path, sound: RunSound) -> Json:
     """Return what a file holds, in its unit."""
-    facts: Json = {
+    recording = sound.recording
+    return {
         "file": str(path),
         "quantity": recording.quantity,
         "unit": recording.unit,
         "rms": _rms(recording),
         "duration_s": recording.samples.size / recording.sample_rate,
         "sample_rate_hz": recording.sample_rate,
-        "loudest": None,
+        **sound.facts,
     }
-    if moment is not None:
-        orders = {str(order): value for order, value in moment.orders.items()}
-        facts["loudest"] = {"time_s": moment.time, "rms": moment.overall, "orders_rms": orders}
-    return facts
 
 
-def _show(
-    heard: Sequence[Heard], recordings: Sequence[Recording], moments: Sequence[Loudest | None], scale: float
-) -> None:
+def _show(sounds: Sequence[RunSound], scale: float, remark: str) -> None:
     """Print the figures for people."""
-    out, unit = console(), recordings[0].unit
+    out, unit = console(), sounds[0].recording.unit
+    more = list(dict.fromkeys(name for sound in sounds for name in sound.cells))
     rows = [
         [
-            one.name,
-            engineering(_rms(made), 4),
-            f"{made.samples.size / made.sample_rate:.3f}",
-            *_moment(moment),
+            sound.name,
+            engineering(_rms(sound.recording), 4),
+            f"{sound.recording.samples.size / sound.recording.sample_rate:.3f}",
+            *(sound.cells.get(name, "") for name in more),
         ]
-        for one, made, moment in zip(heard, recordings, moments, strict=True)
+        for sound in sounds
     ]
-    columns = ["run", f"rms, {unit}", "s", "loudest at", f"orders there, dB re 1 {unit} rms"]
-    out.print(table(columns, rows, words=("run", columns[-1])))
-    for quantity in dict.fromkeys(one.quantity for one in recordings):
+    columns = ["run", f"rms, {unit}", "s", *more]
+    out.print(table(columns, rows, words=("run", *more[-1:])))
+    for quantity in dict.fromkeys(sound.recording.quantity for sound in sounds):
         out.print(quantity, highlight=False, soft_wrap=True)
-    out.print(
-        f"full scale: {number(scale)} {unit}; loudness is that of a sound pressure alone", highlight=False
-    )
-
-
-def _moment(moment: Loudest | None) -> tuple[str, str]:
-    """Say where a run is loudest, and the levels of its orders there."""
-    if moment is None:
-        return "", "too short for orders"
-    levels = [
-        f"{order}x {20.0 * math.log10(value):.1f}"
-        for order, value in moment.orders.items()
-        if value > FAINT * moment.overall
-    ]
-    return f"{number(moment.where, 4)} {unit_of(moment.axis.label)}", ", ".join(levels)
+    out.print(f"full scale: {number(scale)} {unit}; {remark}", highlight=False, soft_wrap=True)

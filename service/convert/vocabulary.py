@@ -101,6 +101,7 @@ _LAST = _fields_of(*_ANYWHERE) | {
     "radial_clearance": "radial_clearance_um",
     "seat_positions": "seat_positions_mm",
     "point": "point_mm",
+    "microphone": "microphone_mm",
     "low": "low_mm",
     "high": "high_mm",
     "backlash": "backlash_um",

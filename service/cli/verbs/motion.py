@@ -14,6 +14,7 @@ from service.cli.verbs.options import AsJson, TableService
 from service.cli.verbs.overrides import SceneFile, overridable
 
 if TYPE_CHECKING:
+    from service.cli.listen_through_housing import HousingReceiver
     from service.runs.run_view import RunView
 
 verbs = typer.Typer()
@@ -37,7 +38,8 @@ class HeardOptions:
     direction: Annotated[
         str,
         typer.Option(
-            help="Direction at the bearing: x, y, z or principal.", show_default="in which it varies most"
+            help="Direction at the bearing or point: x, y, z or principal.",
+            show_default="in which it varies most",
         ),
     ] = ""
 
@@ -47,6 +49,34 @@ class HeardOptions:
         from service.runs.run_view import RunView  # noqa: PLC0415 (start-up time)
 
         return RunView(self.quantity, self.bearing, self.mesh, direction=self.direction)
+
+
+@dataclass(frozen=True)
+class HousingOptions:
+    """Where a run is heard through the housings of a scene."""
+
+    scene: Annotated[
+        Path | None,
+        typer.Option(help="Scene file whose housings the forces on bearings move.", show_default="none"),
+    ] = None
+    point: Annotated[
+        str, typer.Option(help="Point of a housing whose velocity is heard.", show_default="none")
+    ] = ""
+    microphone: Annotated[
+        str,
+        typer.Option(
+            metavar="X,Y,Z",
+            help="Where the sound pressure is heard, in mm in the frame of the scene: free field.",
+            show_default="none",
+        ),
+    ] = ""
+
+    @property
+    def receiver(self) -> HousingReceiver | None:
+        """What the options name."""
+        from service.cli.listen_through_housing import housing_receiver  # noqa: PLC0415 (start-up time)
+
+        return housing_receiver(self.scene, self.point, self.microphone)
 
 
 @verbs.command(epilog="Example: loa simulate examples/palermo_scene.toml -o run.nc")
@@ -78,9 +108,10 @@ def listen(
         typer.Option("-o", "--output", help="WAV file, or folder of one file per run, named as the run."),
     ],
     heard: HeardOptions,
+    housing: HousingOptions,
     json: AsJson = False,
 ) -> None:
     """Write runs as WAV files of stated quantity and level, to hear and to compare by ear."""
     from service.cli.listen import run_listen  # noqa: PLC0415 (start-up time)
 
-    run_listen(runs, output, heard.view, as_json=json)
+    run_listen(runs, output, heard.view, housing.receiver, as_json=json)

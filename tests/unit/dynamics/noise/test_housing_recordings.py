@@ -36,6 +36,7 @@ def run_of(scale: float = 1.0) -> RunResult:
         bearing=PAIR,
         bearing_force=force,
         bearing_moment=np.empty((0, 3, time.size)),
+        receipt={"sampling": {"pass_frequency": 0.4 * RATE}},
     )
     return cast(RunResult, run)
 

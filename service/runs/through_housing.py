@@ -1,0 +1,94 @@
+"""Runs heard through the housings of a scene: at a point of one, or at a microphone in the air."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from dynamics.acoustics import Recording
+from dynamics.housing_modes import scene_housing
+from dynamics.noise import pressure_recording, velocity_recording
+from dynamics.results import RunResult
+from service.convert.case import boundary_errors
+from service.problems import BadInput
+from service.runs.run_view import DIRECTIONS, PRINCIPAL
+from service.units import MM
+
+if TYPE_CHECKING:
+    from dynamics.housing_modes import ReducedHousing
+
+ADVICE = (
+    "Give a housing by step_file, mesh_file or modes_file: matrices alone do not say what the air touches."
+)
+SAME = 1e-6
+"""Largest difference between matrices of the same housing, of their largest entry."""
+
+
+@dataclass(frozen=True)
+class SceneHousings:
+    """The reduced housings of a scene by name, and the bearings in the order of their seats."""
+
+    housings: Mapping[str, ReducedHousing]
+    bearings: Mapping[str, tuple[str, ...]]
+
+    def pressure(self, run: RunResult, microphone_mm: tuple[float, ...]) -> Recording:
+        """Return the sound pressure at a microphone in the scene's frame, the sum over the housings.
+
+        Raises
+        ------
+        BadInput
+            The microphone is not in the air, the run has no forces on bearings of a housing, or no housing
+            has a surface.
+        """
+        position = np.array(microphone_mm) * MM
+        with boundary_errors():
+            heard = [
+                pressure_recording(body, run, position, self.bearings[name])
+                for name, body in self.housings.items()
+                if body.surface is not None
+            ]
+        if not heard:
+            raise BadInput.of("housings", list(self.bearings), "at least one with a surface", ADVICE)
+        quantity = "; ".join(dict.fromkeys(one.quantity for one in heard))
+        return replace(heard[0], samples=np.sum([one.samples for one in heard], axis=0), quantity=quantity)
+
+    def velocity(self, run: RunResult, point: str, direction: str = "") -> Recording:
+        """Return the velocity of a named point along one of `DIRECTIONS`, by default the principal one.
+
+        Raises
+        ------
+        BadInput
+            No housing or several have such a point, or there is no such direction.
+        """
+        owners = [name for name, body in self.housings.items() for one in body.points if one.name == point]
+        if len(owners) != 1:
+            names = [one.name for body in self.housings.values() for one in body.points]
+            bound = f"the name of one point; known: {', '.join(names) or 'none'}"
+            raise BadInput.of("point", point, bound, "Name points in the housing's table of the scene.")
+        if direction and direction not in DIRECTIONS:
+            raise BadInput.of("direction", direction, f"one of {', '.join(DIRECTIONS)}")
+        axis = None if direction in ("", PRINCIPAL) else np.eye(3)[DIRECTIONS.index(direction)]
+        with boundary_errors():
+            return velocity_recording(
+                self.housings[owners[0]], run, point, axis, bearings=self.bearings[owners[0]]
+            )
+
+    def strangers(self, run: RunResult) -> tuple[str, ...]:
+        """Return the names of housings in which a run did not move: its forces lack what they do to them."""
+        moved = {part["name"]: part for part in run.case.get("housings", ())}
+        return tuple(name for name, body in self.housings.items() if not _same(body, moved.get(name)))
+
+
+def _same(body: ReducedHousing, part: dict[str, Any] | None) -> bool:
+    """Whether a part of a stored scene has a housing's matrices at the seats: signs of modes are free."""
+    if part is None or part["mass"] is None:
+        return False
+    own, seats = vars(scene_housing(body, part["name"])), slice(body.motions)
+    for name in ("stiffness", "mass", "damping"):
+        mine, other = (np.array(of[name], dtype=float)[seats, seats] for of in (own, part))
+        if mine.shape != other.shape or np.abs(mine - other).max() > SAME * np.abs(mine).max():
+            return False
+    return True
