@@ -10,12 +10,11 @@ from dynamics.simulation import interrupted_run, simulate_to_file
 from dynamics.types import RunStatus
 from service.cli.interrupt import until_interrupted
 from service.cli.output import Report, check_netcdf_output, console, print_json, print_result, progress_bar
-from service.cli.run_effects import effect_lines
 from service.cli.run_headlines import run_headlines
 from service.cli.scene_tables import scene_with_tables
 from service.cli.warned import warnings_so_far
 from service.client.portable import scene_of
-from service.convert.effect_lines import run_lines
+from service.convert.run_effects import model_lines
 from service.convert.runs import run_json, staged
 from service.convert.stamp import stamp
 from service.input_file import InputFile
@@ -55,8 +54,7 @@ def _show(facts: dict[str, Any]) -> None:
     """Print a run for people."""
     out = console()
     attributes, sizes = facts["attributes"], facts["dimensions"]
-    ledger = attributes.get("effect_ledger", {})
-    for line in (*effect_lines(ledger), *run_lines(attributes)):
+    for line in model_lines(attributes):
         out.print(line, highlight=False, soft_wrap=True)
     status = str(attributes["status"]).lower().replace("_", " ")
     out.print(f"run {status}: {sizes['time']} samples", highlight=False)

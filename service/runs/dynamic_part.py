@@ -157,7 +157,7 @@ def ledger_section(ledger: Mapping[str, Any]) -> Section:
         for entry in ledger.get("entries", ())
     ]
     left_out = ledger.get("left_out", {})
-    return effects_section("", rows, (facts("Not in the model of the run", left_out),))
+    return effects_section("", rows, (facts("Not in the model", left_out),))
 
 
 def _accuracy(run: RunResult) -> Table:

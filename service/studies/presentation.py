@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from fe_contact.ste import SteDatabase
+from service.convert.effect_lines import run_lines
 from service.drawing.figure import Figure, Table
 from service.drawing.page import Headline, Page, Section
+from service.runs.dynamic_part import ledger_section
 
 
 @dataclass(frozen=True)
@@ -36,6 +38,12 @@ class Presentation:
     beside: Callable[[Any, SteDatabase], Page] | None = None
 
 
-def dynamics_page(title: str, figures: tuple[Figure, ...], headlines: tuple[Headline, ...]) -> Page:
-    """Return the page of a study of a scene that is its figures."""
-    return Page("Dynamics of geared shafts", "", headlines, (Section(title, figures=figures),))
+def dynamics_page(
+    title: str, figures: tuple[Figure, ...], headlines: tuple[Headline, ...], facts: Mapping[str, Any]
+) -> Page:
+    """Return the page of a study of a scene: its figures, the effects of the scene, and what does not hold.
+
+    `facts` hold `effect_ledger`.
+    """
+    sections = Section(title, figures=figures), ledger_section(facts["effect_ledger"])
+    return Page("Dynamics of geared shafts", "", headlines, sections, tuple(run_lines(facts)))

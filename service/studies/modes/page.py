@@ -8,7 +8,7 @@ import numpy as np
 
 from bounds import engineering, leftover
 from dynamics.linearize import ModalAnalysis
-from service.convert.effect_lines import run_lines
+from service.convert.run_effects import model_lines
 from service.drawing import palette
 from service.drawing.figure import Axis, Dash, Figure, FloatArray, Line, Note, Panel, Table, number
 from service.drawing.mode_bars import mode_bars
@@ -261,11 +261,11 @@ def _text(modes: ModalAnalysis) -> Iterator[Table | str]:
         yield ""
         yield critical_table(modes)
     yield f"cost {engineering(sum(modes.facts['seconds'].values()), 3)} CPU s"
-    yield from run_lines(modes.facts)
+    yield from model_lines(modes.facts)
 
 
 PAGE = Presentation(
     lambda modes: modal_figures(modes)[0],
-    lambda modes: dynamics_page("Modes", modal_figures(modes), headlines(modes)),
+    lambda modes: dynamics_page("Modes", modal_figures(modes), headlines(modes), modes.facts),
     _text,
 )

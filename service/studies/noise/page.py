@@ -7,10 +7,9 @@ from dataclasses import replace
 
 from bounds import engineering
 from dynamics.noise import LoudPoint, RadiatedSound, loudest
-from service.convert.effect_lines import run_lines
+from service.convert.run_effects import model_lines
 from service.drawing.figure import Figure, Table, number
 from service.drawing.page import Headline, Page, Part, Section
-from service.runs.dynamic_part import ledger_section
 from service.studies.noise.drawings import RPM, bearing_levels, level_over_speed, sound_map, third_octaves
 from service.studies.noise.uncertainty_tables import uncertainty_tables
 from service.studies.presentation import Presentation, dynamics_page
@@ -130,7 +129,7 @@ def _text(sound: RadiatedSound) -> Iterator[Table | str]:
     yield from uncertainty_tables(sound.facts)
     yield from (f"no sensitivity to {name}: {why}" for name, why in _missing(sound))
     yield f"cost {engineering(sum(sound.facts['seconds'].values()), 3)} CPU s"
-    yield from run_lines(sound.facts)
+    yield from model_lines(sound.facts)
 
 
 def _missing(sound: RadiatedSound) -> tuple[tuple[str, str], ...]:
@@ -140,15 +139,14 @@ def _missing(sound: RadiatedSound) -> tuple[tuple[str, str], ...]:
 
 def page(sound: RadiatedSound) -> Page:
     """Return the report: figures, bands and sensitivities, effects, and what the levels rest on."""
-    whole = dynamics_page("Sound power", _figures(sound), headlines(sound))
+    whole = dynamics_page("Sound power", _figures(sound), headlines(sound), sound.facts)
     tables = tuple(uncertainty_tables(sound.facts))
     if missing := _missing(sound):
         tables += (Table("No sensitivity", ("to", "because"), missing),)
     bands = (Section("Bands, and what 1 dB costs", tables=tables),) if tables else ()
     rests = Table("Radiation models, and what the levels do not hold", ("what", "how"), tuple(limits(sound)))
     accuracy = Section("Accuracy of the levels", tables=(rests,), part=Part.ACCURACY)
-    sections = (*whole.sections, *bands, ledger_section(sound.facts["effect_ledger"]), accuracy)
-    return replace(whole, sections=sections, alarms=tuple(run_lines(sound.facts)))
+    return replace(whole, sections=(*whole.sections, *bands, accuracy))
 
 
 PAGE = Presentation(

@@ -8,7 +8,7 @@ import numpy as np
 
 from bounds import engineering, leftover
 from dynamics.linearize import ForcedResponse, peaks
-from service.convert.effect_lines import run_lines
+from service.convert.run_effects import model_lines
 from service.drawing import palette
 from service.drawing.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Table, number
 from service.drawing.page import Headline
@@ -180,11 +180,13 @@ def _text(response: ForcedResponse) -> Iterator[Table | str]:
     left = response.power.residual
     yield f"residual of the solves {leftover(response.residual)}, of the power balance {leftover(left)}"
     yield f"cost {engineering(sum(response.facts['seconds'].values()), 3)} CPU s"
-    yield from run_lines(response.facts)
+    yield from model_lines(response.facts)
 
 
 PAGE = Presentation(
     response_figure,
-    lambda response: dynamics_page("Forced response", _figures(response), headlines(response)),
+    lambda response: dynamics_page(
+        "Forced response", _figures(response), headlines(response), response.facts
+    ),
     _text,
 )

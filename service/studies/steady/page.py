@@ -9,7 +9,7 @@ import numpy as np
 from bounds import engineering, leftover
 from dynamics.periodic import SteadyStates
 from dynamics.periodic.steady_states import BRANCH, DOWN, UP
-from service.convert.effect_lines import run_lines
+from service.convert.run_effects import model_lines
 from service.drawing import palette
 from service.drawing.figure import Axis, Dash, Figure, FloatArray, Line, Panel, Reference, Table, number
 from service.drawing.page import Headline
@@ -229,11 +229,11 @@ def _text(states: SteadyStates) -> Iterator[Table | str]:
         turns = ", ".join(f"{point['kind']} at {point['speed_rpm']:.6g} rpm" for point in points)
         yield f"branch {branch['status']}, {len(branch['points'])} motions; {turns or 'no bifurcation'}"
     yield f"cost {engineering(sum(states.facts['seconds'].values()), 3)} CPU s"
-    yield from run_lines(states.facts)
+    yield from model_lines(states.facts)
 
 
 PAGE = Presentation(
     steady_figure,
-    lambda states: dynamics_page("Steady states", (steady_figure(states),), headlines(states)),
+    lambda states: dynamics_page("Steady states", (steady_figure(states),), headlines(states), states.facts),
     _text,
 )

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from bounds import engineering
-from service.convert.effect_lines import run_lines
+from service.convert.run_effects import model_lines
 from service.drawing.figure import Figure, Table, number
 from service.drawing.page import Headline, Page
 from service.studies.presentation import Presentation, dynamics_page
@@ -31,7 +31,7 @@ def page(result: HousingVibrationResult) -> Page:
     shape = shape_figure(result)
     figures = (velocity_figure(result), contribution_figure(result), transfer_figure(result))
     drawn = figures if shape is None else (figures[0], shape, *figures[1:])
-    return dynamics_page("Vibration of the housing", drawn, headlines(result))
+    return dynamics_page("Vibration of the housing", drawn, headlines(result), result.analysis.facts)
 
 
 def headlines(result: HousingVibrationResult) -> tuple[Headline, ...]:
@@ -71,7 +71,7 @@ def _text(result: HousingVibrationResult) -> Iterator[Table | str]:
         limit = number(vibration.highest_valid_frequency, 4)
         yield f"orders {orders} go beyond {limit} Hz, 0.7 of the highest mode kept: keep more modes"
     yield f"cost {engineering(sum(found.facts['seconds'].values()), 3)} CPU s"
-    yield from run_lines(found.facts)
+    yield from model_lines(found.facts)
 
 
 PAGE = Presentation(figure, page, _text, series=series)

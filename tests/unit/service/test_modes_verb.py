@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from declared_figures import check_declared
 from scene_files import scene_file
+from shown_effects import check_effects_shown
 from typer.testing import CliRunner, Result
 
 from dynamics.assembly.assemble import assemble
@@ -69,6 +70,7 @@ def test_the_table_and_every_kind_of_file_say_the_same(scene: Path, tmp_path: Pa
     width, height = struct.unpack(">II", files["png"].read_bytes()[16:24])
     assert width > 1000 and height > 400
     assert "Campbell diagram: whirl modes over speed" in files["html"].read_text()
+    check_effects_shown(written["effect_ledger"], result.stdout, files["html"].read_text("utf-8"))
     page = tmp_path / "page.html"
     write_report(files["nc"], page)
     assert "Critical speeds" in page.read_text()

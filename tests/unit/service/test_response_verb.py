@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from declared_figures import check_declared
 from scene_files import scene_file
+from shown_effects import check_effects_shown
 from typer.testing import CliRunner, Result
 
 from dynamics.linearize import ForcedResponse, peaks
@@ -69,6 +70,7 @@ def test_the_table_and_every_kind_of_file_say_the_same(scene: Path, tmp_path: Pa
     assert written == {k: v for k, v in facts(found).items() if k != "cpu_seconds"}
     width, height = struct.unpack(">II", files["png"].read_bytes()[16:24])
     assert width > 1000 and height > 1000
+    check_effects_shown(written["effect_ledger"], result.stdout, files["html"].read_text("utf-8"))
     page = tmp_path / "page.html"
     write_report(files["nc"], page)
     assert "Forced response to transmission errors and loads" in page.read_text()

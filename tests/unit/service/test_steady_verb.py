@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from declared_figures import check_declared
 from scene_files import scene_file
+from shown_effects import check_effects_shown
 from typer.testing import CliRunner, Result
 
 from dynamics.periodic import SteadyStates, find_orbit
@@ -56,6 +57,7 @@ def test_every_kind_of_output_says_the_same(scene: Path, tmp_path: Path) -> None
     assert printed["jumps"] == [] and printed["branch"]["status"] == "completed"
     width, height = struct.unpack(">II", files["png"].read_bytes()[16:24])
     assert width > 1000 and height > 1000
+    check_effects_shown(written["effect_ledger"], result.stdout, files["html"].read_text("utf-8"))
     page = tmp_path / "page.html"
     write_report(files["nc"], page)
     assert "Periodic steady states over speed" in page.read_text()

@@ -15,6 +15,7 @@ from computed_once import computed_once
 from declared_figures import check_declared
 from housing_solid import housed_scene, write_block
 from scene_files import scene_file
+from shown_effects import check_effects_shown
 from typer.testing import CliRunner, Result
 
 from dynamics.vibration import vibration_level
@@ -87,6 +88,9 @@ def test_every_kind_of_output_says_the_same(scene: Path, tmp_path: Path) -> None
     parts = surface.point_data["velocity_real"], surface.point_data["velocity_imaginary"]
     np.testing.assert_allclose(size, np.hypot(*parts))
     np.testing.assert_allclose(size, np.abs(found.shape.motion))
+    check_effects_shown(
+        found.analysis.facts["effect_ledger"], result.stdout, files["html"].read_text("utf-8")
+    )
     page = tmp_path / "page.html"
     write_report(files["nc"], page)
     for text in ("housing_velocity", "housing_shape", "housing_contributions", "housing_transfer"):

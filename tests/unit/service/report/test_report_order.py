@@ -53,7 +53,7 @@ def test_effects_of_contact_and_run_stand_in_one_table(database: SteDatabase, ru
     (table,) = section.tables
     assert [row[:2] for row in table.rows] == [("corner_contact", "contact"), ("lateral", "input")]
     captions = [folded.caption for folded in section.folded]
-    assert captions[0] == "1 effect below 0.1 %" and captions[-1] == "Not in the model of the run"
+    assert captions[0] == "1 effect below 0.1 %" and captions[-1] == "Not in the model"
 
 
 def test_the_data_sheet_begins_with_what_speaks_against_the_pair(database: SteDatabase) -> None:

@@ -1,4 +1,4 @@
-"""The effect ledger of a run in lines for people."""
+"""The effect ledger of a scene in lines for people."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Any
 
 from bounds import engineering
 from fe_contact.effects.influence.influence import TRIFLE
+from service.convert.effect_lines import run_lines
 from service.convert.effect_sizes import trifles_title
 
 Json = Mapping[str, Any]
@@ -14,12 +15,21 @@ LEAST = 1e-9  # m, of the static displacement of an effect whose influence is no
 _RELATIVE = ("relative_mean", "relative_peak_to_peak", "relative_bearing_force")
 
 
+def model_lines(attributes: Json) -> Iterator[str]:
+    """Yield the effects of a run or a study of a scene, what it was repeated for, and what does not hold.
+
+    `attributes` hold `effect_ledger`, those of a run `receipt` too.
+    """
+    yield from effect_lines(attributes.get("effect_ledger", {}))
+    yield from run_lines(attributes)
+
+
 def effect_lines(ledger: Json) -> Iterator[str]:
     """Yield the decision about every effect, part by part where they differ, its influence and its price.
 
-    `ledger` is that of a run: influence is the static displacement along the line of action, in m, and the
-    estimate of what leaving the effect out in all its parts changes. Effects that are off and change next to
-    nothing share the last line.
+    `ledger` is that of a run or a study: influence is the static displacement along the line of action, in m;
+    that of a run also estimates what leaving the effect out in all its parts changes. Effects that are off
+    and change next to nothing share the last line.
     """
     estimates = ledger.get("worths", {})
     trifles = []

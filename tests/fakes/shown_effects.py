@@ -1,0 +1,19 @@
+"""The effect ledger of a study of a scene beside what its terminal output and its report show."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from html import escape
+from typing import Any
+
+
+def check_effects_shown(ledger: Mapping[str, Any], printed: str, report: str) -> None:
+    """Check that every decision stands in the report with its reason, and every effect in both."""
+    assert len(ledger["entries"]) > 3
+    for entry in ledger["entries"]:
+        row = "".join(f"<td>{cell}</td>" for cell in (entry["part"], "yes" if entry["on"] else "no"))
+        assert f'<th scope="row">{entry["effect"]}</th>{row}' in report
+        assert f"<td>{escape(entry['reason'])}</td>" in report
+        assert entry["effect"] in printed or not (entry["on"] or entry["possible"])
+    for name in ledger["left_out"]:
+        assert name.replace("_", " ") in report
