@@ -200,7 +200,7 @@ def _show(study: Study, result: Any, targets: list[Path]) -> None:
     out = console()
     for part in study.page.text(result):
         if isinstance(part, str):
-            out.print(part, highlight=False)
+            out.print(part, highlight=False, soft_wrap=True)
         else:
             out.print(table(part.head, part.rows, part.caption))
     print_result(study.page.page(result).headlines, targets)
