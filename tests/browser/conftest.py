@@ -10,6 +10,7 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
+from condensed_once import find_condensed
 from page_visit import computed, served
 from playwright.sync_api import Browser, Playwright, sync_playwright
 
@@ -54,9 +55,11 @@ def _closed(browser: Browser) -> Iterator[None]:
 
 
 @pytest.fixture(scope="session")
-def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+def address(tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path) -> Iterator[str]:
     """One service for all tests of the page."""
-    with served(tmp_path_factory.mktemp("service")) as found:
+    home = tmp_path_factory.mktemp("service")
+    find_condensed(condensed_bodies, home / "lineofaction")
+    with served(home) as found:
         yield found
 
 

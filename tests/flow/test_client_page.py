@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from condensed_once import find_condensed
 from small_table import small_table
 
 from dynamics.results import RunResult
@@ -26,9 +27,12 @@ KEY = "ab" * 32
 
 
 @pytest.fixture(scope="module")
-def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[subprocess.Popen[str], str]]:
+def service(
+    tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path
+) -> Iterator[tuple[subprocess.Popen[str], str]]:
     """A service in a process of its own, and its address."""
     folder = tmp_path_factory.mktemp("service")
+    find_condensed(condensed_bodies, folder)
     with subprocess.Popen(
         [sys.executable, "-m", "service.cli", "serve", "--port", "0", "--data-directory", str(folder)],
         env=os.environ | {"OMP_NUM_THREADS": "1"},

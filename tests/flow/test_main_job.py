@@ -12,6 +12,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from condensed_once import find_condensed
 from running_service import PATIENCE_S, until
 
 from service.page.examples import examples
@@ -40,9 +41,10 @@ def running(folder: Path) -> list[int]:
 
 
 @pytest.fixture(scope="module")
-def job(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+def job(tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path) -> tuple[Path, str]:
     """Run the whole job once; return its folder and what it printed."""
     folder = tmp_path_factory.mktemp("main-job")
+    find_condensed(condensed_bodies, folder / "out" / "service")
     done = subprocess.run(
         [sys.executable, str(JOB), "--exit", "--out", str(folder / "out")],
         env=environment(folder),

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from condensed_once import find_condensed
 
 from fe_contact.ste import SteDatabase
 
@@ -21,8 +22,9 @@ ADDRESS = "http://127.0.0.1:8321"
 
 
 @pytest.fixture
-def address(tmp_path: Path) -> Iterator[str]:
+def address(tmp_path: Path, condensed_bodies: Path) -> Iterator[str]:
     """A service, started as the page says but on a free port."""
+    find_condensed(condensed_bodies, tmp_path / "data")
     environment = os.environ | {"OMP_NUM_THREADS": "1", "XDG_CACHE_HOME": str(tmp_path / "cache")}
     command = [sys.executable, "-m", "service.cli", "serve", "--port", "0"]
     command += ["--data-directory", str(tmp_path / "data")]
