@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -38,13 +39,18 @@ class ModalElimination:
     inward: FloatArray
     along: FloatArray
 
-    def solve(self, omega: FloatArray | ComplexArray, right: ComplexArray) -> ComplexArray:
-        """Return the displacements (..., n, f) under the forces `right` (..., n, f) at `omega` (...,)."""
+    def solve(
+        self, omega: FloatArray | ComplexArray, right: ComplexArray, swept: Sequence[FloatArray] = ()
+    ) -> ComplexArray:
+        """Return the displacements (S, H, n, f) under the forces `right` (S, H, n, f) at `omega` (S, H).
+
+        `swept` are gyroscopic and frame terms of the bodies (S, a, a), or nothing.
+        """
         first, w = self.bodies.shape[1], omega[..., None, None]
         own = _sum(omega[..., None], self.modal)
         receptance = (self.shape / own[..., None, :]) @ self.shape.T
         out, into, along = (_sum(w, part) for part in (self.outward, self.inward, self.along))
-        top = np.concatenate([_sum(w, self.bodies), out], axis=-1)
+        top = np.concatenate([_sum(w, self.bodies) + turning_terms(w, swept), out], axis=-1)
         unit = np.eye(len(self.shape))
         bottom = np.concatenate([receptance @ into, unit + receptance @ along], axis=-1)
         answer = right[..., first:, :] / own[..., None]
@@ -54,15 +60,23 @@ class ModalElimination:
         force = into @ moved + along @ along_rows
         return np.concatenate([moved, answer - (self.shape.T @ force) / own[..., None]], axis=-2)
 
-    def product(self, omega: FloatArray | ComplexArray, moved: ComplexArray) -> ComplexArray:
-        """Return the forces (..., n, f) that the displacements `moved` (..., n, f) take."""
+    def product(
+        self, omega: FloatArray | ComplexArray, moved: ComplexArray, swept: Sequence[FloatArray] = ()
+    ) -> ComplexArray:
+        """Return the forces (S, H, n, f) that the displacements `moved` (S, H, n, f) take."""
         first, w = self.bodies.shape[1], omega[..., None, None]
         out, into, along = (_sum(w, part) for part in (self.outward, self.inward, self.along))
         bodies, modes = moved[..., :first, :], moved[..., first:, :]
         rows = self.shape @ modes
         own = _sum(omega[..., None], self.modal)[..., None] * modes
         pushed = own + self.shape.T @ (into @ bodies + along @ rows)
-        return np.concatenate([_sum(w, self.bodies) @ bodies + out @ rows, pushed], axis=-2)
+        own_bodies = _sum(w, self.bodies) + turning_terms(w, swept)
+        return np.concatenate([own_bodies @ bodies + out @ rows, pushed], axis=-2)
+
+
+def turning_terms(w: FloatArray | ComplexArray, swept: Sequence[FloatArray]) -> ComplexArray | float:
+    """Return what gyroscopic and frame terms (S, n, n) add to the matrix at `w` (S, H, 1, 1), rad/s."""
+    return np.asarray(1j * w * swept[0][:, None] + swept[1][:, None]) if swept else 0.0
 
 
 def _sum(omega: FloatArray | ComplexArray, parts: FloatArray) -> ComplexArray:

@@ -15,7 +15,7 @@ from dynamics.linearize.common_period import CommonPeriod, common_period
 from dynamics.linearize.flank_cycles import SAMPLES, FlankCycle, averaged, flank_cycles
 from dynamics.linearize.linear_system import LinearSystem, about_running, linearize
 from dynamics.linearize.load_harmonics import load_harmonics
-from dynamics.linearize.modal_elimination import modal_elimination
+from dynamics.linearize.modal_elimination import modal_elimination, turning_terms
 from dynamics.linearize.speeds import law_speeds
 from dynamics.linearize.whirl import terms_at
 from dynamics.types import BoolArray, FloatArray, IntArray
@@ -233,7 +233,8 @@ def _solve(
         pushed = np.concatenate([pushed, each], axis=-1)
     displacement = np.empty((*omega.shape, *pushed.shape[2:]), dtype=complex)
     modal = at.system.arrays.sparse.modal
-    small = None if terms else modal_elimination(modal, per_meter, total, damping, mass)
+    first = modal.first if all(_on_bodies(matrix, modal.first) for term in terms for matrix in term) else 0
+    small = modal_elimination(modal, per_meter, total, damping, mass) if first else None
     parts = np.stack([total, mass, damping]).astype(complex)
     block = max(BLOCK // max(omega.shape[1] * per_meter.size**2, 1), 1)
     left = 0.0
@@ -241,21 +242,27 @@ def _solve(
         part = slice(start, start + block)
         exciting = pushed if pushed.shape[0] == 1 else pushed[part]
         right = np.broadcast_to(exciting, (*omega[part].shape, *pushed.shape[2:]))
+        swept = [
+            np.stack([per_meter[:, None] * term[k] * per_meter for term in terms[part]])
+            for k in (0, 1)
+            if terms
+        ]
         if small is None:
-            swept = [
-                np.stack([per_meter[:, None] * term[k] * per_meter for term in terms[part]])
-                for k in (0, 1)
-                if terms
-            ]
             solved, miss = _dense(parts, omega[part], swept, right)
         else:
-            solved = small.solve(omega[part], right)
-            miss = np.abs(small.product(omega[part], solved[..., :1]) - right[..., :1])
+            turning = [matrix[:, :first, :first] for matrix in swept]
+            solved = small.solve(omega[part], right, turning)
+            miss = np.abs(small.product(omega[part], solved[..., :1], turning) - right[..., :1])
         left = max(left, float(np.max(miss, initial=0.0)))
         displacement[part] = solved * per_meter[:, None]
         if progress is not None:
             progress(min(start + block, omega.shape[0]) / omega.shape[0])
     return displacement, left / max(float(np.max(np.abs(pushed[..., 0]), initial=0.0)), 1e-300)
+
+
+def _on_bodies(matrix: FloatArray, first: int) -> bool:
+    """Whether a matrix (n, n) has no entries from freedom `first` on."""
+    return not (np.any(matrix[first:]) or np.any(matrix[:, first:]))
 
 
 def _dense(
@@ -268,8 +275,7 @@ def _dense(
     w, size = omega[:, :, None, None], parts.shape[1]
     by_part = np.concatenate([np.ones_like(w), -w * w, 1j * w], axis=-1)
     matrix = (by_part[..., 0, :] @ parts.reshape(3, -1)).reshape(*w.shape[:2], size, size)
-    if swept:
-        matrix += 1j * w * swept[0][:, None] + swept[1][:, None]
+    matrix += turning_terms(w, swept)
     solved = np.asarray(np.linalg.solve(matrix, right), dtype=complex)
     miss = np.abs(np.einsum("shij,shj->shi", matrix, solved[..., 0]) - right[..., 0])
     return solved, np.asarray(miss, dtype=float)
