@@ -4,6 +4,7 @@ from dynamics.acoustics.air import Air
 from dynamics.acoustics.boundary_elements import BoundaryElements, SurfacePressure, surface_pressure
 from dynamics.acoustics.elemental_radiators import ElementalRadiators
 from dynamics.acoustics.equivalent_radiated_power import EquivalentRadiatedPower, panel_power
+from dynamics.acoustics.exterior_pressure import exterior_pressure
 from dynamics.acoustics.hull import Hull
 from dynamics.acoustics.level_band import LevelBand, Range, level_band, level_bands
 from dynamics.acoustics.levels import a_weighting, free_field_pressure, level_sum, sound_power_level
@@ -50,6 +51,7 @@ __all__ = [
     "common_full_scale",
     "compare_models",
     "errors_db",
+    "exterior_pressure",
     "force_recording",
     "free_field_pressure",
     "level_band",

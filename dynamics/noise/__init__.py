@@ -9,6 +9,7 @@ from dynamics.noise.loudest import LoudPoint, loudest
 from dynamics.noise.model_comparison import models_at, panels_at
 from dynamics.noise.outer_hull import OuterHull, outer_hull
 from dynamics.noise.radiated_sound import RadiatedSound, radiated_sound
+from dynamics.noise.scattered_pressure import scattered_pressure_transfer
 from dynamics.noise.sensitivities import DesignFigure, Sensitivity, ranked, sensitivity
 from dynamics.noise.several_housings import together
 from dynamics.noise.sound_band import SoundBand, largest_level, sound_band, usual_ranges
@@ -43,6 +44,7 @@ __all__ = [
     "radiated_sound",
     "radiating_hull",
     "ranked",
+    "scattered_pressure_transfer",
     "sensitivity",
     "sound_band",
     "sound_limit",

@@ -24,7 +24,8 @@ from service.runs.through_housing import SceneHousings
 Json = dict[str, Any]
 FREE_FIELD = (
     "free field: no room, floor or attached parts; the air is at rest and does not act back. Panels as "
-    "monopoles neither scatter nor shadow: sound power mostly 0 to 6 dB too low, more at a single place"
+    "monopoles neither scatter nor shadow: at one place mostly 7 dB too low to 2 dB too high, and lower "
+    "where the housing is larger than the wavelength"
 )
 
 

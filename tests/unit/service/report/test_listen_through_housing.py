@@ -77,7 +77,7 @@ def test_the_sound_pressure_is_that_of_the_library_with_its_limits(
     np.testing.assert_allclose(heard.samples, expected.samples, atol=1e-6 * expected.peak)
     assert (heard.unit, heard.quantity) == ("Pa", expected.quantity)
     assert f"up to {sound_limit(housing):.0f} Hz" in entry["quantity"]
-    assert "no room" in facts["remark"] and "dB too low" in facts["remark"]
+    assert "no room" in facts["remark"] and "7 dB too low" in facts["remark"]
     assert facts["warnings"] == []
     level = 20.0 * np.log10(entry["rms"] / 20e-6)
     assert entry["sound"]["level_db"] == pytest.approx(level, abs=1e-6)
