@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from service.schemas.figures import Figures, Json, Part
+from service.studies.equilibrium import Equilibrium
 
 
-class Equilibrium(Part):
-    """The loaded equilibrium."""
+class LoadedMeshes(Equilibrium):
+    """The loaded equilibrium with the mean force of each mesh."""
 
-    status: str
-    residual_n: float
     mesh_force_n: dict[str, float]
 
 
@@ -57,7 +56,7 @@ class ModesFigures(Figures):
 
     leading_shaft: str
     highest_frequency_hz: float
-    equilibrium: Equilibrium
+    equilibrium: LoadedMeshes
     at_rest: list[NaturalMode]
     speed_rpm: list[float]
     mesh_frequency_hz: dict[str, list[float]]

@@ -11,6 +11,7 @@ from dynamics.linearize import ModalAnalysis, modal_analysis
 from dynamics.scene import Scene
 from service.convert.case import boundary_errors
 from service.studies.computation import Computation, Means
+from service.studies.equilibrium import equilibrium_figures
 from service.studies.modes import Inputs
 from service.studies.result_file import array_file
 from service.units import RPM
@@ -38,11 +39,7 @@ def facts(modes: ModalAnalysis) -> Json:
     return {
         "leading_shaft": about["leading_shaft"],
         "highest_frequency_hz": about["highest_frequency"],
-        "equilibrium": {
-            "status": start["status"].lower(),
-            "residual_n": start["residual"],
-            "mesh_force_n": start["mesh_force"],
-        },
+        "equilibrium": equilibrium_figures(start) | {"mesh_force_n": start["mesh_force"]},
         "at_rest": [_at_rest(modes, mode) for mode in range(modes.natural_frequency.size)],
         "speed_rpm": (modes.speed / RPM).tolist(),
         "mesh_frequency_hz": {

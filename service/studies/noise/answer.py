@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from service.schemas.figures import Figures, Json, Part
+from service.studies.equilibrium import Equilibrium
 
 
 class BearingSound(Part):
@@ -88,13 +89,6 @@ class SensitivityFigures(Part):
     for_one_db_less: float | None
     linear_range: float | None
     linear: bool
-
-
-class Equilibrium(Part):
-    """The loaded equilibrium."""
-
-    status: str
-    residual_n: float
 
 
 class NoiseFigures(Figures):

@@ -8,6 +8,7 @@ import numpy as np
 
 from dynamics.acoustics import a_weighting, sound_power_level
 from dynamics.noise import LoudPoint, RadiatedSound, loudest
+from service.studies.equilibrium import equilibrium_figures
 from service.units import RPM
 
 Json = dict[str, Any]
@@ -34,10 +35,7 @@ def facts(sound: RadiatedSound) -> Json:
         "housings": {name: _housing(about, name) for name in sound.housing},
         "natural_frequency_hz": sound.natural_frequency.tolist(),
         "parting_rpm": (sound.speed[~sound.in_contact] / RPM).tolist(),
-        "equilibrium": {
-            "status": about["equilibrium"]["status"].lower(),
-            "residual_n": about["equilibrium"]["residual"],
-        },
+        "equilibrium": equilibrium_figures(about["equilibrium"]),
         "band": about["band"],
         "sensitivities": about["sensitivities"],
         "sensitivities_left_out": about["sensitivities_left_out"],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from service.schemas.figures import Figures, Json, Part
+from service.studies.equilibrium import Equilibrium
 
 
 class MeshResponse(Part):
@@ -50,13 +51,6 @@ class Power(Part):
     input_w: dict[str, list[list[float]]]
     losses: list[PowerLoss]
     residual: float
-
-
-class Equilibrium(Part):
-    """The loaded equilibrium."""
-
-    status: str
-    residual_n: float
 
 
 class ResponseFigures(Figures):

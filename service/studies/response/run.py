@@ -12,6 +12,7 @@ from dynamics.scene import Scene
 from service.convert.case import boundary_errors
 from service.schemas.speeds import OverOrders
 from service.studies.computation import Computation, Means
+from service.studies.equilibrium import equilibrium_figures
 from service.studies.result_file import array_file
 from service.units import N_PER_UM, RPM, UM
 
@@ -46,10 +47,7 @@ def facts(response: ForcedResponse) -> Json:
         "natural_frequency_hz": response.natural_frequency.tolist(),
         "power": _power_json(response.power),
         "residual": response.residual,
-        "equilibrium": {
-            "status": about["equilibrium"]["status"].lower(),
-            "residual_n": about["equilibrium"]["residual"],
-        },
+        "equilibrium": equilibrium_figures(about["equilibrium"]),
         "cpu_seconds": about["seconds"],
         "effect_ledger": about["effect_ledger"],
     }
