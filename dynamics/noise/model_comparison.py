@@ -9,15 +9,14 @@ import numpy as np
 from dynamics.acoustics import Air, ModelLadder, RadiationModel, compare_models, panel_power
 from dynamics.acoustics.hull import ComplexArray
 from dynamics.housing_modes.reduced_housing import ReducedHousing
-from dynamics.linearize import HarmonicResponse
 from dynamics.noise.coarse_hull import radiating_hull
 from dynamics.noise.outer_hull import outer_hull
 from dynamics.types import FloatArray
-from dynamics.vibration import housing_motion, seat_forces
+from dynamics.vibration import BearingHarmonics, housing_motion, seat_forces
 
 
 def models_at(
-    response: HarmonicResponse,
+    response: BearingHarmonics,
     housing: ReducedHousing,
     bearings: Sequence[str] | None,
     at: tuple[int, int],
@@ -47,7 +46,7 @@ def models_at(
 
 
 def panels_at(
-    response: HarmonicResponse,
+    response: BearingHarmonics,
     housing: ReducedHousing,
     bearings: Sequence[str] | None,
     at: tuple[int, int],
@@ -71,7 +70,7 @@ def panels_at(
 
 
 def _velocity(
-    response: HarmonicResponse,
+    response: BearingHarmonics,
     housing: ReducedHousing,
     bearings: Sequence[str] | None,
     at: tuple[int, int],

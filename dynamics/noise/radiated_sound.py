@@ -1,4 +1,4 @@
-"""Sound power of a housing in a forced response, by order and speed, and through what it gets there."""
+"""Sound power of a housing by order and speed, and through what it gets there."""
 
 from __future__ import annotations
 
@@ -11,12 +11,11 @@ from dynamics.acoustics import OrderPower
 from dynamics.acoustics.hull import ComplexArray
 from dynamics.errors import InputError
 from dynamics.housing_modes.reduced_housing import ReducedHousing
-from dynamics.linearize import HarmonicResponse
 from dynamics.noise.contributions import Contributions, contributions
 from dynamics.noise.housing_radiation import HousingRadiation
 from dynamics.results.array_file import ArrayFile, Stored
 from dynamics.types import BoolArray, FloatArray, Json
-from dynamics.vibration import seat_forces
+from dynamics.vibration import BearingHarmonics, seat_forces
 from dynamics.vibration.modal_amplitudes import modal_amplitudes
 
 POWER = ("speed", "order")
@@ -104,18 +103,18 @@ class RadiatedSound(ArrayFile):
 
 
 def radiated_sound(
-    response: HarmonicResponse,
+    response: BearingHarmonics,
     housing: ReducedHousing,
     bearings: Sequence[str] | None,
     radiation: HousingRadiation,
     name: str = "housing",
 ) -> RadiatedSound:
-    """Return the sound power of a housing under the bearing forces of a response.
+    """Return the sound power of a housing under the bearing forces of a linear response or a run.
 
     Parameters
     ----------
-    response : HarmonicResponse
-        In the frame of the housing's mesh.
+    response : BearingHarmonics
+        Linear, or the orders of a run (`bearing_orders`); in the frame of the housing's mesh.
     housing : ReducedHousing
         With mass and a surface.
     bearings : sequence of str or None
@@ -142,7 +141,7 @@ def radiated_sound(
     return _result(response, housing, names, found, radiation, name)
 
 
-def _amplitudes(response: HarmonicResponse, housing: ReducedHousing, names: tuple[str, ...]) -> ComplexArray:
+def _amplitudes(response: BearingHarmonics, housing: ReducedHousing, names: tuple[str, ...]) -> ComplexArray:
     """Return the amplitudes of the housing's modes under the force of each bearing alone, (S H, b, m)."""
     force = seat_forces(response, housing, names).reshape(response.frequency.size, 1, -1)
     owner = np.repeat(np.arange(len(names)), [len(seat.motions) for seat in housing.seats])
@@ -151,7 +150,7 @@ def _amplitudes(response: HarmonicResponse, housing: ReducedHousing, names: tupl
 
 
 def _result(
-    response: HarmonicResponse,
+    response: BearingHarmonics,
     housing: ReducedHousing,
     names: tuple[str, ...],
     found: Contributions,

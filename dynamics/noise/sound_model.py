@@ -12,10 +12,10 @@ from dynamics.acoustics.hull import ComplexArray
 from dynamics.assembly.assemble import assemble
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.housing_modes.scene_housing import scene_housing
-from dynamics.linearize import HarmonicResponse, harmonic_response
+from dynamics.linearize import harmonic_response
 from dynamics.scene import Scene
 from dynamics.types import FloatArray
-from dynamics.vibration import housing_motion, seat_forces
+from dynamics.vibration import BearingHarmonics, housing_motion, seat_forces
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class SoundModel:
         return replace(self, scene=scene, housings={**self.housings, name: housing})
 
 
-def radiated_power(model: SoundModel, response: HarmonicResponse) -> OrderPower:
+def radiated_power(model: SoundModel, response: BearingHarmonics) -> OrderPower:
     """Return the sound power of a response by order and speed, the sum over all housings.
 
     Raises
@@ -77,7 +77,7 @@ def forced_power(model: SoundModel, speed: FloatArray, orders: int) -> tuple[Flo
     return response.order, radiated_power(model, response)
 
 
-def _velocity(housing: ReducedHousing, response: HarmonicResponse, bearings: tuple[str, ...]) -> ComplexArray:
+def _velocity(housing: ReducedHousing, response: BearingHarmonics, bearings: tuple[str, ...]) -> ComplexArray:
     """Return the velocities of the reduced coordinates, (H, S, r)."""
     motion = housing_motion(housing, response.frequency, seat_forces(response, housing, bearings))
     velocity = 2j * np.pi * response.frequency[..., None] * motion

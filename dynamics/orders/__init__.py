@@ -1,5 +1,6 @@
 """Spectra of run results: over frequency, over mesh orders, and their peaks."""
 
+from dynamics.orders.bearing_signals import bearing_signals
 from dynamics.orders.order_frequency import leading_shaft, order_frequency
 from dynamics.orders.peaks import Peak, find_peaks
 from dynamics.orders.position_grid import resample_to_position
@@ -18,6 +19,7 @@ __all__ = [
     "ThirdOctaves",
     "Waterfall",
     "band_number",
+    "bearing_signals",
     "find_peaks",
     "frequency_waterfall",
     "highest_valid_order",

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from dynamics.types import FloatArray
+
+ComplexArray = NDArray[np.complex128]
 
 
 def unwrapped(position: FloatArray) -> FloatArray:
@@ -22,16 +25,36 @@ def unwrapped(position: FloatArray) -> FloatArray:
 def order_amplitudes(position: FloatArray, values: FloatArray, orders: int) -> FloatArray:
     """Return the amplitudes (..., orders) of the multiples of the mesh order in `values` (..., T).
 
-    Least squares over all samples: mean, drift and the sinusoids of `position` (T,), unwrapped base pitches,
-    together. What is periodic in position is found exactly however the speed changes.
+    Those of `order_phasors` over all samples of `position` (T,), unwrapped base pitches.
     """
-    angle = 2.0 * np.pi * np.outer(position - position[0], np.arange(1, orders + 1))
-    drift = np.linspace(-1.0, 1.0, position.size)
-    columns = np.column_stack([np.ones(position.size), drift, np.cos(angle), np.sin(angle)])
-    flat = values.reshape(-1, position.size)
-    coefficients = np.linalg.lstsq(columns, flat.T, rcond=None)[0][2:].T
-    size = np.hypot(coefficients[:, :orders], coefficients[:, orders:])
-    return np.asarray(size.reshape(*values.shape[:-1], orders))
+    cycles = np.outer(position - position[0], np.arange(1, orders + 1))
+    return np.asarray(np.abs(order_phasors(cycles, values)[0]))
+
+
+def order_phasors(
+    cycles: FloatArray, values: FloatArray, weight: FloatArray | None = None
+) -> tuple[ComplexArray, FloatArray]:
+    """Return complex peak amplitudes A (..., K) of orders in `values` (..., T), and what they leave (..., T).
+
+    An order is Re(A exp(2 pi i c)) with c its column of `cycles` (T, K). Least squares over all samples:
+    mean, drift and all orders together. What is periodic in position is found exactly however the speed
+    changes; mean and drift are no part of what is left.
+
+    Parameters
+    ----------
+    weight : (T,) array, optional
+        Of the squares; default: all alike.
+    """
+    samples, orders = cycles.shape
+    angle, drift = 2.0 * np.pi * cycles, np.linspace(-1.0, 1.0, samples)
+    columns = np.column_stack([np.ones(samples), drift, np.cos(angle), np.sin(angle)])
+    flat = values.reshape(-1, samples)
+    root = np.ones(samples) if weight is None else np.sqrt(weight)
+    solved = np.linalg.lstsq(columns * root[:, None], (flat * root).T, rcond=None)[0]
+    left = flat - (columns @ solved).T
+    coefficients = solved[2:].T
+    phasors = coefficients[:, :orders] - 1j * coefficients[:, orders:]
+    return phasors.reshape(*values.shape[:-1], orders), left.reshape(values.shape)
 
 
 def orders_seen(position: FloatArray, most: int) -> int:

@@ -1,5 +1,6 @@
 """Vibration of housings under the forces of their bearings."""
 
+from dynamics.vibration.bearing_harmonics import BearingHarmonics, ReportedHarmonics
 from dynamics.vibration.contributions import Parts, bearing_parts, mode_parts
 from dynamics.vibration.housing_motion import housing_motion
 from dynamics.vibration.housing_power import HousingPower, housing_power
@@ -15,10 +16,12 @@ from dynamics.vibration.transfer_functions import mean_square_mobility, transfer
 from dynamics.vibration.vibration_analysis import VibrationAnalysis, analyze_vibration
 
 __all__ = [
+    "BearingHarmonics",
     "HousingPower",
     "HousingVibration",
     "MotionQuantity",
     "Parts",
+    "ReportedHarmonics",
     "SurfaceShape",
     "VibrationAnalysis",
     "analyze_vibration",

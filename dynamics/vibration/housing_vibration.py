@@ -1,4 +1,4 @@
-"""Vibration of a housing's points and surface in a forced response, by order and speed."""
+"""Vibration of a housing's points and surface under its bearings, by order and speed."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.housing_modes.reduced_housing import ReducedHousing
-from dynamics.linearize import HarmonicResponse
 from dynamics.types import BoolArray, FloatArray
+from dynamics.vibration.bearing_harmonics import BearingHarmonics
 from dynamics.vibration.housing_motion import housing_motion
 from dynamics.vibration.motion_quantity import MotionQuantity
 from dynamics.vibration.points import point_rows
@@ -83,17 +83,17 @@ class HousingVibration:
 
 
 def housing_vibration(
-    response: HarmonicResponse,
+    response: BearingHarmonics,
     housing: ReducedHousing,
     bearings: Sequence[str] | None = None,
     points: Sequence[str] | None = None,
 ) -> HousingVibration:
-    """Return the vibration of a housing under its bearings in a harmonic response.
+    """Return the vibration of a housing under its bearings by speed and order.
 
     Parameters
     ----------
-    response : HarmonicResponse
-        Of a scene with the housing; the forces on its bearings move it.
+    response : BearingHarmonics
+        Of a scene with the housing, linear or a run's; the forces on its bearings move it.
     housing : ReducedHousing
         With mass.
     bearings : sequence of str, optional

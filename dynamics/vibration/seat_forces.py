@@ -10,22 +10,23 @@ from numpy.typing import NDArray
 
 from dynamics.errors import InputError
 from dynamics.housing_modes.reduced_housing import ReducedHousing
-from dynamics.linearize import HarmonicResponse
+from dynamics.orders import bearing_signals
 from dynamics.results import RunResult
 from dynamics.types import FloatArray
+from dynamics.vibration.bearing_harmonics import BearingHarmonics
 
 ComplexArray = NDArray[np.complex128]
 
 
 def seat_forces(
-    response: HarmonicResponse, housing: ReducedHousing, bearings: Sequence[str] | None = None
+    response: BearingHarmonics, housing: ReducedHousing, bearings: Sequence[str] | None = None
 ) -> ComplexArray:
-    """Return the forces on the seats of a housing in a harmonic response.
+    """Return the forces on the seats of a housing by speed and order.
 
     Parameters
     ----------
-    response : HarmonicResponse
-        S speeds, H harmonics; in the frame of the housing's mesh.
+    response : BearingHarmonics
+        S speeds, H orders of a linear response or a run; in the frame of the housing's mesh.
     housing : ReducedHousing
     bearings : sequence of str, optional
         Bearings in the order of the seats; by default those with the names of the seats.
@@ -51,13 +52,8 @@ def run_seat_forces(
 
     Parameters and errors as those of `seat_forces`; it refuses runs without bearing forces too.
     """
-    signals = result.bearing_force
-    if not len(signals):
-        advice = "Run the scene with bearing forces among its outputs."
-        raise InputError("bearing_force", "none", "a run with bearing forces", advice)
-    if result.bearing_moment.size:
-        signals = np.concatenate([signals, result.bearing_moment], axis=1)
-    return np.moveaxis(_on_seats(signals, result.bearing, housing, bearings), 0, -1)
+    force = _on_seats(bearing_signals(result), result.bearing, housing, bearings)
+    return np.moveaxis(force, 0, -1)
 
 
 def _on_seats(

@@ -1,4 +1,4 @@
-"""How a housing vibrates in a forced response, and through what where it does most."""
+"""How a housing vibrates under its bearings, and through what where it does most."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import numpy as np
 
 from dynamics.errors import InputError
 from dynamics.housing_modes.reduced_housing import ReducedHousing
-from dynamics.linearize import ForcedResponse
 from dynamics.types import FloatArray, Json
+from dynamics.vibration.bearing_harmonics import ReportedHarmonics
 from dynamics.vibration.contributions import Parts, bearing_parts, mode_parts
 from dynamics.vibration.housing_motion import housing_motion
 from dynamics.vibration.housing_vibration import HousingVibration, housing_vibration
@@ -97,7 +97,7 @@ class VibrationAnalysis:
 
 
 def analyze_vibration(
-    response: ForcedResponse,
+    response: ReportedHarmonics,
     housing: ReducedHousing,
     name: str,
     *,
@@ -110,7 +110,8 @@ def analyze_vibration(
 
     Parameters
     ----------
-    response : ForcedResponse
+    response : ReportedHarmonics
+        A forced response, or the orders of a run.
     housing : ReducedHousing
         With mass, and with a surface or named points.
     name : str
