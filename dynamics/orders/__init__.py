@@ -1,5 +1,6 @@
 """Spectra of run results: over frequency, over mesh orders, and their peaks."""
 
+from dynamics.orders.bearing_orders import BearingOrders, bearing_orders
 from dynamics.orders.bearing_signals import bearing_signals
 from dynamics.orders.order_frequency import leading_shaft, order_frequency
 from dynamics.orders.peaks import Peak, find_peaks
@@ -11,6 +12,7 @@ from dynamics.orders.valid_orders import highest_valid_order
 from dynamics.orders.waterfall import OrderTrack, Waterfall, frequency_waterfall, order_track, order_waterfall
 
 __all__ = [
+    "BearingOrders",
     "MeshOrder",
     "OrderTrack",
     "Peak",
@@ -19,6 +21,7 @@ __all__ = [
     "ThirdOctaves",
     "Waterfall",
     "band_number",
+    "bearing_orders",
     "bearing_signals",
     "find_peaks",
     "frequency_waterfall",

@@ -11,7 +11,8 @@ from dynamics.types import BoolArray, FloatArray, Json
 class BearingHarmonics(Protocol):
     """Forces of b bearings at S speeds in H orders, each as in a steady state.
 
-    A linear response (`dynamics.linearize.HarmonicResponse`) is one.
+    A linear response (`dynamics.linearize.HarmonicResponse`) is one, the orders of a run
+    (`dynamics.orders.BearingOrders`) are another.
     """
 
     @property

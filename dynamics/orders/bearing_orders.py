@@ -1,0 +1,247 @@
+"""Mesh orders of the forces on bearings along a run, with their phases."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+
+from bounds import at_least
+from dynamics.checks import integer
+from dynamics.errors import InputError
+from dynamics.orders.bearing_signals import bearing_signals
+from dynamics.orders.mesh_harmonics import MeshHarmonics, counting_mesh, mesh_harmonics
+from dynamics.orders.order_frequency import leading_shaft
+from dynamics.orders.smearing import smearing
+from dynamics.orders.valid_orders import checked_order
+from dynamics.results import RunResult
+from dynamics.results.order_fit import ComplexArray, order_phasors
+from dynamics.types import BoolArray, FloatArray, Json
+
+PITCHES = 16
+"""Base pitches of a window, if orders lie no closer than an eighth."""
+APART = 2.0
+"""Cycles by which two orders differ within a window, or its Hann weights do not tell them apart."""
+ROWS = 400
+"""Most windows; they overlap by half where that makes fewer."""
+MOST_SWEEP = 0.2
+"""Change of the mesh frequency within a window, of its mean: beyond it the window has no speed."""
+
+
+@dataclass(frozen=True)
+class BearingOrders:
+    """Mesh orders of the forces on b bearings in S windows of a run; H orders.
+
+    Complex peak amplitudes A, of one moment for all bearings: at constant speed the force is its mean and the
+    sum over h of Re(A exp(2 pi i frequency t)), t from the start of the run. At changing speed the angle is
+    that of the mesh in place of 2 pi frequency t.
+
+    Windows are in order of speed where it rises or falls all along, or else of time.
+
+    Attributes
+    ----------
+    bearing : tuple of str
+    time : (S,) array
+        Middle of each window, s.
+    speed : (S,) array
+        Of the leading shaft there, rad/s, without sign.
+    order : (H,) array
+        Multiples of the frequency of the first mesh that turns; harmonics of the other meshes are among them.
+    frequency : (S, H) array
+        Hz.
+    bearing_force : (b, 3, S, H) complex array
+        On the ground or the pin, in the bearing's own frame, N; with seats (b, 6, S, H), moments in N m too.
+    in_contact : (S,) bool array
+        Whether all driving flanks stay in contact throughout the window.
+    sweep : (S,) array
+        Change of the mesh frequency within the window, of its mean.
+    smearing : (S, H) array
+        Of an amplitude: what the window rounds off a resonance of the scene (`smearing`); NaN if the run
+        states no modes.
+    remainder : (b, S) array
+        Share of the variance of each bearing's force, from half the first order to half an order above the
+        last, that belongs to none of the orders: impacts, sidebands, orders of bearings, free vibration.
+    facts : dict
+        Plain JSON: `leading_shaft`, `pitches` of a window, `windows_left_out` (standstill, reversal, too
+        fast a sweep), `effect_ledger` of the run.
+    """
+
+    bearing: tuple[str, ...]
+    time: FloatArray
+    speed: FloatArray
+    order: FloatArray
+    frequency: FloatArray
+    bearing_force: ComplexArray
+    in_contact: BoolArray
+    sweep: FloatArray
+    smearing: FloatArray
+    remainder: FloatArray
+    facts: Json = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class _Row:
+    """One window: scalars, (H,) frequencies, (b, 3 or 6, H) phasors, (b,) remainders."""
+
+    time: float
+    speed: float
+    frequency: FloatArray
+    force: ComplexArray
+    in_contact: bool
+    sweep: float
+    remainder: FloatArray
+
+
+def bearing_orders(result: RunResult, orders: int | None = None, pitches: int | None = None) -> BearingOrders:
+    """Return the mesh orders of the forces on the bearings of a run, window by window.
+
+    Least squares under Hann weights: an order of constant amplitude is found exactly at any sweep. What
+    changes within the window is averaged: see `smearing`.
+
+    Parameters
+    ----------
+    result : RunResult
+        With bearing forces.
+    orders : int, optional
+        Highest multiple of the mesh frequency of the first mesh that turns; default: 10, or what the run's
+        output holds.
+    pitches : int, optional
+        Base pitches of a window; default: 16, or as many as tell the orders of several meshes apart.
+
+    Raises
+    ------
+    InputError
+        The run holds no bearing forces or not those orders, no mesh turns, windows are too short to tell
+        orders apart, or the run is too short or too fast for any window.
+    """
+    mesh, signals = counting_mesh(result), bearing_signals(result)
+    harmonics = mesh_harmonics(result, checked_order(result, "orders", orders, mesh))
+    pitches = _checked_pitches(harmonics, pitches)
+    cycles = harmonics.cycles(result)
+    own = cycles[_first_of(harmonics, mesh)]
+    windows = list(_windows(own, pitches))
+    rows = [_row(result, harmonics, cycles, signals, window) for window in windows]
+    kept = [row for row in rows if row.sweep <= MOST_SWEEP]  # a mesh that rests or reverses sweeps from 0
+    if not kept:
+        raise _no_window(own, pitches, rows)
+    facts: Json = {
+        "leading_shaft": leading_shaft(result),
+        "pitches": pitches,
+        "windows_left_out": len(windows) - len(kept),
+        "effect_ledger": result.effect_ledger,
+    }
+    return _put_together(result, harmonics, _by_speed(kept), facts)
+
+
+def _checked_pitches(harmonics: MeshHarmonics, pitches: int | None) -> int:
+    """Return the base pitches of a window that tells the orders apart."""
+    least = int(np.ceil(APART / harmonics.closest * (1.0 - 1e-6)))
+    if pitches is None:
+        return max(PITCHES, least)
+    integer("pitches", pitches, 1, 1_000_000)
+    if pitches < least:
+        advice = "Longer windows, or fewer orders."
+        raise InputError("pitches", pitches, at_least(least, note=", which tell the orders apart"), advice)
+    return pitches
+
+
+def _first_of(harmonics: MeshHarmonics, mesh: int) -> int:
+    """Return the index of the order 1, that of the mesh that counts."""
+    return int(np.argmax((harmonics.mesh == mesh) & (harmonics.multiple == 1)))
+
+
+def _windows(own: FloatArray, pitches: int) -> Iterator[slice]:
+    """Yield the samples of windows of `pitches` over the cycles (T,) of the mesh that counts."""
+    travel = np.maximum.accumulate(own)
+    spare = float(travel[-1]) - pitches
+    if spare < 0.0:
+        return
+    count = min(int(2.0 * spare / pitches), ROWS - 1) + 1
+    starts = np.linspace(0.0, spare, count) if count > 1 else np.array([0.5 * spare])
+    firsts, ends = np.searchsorted(travel, starts), np.searchsorted(travel, starts + pitches, "right")
+    yield from map(slice, firsts.tolist(), ends.tolist())
+
+
+def _row(
+    result: RunResult, harmonics: MeshHarmonics, cycles: FloatArray, signals: FloatArray, window: slice
+) -> _Row:
+    """Fit the orders in one window."""
+    hertz = result.mesh_frequency[:, window]
+    own = hertz[counting_mesh(result)]
+    progress = cycles[0, window]
+    # Hann by position: the window has its length in pitches
+    weight = np.sin(np.pi * (progress - progress[0]) / (progress[-1] - progress[0])) ** 2
+    part = weight / weight.sum()
+    phasors, left = order_phasors(cycles[:, window].T, signals[..., window], weight)
+    shaft = result.shaft.index(leading_shaft(result))
+    mean = hertz @ part
+    frequency = harmonics.multiple * mean[harmonics.mesh]
+    return _Row(
+        float(part @ result.time[window]),
+        float(part @ np.abs(result.speed[shaft, window])),
+        frequency,
+        phasors,
+        bool(np.all(result.least_mesh_force[:, window] > 0.0)),
+        float(np.ptp(own) / (part @ own)),
+        _remainder(left[:, :3], phasors[:, :3], cycles[:, window], weight, frequency, result.sample_rate),
+    )
+
+
+def _remainder(
+    left: FloatArray,
+    phasors: ComplexArray,
+    cycles: FloatArray,
+    weight: FloatArray,
+    frequency: FloatArray,
+    rate: float,
+) -> FloatArray:
+    """Return the share of the variance in the band that the orders leave, by bearing, (b,)."""
+    orders = np.einsum("...h,ht->...t", phasors, np.exp(2j * np.pi * cycles)).real
+    line = np.fft.rfftfreq(weight.size, 1.0 / rate)
+    half = 0.5 * float(frequency[0])
+    band = (line >= half) & (line <= float(frequency[-1]) + half)
+    own, whole = (
+        np.sum(np.abs(np.fft.rfft(series * weight, axis=-1)[..., band]) ** 2, axis=(-2, -1))
+        for series in (left, left + orders)
+    )
+    return np.asarray(np.divide(own, whole, out=np.zeros(own.shape), where=whole > 0.0))
+
+
+def _by_speed(rows: list[_Row]) -> list[_Row]:
+    """Return windows by rising speed if it rises or falls all along, or else as they are, by time."""
+    falls = all(later.speed < earlier.speed for earlier, later in pairwise(rows))
+    return rows[::-1] if falls else rows
+
+
+def _no_window(own: FloatArray, pitches: int, rows: list[_Row]) -> InputError:
+    """Return the error of a run without a window."""
+    if not rows:
+        value = f"{float(np.max(own)):.4g} base pitches of one sense"
+        return InputError("result", value, f"at least {pitches}, the length of a window", "Run for longer.")
+    least = min(row.sweep for row in rows)
+    value = f"speeds that change by {100.0 * least:.3g} % or more within {pitches} base pitches"
+    advice = "Run up more slowly, or take fewer orders of several meshes."
+    return InputError("result", value, f"at most {100.0 * MOST_SWEEP:g} %", advice)
+
+
+def _put_together(
+    result: RunResult, harmonics: MeshHarmonics, rows: list[_Row], facts: Json
+) -> BearingOrders:
+    """Stack the windows."""
+    frequency = np.stack([row.frequency for row in rows])
+    sweep = np.array([row.sweep for row in rows])
+    return BearingOrders(
+        tuple(result.bearing),
+        np.array([row.time for row in rows]),
+        np.array([row.speed for row in rows]),
+        harmonics.order,
+        frequency,
+        np.stack([row.force for row in rows], axis=-2),
+        np.array([row.in_contact for row in rows]),
+        sweep,
+        smearing(result.modes, frequency, sweep),
+        np.stack([row.remainder for row in rows], axis=-1),
+        facts,
+    )
