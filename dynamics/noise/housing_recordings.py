@@ -12,13 +12,13 @@ from dynamics.acoustics.run_recording import unit_vector
 from dynamics.checks import positive
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.noise.sound_pressure import MONOPOLES, pressure_signal, sound_limit
-from dynamics.orders.resampling import interpolated, low_passed
+from dynamics.orders.resampling import low_passed
 from dynamics.results import RunResult
 from dynamics.types import FloatArray
-from dynamics.vibration import point_signal, run_seat_forces
+from dynamics.vibration import finer_seat_forces, point_signal
 
-FINER, HALF_LENGTH = 4, 24
-"""Times the run's rate, at which the force is a cubic spline; of the filter, in samples of the run."""
+FINER = 4
+"""Times the run's rate, at which the force is a cubic spline."""
 
 
 def velocity_recording(
@@ -52,7 +52,7 @@ def velocity_recording(
         As `run_seat_forces`, `point_signal` and `series_recording`; or the direction is zero.
     """
     rate = FINER * run.sample_rate
-    time, force = _finer_forces(run, housing, bearings)
+    time, force = finer_seat_forces(run, housing, bearings, FINER)
     velocity = point_signal(housing, time, force, [point])[:, 0].T
     axis = principal_direction(velocity, rate)[0] if direction is None else unit_vector(direction)
     x, y, z = axis
@@ -94,18 +94,9 @@ def pressure_recording(
     """
     rate, valid = FINER * run.sample_rate, positive("valid_frequency", sound_limit(housing, air))
     limit = min(valid, float(run.receipt["sampling"]["pass_frequency"]))
-    time, force = _finer_forces(run, housing, bearings)
+    time, force = finer_seat_forces(run, housing, bearings, FINER)
     pressure = pressure_signal(housing, time, force, microphone, model, air)
     x, y, z = np.asarray(microphone, dtype=float)
     where = f"({x:.3f}, {y:.3f}, {z:.3f}) m in the free field"
     quantity = f"sound pressure at {where}, panels as {model.model_name}, up to {limit:.0f} Hz"
     return series_recording(low_passed(pressure, limit / rate), rate, quantity, "Pa", to_rate)
-
-
-def _finer_forces(
-    run: RunResult, housing: ReducedHousing, bearings: Sequence[str] | None
-) -> tuple[FloatArray, FloatArray]:
-    """Return times (T,) and forces on the seats (T, s) at `FINER` times the run's rate."""
-    force = run_seat_forces(run, housing, bearings)
-    finer = np.stack([interpolated(row, FINER, HALF_LENGTH) for row in force.T], axis=1)
-    return run.time[0] + np.arange(len(finer)) / (FINER * run.sample_rate), finer

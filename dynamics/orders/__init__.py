@@ -7,7 +7,7 @@ from dynamics.orders.peaks import Peak, find_peaks
 from dynamics.orders.position_grid import resample_to_position
 from dynamics.orders.sidebands import Sideband, sidebands
 from dynamics.orders.spectrum import MeshOrder, Spectrum, mesh_orders, spectrum, window_spectrum
-from dynamics.orders.third_octaves import ThirdOctaves, band_number, nominal_center, third_octaves
+from dynamics.orders.third_octaves import ThirdOctaves, band_number, band_sums, nominal_center, third_octaves
 from dynamics.orders.valid_orders import highest_valid_order
 from dynamics.orders.waterfall import OrderTrack, Waterfall, frequency_waterfall, order_track, order_waterfall
 
@@ -21,6 +21,7 @@ __all__ = [
     "ThirdOctaves",
     "Waterfall",
     "band_number",
+    "band_sums",
     "bearing_orders",
     "bearing_signals",
     "find_peaks",

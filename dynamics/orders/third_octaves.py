@@ -61,24 +61,48 @@ def nominal_center(band: IntArray) -> FloatArray:
 def third_octaves(blocks: Waterfall, top: float) -> ThirdOctaves:
     """Add up the lines of spectra over frequency in the bands that end at or below `top`, Hz.
 
-    A line's power is spread evenly over its width, so that a band edge divides it.
-
     Raises
     ------
     InputError
         If no band below `top` holds three lines.
     """
-    width = float(blocks.line[1])
-    low = int(np.ceil(10.0 * np.log10(LEAST_LINES * width / SHARE / REFERENCE)))
-    high = int(np.floor(10.0 * np.log10(min(top, float(blocks.line[-1])) / REFERENCE) - 0.5))
+    power = 0.5 * blocks.amplitude[..., 1:] ** 2 / blocks.noise_bandwidth
+    band, edges, within = band_sums(float(blocks.line[1]), power, top)
+    return ThirdOctaves(band, edges, np.sqrt(within), blocks.unit)
+
+
+def band_sums(
+    width: float, power: FloatArray, top: float, bottom: float = 0.0
+) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Return bands (J,), their edges (J + 1,) in Hz and the sums (..., J) of lines of a spectrum in them.
+
+    A line's power is spread evenly over its width, so that a band edge divides it.
+
+    Parameters
+    ----------
+    width : float
+        Distance of the lines, Hz.
+    power : (..., K) array
+        Of the lines at 1, 2, ... K times it.
+    top, bottom : float
+        Edges that no band crosses, Hz.
+
+    Raises
+    ------
+    InputError
+        If no band between them holds three lines.
+    """
+    least = max(LEAST_LINES * width / SHARE, bottom * 10.0**0.05)
+    low = int(np.ceil(10.0 * np.log10(least / REFERENCE)))
+    last = width * power.shape[-1]
+    high = int(np.floor(10.0 * np.log10(min(top, last) / REFERENCE) - 0.5))
     band = np.arange(low, high + 1)
     if not band.size:
         bound = at_least(REFERENCE * 10.0 ** (0.1 * (low + 0.5)), "Hz")
         raise InputError("top", top, bound, "Longer blocks have narrower lines.")
     edges = REFERENCE * 10.0 ** ((np.append(band, band[-1] + 1) - 0.5) / 10.0)
-    power = 0.5 * blocks.amplitude[..., 1:] ** 2 / blocks.noise_bandwidth
     below = np.concatenate([np.zeros_like(power[..., :1]), np.cumsum(power, axis=-1)], axis=-1)
     at = np.clip(edges / width - 0.5, 0.0, power.shape[-1])
     whole = np.minimum(at.astype(int), power.shape[-1] - 1)
     under = below[..., whole] + (at - whole) * power[..., whole]
-    return ThirdOctaves(band, edges, np.sqrt(np.maximum(np.diff(under, axis=-1), 0.0)), blocks.unit)
+    return band, edges, np.maximum(np.diff(under, axis=-1), 0.0)

@@ -8,10 +8,10 @@ from dynamics.vibration.housing_vibration import HousingVibration, housing_vibra
 from dynamics.vibration.levels import overall, vibration_level
 from dynamics.vibration.motion_quantity import MotionQuantity
 from dynamics.vibration.points import named_points
-from dynamics.vibration.seat_forces import run_seat_forces, seat_forces
+from dynamics.vibration.seat_forces import finer_seat_forces, run_seat_forces, seat_forces
 from dynamics.vibration.surface_shape import SurfaceShape, mode_shape, operating_deflection
 from dynamics.vibration.surface_weight import mean_square, normal_weight, surface_weight
-from dynamics.vibration.time_signal import motion_signal, point_signal
+from dynamics.vibration.time_signal import motion_pieces, motion_signal, point_signal
 from dynamics.vibration.transfer_functions import mean_square_mobility, transfer_functions
 from dynamics.vibration.vibration_analysis import VibrationAnalysis, analyze_vibration
 
@@ -26,6 +26,7 @@ __all__ = [
     "VibrationAnalysis",
     "analyze_vibration",
     "bearing_parts",
+    "finer_seat_forces",
     "housing_motion",
     "housing_power",
     "housing_vibration",
@@ -33,6 +34,7 @@ __all__ = [
     "mean_square_mobility",
     "mode_parts",
     "mode_shape",
+    "motion_pieces",
     "motion_signal",
     "named_points",
     "normal_weight",

@@ -11,11 +11,15 @@ from numpy.typing import NDArray
 from dynamics.errors import InputError
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.orders import bearing_signals
+from dynamics.orders.resampling import interpolated
 from dynamics.results import RunResult
 from dynamics.types import FloatArray
 from dynamics.vibration.bearing_harmonics import BearingHarmonics
 
 ComplexArray = NDArray[np.complex128]
+
+HALF_LENGTH = 24
+"""Of the filter of `finer_seat_forces`, in samples of the run."""
 
 
 def seat_forces(
@@ -54,6 +58,18 @@ def run_seat_forces(
     """
     force = _on_seats(bearing_signals(result), result.bearing, housing, bearings)
     return np.moveaxis(force, 0, -1)
+
+
+def finer_seat_forces(
+    result: RunResult, housing: ReducedHousing, bearings: Sequence[str] | None, factor: int
+) -> tuple[FloatArray, FloatArray]:
+    """Return times (F,) and `run_seat_forces` (F, s) at `factor` times the rate of the run.
+
+    Between finer samples a cubic spline follows what the run's output passes: see `motion_signal`.
+    """
+    force = run_seat_forces(result, housing, bearings)
+    finer = np.stack([interpolated(row, factor, HALF_LENGTH) for row in force.T], axis=1)
+    return result.time[0] + np.arange(len(finer)) / (factor * result.sample_rate), finer
 
 
 def _on_seats(
