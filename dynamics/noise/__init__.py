@@ -14,6 +14,7 @@ from dynamics.noise.sensitivities import DesignFigure, Sensitivity, ranked, sens
 from dynamics.noise.several_housings import together
 from dynamics.noise.sound_band import SoundBand, largest_level, sound_band, usual_ranges
 from dynamics.noise.sound_model import SoundModel, forced_power, radiated_power
+from dynamics.noise.sound_over_time import SoundOverTime, sound_over_time
 from dynamics.noise.sound_pressure import pressure_signal, pressure_transfer, sound_limit
 
 __all__ = [
@@ -28,6 +29,7 @@ __all__ = [
     "Sensitivity",
     "SoundBand",
     "SoundModel",
+    "SoundOverTime",
     "coarse_hull",
     "forced_power",
     "housing_radiation",
@@ -48,6 +50,7 @@ __all__ = [
     "sensitivity",
     "sound_band",
     "sound_limit",
+    "sound_over_time",
     "together",
     "usual_ranges",
     "velocity_recording",
