@@ -52,6 +52,8 @@ class Study:
         Whether the verb takes several files.
     housed : bool
         Whether it is about a housing, which a scene then has by its solid.
+    of_run : bool
+        Whether its verb takes a run, whose bearing forces are then those of its speeds.
     aliases : tuple of str
         Other names of the verb's option ``--output``.
     """
@@ -73,6 +75,7 @@ class Study:
     further: tuple[str, ...] = ()
     several: bool = False
     housed: bool = False
+    of_run: bool = False
     aliases: tuple[str, ...] = ()
 
     @property
@@ -268,6 +271,7 @@ STUDIES: dict[str, Study] = {
             ),
             version="1",
             housed=True,
+            of_run=True,
         ),
         Study(
             "vibration",
@@ -282,6 +286,7 @@ STUDIES: dict[str, Study] = {
             version="1",
             further=(".csv", ".vtu"),
             housed=True,
+            of_run=True,
         ),
         Study(
             "steady",

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bounds import between
+from bounds import at_least, between
 from dynamics.acoustics import a_weighting, sound_power_level
 from dynamics.acoustics.run_recording import LOWEST
 from dynamics.errors import InputError
@@ -52,6 +52,27 @@ class SoundOverTime:
     weighted: FloatArray
     lowest: float
     highest: float
+
+    @classmethod
+    def of_all(cls, sounds: Sequence[SoundOverTime]) -> SoundOverTime:
+        """Return the sound of several housings in one run: powers add up.
+
+        Raises
+        ------
+        InputError
+            There is none, or their times and bands differ.
+        """
+        if not sounds:
+            raise InputError("sounds", len(sounds), at_least(1))
+        first = sounds[0]
+        for index, sound in enumerate(sounds):
+            if not (np.array_equal(sound.time, first.time) and np.array_equal(sound.band, first.band)):
+                raise InputError(f"sounds[{index}]", "other times or bands", "those of the first")
+        power, total, weighted = (
+            np.asarray(np.sum([getattr(sound, name) for sound in sounds], axis=0))
+            for name in ("power", "total", "weighted")
+        )
+        return replace(first, power=power, total=total, weighted=weighted)
 
     @property
     def nominal(self) -> FloatArray:
@@ -110,7 +131,7 @@ def sound_over_time(
     velocity = _velocity(result, housing, bearings)
     starts = np.arange(0, len(velocity) - samples + 1, samples // 2)
     width = rate / samples
-    line = width * np.arange(1, samples // 2)
+    line = np.arange(1.0, samples // 2) * width
     lowest = max(LOWEST, LEAKAGE * width, float(radiation.frequency[0]))
     highest = min(float(result.receipt["sampling"]["pass_frequency"]), float(radiation.frequency[-1]))
     inside = (line >= lowest) & (line <= highest)

@@ -9,14 +9,13 @@ from typing import Any
 
 from bounds import engineering
 from dynamics.acoustics import Recording, wav_file
-from dynamics.results import RunResult
 from service.cli.listen_sounds import RunSound, bearing_sounds
 from service.cli.listen_through_housing import HousingReceiver, housing_sounds
 from service.cli.output import check_writable, console, print_json, table
 from service.comparison.compare import named_files
 from service.drawing.figure import number
 from service.problems import BadInput
-from service.report.inputs import read_result
+from service.report.inputs import read_run
 from service.runs.run_view import RunView
 from service.runs.sound import full_scale_of
 
@@ -28,7 +27,7 @@ def run_listen(
 ) -> None:
     """Read the runs, write a WAV file of each on one full scale, print what they hold."""
     paths = _outputs(files, output)
-    runs = {name: _run(file) for name, file in named_files(files)}
+    runs = {name: read_run(file, "runs") for name, file in named_files(files)}
     sounds, remark = bearing_sounds(runs, view) if receiver is None else housing_sounds(runs, receiver, view)
     scale = full_scale_of([sound.recording for sound in sounds])
     if output.suffix != ".wav":
@@ -65,14 +64,6 @@ def _outputs(files: Sequence[Path], output: Path) -> list[Path]:
     if len(set(stems)) < len(stems):
         raise BadInput.of("files", ", ".join(map(str, files)), "runs of different file names", "Rename one.")
     return [output / f"{stem}.wav" for stem in stems]
-
-
-def _run(file: Path) -> RunResult:
-    """Read a run."""
-    result = read_result(file)
-    if not isinstance(result, RunResult):
-        raise BadInput.of("runs", str(file), "a run", "It holds an STE database: loa simulate makes runs.")
-    return result
 
 
 def _rms(recording: Recording) -> float:

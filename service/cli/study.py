@@ -8,6 +8,7 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
+from dynamics.results import RunResult
 from service.cli.interrupt import until_interrupted
 from service.cli.output import (
     Report,
@@ -32,6 +33,7 @@ from service.drawing.image import png
 from service.input_file import InputFile
 from service.problems import BadInput, JobFailed
 from service.registry import Study
+from service.report.inputs import read_run
 from service.report.write import write_whole
 from service.schemas import Case, read_model, read_table, validated
 from service.schemas.lines import located
@@ -48,7 +50,8 @@ def run_study(study: Study, options: Json) -> None:
     """Run a study as its verb was called; `options` holds argument and options by their names."""
     files = options[study.argument] if study.several else [options[study.argument]]
     read = [_read(study, file) for file in files]
-    inputs = _inputs(study, options)
+    run = _run(study, options)
+    inputs = _inputs(study, options, run)
     subjects = []
     for file, (subject, folder) in zip(files, read, strict=True):
         with located(file):
@@ -64,7 +67,7 @@ def run_study(study: Study, options: Json) -> None:
         progress_bar() as report,
         stopping() as cancel,
     ):
-        means = Means(cache_home(), report, workers, cancel, _runs_folder(targets))
+        means = Means(cache_home(), report, workers, cancel, _runs_folder(targets), run)
         results = [
             study.run.compute(_made(study, subject, folder, options, report), inputs, means)
             for subject, folder in subjects
@@ -95,13 +98,27 @@ def _tell(study: Study, subject: Any, result: Any, targets: list[Path], options:
         _show(study, result, targets)
 
 
-def _inputs(study: Study, options: Json) -> Any:
-    """Return the inputs, from their file or the options that were given."""
+def _run(study: Study, options: Json) -> RunResult | None:
+    """Return the run that was named."""
+    if options.get("run") is None:
+        return None
+    if options["speed_rpm"] is not None:
+        raise BadInput.of("speed_rpm", options["speed_rpm"], "left out with --run", "The run has its speeds.")
+    return read_run(options["run"], "run")
+
+
+def _inputs(study: Study, options: Json, run: RunResult | None) -> Any:
+    """Return the inputs, from their file or the options that were given; the speeds of a run are its own."""
     if study.from_file:
         if options["study"] is None:
             return validated(study.inputs, {})
         return read_model(study.inputs, options["study"])
-    return validated(study.inputs, _fields(study, options))
+    fields = _fields(study, options)
+    if run is not None:
+        from service.studies.bearing_forces import run_speeds  # noqa: PLC0415 (loads what computes studies)
+
+        fields["speed_rpm"] = run_speeds(run, options["orders"])
+    return validated(study.inputs, fields)
 
 
 def _fields(study: Study, options: Json) -> Json:

@@ -92,6 +92,20 @@ def read_result(file: Path) -> SteDatabase | RunResult:
     return result
 
 
+def read_run(file: Path, field: str) -> RunResult:
+    """Read a run, which `field` names.
+
+    Raises
+    ------
+    BadInput
+        The file is none, or is damaged.
+    """
+    result = read_result(file)
+    if not isinstance(result, RunResult):
+        raise BadInput.of(field, str(file), "a run", "It holds an STE database: loa simulate makes runs.")
+    return result
+
+
 def _kind(file: Path) -> tuple[Study | None, str]:
     """Return the study that made a file, if one did, and the kind of the file."""
     attributes = file_attributes(file)

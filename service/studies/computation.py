@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from dynamics.results import RunResult
 from fe_contact.workers import InProcess, Workers
 from service.convert.scene import TabledScene
 from service.schemas.model import BoundaryModel
@@ -33,6 +34,8 @@ class Means:
         Says whether to end with the best so far.
     folder : Path, optional
         Where to put the runs that a study keeps in full; None: nowhere.
+    run : RunResult, optional
+        Whose bearing forces a study takes in place of the linear response.
     """
 
     home: Path
@@ -40,6 +43,7 @@ class Means:
     workers: Workers = field(default_factory=InProcess)
     cancel: Callable[[], bool] | None = None
     folder: Path | None = None
+    run: RunResult | None = None
 
 
 def with_defaults(inputs: BoundaryModel) -> Json:

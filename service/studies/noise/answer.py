@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from service.schemas.bearing_forces import BearingForces
 from service.schemas.figures import Figures, Json, Part
 from service.studies.equilibrium import Equilibrium
 
@@ -91,6 +92,19 @@ class SensitivityFigures(Part):
     linear: bool
 
 
+class SoundOverTime(Part):
+    """Sound power over a run, all that its bearing forces hold; third octaves by band, then by time."""
+
+    time_s: list[float]
+    speed_rpm: list[float]
+    third_octave_hz: list[float]
+    third_octave_db: list[list[float]]
+    total_level_db: list[float]
+    total_level_db_a: list[float]
+    lowest_hz: float
+    highest_hz: float
+
+
 class NoiseFigures(Figures):
     """Sound power levels re 1 pW by order, then by speed; third octaves; the loudest points."""
 
@@ -113,7 +127,9 @@ class NoiseFigures(Figures):
     band: SoundBandFigures | None
     sensitivities: list[SensitivityFigures]
     sensitivities_left_out: dict[str, str]
-    equilibrium: Equilibrium
+    equilibrium: Equilibrium | None
+    forces: BearingForces
+    over_time: SoundOverTime | None
     cpu_seconds: dict[str, float]
     effect_ledger: Json
 

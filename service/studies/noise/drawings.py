@@ -10,6 +10,8 @@ from dynamics.acoustics import OrderPower, a_weighting, sound_power_level
 from dynamics.noise import RadiatedSound
 from service.drawing import palette
 from service.drawing.figure import Axis, Figure, FloatArray, HeatMap, Line, Panel, Table, number
+from service.studies.bearing_forces import of_run, row_axis
+from service.studies.noise.over_time import total_line
 
 RPM = np.pi / 30.0
 DEPTH = 60.0
@@ -20,14 +22,17 @@ LINES, SHOWN = 160, 6
 
 def sound_map(sound: RadiatedSound, table: Table, words: Sequence[str]) -> Figure:
     """Draw the A-weighted level over speed and frequency."""
-    orders, speed = sound.orders, sound.speed / RPM
+    orders, (x, along) = sound.orders, row_axis(sound.speed, sound.facts)
+    forces = "linear: mean mesh stiffness, no loss of contact"
+    if of_run(sound.facts) is not None:
+        forces = "with the amplitudes of the run"
     return Figure(
         key="sound_map",
         title="Sound power over speed and frequency",
-        caption="A-weighted sound power level re 1 pW of each order as in a steady state, linear: mean mesh "
-        f"stiffness, no loss of contact. Colors end {DEPTH:g} dB below the loudest.",
+        caption="A-weighted sound power level re 1 pW of each order as in a steady state, "
+        f"{forces}. Colors end {DEPTH:g} dB below the loudest.",
         alternative=" ".join(f"Loudest: {text}." for text in words) or "Nothing radiates.",
-        content=(Panel(_speed(sound), Axis("frequency, Hz"), shade=_cells(orders, speed)),),
+        content=(Panel(x, Axis("frequency, Hz"), shade=_cells(orders, along)),),
         table=table,
     )
 
@@ -48,7 +53,7 @@ def _cells(orders: OrderPower, speed: FloatArray) -> HeatMap:
 
 def level_over_speed(sound: RadiatedSound) -> Figure:
     """Draw the total and the loudest orders over speed."""
-    orders, speed = sound.orders, sound.speed / RPM
+    orders, (x, speed) = sound.orders, row_axis(sound.speed, sound.facts)
     level, total = orders.weighted_level, orders.total_weighted_level
     shown = sorted(int(k) for k in np.argsort(-level.max(axis=1), kind="stable")[:SHOWN])
     floor = float(total.max()) - DEPTH
@@ -59,13 +64,15 @@ def level_over_speed(sound: RadiatedSound) -> Figure:
             for k, h in enumerate(shown)
         ),
     )
+    if (whole := total_line(sound.speed, sound.facts)) is not None:
+        lines += (Line("all of the run", whole[0], _above(whole[1], floor), palette.MUTED, width=1.4),)
     at = int(total.argmax())
     return Figure(
         key="sound_levels",
         title="Sound power of the orders over speed",
         caption=f"Orders add up in power. The {SHOWN} loudest are shown.",
-        alternative=f"The total is largest at {number(float(speed[at]), 4)} rpm: {total[at]:.1f} dB(A).",
-        content=(Panel(_speed(sound), Axis("sound power level, dB(A)"), lines),),
+        alternative=f"The total is largest at {_rpm(sound, at)}: {total[at]:.1f} dB(A).",
+        content=(Panel(x, Axis("sound power level, dB(A)"), lines),),
         table=_levels_table(sound, level, total),
     )
 
@@ -107,7 +114,7 @@ def third_octaves(sound: RadiatedSound) -> Figure:
 
 def bearing_levels(sound: RadiatedSound) -> Figure:
     """Draw what the force of each bearing would radiate alone."""
-    speed, total = sound.speed / RPM, sound.orders.total_weighted_level
+    (x, speed), total = row_axis(sound.speed, sound.facts), sound.orders.total_weighted_level
     alone = np.stack([_total(sound, power) for power in sound.bearing_alone])
     floor = float(total.max()) - DEPTH
     most = np.argsort(-alone.max(axis=1), kind="stable")[:SHOWN]
@@ -126,11 +133,11 @@ def bearing_levels(sound: RadiatedSound) -> Figure:
         title="Sound power by the force of each bearing alone",
         caption="Forces of bearings are coherent: their powers do not add up, and one may be louder alone "
         "than all together.",
-        alternative=f"At {number(float(speed[at]), 4)} rpm bearing {sound.bearing[loud]} alone radiates "
+        alternative=f"At {_rpm(sound, at)} bearing {sound.bearing[loud]} alone radiates "
         f"{alone[loud, at]:.1f} dB(A) of {total[at]:.1f} dB(A).",
-        content=(Panel(_speed(sound), Axis("sound power level, dB(A)"), lines),),
+        content=(Panel(x, Axis("sound power level, dB(A)"), lines),),
         table=Table(
-            f"Bearings at {number(float(speed[at]), 4)} rpm",
+            f"Bearings at {_rpm(sound, at)}",
             ("bearing", "alone, dB(A)", "all without it, dB(A)"),
             tuple(
                 (name, f"{alone[b, at]:.1f}", f"{without[b, at]:.1f}") for b, name in enumerate(sound.bearing)
@@ -155,11 +162,9 @@ def _levels_table(sound: RadiatedSound, level: FloatArray, total: FloatArray) ->
     return Table("Largest level of each order", head, tuple(rows))
 
 
-def _speed(sound: RadiatedSound) -> Axis:
-    """Return the axis of the speeds."""
-    speed = sound.speed / RPM
-    ends = (float(speed[0]), float(speed[-1])) if speed.size > 1 else None
-    return Axis(f"speed of {sound.facts['leading_shaft']}, rpm", limits=ends)
+def _rpm(sound: RadiatedSound, row: int) -> str:
+    """Write the speed of a row."""
+    return f"{number(float(sound.speed[row]) / RPM, 4)} rpm"
 
 
 def _above(level: FloatArray, floor: float) -> FloatArray:

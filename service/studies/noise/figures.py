@@ -8,6 +8,7 @@ import numpy as np
 
 from dynamics.acoustics import a_weighting, sound_power_level
 from dynamics.noise import LoudPoint, RadiatedSound, loudest
+from service.studies.bearing_forces import LINEAR
 from service.studies.equilibrium import equilibrium_figures
 from service.units import RPM
 
@@ -35,7 +36,9 @@ def facts(sound: RadiatedSound) -> Json:
         "housings": {name: _housing(about, name) for name in sound.housing},
         "natural_frequency_hz": sound.natural_frequency.tolist(),
         "parting_rpm": (sound.speed[~sound.in_contact] / RPM).tolist(),
-        "equilibrium": equilibrium_figures(about["equilibrium"]),
+        "equilibrium": None if about["equilibrium"] is None else equilibrium_figures(about["equilibrium"]),
+        "forces": about.get("forces", LINEAR),
+        "over_time": about.get("over_time"),
         "band": about["band"],
         "sensitivities": about["sensitivities"],
         "sensitivities_left_out": about["sensitivities_left_out"],

@@ -10,7 +10,9 @@ from dynamics.noise import LoudPoint, RadiatedSound, loudest
 from service.convert.run_effects import model_lines
 from service.drawing.figure import Figure, Table, number
 from service.drawing.page import Headline, Page, Part, Section
+from service.studies.bearing_forces import force_words, of_run
 from service.studies.noise.drawings import RPM, bearing_levels, level_over_speed, sound_map, third_octaves
+from service.studies.noise.over_time import third_octaves_over_time
 from service.studies.noise.uncertainty_tables import uncertainty_tables
 from service.studies.presentation import Presentation, dynamics_page
 
@@ -80,22 +82,27 @@ def headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
 
 def _figures(sound: RadiatedSound) -> tuple[Figure, ...]:
     """Return all figures."""
-    return (
+    figures = (
         sound_map(sound, loudest_table(sound), [sentence(point) for point in loudest(sound, 1)]),
         level_over_speed(sound),
         third_octaves(sound),
         bearing_levels(sound),
     )
+    if sound.facts.get("over_time") is None:
+        return figures
+    return (*figures, third_octaves_over_time(sound.facts))
 
 
 def limits(sound: RadiatedSound) -> Iterator[tuple[str, str]]:
     """Say of each housing by what model it radiates, what others say, and what the answer does not hold."""
+    yield from force_words(sound.facts)
     for name in sound.housing:
         yield from _radiation_limits(sound, name)
     parting = sound.speed[~sound.in_contact] / RPM
     if parting.size:
         where = f"{parting[0]:.5g} to {parting[-1]:.5g} rpm"
-        yield "flanks lift off", f"at {parting.size} of {sound.speed.size} speeds, {where}: see loa steady"
+        what = "see loa steady" if of_run(sound.facts) is None else "their impacts are in the run's total"
+        yield "flanks lift off", f"at {parting.size} of {sound.speed.size} speeds, {where}: {what}"
 
 
 def _radiation_limits(sound: RadiatedSound, housing: str) -> Iterator[tuple[str, str]]:

@@ -8,7 +8,6 @@ from typing import Any
 
 from dynamics.acoustics import BoundaryElements, ElementalRadiators, EquivalentRadiatedPower, RadiationModel
 from dynamics.housing_modes import ReducedHousing
-from dynamics.linearize import ForcedResponse
 from dynamics.noise import (
     HousingRadiation,
     RadiatedSound,
@@ -18,15 +17,17 @@ from dynamics.noise import (
     radiated_sound,
     together,
 )
+from dynamics.vibration import BearingHarmonics
 from service.convert.case import boundary_errors
 from service.convert.scene import TabledScene
 from service.problems import BadInput
 from service.schemas.scene import SceneInput
+from service.studies.bearing_forces import forces_of
 from service.studies.computation import Computation, Means
 from service.studies.noise import Inputs
 from service.studies.noise.figures import facts
+from service.studies.noise.over_time import over_time, over_time_json, run_frequencies
 from service.studies.noise.uncertainty import uncertainty
-from service.studies.response.run import response_of
 from service.studies.result_file import array_file
 
 Json = dict[str, Any]
@@ -43,10 +44,11 @@ def noise_of(subject: TabledScene, inputs: Inputs, means: Means) -> RadiatedSoun
     Raises
     ------
     BadInput
-        No housing has a surface.
+        No housing has a surface, or sensitivities are asked of a run.
     """
+    inputs = _without_ranges(inputs) if means.run is not None else inputs
+    response = forces_of(subject.scene, inputs, means)
     with boundary_errors():
-        response = response_of(subject.scene, inputs, means)
         sounds, compared, radiation = [], {}, {}
         began = time.process_time()
         for part in subject.scene.housings:
@@ -56,27 +58,38 @@ def noise_of(subject: TabledScene, inputs: Inputs, means: Means) -> RadiatedSoun
                 sound = radiated_sound(response, body, part.bushings, radiation[part.name], part.name)
                 compared[part.name] = _compared(response, body, part.bushings, sound, inputs)
                 sounds.append(sound)
-    if not sounds:
-        raise _silent(subject.inputs)
-    whole = together(sounds)
+        if not sounds:
+            raise _silent(subject.inputs)
+        whole = together(sounds)
+        heard = None if means.run is None else over_time(subject, means.run, radiation)
     about = response.facts
     seconds = {**about["seconds"], "sound": time.process_time() - began}
-    own = {name: about[name] for name in ("leading_shaft", "equilibrium", "effect_ledger")}
+    own = {name: about.get(name) for name in ("leading_shaft", "equilibrium", "effect_ledger", "forces")}
+    own["over_time"] = over_time_json(heard)
     known = {**whole.facts, **own, "models": compared, "seconds": seconds}
     whole = replace(whole, facts=known)
     return replace(whole, facts={**known, **uncertainty(subject, whole, radiation, inputs, means)})
 
 
+def _without_ranges(inputs: Inputs) -> Inputs:
+    """Return the inputs without the band: it varies the linear response, and a run is what it is."""
+    if inputs.sensitivities:
+        advice = "They vary the linear response: leave out --run."
+        raise BadInput.of("sensitivities", True, "left out with a run", advice)
+    return inputs.model_copy(update={"band": False})
+
+
 def _radiation(
-    response: ForcedResponse, body: ReducedHousing, inputs: Inputs, means: Means
+    response: BearingHarmonics, body: ReducedHousing, inputs: Inputs, means: Means
 ) -> HousingRadiation:
     """Return the radiation resistance of one housing."""
     model, cache = MODELS[inputs.radiation], means.home / "housings"
-    return kept_radiation(body, model, response.frequency, cache=cache, progress=means.report)
+    hertz = response.frequency if means.run is None else run_frequencies(means.run, response.frequency)
+    return kept_radiation(body, model, hertz, cache=cache, progress=means.report)
 
 
 def _compared(
-    response: ForcedResponse,
+    response: BearingHarmonics,
     body: ReducedHousing,
     bearings: tuple[str, ...],
     sound: RadiatedSound,

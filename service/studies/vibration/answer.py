@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from service.schemas.bearing_forces import BearingForces
 from service.schemas.figures import Figures, Json, Part
 
 
@@ -46,6 +47,7 @@ class VibrationFigures(Figures):
     points: dict[str, PointVelocity]
     surface_mm_per_s: list[list[float]] | None
     contributions: Contributions
+    forces: BearingForces
     cpu_seconds: dict[str, float]
     effect_ledger: Json
 

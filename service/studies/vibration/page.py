@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from bounds import engineering
 from service.convert.run_effects import model_lines
 from service.drawing.figure import Figure, Table, number
-from service.drawing.page import Headline, Page
+from service.drawing.page import Headline, Page, Part, Section
+from service.studies.bearing_forces import force_words
 from service.studies.presentation import Presentation, dynamics_page
 from service.studies.vibration.plots import (
     contribution_figure,
@@ -31,7 +33,10 @@ def page(result: HousingVibrationResult) -> Page:
     shape = shape_figure(result)
     figures = (velocity_figure(result), contribution_figure(result), transfer_figure(result))
     drawn = figures if shape is None else (figures[0], shape, *figures[1:])
-    return dynamics_page("Vibration of the housing", drawn, headlines(result), result.analysis.facts)
+    whole = dynamics_page("Vibration of the housing", drawn, headlines(result), result.analysis.facts)
+    rests = Table("Forces that move the housing", ("what", "how"), force_words(result.analysis.facts))
+    accuracy = Section("Accuracy of the velocities", tables=(rests,), part=Part.ACCURACY)
+    return replace(whole, sections=(*whole.sections, accuracy))
 
 
 def headlines(result: HousingVibrationResult) -> tuple[Headline, ...]:
@@ -70,6 +75,7 @@ def _text(result: HousingVibrationResult) -> Iterator[Table | str]:
         orders = ", ".join(f"{order:g}" for order in beyond)
         limit = number(vibration.highest_valid_frequency, 4)
         yield f"orders {orders} go beyond {limit} Hz, 0.7 of the highest mode kept: keep more modes"
+    yield from (f"{what}: {words}" for what, words in force_words(found.facts))
     yield f"cost {engineering(sum(found.facts['seconds'].values()), 3)} CPU s"
     yield from model_lines(found.facts)
 

@@ -10,9 +10,10 @@ from dynamics.vibration.vibration_analysis import Shares
 from service.drawing import palette
 from service.drawing.figure import Axis, Bars, Figure, Line, Panel, Reference, number
 from service.drawing.surface_view import EYE, surface_panel
+from service.studies.bearing_forces import row_axis
 from service.studies.vibration.run import MM_PER_S, HousingVibrationResult
 from service.studies.vibration.tables import contribution_table, largest_table, where
-from service.units import MM, RPM
+from service.units import MM
 
 SHOWN_ORDERS, SHOWN_POINTS, SHOWN_SEATS, SHOWN_MODES = 6, 3, 4, 8
 DRAWN = 0.06
@@ -43,7 +44,7 @@ def velocity_figure(result: HousingVibrationResult) -> Figure:
 def _velocity_panel(found: VibrationAnalysis, name: str, rms: FloatArray) -> Panel:
     """Draw one velocity (S, H) in mm/s by its largest orders."""
     vibration = found.vibration
-    speed = vibration.speed / RPM
+    x, speed = row_axis(vibration.speed, found.facts)
     most = sorted(np.argsort(-rms.max(axis=0), kind="stable")[:SHOWN_ORDERS].tolist())
     lines = []
     for k, h in enumerate(most):
@@ -53,8 +54,6 @@ def _velocity_panel(found: VibrationAnalysis, name: str, rms: FloatArray) -> Pan
             onward = ~valid | np.append(~valid[1:], False)
             beyond = np.where(onward, rms[:, h], np.nan)
             lines.append(Line(f"{order}, beyond", speed, beyond, color, "dash", 1.0))
-    ends = (float(speed[0]), float(speed[-1])) if speed.size > 1 else None
-    x = Axis(f"speed of {found.facts['leading_shaft']}, rpm", limits=ends)
     return Panel(x, Axis("rms velocity, mm/s"), tuple(lines), title=name)
 
 

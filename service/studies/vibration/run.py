@@ -25,8 +25,8 @@ from service.convert.case import boundary_errors
 from service.convert.scene import TabledScene
 from service.problems import BadInput
 from service.schemas.scene import SceneInput
+from service.studies.bearing_forces import LINEAR, forces_of
 from service.studies.computation import Computation, Means
-from service.studies.response.run import response_of
 from service.studies.result_file import record_file
 from service.studies.vibration import Inputs
 from service.units import RPM
@@ -70,7 +70,7 @@ def vibration_of(tabled: TabledScene, inputs: Inputs, means: Means) -> HousingVi
     """
     name, housing = chosen(tabled, inputs.housing)
     with boundary_errors():
-        response = response_of(tabled.scene, inputs, means)
+        response = forces_of(tabled.scene, inputs, means)
         began = time.process_time()
         found = analyze_vibration(
             response,
@@ -132,6 +132,7 @@ def facts(result: HousingVibrationResult) -> Json:
             "bearings": _contributions(found.bearings, vibration.point),
             "modes": _contributions(found.modes, vibration.point),
         },
+        "forces": found.facts.get("forces", LINEAR),
         "cpu_seconds": found.facts["seconds"],
         "effect_ledger": found.facts["effect_ledger"],
     }

@@ -1,0 +1,117 @@
+"""The bearing forces that studies of housings start from: of the linear response, or of a run."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from bounds.types import FloatArray
+from dynamics.orders import BearingOrders, bearing_orders
+from dynamics.results import RunResult
+from dynamics.scene import Scene
+from dynamics.vibration import ReportedHarmonics
+from service.convert.case import boundary_errors
+from service.drawing.figure import Axis, number
+from service.schemas.speeds import OverOrders
+from service.studies.computation import Means
+from service.studies.response.run import response_of
+from service.units import RPM
+
+Json = dict[str, Any]
+LINEAR: Json = {"source": "linear response"}
+COARSE = 10.0 ** (1.0 / 20.0) - 1.0
+"""Smearing by 1 dB: above it a window does not resolve an order."""
+
+
+def forces_of(scene: Scene, inputs: OverOrders, means: Means) -> ReportedHarmonics:
+    """Return the orders of the bearing forces in the run, without one in the linear response.
+
+    The facts of both have `forces`: where they come from, and of a run how its windows hold.
+    """
+    if means.run is None:
+        response = response_of(scene, inputs, means)
+        return replace(response, facts=response.facts | {"forces": LINEAR})
+    began = time.process_time()
+    with boundary_errors():
+        orders = bearing_orders(means.run, inputs.orders)
+    seconds = {"orders": time.process_time() - began}
+    return replace(orders, facts=orders.facts | {"forces": _run_forces(orders), "seconds": seconds})
+
+
+def run_speeds(run: RunResult, orders: int) -> list[float]:
+    """Return the speeds at which a run has orders, rising, rpm."""
+    with boundary_errors():
+        speed: list[float] = (np.unique(bearing_orders(run, orders).speed) / RPM).tolist()
+    return speed
+
+
+def _run_forces(orders: BearingOrders) -> Json:
+    """Return how the windows of a run hold, by order, then by window."""
+    known = bool(np.all(np.isfinite(orders.smearing)))
+    return {
+        "source": "run",
+        "time_s": orders.time.tolist(),
+        "window_pitches": orders.facts["pitches"],
+        "windows_left_out": orders.facts["windows_left_out"],
+        "speed_change": orders.sweep.tolist(),
+        "smearing": orders.smearing.T.tolist() if known else None,
+        "remainder": dict(zip(orders.bearing, orders.remainder.tolist(), strict=True)),
+    }
+
+
+def of_run(facts: Json) -> Json | None:
+    """Return the facts `forces` of a result if they are a run's; None for the linear response."""
+    forces: Json = facts.get("forces", LINEAR)
+    return forces if forces["source"] == "run" else None
+
+
+def row_axis(speed: FloatArray, facts: Json) -> tuple[Axis, FloatArray]:
+    """Return the axis of the rows: their speed (S,) in rad/s where it rises all along, else the time."""
+    run = of_run(facts)
+    if run is not None and not np.all(np.diff(speed) > 1e-6 * speed[:-1]):
+        return _whole(Axis("time, s"), np.array(run["time_s"]))
+    return _whole(Axis(f"speed of {facts['leading_shaft']}, rpm"), speed / RPM)
+
+
+def _whole(axis: Axis, values: FloatArray) -> tuple[Axis, FloatArray]:
+    """Let an axis end where its values do."""
+    ends = (float(values[0]), float(values[-1])) if values.size > 1 else None
+    return replace(axis, limits=ends), values
+
+
+def force_words(facts: Json) -> tuple[tuple[str, str], ...]:
+    """Say whose forces on bearings a result rests on, and how far the orders of a run hold."""
+    run = of_run(facts)
+    if run is None:
+        return (("forces on bearings", "linear steady response: mean mesh stiffness, flanks in contact"),)
+    windows = f"{len(run['time_s'])} windows of {run['window_pitches']} base pitches"
+    if run["windows_left_out"]:
+        windows += f", {run['windows_left_out']} left out: standstill, or too fast a change of speed"
+    rows = [("forces on bearings", f"orders of the run, {windows}")]
+    name, share = _largest_remainder(run)
+    rows.append(
+        (
+            "what orders do not hold",
+            f"at most {number(100.0 * share, 3)} % of the force on {name}, in variance",
+        )
+    )
+    if run["smearing"] is None:
+        rows.append(("smearing by the windows", "not known: the run states no modes"))
+        return tuple(rows)
+    smearing = np.array(run["smearing"])
+    coarse = int(np.sum(np.any(smearing > COARSE, axis=0)))
+    words = f"median {number(20.0 * np.log10(1.0 + float(np.median(smearing))), 2)} dB"
+    if coarse:
+        words += f"; above 1 dB in {coarse} windows: run up more slowly"
+    rows.append(("smearing by the windows", words))
+    return tuple(rows)
+
+
+def _largest_remainder(run: Json) -> tuple[str, float]:
+    """Return the bearing of whose force orders leave most, and how much."""
+    most = {name: max(shares) for name, shares in run["remainder"].items()}
+    name = max(most, key=lambda bearing: most[bearing])
+    return name, most[name]

@@ -1,0 +1,134 @@
+"""``loa noise --run`` and ``loa vibration --run``: bearing forces of a run, not of the linear response."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from declared_figures import check_declared
+from hulls import box
+from scene_files import scene_file
+from sounding_housings import random_housing, smooth_motion, with_surface
+from typer.testing import CliRunner, Result
+
+from dynamics.results import RunResult
+from service.cli.commands import app
+
+ORDERS = 4
+
+
+def loa(*arguments: object) -> Result:
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+def told(*arguments: object) -> Any:
+    """Return what is printed as JSON."""
+    result = loa(*arguments, "--json")
+    assert (result.exit_code, result.stderr) == (0, "")
+    answer = json.loads(result.stdout)
+    check_declared(str(arguments[0]), answer)
+    return answer
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A scene with a housing, run up, in `run.nc` beside it, and at a constant speed, in `even.nc`."""
+    folder = tmp_path_factory.mktemp("runs")
+    file = scene_file(folder, duration=0.6)
+    bare = random_housing(("left", "right"), motions=3, positions=[(0.0, 0.0, 0.05), (0.08, 0.0, 0.05)])
+    hull = box((0.3, 0.2, 0.15), (6, 4, 3))
+    with_surface(bare, hull, smooth_motion(hull, len(bare.stiffness))).to_netcdf(folder / "case.nc")
+    text = f'{file.read_text()}[[housings]]\nname = "case"\nmodes_file = "case.nc"\n'
+    file.write_text(text)
+    laws = {"even": ("speed_rpm=[2000.0]",), "run": ("time_s=[0.0, 0.6]", "speed_rpm=[1500.0, 3000.0]")}
+    for name, law in laws.items():
+        options = [word for field in law for word in ("--set", f"drives.motor.{field}")]
+        result = loa("simulate", file, *options, "-o", folder / f"{name}.nc")
+        assert result.exit_code == 0, result.stderr
+    return file
+
+
+def run_of(scene: Path, name: str = "run") -> Path:
+    return scene.with_name(f"{name}.nc")
+
+
+def test_levels_of_a_run_go_over_its_speeds_and_its_time(scene: Path) -> None:
+    answer = told("noise", scene, "--run", run_of(scene), "--orders", ORDERS)
+    forces, heard = answer["forces"], answer["over_time"]
+    speed = np.array(answer["speed_rpm"])
+    assert np.all(np.diff(speed) > 0.0) and speed[0] > 1500.0 and speed[-1] < 3000.0
+    np.testing.assert_allclose(speed, 1500.0 + 2500.0 * np.array(forces["time_s"]), rtol=1e-6)
+    assert forces["source"] == "run" and forces["window_pitches"] == 16
+    assert set(forces["remainder"]) == {"left", "right"}
+    assert answer["equilibrium"] is None and answer["band"] is None
+    assert np.array(answer["level_db"]).shape == np.array(forces["smearing"]).shape == (ORDERS, speed.size)
+    total = np.interp(heard["speed_rpm"], speed, answer["total_level_db"])
+    assert np.median(np.array(heard["total_level_db"]) - total) > -0.3  # it holds more than the orders
+    bands = np.sum(10.0 ** (np.array(heard["third_octave_db"]) / 10.0), axis=0)
+    assert np.all(10.0 * np.log10(bands) <= np.array(heard["total_level_db"]) + 1e-6)
+
+
+def test_at_constant_speed_it_is_near_the_linear_response(scene: Path) -> None:
+    """The stiffness of the table varies; the first order of a heavily loaded pair hardly knows."""
+    run = told("noise", scene, "--run", run_of(scene, "even"), "--orders", ORDERS)
+    linear = told("noise", scene, "--speed-rpm", 2000, "--orders", ORDERS, "--no-band")
+    assert linear["forces"] == {"source": "linear response"} and linear["over_time"] is None
+    settled = np.array(run["level_db"])[:, -3:]
+    assert np.ptp(settled, axis=1).max() < 0.1
+    assert settled[0].mean() == pytest.approx(linear["level_db"][0][0], abs=3.0)
+    np.testing.assert_allclose(run["speed_rpm"], 2000.0, rtol=1e-9)
+
+
+@pytest.mark.parametrize(("verb", "key"), [("noise", "sound_over_time"), ("vibration", "housing_velocity")])
+@pytest.mark.parametrize("name", ["run", "even"])
+def test_report_and_figure_say_whose_forces_they_are(
+    scene: Path, tmp_path: Path, verb: str, key: str, name: str
+) -> None:
+    for ending in ("html", "png"):
+        file = tmp_path / f"{verb}.{ending}"
+        result = loa(verb, scene, "--run", run_of(scene, name), "--orders", ORDERS, "-o", file)
+        assert (result.exit_code, result.stderr) == (0, "")
+        assert "forces on bearings: orders of the run" in " ".join(result.stdout.split())
+    text = (tmp_path / f"{verb}.html").read_text("utf-8")
+    assert key in text and "orders of the run" in text and "what orders do not hold" in text
+    assert ("time, s" in text) if name == "even" else ("speed of input, rpm" in text)
+
+
+def test_velocities_of_a_run_are_by_its_speeds(scene: Path) -> None:
+    answer = told("vibration", scene, "--run", run_of(scene), "--orders", ORDERS)
+    assert answer["forces"]["source"] == "run"
+    assert np.array(answer["surface_mm_per_s"]).shape == (ORDERS, len(answer["speed_rpm"]))
+    assert told("vibration", scene, "--speed-rpm", 2000)["forces"] == {"source": "linear response"}
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--run", "run.nc", "--speed-rpm", 2000), ("speed_rpm", "left out with --run")),
+        (("--run", "ste.nc"), ("run = ", "a run")),
+        (("--run", "none.nc"), ("run", "no such file")),
+        (("--run", "run.nc", "--orders", 4, "--sensitivities"), ("sensitivities", "leave out --run")),
+        (("--run", "run.nc", "--orders", 90), ("orders = 90", "outputs.mesh_orders = 90")),
+        ((), ("speed_rpm",)),
+    ],
+)
+def test_what_does_not_go_together_is_refused(
+    scene: Path, options: tuple[Any, ...], words: tuple[str, ...]
+) -> None:
+    named = [scene.with_name(part) if str(part).endswith(".nc") else part for part in options]
+    result = loa("noise", scene, *named)
+    assert result.exit_code == 2
+    for word in words:
+        assert word in " ".join(result.stderr.split()), result.stderr
+
+
+def test_a_run_of_other_bearings_is_refused(scene: Path, tmp_path: Path) -> None:
+    run = RunResult.from_netcdf(run_of(scene))
+    object.__setattr__(run, "bearing", ("left", "rear"))
+    run.to_netcdf(tmp_path / "other.nc")
+    result = loa("noise", scene, "--run", tmp_path / "other.nc", "--orders", ORDERS)
+    assert result.exit_code == 2
+    assert "'right'" in result.stderr and "one of left, rear" in result.stderr
