@@ -11,7 +11,7 @@ from swept_runs import RATE, drawn_amplitudes, order_forces, swept_run
 
 from dynamics.acoustics import EquivalentRadiatedPower, a_weighting
 from dynamics.errors import InputError
-from dynamics.noise import housing_radiation, radiated_sound, sound_over_time
+from dynamics.noise import SoundOverTime, housing_radiation, radiated_sound, sound_over_time
 from dynamics.orders import bearing_orders
 from dynamics.vibration import motion_signal, run_seat_forces
 
@@ -117,3 +117,16 @@ def test_a_block_longer_than_the_run_is_refused():
     run = swept_run(620.0, 620.0, 0.2, FORCE)
     with pytest.raises(InputError, match="block"):
         sound_over_time(run, housing(), None, radiation(), 0.3)
+
+
+def test_housings_of_one_run_add_up_in_power():
+    found = sound_over_time(swept_run(620.0, 620.0, 0.3, FORCE), housing(), None, radiation())
+    both = SoundOverTime.of_all([found, found])
+    np.testing.assert_allclose(both.total_level - found.total_level, 10.0 * np.log10(2.0))
+    np.testing.assert_allclose(both.total_weighted_level - found.total_weighted_level, 10.0 * np.log10(2.0))
+    np.testing.assert_allclose(both.power, 2.0 * found.power)
+    shorter = sound_over_time(swept_run(620.0, 620.0, 0.2, FORCE), housing(), None, radiation())
+    with pytest.raises(InputError, match=r"sounds\[1\]"):
+        SoundOverTime.of_all([found, shorter])
+    with pytest.raises(InputError, match="sounds"):
+        SoundOverTime.of_all([])
