@@ -2,38 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
+from reduced_housings import seat
 
 from dynamics.acoustics import Hull
-from dynamics.housing_modes import ModalDamping, Ring, SeatFrame, housing_of_matrices, scene_housing
+from dynamics.housing_modes import ModalDamping, housing_of_matrices, scene_housing
 from dynamics.housing_modes.reduced_housing import ReducedHousing, SurfaceMotion
 from dynamics.housing_modes.reduced_matrices import ReducedMatrices
-from dynamics.housing_modes.seats import MOTIONS
-
-NAMES = ("input.left", "input.right", "output.left", "output.right")
-PER_SEAT = 5
-
-
-def seat(name: str, angle: float = 0.0, motions: int = PER_SEAT, position=(0.0, 0.0, 0.0)) -> SeatFrame:
-    c, s = math.cos(angle), math.sin(angle)
-    axes = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    return SeatFrame(name, np.array(position), axes, Ring.RIGID, MOTIONS[:motions])
-
-
-def random_housing(names=NAMES, modal=3, seed=1, motions=PER_SEAT, positions=None) -> ReducedHousing:
-    """A held housing of random matrices; seats turned about z, so that their axes are not the scene's."""
-    lever = np.concatenate([np.tile([1.0, 1.0, 1.0, 0.1, 0.1][:motions], len(names)), np.ones(modal)])
-    matrices = []
-    for number, scale in enumerate((3e8, 4.0)):
-        factor = np.random.default_rng(seed + number).normal(size=(lever.size, lever.size))
-        full = scale * (factor @ factor.T / lever.size + 0.5 * np.eye(lever.size))
-        matrices.append(np.outer(lever, lever) * full)
-    positions = positions or [(0.0, 0.0, 0.0)] * len(names)
-    seats = tuple(seat(name, 0.3 * i, motions, positions[i]) for i, name in enumerate(names))
-    return housing_of_matrices(ReducedMatrices(*matrices), seats, ModalDamping((0.02,)))
 
 
 def rigid_housing(mass: float, stiffness: float, damping: float, hull: Hull) -> ReducedHousing:

@@ -8,7 +8,8 @@ from functools import cache
 import numpy as np
 from geared_scenes import gear_pair_scene, square_wave_table
 from hulls import box, sphere
-from sounding_housings import part_of_scene, random_housing, rigid_housing, smooth_motion, with_surface
+from reduced_housings import bare_housing
+from sounding_housings import part_of_scene, rigid_housing, smooth_motion, with_surface
 
 from dynamics.acoustics import Air, ElementalRadiators
 from dynamics.assembly.assemble import assemble
@@ -22,7 +23,7 @@ AIR = Air()
 
 @cache
 def housing():
-    bare, hull = random_housing(), box((0.36, 0.24, 0.18), (9, 6, 5))
+    bare, hull = bare_housing(), box((0.36, 0.24, 0.18), (9, 6, 5))
     return with_surface(bare, hull, smooth_motion(hull, len(bare.stiffness)))
 
 

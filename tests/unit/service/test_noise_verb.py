@@ -12,9 +12,10 @@ import pytest
 from computed_once import computed_once
 from declared_figures import check_declared
 from hulls import box
+from reduced_housings import bare_housing
 from scene_files import scene_file
 from shown_effects import check_effects_shown
-from sounding_housings import random_housing, smooth_motion, with_surface
+from sounding_housings import smooth_motion, with_surface
 from typer.testing import CliRunner, Result
 
 from dynamics.acoustics import a_weighting
@@ -34,7 +35,7 @@ def loa(*arguments: object) -> Result:
 
 @cache
 def housing():
-    bare = random_housing(("left", "right"), motions=3, positions=[(0.0, 0.0, 0.05), (0.08, 0.0, 0.05)])
+    bare = bare_housing(("left", "right"), motions=3, positions=[(0.0, 0.0, 0.05), (0.08, 0.0, 0.05)])
     hull = box((0.3, 0.2, 0.15), (6, 4, 3))
     return with_surface(bare, hull, smooth_motion(hull, len(bare.stiffness)))
 
@@ -116,7 +117,7 @@ def test_a_scene_without_a_sounding_housing_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_housing_of_matrices_alone_is_refused(scene: Path) -> None:
-    random_housing(("left", "right"), motions=3, positions=[(0.0, 0.0, 0.05), (0.08, 0.0, 0.05)]).to_netcdf(
+    bare_housing(("left", "right"), motions=3, positions=[(0.0, 0.0, 0.05), (0.08, 0.0, 0.05)]).to_netcdf(
         scene.parent / "case.nc"
     )
     result = loa(scene, *SPEEDS)

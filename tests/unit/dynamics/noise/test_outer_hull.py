@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 from lattice_meshes import box
-from sounding_housings import random_housing
+from reduced_housings import bare_housing
 
 from dynamics.acoustics import Air, ElementalRadiators, resistance
 from dynamics.housing_modes import TetrahedralMesh
@@ -40,7 +40,7 @@ def hull_of(opening: str):
     swelling = (points - SIZE / 2.0)[:, :, None]
     bulge = np.prod(np.sin(np.pi * points[:, :2] / SIZE[:2]), axis=1)[:, None, None] * motion[:, :, 2:3]
     motion = np.concatenate([motion, swelling, 1e-3 * motion[:, :, 2:3] + bulge], axis=2)
-    housing = random_housing(("a",), modal=3)
+    housing = bare_housing(("a",), modal=3)
     object.__setattr__(housing, "surface", SurfaceMotion(points, triangles.reshape(-1, 6), motion))
     return outer_hull(housing)
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, spring_table
 from hulls import box
-from sounding_housings import NAMES, part_of_scene, random_housing, rigid_housing
+from reduced_housings import PAIR, bare_housing
+from sounding_housings import part_of_scene, rigid_housing
 from sounding_scene import ON, SPEEDS, housing, oscillating, radiation, response, sound
 
 from dynamics.acoustics import (
@@ -41,7 +42,7 @@ def test_power_goes_with_the_square_of_the_force() -> None:
 
 @pytest.mark.parametrize("index", range(4))
 def test_the_share_of_a_bearing_is_what_its_force_does(index: int) -> None:
-    own = response().bearing.index(NAMES[index])
+    own = response().bearing.index(PAIR[index])
     others = [b for b in range(len(response().bearing)) if b != own]
     alone = radiated_sound(scaled(0.0, others), housing(), None, radiation())
     without = radiated_sound(scaled(0.0, own), housing(), None, radiation())
@@ -121,7 +122,7 @@ def test_a_result_comes_back_from_its_file_as_it_was(tmp_path) -> None:
     again = RadiatedSound.from_netcdf(tmp_path / "sound.nc")
     for name in RadiatedSound.ARRAYS:
         np.testing.assert_array_equal(getattr(again, name), getattr(sound(), name))
-    assert (again.housing, again.bearing, again.facts) == (("housing",), NAMES, sound().facts)
+    assert (again.housing, again.bearing, again.facts) == (("housing",), PAIR, sound().facts)
 
 
 def test_what_does_not_belong_together_is_refused() -> None:
@@ -129,7 +130,7 @@ def test_what_does_not_belong_together_is_refused() -> None:
     with pytest.raises(InputError, match="radiation"):
         radiated_sound(response(), body, ("input.left",), radiation())
     with pytest.raises(InputError, match="housing with a surface"):
-        housing_radiation(random_housing(), ElementalRadiators(), [100.0])
+        housing_radiation(bare_housing(), ElementalRadiators(), [100.0])
     high = replace(response(), frequency=10.0 * response().frequency)
     with pytest.raises(InputError, match="frequency"):
         radiated_sound(high, housing(), None, radiation())
