@@ -53,7 +53,7 @@ def test_the_jobs_of_a_batch_are_shown_beneath_it(visit: Visit, address: str) ->
     inner = page.locator("#jobs-rows tr.inner")
     expect(inner).to_have_count(2)
     expect(inner.nth(1)).to_contain_text("load.torque_n_m 0.5 → 0.75")
-    assert not (told := found_inaccessible(page)), json.dumps(told, indent=1)
+    assert not (told := found_inaccessible(page, "#jobs")), json.dumps(told, indent=1)
     inner.nth(1).get_by_role("button", name=re.compile("^Open analyze")).press("Enter")
     expect(page).to_have_url(re.compile("#database="))
     row.get_by_role("button", name=re.compile("^Hide jobs")).press("Enter")
@@ -71,7 +71,7 @@ def test_a_result_opens_again_in_another_window(visit: Visit, browser: Browser, 
     again = later.locator("#jobs-result [data-figure=modal_campbell] .plot")
     expect(again).to_have_attribute("data-drawn", "yes")
     expect(later.locator("#jobs-result")).to_be_focused()
-    assert not (told := found_inaccessible(later)), json.dumps(told, indent=1)
+    assert not (told := found_inaccessible(later, "#jobs")), json.dumps(told, indent=1)
     later.close()
 
 
@@ -95,7 +95,7 @@ def test_a_job_is_renamed_and_found_by_title_and_tag(visit: Visit, address: str)
     page.get_by_label("Find by words").fill("#no-such-tag")
     page.get_by_label("Find by words").press("Enter")
     expect(page.locator("#jobs-none")).to_have_text("No such jobs.")
-    assert not (told := found_inaccessible(page)), json.dumps(told, indent=1)
+    assert not (told := found_inaccessible(page, "#jobs")), json.dumps(told, indent=1)
     assert visit.complaints == []
 
 
