@@ -54,7 +54,7 @@ class FieldName:
 
 @dataclass(frozen=True)
 class SiNote:
-    """A remark on SI units, such as "In m: 25 mm is 0.025."; readers with other units are spared it."""
+    """A remark on SI units, such as "In m: 25 mm is 0.025."; readers with other units do not see it."""
 
     text: str
 

@@ -17,7 +17,7 @@ def kept_in(
     make: Callable[[], Kept],
     write: Callable[[Kept, Path], object],
     unreadable: type[Exception],
-    worth: Callable[[Kept], bool] = lambda _made: True,
+    keeps: Callable[[Kept], bool] = lambda _made: True,
 ) -> Kept:
     """Return what a file keeps; made and written where it is absent or damaged.
 
@@ -33,8 +33,8 @@ def kept_in(
         Computes the result.
     unreadable : type of Exception
         What `read` raises of a file that is absent or damaged.
-    worth : callable
-        Whether a result is worth a file.
+    keeps : callable
+        Whether a result gets a file.
     """
     if file is None:
         return make()
@@ -44,7 +44,7 @@ def kept_in(
             os.utime(file)  # its last use, by which caches are kept small
         return kept
     made = make()
-    if worth(made):
+    if keeps(made):
         with suppress(OSError):
             file.parent.mkdir(parents=True, exist_ok=True)
             write(made, file)

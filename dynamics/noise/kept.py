@@ -17,7 +17,7 @@ from model_studies.progress import Progress, silent
 
 RADIATION_VERSION = 1
 """Raised with every change of the numbers of a resistance."""
-WORTH_KEEPING = 1.0
+LEAST_COST = 1.0
 """CPU seconds."""
 
 
@@ -47,11 +47,11 @@ def kept_radiation(
     def computed() -> HousingRadiation:
         return housing_radiation(housing, model, ends, air, lambda fraction: progress("radiation", fraction))
 
-    def worth(made: HousingRadiation) -> bool:
-        return bool(made.facts["seconds"] > WORTH_KEEPING)
+    def costly(made: HousingRadiation) -> bool:
+        return bool(made.facts["seconds"] > LEAST_COST)
 
     read, write = HousingRadiation.from_netcdf, HousingRadiation.to_netcdf
-    return kept_in(file, read, computed, write, ResultError, worth)
+    return kept_in(file, read, computed, write, ResultError, costly)
 
 
 def _content_key(

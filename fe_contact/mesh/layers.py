@@ -12,7 +12,7 @@ import numpy as np
 from fe_contact.types import FloatArray, IntArray
 
 RISE = 3  # groups of layers over which the thickness grows from an end to the middle
-SPARED = 0.3  # of a group of layers: a part of the face this much longer gets no further one
+TOLERATED = 0.3  # of a group of layers: a part of the face this much longer gets no further one
 DIGITS = 12  # of a layer's thickness over the face width: equal in them is equally thick
 
 
@@ -96,7 +96,7 @@ def _broken(width: float, usual: float, group: int, growth: float, breaks: Seque
     corners = [-0.5 * width, *breaks, 0.5 * width]
     ends, thickness = [corners[:1]], []
     for i, (low, high) in enumerate(pairwise(corners)):
-        number = np.arange(max(1, math.ceil((high - low) / usual - SPARED)))
+        number = np.arange(max(1, math.ceil((high - low) / usual - TOLERATED)))
         top = max(1, min(RISE, len(number) - 1))
         relative = np.ones(len(number))
         if i == 0:

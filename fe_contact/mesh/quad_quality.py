@@ -12,7 +12,7 @@ from fe_contact.types import FloatArray, IntArray
 
 CORNERS = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
 MIDDLES = np.array([(0.0, -1.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0)])
-CENTRE = np.array([(0.0, 0.0)])
+CENTER = np.array([(0.0, 0.0)])
 
 
 def quad_quality(points: FloatArray, quads: IntArray) -> MeshQuality:
@@ -23,7 +23,7 @@ def quad_quality(points: FloatArray, quads: IntArray) -> MeshQuality:
     """
     nodes = points[quads]
     gradients = np.einsum(
-        "qdk,mkx->mqdx", shape_derivatives(np.concatenate([CORNERS, MIDDLES, CENTRE])), nodes
+        "qdk,mkx->mqdx", shape_derivatives(np.concatenate([CORNERS, MIDDLES, CENTER])), nodes
     )
     determinant = gradients[..., 0, 0] * gradients[..., 1, 1] - gradients[..., 0, 1] * gradients[..., 1, 0]
     largest = np.abs(determinant).max(axis=1)

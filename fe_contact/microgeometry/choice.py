@@ -27,7 +27,7 @@ REFINED = 4
 ROUNDS = 3
 """How often: the full analysis of another design has positions of its own, which join those of all before."""
 STEP = 0.05
-"""Step aside from the optimum in parts of a variable's range, where it does not scatter."""
+"""Perturbation of the optimum in parts of a variable's range, where it does not scatter."""
 
 
 @dataclass(frozen=True)

@@ -105,7 +105,7 @@ def dynamic_scene(
 
 
 def check_scene(scene: SceneInput, facts: Mapping[str, PairFacts]) -> Scene:
-    """Return the scene on stand-ins for its tables and for the matrices of solids.
+    """Return the scene on placeholders for its tables and for the matrices of solids.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
 """The warm process seen from the service: started once, asked for a child per order.
 
-A child forked from it is spared imports and compilation. It is started beside the second child; while it
+A child forked from it needs no imports and no compilation. It is started beside the second child; while it
 warms up, and where it cannot be had, children are started anew.
 """
 

@@ -16,9 +16,9 @@ from service.hardcases.scene import Measured
 METHODS = ("implicit", "explicit")
 LARGEST_GROWTH = 100.0
 """What a motion may make of errors of one tolerance: beyond it, agreement to measured errors says little."""
-HONEST = 1.25
+LARGEST_RATIO = 1.25
 """A measured error is the difference to a run at a tenth of the tolerance. It lacks that run's own error: a
-tenth as large, or a fifth where a rung of step sizes (2^(1/4), 2 in errors of order 4) rounds against it."""
+tenth as large, or a fifth where a step level (2^(1/4), 2 in errors of order 4) rounds against it."""
 LARGEST_MISSING = 1e-3
 """Energy that may be missing, over what was turned over: what the documentation promises."""
 
@@ -66,7 +66,7 @@ def common_figures(runs: Runs, scene: Scene) -> tuple[Measured, ...]:
         )
     errors = [measured_error(run) for run in runs.both]
     return (
-        Measured("two integrators apart, rms over their measured errors", apart / sum(errors), HONEST),
+        Measured("two integrators apart, rms over their measured errors", apart / sum(errors), LARGEST_RATIO),
         Measured("larger measured error over the tolerance", max(errors) / tolerance, LARGEST_GROWTH),
         energy,
     )
@@ -79,8 +79,8 @@ def off_closed_form(runs: Runs, scene: Scene, exact: Callable[[FloatArray], Floa
         return Measured(
             "off the closed form, rms over the tolerance", max(off) / scene.integration.tolerance, 1.0
         )
-    honest = max(distance / measured_error(run) for distance, run in zip(off, runs.both, strict=True))
-    return Measured("off the closed form, rms over the measured error", honest, HONEST)
+    ratio = max(distance / measured_error(run) for distance, run in zip(off, runs.both, strict=True))
+    return Measured("off the closed form, rms over the measured error", ratio, LARGEST_RATIO)
 
 
 def measured_error(run: RunResult) -> float:
