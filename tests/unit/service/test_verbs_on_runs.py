@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 from declared_figures import check_declared
 from hulls import box
+from reduced_housings import bare_housing
 from scene_files import scene_file
-from sounding_housings import random_housing, smooth_motion, with_surface
+from sounding_housings import smooth_motion, with_surface
 from typer.testing import CliRunner, Result
 
 from dynamics.results import RunResult
@@ -39,7 +40,7 @@ def scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A scene with a housing, run up, in `run.nc` beside it, and at a constant speed, in `even.nc`."""
     folder = tmp_path_factory.mktemp("runs")
     file = scene_file(folder, duration=0.6)
-    bare = random_housing(("left", "right"), motions=3, positions=[(0.0, 0.0, 0.05), (0.08, 0.0, 0.05)])
+    bare = bare_housing(("left", "right"), motions=3, positions=[(0.0, 0.0, 0.05), (0.08, 0.0, 0.05)])
     hull = box((0.3, 0.2, 0.15), (6, 4, 3))
     with_surface(bare, hull, smooth_motion(hull, len(bare.stiffness))).to_netcdf(folder / "case.nc")
     text = f'{file.read_text()}[[housings]]\nname = "case"\nmodes_file = "case.nc"\n'

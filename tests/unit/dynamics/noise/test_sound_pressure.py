@@ -8,7 +8,8 @@ from functools import cache
 import numpy as np
 import pytest
 from hulls import box, sphere
-from sounding_housings import NAMES, random_housing, rigid_housing, smooth_motion, with_surface
+from reduced_housings import PAIR, bare_housing
+from sounding_housings import rigid_housing, smooth_motion, with_surface
 from sounding_scene import response
 
 from dynamics.acoustics import Air, ElementalRadiators, Hull
@@ -26,7 +27,7 @@ RADIUS = 0.1
 
 @cache
 def housing():
-    bare, hull = random_housing(), box((0.36, 0.24, 0.18), (9, 6, 5))
+    bare, hull = bare_housing(), box((0.36, 0.24, 0.18), (9, 6, 5))
     return with_surface(bare, hull, smooth_motion(hull, len(bare.stiffness)))
 
 
@@ -165,11 +166,11 @@ def test_a_microphone_stands_in_the_air() -> None:
     with pytest.raises(InputError, match="three finite coordinates"):
         pressure_transfer(body, np.array([0.0, np.nan, 1.0]), frequency)
     with pytest.raises(InputError, match="with a surface"):
-        pressure_transfer(random_housing(), AWAY, frequency)
+        pressure_transfer(bare_housing(), AWAY, frequency)
 
 
 def test_it_is_valid_to_where_modes_and_panels_reach() -> None:
     body = housing()
     panels = outer_hull(body).hull.highest_wavenumber * AIR.sound_speed / (2.0 * np.pi)
     assert sound_limit(body) == pytest.approx(min(0.7 * body.frequency.max(), panels))
-    assert set(NAMES) == {seat.name for seat in body.seats}
+    assert set(PAIR) == {seat.name for seat in body.seats}

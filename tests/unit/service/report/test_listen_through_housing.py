@@ -10,8 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hulls import box
+from reduced_housings import bare_housing
 from scene_files import scene_file
-from sounding_housings import random_housing, smooth_motion, with_surface
+from sounding_housings import smooth_motion, with_surface
 from typer.testing import CliRunner, Result
 
 from dynamics.acoustics import read_wav
@@ -30,7 +31,7 @@ def loa(*arguments: object) -> Result:
 
 @pytest.fixture(scope="module")
 def housing() -> ReducedHousing:
-    bare = random_housing(("left", "right"), motions=3, positions=[(0.0, 0.0, 0.05), (0.08, 0.0, 0.05)])
+    bare = bare_housing(("left", "right"), motions=3, positions=[(0.0, 0.0, 0.05), (0.08, 0.0, 0.05)])
     hull = box((0.3, 0.2, 0.15), (6, 4, 3))
     sounding = with_surface(bare, hull, smooth_motion(hull, len(bare.stiffness)))
     motion = np.random.default_rng(4).normal(size=(3, len(bare.stiffness)))
