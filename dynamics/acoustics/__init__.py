@@ -12,6 +12,7 @@ from dynamics.acoustics.modal_resistance import ModalResistance, modal_resistanc
 from dynamics.acoustics.model_ladder import ModelLadder, ModelResult, compare_models
 from dynamics.acoustics.multipoles import errors_db, monopoles_efficiency, sphere_efficiency
 from dynamics.acoustics.order_power import OrderPower, order_power
+from dynamics.acoustics.outer_hull import OuterHull, outer_hull
 from dynamics.acoustics.radiation import (
     RadiationModel,
     mean_square_velocity,
@@ -41,6 +42,7 @@ __all__ = [
     "ModelLadder",
     "ModelResult",
     "OrderPower",
+    "OuterHull",
     "RadiationModel",
     "Range",
     "Recording",
@@ -63,6 +65,7 @@ __all__ = [
     "monopoles_efficiency",
     "order_power",
     "order_recording",
+    "outer_hull",
     "panel_power",
     "principal_direction",
     "radiation_efficiency",

@@ -1,5 +1,6 @@
 """Sound of housings in a scene: outer hull, resistance, sound power by order and speed, shares, bands."""
 
+from dynamics.acoustics import OuterHull, outer_hull
 from dynamics.noise.coarse_hull import RadiatingHull, coarse_hull, radiating_hull
 from dynamics.noise.guesses import GUESSES, Guess
 from dynamics.noise.housing_radiation import HousingRadiation, housing_radiation
@@ -7,7 +8,6 @@ from dynamics.noise.housing_recordings import pressure_recording, velocity_recor
 from dynamics.noise.kept import kept_radiation
 from dynamics.noise.loudest import LoudPoint, loudest
 from dynamics.noise.model_comparison import models_at, panels_at
-from dynamics.noise.outer_hull import OuterHull, outer_hull
 from dynamics.noise.radiated_sound import RadiatedSound, radiated_sound
 from dynamics.noise.scattered_pressure import scattered_pressure_transfer
 from dynamics.noise.sensitivities import DesignFigure, Sensitivity, ranked, sensitivity

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.acoustics import Hull
+from dynamics.acoustics import Hull, OuterHull
 from dynamics.acoustics.hull import PANELS_PER_WAVELENGTH, flat_triangles
-from dynamics.noise.outer_hull import OuterHull
 from dynamics.noise.surface_cells import cell_positions, nearest_nodes, surface_cells
 from dynamics.noise.thin_panels import without_thin
 from dynamics.types import FloatArray

@@ -11,7 +11,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dynamics.acoustics import Air, ModalResistance, RadiationModel, resistance
+from dynamics.acoustics import Air, ModalResistance, OuterHull, RadiationModel, outer_hull, resistance
 from dynamics.acoustics.equivalent_radiated_power import EquivalentRadiatedPower
 from dynamics.acoustics.hull import ComplexArray
 from dynamics.checks import positive
@@ -19,7 +19,6 @@ from dynamics.errors import InputError
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.noise.coarse_hull import RadiatingHull, radiating_hull
 from dynamics.noise.knots import Knots, constant_knots, knots_between
-from dynamics.noise.outer_hull import OuterHull, outer_hull
 from dynamics.results.array_file import ArrayFile, Stored
 from dynamics.types import FloatArray, Json
 
@@ -105,7 +104,6 @@ def housing_radiation(
     low, high = positive("frequencies", float(asked.min())) / BAND, float(asked.max()) * BAND
     began = time.process_time()
     outer = outer_hull(housing)
-    surface = outer.shapes.T @ (outer.hull.areas[:, None] * outer.shapes)
     resolved = 0.0 if isinstance(model, EquivalentRadiatedPower) else resolved_frequency(outer, air)
     done = progress or (lambda _fraction: None)
 
@@ -115,7 +113,7 @@ def housing_radiation(
     parts, most = _resolved_parts(outer, model, air, (low, min(high, resolved)), housing.modes[1], reached)
     if high > resolved:
         first = max(low, float(np.nextafter(resolved, np.inf)))
-        parts.append(constant_knots(first, high, cast(ComplexArray, air.impedance * surface)))
+        parts.append(constant_knots(first, high, cast(ComplexArray, air.impedance * outer.surface)))
     facts: Json = {
         "resolved_frequency": resolved,
         "interpolation_error": 0.25 * max(part.error for part in parts),
@@ -127,7 +125,7 @@ def housing_radiation(
     return HousingRadiation(
         np.concatenate([part.frequency for part in parts]),
         np.concatenate([part.matrix for part in parts]),
-        surface,
+        outer.surface,
         outer.hull.area,
         air.impedance,
         model.model_name,

@@ -6,11 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from dynamics.acoustics import Air, ModelLadder, RadiationModel, compare_models, panel_power
+from dynamics.acoustics import Air, ModelLadder, RadiationModel, compare_models, outer_hull, panel_power
 from dynamics.acoustics.hull import ComplexArray
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.noise.coarse_hull import radiating_hull
-from dynamics.noise.outer_hull import outer_hull
 from dynamics.types import FloatArray
 from dynamics.vibration import BearingHarmonics, housing_motion, seat_forces
 

@@ -6,11 +6,10 @@ from typing import cast
 
 import numpy as np
 
-from dynamics.acoustics import Air, exterior_pressure
+from dynamics.acoustics import Air, exterior_pressure, outer_hull
 from dynamics.acoustics.hull import ComplexArray
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.noise.coarse_hull import radiating_hull
-from dynamics.noise.outer_hull import outer_hull
 from dynamics.types import FloatArray
 from dynamics.vibration.modal_amplitudes import modal_amplitudes
 

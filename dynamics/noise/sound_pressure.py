@@ -11,11 +11,10 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 
-from dynamics.acoustics import Air, ElementalRadiators
+from dynamics.acoustics import Air, ElementalRadiators, outer_hull
 from dynamics.acoustics.hull import ComplexArray
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.noise.housing_radiation import resolved_frequency
-from dynamics.noise.outer_hull import outer_hull
 from dynamics.noise.sound_paths import SoundPaths, sound_paths
 from dynamics.types import FloatArray
 from dynamics.vibration import MotionQuantity

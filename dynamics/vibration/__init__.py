@@ -10,7 +10,7 @@ from dynamics.vibration.motion_quantity import MotionQuantity
 from dynamics.vibration.points import named_points
 from dynamics.vibration.seat_forces import finer_seat_forces, run_seat_forces, seat_forces
 from dynamics.vibration.surface_shape import SurfaceShape, mode_shape, operating_deflection
-from dynamics.vibration.surface_weight import mean_square, normal_weight, surface_weight
+from dynamics.vibration.surface_weight import mean_square, surface_weight
 from dynamics.vibration.time_signal import motion_pieces, motion_signal, point_signal
 from dynamics.vibration.transfer_functions import mean_square_mobility, transfer_functions
 from dynamics.vibration.vibration_analysis import VibrationAnalysis, analyze_vibration
@@ -37,7 +37,6 @@ __all__ = [
     "motion_pieces",
     "motion_signal",
     "named_points",
-    "normal_weight",
     "operating_deflection",
     "overall",
     "point_signal",

@@ -35,7 +35,7 @@ class HousingVibration:
     velocity : (k, 3, S, H) complex array
         Peak amplitudes along the axes of the mesh, m/s.
     mean_square_velocity : (S, H) array
-        Of the surface, normal to it, mean over area and time, m^2/s^2; 0 without a surface.
+        Of the outer hull, normal to it, mean over area and time, m^2/s^2; 0 without a surface.
     highest_valid_frequency : float
         `ReducedHousing.valid_frequency`, Hz.
     """

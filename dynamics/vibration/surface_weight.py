@@ -4,40 +4,25 @@ from __future__ import annotations
 
 import numpy as np
 
-from dynamics.errors import InputError
+from dynamics.acoustics import outer_hull
 from dynamics.housing_modes.reduced_housing import ReducedHousing
-from dynamics.identity_cache import identity_cached
 from dynamics.types import FloatArray
 from dynamics.vibration.seat_forces import ComplexArray
 
 
-@identity_cached
 def surface_weight(housing: ReducedHousing) -> FloatArray:
-    """Return the weight of the normal motion of the whole surface, (r, r), as `normal_weight` has it.
+    """Return the mean over the outer hull of the products of normal motions, (r, r).
 
-    The walls of cavities and bores are part of it.
+    Walls of cavities are left out and openings capped (`outer_hull`): with the hull's area and rho c of the
+    air a mean square velocity gives the equivalent radiated power.
 
     Raises
     ------
     InputError
         The housing has no surface.
     """
-    if housing.surface is None:
-        advice = "Reduce its mesh or STEP file: matrices alone have no surface."
-        raise InputError("surface", "none", "a housing with a surface", advice)
-    return normal_weight(*housing.surface.normal_displacement())
-
-
-def normal_weight(normal: FloatArray, area: FloatArray) -> FloatArray:
-    """Return the mean over the area of the products of normal motions, (r, r).
-
-    Parameters
-    ----------
-    normal : (t, r) array
-        Mean normal displacement of faces per reduced coordinate.
-    area : (t,) array
-    """
-    return np.asarray(normal.T @ (area[:, None] * normal) / area.sum())
+    outer = outer_hull(housing)
+    return outer.surface / outer.hull.area
 
 
 def mean_square(motion: ComplexArray, weight: FloatArray) -> FloatArray:

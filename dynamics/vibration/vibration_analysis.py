@@ -37,7 +37,7 @@ class Mobilities:
     point : (k, 3, n, s) complex array
         Velocity of points along x, y, z per force, m/(N s) or per moment, 1/(N s).
     surface : (n, s) array
-        Mean square normal velocity of the surface per mean square force; 0 without a surface.
+        Mean square normal velocity of the outer hull per mean square force; 0 without a surface.
     """
 
     seat: tuple[str, ...]
@@ -58,7 +58,7 @@ class Shares:
     point : (k, p) array
         To the mean square velocity of each point.
     surface : (p,) array
-        To that of the surface; NaN without one.
+        To that of the outer hull; NaN without a surface.
     """
 
     name: tuple[str, ...]

@@ -16,7 +16,7 @@ class PointVelocity(Part):
 
 
 class Contribution(Part):
-    """What a bearing or a mode contributes to the mean square velocity of points and surface; sums to 1."""
+    """What a bearing or a mode contributes to the mean square of points and outer hull; sums to 1."""
 
     name: str
     frequency_hz: float | None

@@ -49,7 +49,8 @@ def headlines(result: HousingVibrationResult) -> tuple[Headline, ...]:
         fastest = int(np.argmax(rms))
         first = Headline(f"velocity of {vibration.point[fastest]}", _speed(float(rms[fastest])), where(found))
     else:
-        first = Headline("velocity of the surface", _speed(float(vibration.mean_square_velocity[at]) ** 0.5))
+        rms_of_hull = float(vibration.mean_square_velocity[at]) ** 0.5
+        first = Headline("velocity of the outer hull", _speed(rms_of_hull))
     most = []
     for what, shares in (("bearing", found.bearings), ("mode", found.modes)):
         part = shares.surface if surface else shares.point[0]

@@ -28,12 +28,12 @@ def velocity_figure(result: HousingVibrationResult) -> Figure:
     size = {f"velocity of {name}": vibration.rms[k] for k, name in enumerate(vibration.point)}
     size = dict(sorted(size.items(), key=lambda pair: -float(pair[1].max()))[:SHOWN_POINTS])
     if found.deflection is not None:
-        size["velocity normal to the surface"] = np.sqrt(vibration.mean_square_velocity)
+        size["velocity normal to the outer hull"] = np.sqrt(vibration.mean_square_velocity)
     return Figure(
         key="housing_velocity",
         title=f"Vibration of {found.housing} by order",
         caption="Root mean square velocity under the forces of the bearings: of points all directions "
-        "together, of the surface its mean square normal to it, walls of cavities included. Dashed: above "
+        "together, of the outer hull (no walls of cavities) its mean square normal to it. Dashed: above "
         f"{number(vibration.highest_valid_frequency, 4)} Hz, 0.7 of the highest mode kept.",
         alternative=_words(result),
         content=tuple(_velocity_panel(found, name, rms / MM_PER_S) for name, rms in size.items()),
@@ -84,7 +84,7 @@ def transfer_figure(result: HousingVibrationResult) -> Figure:
         most = np.argsort(-gain[nearest] * np.abs(force), kind="stable")[:SHOWN_SEATS]
         lines = [_line(mobilities.seat[s], hertz, gain[:, s], k) for k, s in enumerate(most)]
         label = Axis("velocity per force, m/(N s)", "log")
-        panels.append(Panel(x, label, tuple(lines), title="root mean square of the surface"))
+        panels.append(Panel(x, label, tuple(lines), title="root mean square of the outer hull"))
     return Figure(
         key="housing_transfer",
         title=f"Transfer functions of {found.housing}",
@@ -112,7 +112,7 @@ def contribution_figure(result: HousingVibrationResult) -> Figure:
     found = result.analysis
     of_surface = found.deflection is not None
     point = 0 if of_surface else _fastest(found)[0]
-    what = "of the surface" if of_surface else f"of {found.vibration.point[point]}"
+    what = "of the outer hull" if of_surface else f"of {found.vibration.point[point]}"
     both = [(shares, shares.surface if of_surface else shares.point[point]) for shares in _both(found)]
     return Figure(
         key="housing_contributions",

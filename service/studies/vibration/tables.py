@@ -22,11 +22,11 @@ def where(found: VibrationAnalysis) -> str:
 
 
 def largest_table(result: HousingVibrationResult) -> Table:
-    """List the largest velocity of every point and of the surface, with the nearest mode."""
+    """List the largest velocity of every point and of the outer hull, with the nearest mode."""
     vibration = result.analysis.vibration
     sizes = [(name, vibration.rms[k]) for k, name in enumerate(vibration.point)]
     if result.analysis.deflection is not None:
-        sizes.append(("surface, normal", np.sqrt(vibration.mean_square_velocity)))
+        sizes.append(("outer hull, normal", np.sqrt(vibration.mean_square_velocity)))
     rows = []
     for name, rms in sizes:
         s, h = map(int, np.unravel_index(int(np.argmax(rms)), rms.shape))
@@ -56,7 +56,7 @@ def contribution_table(result: HousingVibrationResult) -> Table:
     with_surface = found.deflection is not None
     rows = [*_rows(found.bearings, with_surface), *_rows(found.modes, with_surface)]
     if with_surface:
-        head.append("surface, %")
+        head.append("outer hull, %")
     return Table(f"Contributions to the mean square velocity at {where(found)}", tuple(head), tuple(rows))
 
 

@@ -12,11 +12,10 @@ from reduced_housings import PAIR, bare_housing
 from sounding_housings import rigid_housing, smooth_motion, with_surface
 from sounding_scene import response
 
-from dynamics.acoustics import Air, ElementalRadiators, Hull
+from dynamics.acoustics import Air, ElementalRadiators, Hull, outer_hull
 from dynamics.acoustics.plane_waves import directions
 from dynamics.errors import InputError
 from dynamics.noise import housing_radiation, pressure_signal, pressure_transfer, radiated_sound, sound_limit
-from dynamics.noise.outer_hull import outer_hull
 from dynamics.noise.sound_paths import sound_paths
 from dynamics.vibration import seat_forces
 

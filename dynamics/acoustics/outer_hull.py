@@ -9,13 +9,13 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from dynamics.acoustics import Hull
+from dynamics.acoustics.hull import Hull
 from dynamics.acoustics.linear_panels import LinearPanels
+from dynamics.acoustics.rims import cap, rims
+from dynamics.acoustics.sky import free_sky
 from dynamics.errors import InputError
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.identity_cache import identity_cached
-from dynamics.noise.rims import cap, rims
-from dynamics.noise.sky import free_sky
 from dynamics.types import BoolArray, FloatArray, IntArray
 
 OUTSIDE = 0.5
@@ -55,6 +55,11 @@ class OuterHull:
         mean, normals = LinearPanels(self.hull).mean, self.hull.normals
         along = (normals[:, axis, None] * (mean @ self.motion[:, axis]) for axis in range(3))
         return np.asarray(sum(along))
+
+    @cached_property
+    def surface(self) -> FloatArray:
+        """Return the integral over the hull of the products of outward displacements, (r, r), m^2."""
+        return np.asarray(self.shapes.T @ (self.hull.areas[:, None] * self.shapes))
 
 
 @identity_cached
