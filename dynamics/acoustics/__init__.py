@@ -3,7 +3,7 @@
 from dynamics.acoustics.air import Air
 from dynamics.acoustics.boundary_elements import BoundaryElements, SurfacePressure, surface_pressure
 from dynamics.acoustics.elemental_radiators import ElementalRadiators
-from dynamics.acoustics.equivalent_radiated_power import EquivalentRadiatedPower, panel_power
+from dynamics.acoustics.equivalent_radiated_power import EquivalentRadiatedPower
 from dynamics.acoustics.exterior_pressure import exterior_pressure
 from dynamics.acoustics.hull import Hull
 from dynamics.acoustics.level_band import LevelBand, Range, level_band, level_bands
@@ -14,8 +14,10 @@ from dynamics.acoustics.multipoles import errors_db, monopoles_efficiency, spher
 from dynamics.acoustics.order_power import OrderPower, order_power
 from dynamics.acoustics.outer_hull import OuterHull, outer_hull
 from dynamics.acoustics.radiation import (
+    PanelModel,
     RadiationModel,
     mean_square_velocity,
+    panel_power,
     radiation_efficiency,
     resistance,
     sound_power,
@@ -43,6 +45,7 @@ __all__ = [
     "ModelResult",
     "OrderPower",
     "OuterHull",
+    "PanelModel",
     "RadiationModel",
     "Range",
     "Recording",

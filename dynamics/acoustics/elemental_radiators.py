@@ -14,7 +14,7 @@ import numpy as np
 
 from dynamics.acoustics.air import Air
 from dynamics.acoustics.hull import ComplexArray, Hull
-from dynamics.acoustics.plane_waves import mutual_resistance, order_of_waves
+from dynamics.acoustics.plane_waves import mutual_pressure, mutual_resistance, order_of_waves
 from dynamics.types import FloatArray
 
 BLOCK = 512  # panels whose mutual resistances are held at a time
@@ -52,24 +52,54 @@ class ElementalRadiators:
         InputError
             The panels are too large for the wavelength.
         """
-        wavenumber = 2.0 * np.pi * frequency / air.sound_speed
-        hull.require_resolved(wavenumber, air.sound_speed)
+        wavenumber = self._resolved(hull, frequency, air)
         volume_velocity = hull.areas[:, None] * shapes
-        if not self.baffled and 2 * order_of_waves(hull.centers, wavenumber) ** 2 < len(shapes):
+        if self._by_waves(hull, wavenumber):
             total = mutual_resistance(hull.centers, volume_velocity, wavenumber)
         else:
-            total = self._by_pairs(hull, volume_velocity, wavenumber)
-        scale = 0.5 * air.impedance * wavenumber**2 / self.solid_angle
-        return np.asarray(scale * (total + total.conj().T))
+            total = volume_velocity.conj().T @ _by_pairs(hull, volume_velocity, wavenumber)
+        return np.asarray(self._factor(wavenumber, air) * 0.5 * (total + total.conj().T))
 
-    def _by_pairs(self, hull: Hull, volume_velocity: ComplexArray, wavenumber: float) -> ComplexArray:
-        """Return Q^H [sin(kr)/(kr)] Q over all pairs of panels."""
-        total = np.zeros((volume_velocity.shape[1],) * 2, dtype=volume_velocity.dtype)
-        for first in range(0, len(volume_velocity), BLOCK):
-            block = slice(first, first + BLOCK)
-            mutual = _mutual(hull.centers[block], hull.centers, wavenumber)
-            total += volume_velocity[block].conj().T @ (mutual @ volume_velocity)
-        return total
+    def panel_power(
+        self, hull: Hull, frequency: float, normal_velocity: ComplexArray, air: Air
+    ) -> FloatArray:
+        """Return the power that each panel gives to the sound of all, (T,), W.
+
+        Raises
+        ------
+        InputError
+            The panels are too large for the wavelength.
+        """
+        wavenumber = self._resolved(hull, frequency, air)
+        flow = (hull.areas * normal_velocity)[:, None]
+        if self._by_waves(hull, wavenumber):
+            felt = mutual_pressure(hull.centers, flow, wavenumber)
+        else:
+            felt = _by_pairs(hull, flow, wavenumber)
+        return np.asarray(0.5 * self._factor(wavenumber, air) * (flow.conj() * felt)[:, 0].real)
+
+    def _resolved(self, hull: Hull, frequency: float, air: Air) -> float:
+        """Return the wavenumber, 1/m, whose waves the panels resolve."""
+        wavenumber = 2.0 * np.pi * frequency / air.sound_speed
+        hull.require_resolved(wavenumber, air.sound_speed)
+        return wavenumber
+
+    def _by_waves(self, hull: Hull, wavenumber: float) -> bool:
+        """Whether plane waves take less than pairs of panels."""
+        return not self.baffled and 2 * order_of_waves(hull.centers, wavenumber) ** 2 < len(hull.triangles)
+
+    def _factor(self, wavenumber: float, air: Air) -> float:
+        """Return rho c k^2 over the solid angle, kg/(s m^4)."""
+        return float(air.impedance * wavenumber**2 / self.solid_angle)
+
+
+def _by_pairs(hull: Hull, volume_velocity: ComplexArray, wavenumber: float) -> ComplexArray:
+    """Return [sin(kr)/(kr)] Q of all panels, (T, M)."""
+    total = np.zeros(volume_velocity.shape, dtype=volume_velocity.dtype)
+    for first in range(0, len(volume_velocity), BLOCK):
+        block = slice(first, first + BLOCK)
+        total[block] = _mutual(hull.centers[block], hull.centers, wavenumber) @ volume_velocity
+    return total
 
 
 def _mutual(rows: FloatArray, columns: FloatArray, wavenumber: float) -> FloatArray:

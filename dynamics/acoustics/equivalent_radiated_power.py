@@ -28,14 +28,9 @@ class EquivalentRadiatedPower:
         del frequency
         return np.asarray(air.impedance * shapes.conj().T @ (hull.areas[:, None] * shapes))
 
-
-def panel_power(hull: Hull, normal_velocity: ComplexArray, air: Air) -> FloatArray:
-    """Return the equivalent radiated power of every panel, (T,) or (T, M), W; its sum is the whole.
-
-    Parameters
-    ----------
-    normal_velocity : (T,) or (T, M) array
-        Complex peak amplitudes, m/s.
-    """
-    squares = np.abs(normal_velocity) ** 2
-    return np.asarray(0.5 * air.impedance * np.einsum("t,t...->t...", hull.areas, squares))
+    def panel_power(
+        self, hull: Hull, frequency: float, normal_velocity: ComplexArray, air: Air
+    ) -> FloatArray:
+        """Return rho c / 2 S abs(v_n)^2, (T,), W."""
+        del frequency
+        return np.asarray(0.5 * air.impedance * hull.areas * np.abs(normal_velocity) ** 2)

@@ -171,6 +171,15 @@ class Hull:
             raise InputError("frequency", wavenumber * frequency, bound, "Use smaller triangles.")
 
 
+def shared_edges(triangles: IntArray) -> tuple[IntArray, IntArray, IntArray]:
+    """Return pairs of triangles that share an edge, (E,) and (E,), and its nodes, (E, 2)."""
+    edges = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2), axis=2).reshape(-1, 2)
+    _, edge = np.unique(edges, axis=0, return_inverse=True)
+    order = np.argsort(edge.ravel(), kind="stable")
+    shared = np.flatnonzero(np.diff(edge.ravel()[order]) == 0)
+    return order[shared] // 3, order[shared + 1] // 3, edges[order[shared]]
+
+
 def flat_triangles(nodes: FloatArray, triangles: IntArray) -> BoolArray:
     """Return which triangles have no area, (T,)."""
     corners = nodes[triangles]

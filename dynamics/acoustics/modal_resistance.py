@@ -104,6 +104,20 @@ class ModalResistance:
             share = np.where(interval[near] == knot, 1.0 - weight, weight)
             yield int(knot), near, share * (frequency[near] / self.frequency[knot]) ** 2
 
+    def weights(self, frequency: float) -> tuple[tuple[float, float], ...]:
+        """Return the computed frequencies, Hz, and by how much each enters the matrix at another one.
+
+        Raises
+        ------
+        InputError
+            The frequency lies outside of those computed.
+        """
+        hats = (
+            (float(self.frequency[knot]), float(share[0]))
+            for knot, _, share in self._hats(np.array([frequency]))
+        )
+        return tuple((knot, share) for knot, share in hats if share != 0.0)
+
     def interpolation_error(self, velocity: ComplexArray) -> float:
         """Return how far every second matrix is missed by those beside it, dB, for a velocity (M,).
 

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from dynamics.acoustics.hull import Hull
+from dynamics.acoustics.hull import Hull, shared_edges
 from dynamics.acoustics.linear_panels import LinearPanels
 from dynamics.acoustics.rims import cap, rims
 from dynamics.acoustics.sky import free_sky
@@ -121,9 +121,5 @@ def _parts(triangles: IntArray, chosen: BoolArray) -> list[IntArray]:
 
 def _neighbors(triangles: IntArray) -> coo_array:
     """Return which triangles share an edge, (t, t)."""
-    edges = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2), axis=2).reshape(-1, 2)
-    _, edge = np.unique(edges, axis=0, return_inverse=True)
-    order = np.argsort(edge.ravel(), kind="stable")
-    shared = np.flatnonzero(np.diff(edge.ravel()[order]) == 0)
-    one, other = order[shared] // 3, order[shared + 1] // 3
+    one, other, _ = shared_edges(triangles)
     return coo_array((np.ones(one.size), (one, other)), shape=(len(triangles),) * 2)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from dynamics.acoustics.hull import ComplexArray
@@ -40,19 +42,36 @@ def order_of_waves(points: FloatArray, wavenumber: float) -> int:
 def mutual_resistance(points: FloatArray, strength: ComplexArray, wavenumber: float) -> ComplexArray:
     """Return Q^H [sin(kr)/(kr)] Q of point sources (P, 3) with strengths Q (P, M), (M, M).
 
-    sin(kr)/(kr) is the mean of exp(i k d.(x - y)) over all directions d. Cost grows with P, not its square,
-    and the result is a sum of squares. Opposite directions give the same: half of them are taken.
+    Cost grows with P, not its square, and the result is a sum of squares.
+    """
+    total = np.zeros((strength.shape[1],) * 2, dtype=strength.dtype)
+    for weight, wave in _waves(points, wavenumber):
+        far = wave @ strength
+        total += far.conj().T @ (weight * far)
+    return total
+
+
+def mutual_pressure(points: FloatArray, strength: ComplexArray, wavenumber: float) -> ComplexArray:
+    """Return [sin(kr)/(kr)] Q at the sources themselves, (P, M); parameters as of `mutual_resistance`."""
+    total = np.zeros(strength.shape, dtype=strength.dtype)
+    for weight, wave in _waves(points, wavenumber):
+        total += wave.T @ (weight * (wave @ strength))
+    return total
+
+
+def _waves(points: FloatArray, wavenumber: float) -> Iterator[tuple[FloatArray, FloatArray]]:
+    """Yield weights (D, 1) and standing waves (D, P) whose products add up to sin(kr)/(kr) of the points.
+
+    It is the mean of exp(i k d.(x - y)) over all directions d. Opposite directions give the same: half of
+    them are taken, cosine and sine of each.
     """
     order = order_of_waves(points, wavenumber)
     vectors, weights = directions(order)
     half = np.arange(len(vectors)) % (2 * order) < order
     vectors, weights = vectors[half], weights[half] / (2.0 * np.pi)
     arm = points - points.mean(axis=0)
-    total = np.zeros((strength.shape[1],) * 2, dtype=strength.dtype)
     step = max(BLOCK // len(points), 1)
     for first in range(0, len(vectors), step):
         phase = wavenumber * vectors[first : first + step] @ arm.T
-        weight = weights[first : first + step, None]
-        for wave in (np.cos(phase) @ strength, np.sin(phase) @ strength):
-            total += wave.conj().T @ (weight * wave)
-    return total
+        for wave in (np.cos(phase), np.sin(phase)):
+            yield weights[first : first + step, None], wave

@@ -14,6 +14,7 @@ from dynamics.acoustics.air import Air
 from dynamics.acoustics.hull import ComplexArray, Hull
 from dynamics.checks import positive
 from dynamics.errors import InputError
+from dynamics.types import FloatArray
 
 
 class RadiationModel(Protocol):
@@ -40,6 +41,18 @@ class RadiationModel(Protocol):
         """
 
 
+class PanelModel(RadiationModel, Protocol):
+    """A radiation model that says through which panels the sound leaves a hull."""
+
+    def panel_power(
+        self, hull: Hull, frequency: float, normal_velocity: ComplexArray, air: Air
+    ) -> FloatArray:
+        """Return the power of every panel, (T,), W, negative where it takes power from the others.
+
+        Half the velocity times the sound pressure in phase with it, times the area; the sum is v^H R v / 2.
+        """
+
+
 def resistance(
     model: RadiationModel, hull: Hull, frequency: float, shapes: ComplexArray, air: Air
 ) -> ComplexArray:
@@ -50,11 +63,16 @@ def resistance(
     InputError
         The frequency is not above zero, `shapes` are not (T, M) finite numbers, or the model refuses.
     """
+    return model.resistance(hull, frequency, _checked(hull, frequency, shapes), air)
+
+
+def _checked(hull: Hull, frequency: float, shapes: ComplexArray) -> ComplexArray:
+    """Return shapes that are finite and of the hull's panels, at a frequency above zero."""
     positive("frequency", frequency)
     shapes = np.asarray(shapes)
     if shapes.ndim != 2 or len(shapes) != len(hull.triangles) or not np.all(np.isfinite(shapes)):
         raise InputError("shapes", shapes.shape, f"finite, of shape ({len(hull.triangles)}, M)")
-    return model.resistance(hull, frequency, shapes, air)
+    return shapes
 
 
 def sound_power(
@@ -74,6 +92,29 @@ def sound_power(
     """
     matrix = resistance(model, hull, frequency, np.asarray(normal_velocity)[:, None], air)
     return 0.5 * float(matrix[0, 0].real)
+
+
+def panel_power(
+    model: PanelModel, hull: Hull, frequency: float, normal_velocity: ComplexArray, air: Air
+) -> FloatArray:
+    """Return the sound power of every panel, (T,), W, as `PanelModel` has it; the sum is `sound_power`.
+
+    Over the areas it is the active intensity normal to the hull, W/m^2.
+
+    Parameters
+    ----------
+    frequency : float
+        Hz.
+    normal_velocity : (T,) array
+        Complex peak amplitudes, m/s.
+
+    Raises
+    ------
+    InputError
+        As `sound_power` does.
+    """
+    shapes = _checked(hull, frequency, np.asarray(normal_velocity)[:, None])
+    return model.panel_power(hull, frequency, shapes[:, 0], air)
 
 
 def mean_square_velocity(hull: Hull, normal_velocity: ComplexArray) -> float:

@@ -7,8 +7,10 @@ from dynamics.noise.housing_radiation import HousingRadiation, housing_radiation
 from dynamics.noise.housing_recordings import pressure_recording, velocity_recording
 from dynamics.noise.kept import kept_radiation
 from dynamics.noise.loudest import LoudPoint, loudest
-from dynamics.noise.model_comparison import models_at, panels_at
+from dynamics.noise.model_comparison import models_at
+from dynamics.noise.panel_sound import PanelSound, panel_sound
 from dynamics.noise.radiated_sound import RadiatedSound, radiated_sound
+from dynamics.noise.regions import Region, regions
 from dynamics.noise.scattered_pressure import scattered_pressure_transfer
 from dynamics.noise.sensitivities import DesignFigure, Sensitivity, ranked, sensitivity
 from dynamics.noise.several_housings import together
@@ -24,8 +26,10 @@ __all__ = [
     "HousingRadiation",
     "LoudPoint",
     "OuterHull",
+    "PanelSound",
     "RadiatedSound",
     "RadiatingHull",
+    "Region",
     "Sensitivity",
     "SoundBand",
     "SoundModel",
@@ -38,7 +42,7 @@ __all__ = [
     "loudest",
     "models_at",
     "outer_hull",
-    "panels_at",
+    "panel_sound",
     "pressure_recording",
     "pressure_signal",
     "pressure_transfer",
@@ -46,6 +50,7 @@ __all__ = [
     "radiated_sound",
     "radiating_hull",
     "ranked",
+    "regions",
     "scattered_pressure_transfer",
     "sensitivity",
     "sound_band",

@@ -63,6 +63,14 @@ class HousingRadiation(ModalResistance, ArrayFile):
     model_name: str = ""
     facts: Json = field(default_factory=dict)
 
+    def hull_at(self, outer: OuterHull, frequency: float, sound_speed: float) -> RadiatingHull | None:
+        """Return the panels at a computed frequency, Hz; None above those that the mesh resolves."""
+        low, high = float(self.frequency[0]), float(self.frequency[-1])
+        for first, last in _octaves(low, min(high, self.facts["resolved_frequency"])):
+            if first <= frequency <= last:
+                return radiating_hull(outer, last, sound_speed)
+        return None
+
     def efficiency(self, power: FloatArray, velocity: ComplexArray) -> FloatArray:
         """Return the radiation efficiency of powers (B,) in W of velocities (B, r), 0 where nothing moves."""
         flow = np.sum(velocity.conj() * (velocity @ self.surface), axis=1).real

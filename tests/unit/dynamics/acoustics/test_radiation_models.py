@@ -139,11 +139,37 @@ def test_where_the_hull_is_does_not_matter(model) -> None:
     )
 
 
+@pytest.mark.parametrize("hull", [box((0.4, 0.3, 0.2), (6, 5, 4)), sphere(6, 0.2)], ids=["pairs", "waves"])
+@pytest.mark.parametrize("model", MODELS, ids=lambda model: model.model_name)
+def test_a_panel_gives_its_velocity_times_the_pressure_of_all(model, hull) -> None:
+    """Against the matrix of all panels by themselves: every panel is a shape."""
+    velocity = random_shapes(hull, 1)[:, 0] * np.exp(1j * np.arange(len(hull.areas)))
+    matrix = resistance(model, hull, 400.0, np.eye(len(hull.areas)), AIR)
+    expected = 0.5 * np.real(velocity.conj() * (matrix @ velocity))
+    panels = panel_power(model, hull, 400.0, velocity, AIR)
+    np.testing.assert_allclose(panels, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
+    assert panels.sum() == pytest.approx(sound_power(model, hull, 400.0, velocity, AIR), rel=1e-9)
+
+
+def test_a_panel_against_the_motion_of_its_neighbors_takes_power() -> None:
+    hull = sphere(6, 0.1)
+    velocity = np.ones(len(hull.areas))
+    velocity[0] = -1.0
+    panels = panel_power(ElementalRadiators(), hull, 200.0, velocity, AIR)
+    assert np.flatnonzero(panels < 0.0).tolist() == [0]
+
+
+def test_a_velocity_that_is_not_of_the_panels_is_refused() -> None:
+    with pytest.raises(InputError, match="shapes"):
+        panel_power(MODELS[0], sphere(2), 200.0, np.ones(3), AIR)
+
+
 def test_panels_add_up_to_the_equivalent_radiated_power() -> None:
     hull = box((0.4, 0.3, 0.2), (6, 5, 4))
     velocity = random_shapes(hull, 1)[:, 0]
     whole = sound_power(MODELS[0], hull, 500.0, velocity, AIR)
-    assert panel_power(hull, velocity, AIR).sum() == pytest.approx(whole, rel=1e-12)
+    panels = panel_power(MODELS[0], hull, 500.0, velocity, AIR)
+    np.testing.assert_allclose(panels, 0.5 * AIR.impedance * hull.areas * np.abs(velocity) ** 2, rtol=1e-12)
     assert whole == pytest.approx(AIR.impedance * hull.area * mean_square_velocity(hull, velocity), rel=1e-12)
 
 
