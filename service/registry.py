@@ -259,7 +259,7 @@ STUDIES: dict[str, Study] = {
             "Noise",
             "Find the sound power",
             "Find the sound power of the housings over speed: dB(A) by order, third octaves, and which order "
-            "is loudest where, through which mode and bearing.",
+            "is loudest where, through which mode, bearing and wall.",
             "scene.toml --speed-rpm 100:6000:25 -o noise.html",
             kind="noise",
             stages=(
@@ -269,7 +269,8 @@ STUDIES: dict[str, Study] = {
                 ("band", 0.2),
                 ("sensitivities", 0.2),
             ),
-            version="1",
+            version="2",
+            further=(".vtu",),
             housed=True,
             of_run=True,
         ),
@@ -283,7 +284,7 @@ STUDIES: dict[str, Study] = {
             "scene.toml --speed-rpm 500:3000:25 -o deflection.png",
             kind="vibration",
             stages=(("analysis", 0.9), ("response", 0.1)),
-            version="1",
+            version="2",
             further=(".csv", ".vtu"),
             housed=True,
             of_run=True,

@@ -10,28 +10,38 @@ import numpy as np
 
 from dynamics.types import FloatArray, IntArray
 
+CORNERS = 3
+
 
 def write_surface(
-    path: str | Path, points: FloatArray, triangles: IntArray, fields: Mapping[str, FloatArray]
+    path: str | Path,
+    points: FloatArray,
+    triangles: IntArray,
+    fields: Mapping[str, FloatArray],
+    of_triangles: Mapping[str, FloatArray] | None = None,
 ) -> None:
-    """Write quadratic triangles with fields at their nodes as VTU; the file appears whole or not at all.
+    """Write triangles with fields as VTU; the file appears whole or not at all.
 
     Parameters
     ----------
     path : str or Path
     points : (p, 3) array
         m.
-    triangles : (t, 6) int array
+    triangles : (t, 3) or (t, 6) int array
         Corners, then mid-side nodes.
     fields : mapping of str to (p,) or (p, 3) array
+        At the nodes.
+    of_triangles : mapping of str to (t,) array, optional
+        Constant on triangles.
     """
     import meshio  # noqa: PLC0415 (start-up time)
 
     file = Path(path)
     mesh = meshio.Mesh(
         points,
-        [("triangle6", triangles)],
+        [("triangle" if triangles.shape[1] == CORNERS else "triangle6", triangles)],
         point_data={name: np.ascontiguousarray(values) for name, values in fields.items()},
+        cell_data={name: [np.ascontiguousarray(values)] for name, values in (of_triangles or {}).items()},
     )
     unfinished = file.with_name(f".{file.name}.{os.getpid()}")
     try:

@@ -8,7 +8,7 @@ from dynamics.noise.housing_recordings import pressure_recording, velocity_recor
 from dynamics.noise.kept import kept_radiation
 from dynamics.noise.loudest import LoudPoint, loudest
 from dynamics.noise.model_comparison import models_at
-from dynamics.noise.panel_sound import PanelSound, panel_sound
+from dynamics.noise.panel_sound import PanelSound, panel_sound, side_by_side
 from dynamics.noise.radiated_sound import RadiatedSound, radiated_sound
 from dynamics.noise.regions import Region, regions
 from dynamics.noise.scattered_pressure import scattered_pressure_transfer
@@ -53,6 +53,7 @@ __all__ = [
     "regions",
     "scattered_pressure_transfer",
     "sensitivity",
+    "side_by_side",
     "sound_band",
     "sound_limit",
     "sound_over_time",

@@ -8,6 +8,7 @@ import numpy as np
 
 from dynamics.acoustics import Hull, OuterHull
 from dynamics.acoustics.hull import PANELS_PER_WAVELENGTH, flat_triangles
+from dynamics.identity_cache import identity_cached
 from dynamics.noise.surface_cells import cell_positions, nearest_nodes, surface_cells
 from dynamics.noise.thin_panels import without_thin
 from dynamics.types import FloatArray
@@ -28,6 +29,7 @@ class RadiatingHull:
     shapes: FloatArray
 
 
+@identity_cached
 def radiating_hull(outer: OuterHull, highest_frequency: float, sound_speed: float) -> RadiatingHull:
     """Return a coarse closed hull that resolves a frequency in Hz; the fine one if that is hardly finer."""
     edge = sound_speed / highest_frequency / PANELS_PER_WAVELENGTH / LONGEST

@@ -76,3 +76,11 @@ def panel_sound(
     moving: ComplexArray = np.asarray(panels.shapes @ velocity)
     parts = [weight * panel_power(model, panels.hull, knot, moving, air) for knot, weight in weights]
     return PanelSound(panels.hull, np.asarray(np.sum(parts, axis=0)))
+
+
+def side_by_side(sounds: Sequence[PanelSound]) -> PanelSound:
+    """Return the panels of several housings as those of one hull, in their order."""
+    first = np.cumsum([0, *(len(sound.hull.nodes) for sound in sounds[:-1])])
+    corners = [sound.hull.triangles + start for sound, start in zip(sounds, first, strict=True)]
+    hull = Hull(np.concatenate([sound.hull.nodes for sound in sounds]), np.concatenate(corners))
+    return PanelSound(hull, np.concatenate([sound.power for sound in sounds]))

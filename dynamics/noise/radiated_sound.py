@@ -7,14 +7,15 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from dynamics.acoustics import OrderPower
+from dynamics.acoustics import Hull, OrderPower
 from dynamics.acoustics.hull import ComplexArray
 from dynamics.errors import InputError
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.noise.contributions import Contributions, contributions
 from dynamics.noise.housing_radiation import HousingRadiation
+from dynamics.noise.panel_sound import PanelSound
 from dynamics.results.array_file import ArrayFile, Stored
-from dynamics.types import BoolArray, FloatArray, Json
+from dynamics.types import BoolArray, FloatArray, IntArray, Json
 from dynamics.vibration import BearingHarmonics, seat_forces
 from dynamics.vibration.modal_amplitudes import modal_amplitudes
 
@@ -31,6 +32,9 @@ STORED = {
     "mode_alone": Stored(("mode", *POWER), "W", "power of a mode of the housing alone"),
     "natural_frequency": Stored(("mode",), "Hz", "natural frequency of the housing, seats free"),
     "in_contact": Stored(("speed",), "1", "whether all flanks stay in contact"),
+    "panel_node": Stored(("panel_nodes", "xyz"), "m", "nodes of the panels"),
+    "panel_corner": Stored(("panel", "corner"), "1", "nodes of each panel"),
+    "panel_power": Stored(("panel",), "W", "radiated sound power of each panel"),
 }
 
 
@@ -65,6 +69,9 @@ class RadiatedSound(ArrayFile):
     facts : dict
         Plain JSON: `radiation` by housing (`HousingRadiation.facts`, `model_name`, `area`, and
         `valid_frequency` in Hz, to which the modes kept carry the motion).
+    panel_node, panel_corner, panel_power : (N, 3), (T, 3), (T,) arrays
+        The panels of all housings at the loudest order and speed, m, and what each radiates there, W
+        (`PanelSound`); empty where they were not looked at.
     """
 
     SCHEMA = "lineofaction radiated sound"
@@ -85,6 +92,16 @@ class RadiatedSound(ArrayFile):
     natural_frequency: FloatArray
     in_contact: BoolArray
     facts: Json = field(default_factory=dict)
+    panel_node: FloatArray = field(default_factory=lambda: np.empty((0, 3)))
+    panel_corner: IntArray = field(default_factory=lambda: np.empty((0, 3), dtype=int))
+    panel_power: FloatArray = field(default_factory=lambda: np.empty(0))
+
+    @property
+    def panels(self) -> PanelSound | None:
+        """Return the panels at the loudest order and speed; None where they were not looked at."""
+        if not self.panel_power.size:
+            return None
+        return PanelSound(Hull(self.panel_node, self.panel_corner), self.panel_power)
 
     @property
     def orders(self) -> OrderPower:

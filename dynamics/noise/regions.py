@@ -79,7 +79,7 @@ def region_numbers(hull: Hull) -> IntArray:
     same = faces[one] == faces[other]
     joined = coo_array((np.ones(same.sum()), (one[same], other[same])), shape=(len(faces),) * 2)
     number = connected_components(joined, directed=False)[1]
-    return _without_small(number, hull.areas, one, other, length)
+    return _without_small(number.astype(int), hull.areas, one, other, length)
 
 
 def _facing(normals: FloatArray) -> IntArray:
@@ -91,7 +91,6 @@ def _without_small(
     number: IntArray, areas: FloatArray, one: IntArray, other: IntArray, length: FloatArray
 ) -> IntArray:
     """Join small regions, the smallest first, to their neighbors."""
-    number = number.copy()
     while True:
         area = np.bincount(number, areas)
         small = np.flatnonzero((area > 0.0) & (area < SMALL * areas.sum()))

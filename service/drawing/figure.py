@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bounds import engineering
+from service.drawing import palette
 
 FloatArray = NDArray[np.float64]
 Dash = Literal["solid", "dash", "dot"]
@@ -119,6 +120,11 @@ class HeatMap:
     largest: float
     least: float = 0.0
     isolines: tuple[float, ...] = ()
+
+    @property
+    def colors(self) -> tuple[str, ...]:
+        """Return the palette from the least to the largest: ordered, or of either sign about 0."""
+        return palette.SIGNED if self.least == -self.largest < 0.0 else palette.CIVIDIS
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -15,9 +16,9 @@ from service.drawing.figure import BLANK, HeatMap, Strokes
 THIN, THICK = 0.7, 4.0  # points
 
 
-def color_map() -> LinearSegmentedColormap:
-    """Return the ordered palette."""
-    return LinearSegmentedColormap.from_list("cividis_steps", palette.CIVIDIS)
+def color_map(colors: Sequence[str] = palette.CIVIDIS) -> LinearSegmentedColormap:
+    """Return colors that change evenly along a palette, by default the ordered one."""
+    return LinearSegmentedColormap.from_list("palette", colors)
 
 
 def draw_shade(ax: Axes, shade: HeatMap | Strokes) -> None:
@@ -33,7 +34,7 @@ def _cells(ax: Axes, shade: HeatMap) -> Any:
         return _smooth(ax, shade)
     z = np.ma.masked_invalid(shade.z)
     x, y, span = _edges(shade.x), _edges(shade.y), Normalize(shade.least, shade.largest)
-    return ax.pcolormesh(x, y, z, cmap=color_map(), norm=span, rasterized=True)
+    return ax.pcolormesh(x, y, z, cmap=color_map(shade.colors), norm=span, rasterized=True)
 
 
 def _smooth(ax: Axes, shade: HeatMap) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -15,9 +16,9 @@ STEPS = 12  # colors of strokes: a curve of plotly has one color
 THIN, THICK = 1.0, 6.0  # pixels
 
 
-def color_scale() -> list[list[Any]]:
-    """Return the ordered palette."""
-    return [[i / (len(palette.CIVIDIS) - 1), color] for i, color in enumerate(palette.CIVIDIS)]
+def color_scale(colors: Sequence[str] = palette.CIVIDIS) -> list[list[Any]]:
+    """Return colors that change evenly along a palette, by default the ordered one."""
+    return [[i / (len(colors) - 1), color] for i, color in enumerate(colors)]
 
 
 def shade_traces(shade: HeatMap | Strokes, suffix: str, domain: list[float]) -> list[Json]:
@@ -50,7 +51,7 @@ def _cells(shade: HeatMap, domain: list[float]) -> Json:
         "zmin": shade.least,
         "zmax": shade.largest,
         "hoverongaps": False,
-        "colorscale": color_scale(),
+        "colorscale": color_scale(shade.colors),
         "colorbar": _color_bar(shade.label, domain),
         "hovertemplate": f"x %{{x:.4g}}<br>y %{{y:.4g}}<br>%{{z:.4g}} {unit_of(shade.label)}<extra></extra>",
     }

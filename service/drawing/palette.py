@@ -23,6 +23,8 @@ CIVIDIS = (
     "#00224E", "#083370", "#35456C", "#4F576C", "#666970", "#7D7C78",
     "#948E77", "#AEA371", "#C8B866", "#E5CF52", "#FEE838",
 )  # fmt: skip
+# of values of either sign: blue below zero, vermillion above, gray for what is close to it
+SIGNED = ("#004A75", "#0072B2", "#7FB5D6", "#DDE1E6", "#E9A777", "#D55E00", "#8F3F00")
 _DARKEST, _LIGHTEST = 0.0, 0.82  # lighter than this vanishes on white paper
 
 

@@ -18,6 +18,7 @@ BEHIND = 3.0
 """Pixels in depth by which an edge may lie behind what hides nothing: facets are flat, pixels coarse."""
 EYE = (1.0, 0.55, 0.65)
 """Direction to the eye: seen from there y points up, as across a gearbox."""
+SIDES = {"From the front": EYE, "From behind": (-EYE[0], EYE[1], -EYE[2])}
 
 
 @dataclass(frozen=True)
@@ -109,16 +110,10 @@ def folds(points: FloatArray, triangles: IntArray) -> IntArray:
     return np.asarray(unique[index.ravel()[one[sharp]]])
 
 
-def surface_panel(
-    points: FloatArray,
-    triangles: IntArray,
-    offset: FloatArray,
-    value: FloatArray,
-    label: str,
-    title: str,
-    eye: tuple[float, float, float] = EYE,
-) -> Panel:
-    """Draw a moved surface in the colors of a value, with the edges of where it was.
+def surface_panels(
+    points: FloatArray, triangles: IntArray, offset: FloatArray, value: FloatArray, label: str, words: str
+) -> tuple[Panel, ...]:
+    """Draw a moved surface in the colors of a value, with the edges of where it was, from two sides.
 
     Parameters
     ----------
@@ -128,24 +123,40 @@ def surface_panel(
     offset : (p, 3) array
         How far points are drawn off, m.
     value : (t,) array
-        At least 0.
-    label, title : str
-        Of the colors, with the unit after the last comma, and of the panel.
-    eye : (float, float, float)
-        Direction to the eye.
+        Where some is negative, colors are even about 0.
+    label, words : str
+        Of the colors, with the unit after the last comma, and in the titles of the panels.
     """
+    return tuple(
+        _panel(points, triangles, offset, value, label, f"{side}: {words}", eye)
+        for side, eye in SIDES.items()
+    )
+
+
+def _panel(
+    points: FloatArray,
+    triangles: IntArray,
+    offset: FloatArray,
+    value: FloatArray,
+    label: str,
+    title: str,
+    eye: tuple[float, float, float],
+) -> Panel:
+    """Draw one side."""
     moved = points + offset
     view = view_of(np.concatenate([points, moved]), eye)
     image, _ = rendered(view, moved[triangles], value)
     _, depth = rendered(view, points[triangles], value)
     x, y = (1e3 * view.step * np.arange(count, dtype=np.float64) for count in view.shape[::-1])
-    largest = float(np.max(value, initial=0.0)) or 1.0
+    largest = float(np.max(np.abs(value), initial=0.0)) or 1.0
+    least = -largest if np.any(value < 0.0) else 0.0
     edges = _in_sight(view, points[folds(points, triangles)], depth)
     outline = Line(
         "edges at rest", 1e3 * view.step * edges[:, 0], 1e3 * view.step * edges[:, 1], palette.INK, width=0.6
     )
     across, up = (Axis("mm", limits=(0.0, float(along[-1]))) for along in (x, y))
-    return Panel(across, up, (outline,), title=title, shade=HeatMap(x, y, image, label, largest), equal=True)
+    shade = HeatMap(x, y, image, label, largest, least)
+    return Panel(across, up, (outline,), title=title, shade=shade, equal=True)
 
 
 def _in_sight(view: View, ends: FloatArray, depth: FloatArray) -> FloatArray:

@@ -30,6 +30,19 @@ class HousingSound(Part):
     models_left_out: dict[str, str]
 
 
+class RegionSound(Part):
+    """A part of a housing that faces an axis: named points, place, and power, below 0 where it takes some."""
+
+    housing: str
+    facing: str
+    points: list[str]
+    normal: list[float]
+    center_mm: list[float]
+    area_m2: float
+    power_w: float
+    share: float
+
+
 class LoudPoint(Part):
     """An order at a speed at which it is louder than at the speeds beside it."""
 
@@ -47,6 +60,7 @@ class LoudPoint(Part):
     bearing_alone_db_a: float
     without_bearing_db_a: float
     in_contact: bool
+    regions: list[RegionSound]
 
 
 class LevelBandFigures(Part):

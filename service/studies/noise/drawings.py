@@ -10,6 +10,7 @@ from dynamics.acoustics import OrderPower, a_weighting, sound_power_level
 from dynamics.noise import RadiatedSound
 from service.drawing import palette
 from service.drawing.figure import Axis, Figure, FloatArray, HeatMap, Line, Panel, Table, number
+from service.drawing.surface_view import surface_panels
 from service.studies.bearing_forces import of_run, row_axis
 from service.studies.noise.over_time import total_line
 
@@ -143,6 +144,25 @@ def bearing_levels(sound: RadiatedSound) -> Figure:
                 (name, f"{alone[b, at]:.1f}", f"{without[b, at]:.1f}") for b, name in enumerate(sound.bearing)
             ),
         ),
+    )
+
+
+def panel_intensity(sound: RadiatedSound, where: str, table: Table) -> Figure | None:
+    """Draw the intensity on the hulls at the loudest point, `where`; None where it was not looked at."""
+    panels = sound.panels
+    if panels is None:
+        return None
+    hull, value = panels.hull, 1e3 * panels.intensity
+    return Figure(
+        key="sound_panels",
+        title=f"Sound intensity on the surface: {where}",
+        caption="Active intensity normal to the hull that the radiation model takes: openings are covered, "
+        "fine details rounded off. Negative: takes power that other panels radiate.",
+        alternative=f"From {number(float(value.min()), 2)} to {number(float(value.max()), 2)} mW/m².",
+        content=surface_panels(
+            hull.nodes, hull.triangles, np.zeros_like(hull.nodes), value, "intensity, mW/m²", "outer hull"
+        ),
+        table=table,
     )
 
 

@@ -10,7 +10,7 @@ from dynamics.acoustics import a_weighting, sound_power_level
 from dynamics.noise import LoudPoint, RadiatedSound, loudest
 from service.studies.bearing_forces import LINEAR
 from service.studies.equilibrium import equilibrium_figures
-from service.units import RPM
+from service.units import MM, RPM
 
 Json = dict[str, Any]
 
@@ -32,7 +32,9 @@ def facts(sound: RadiatedSound) -> Json:
         "third_octave_db": sound_power_level(bands).tolist(),
         "radiation_efficiency": sound.efficiency.T.tolist(),
         "bearings": {name: _bearing(sound, index) for index, name in enumerate(sound.bearing)},
-        "loudest": [_point(point) for point in loudest(sound)],
+        "loudest": [
+            _point(point, regions) for point, regions in zip(loudest(sound), about["regions"], strict=True)
+        ],
         "housings": {name: _housing(about, name) for name in sound.housing},
         "natural_frequency_hz": sound.natural_frequency.tolist(),
         "parting_rpm": (sound.speed[~sound.in_contact] / RPM).tolist(),
@@ -75,7 +77,21 @@ def _housing(about: Json, name: str) -> Json:
     }
 
 
-def _point(point: LoudPoint) -> Json:
+def _region(region: Json) -> Json:
+    """Return a region of a housing."""
+    return {
+        "housing": region["housing"],
+        "facing": region["facing"],
+        "points": region["points"],
+        "normal": region["normal"],
+        "center_mm": [value / MM for value in region["center"]],
+        "area_m2": region["area"],
+        "power_w": region["power"],
+        "share": region["share"],
+    }
+
+
+def _point(point: LoudPoint, regions: list[Json]) -> Json:
     """Return a loudest point."""
     return {
         "order": point.order,
@@ -92,4 +108,5 @@ def _point(point: LoudPoint) -> Json:
         "bearing_alone_db_a": point.bearing_level,
         "without_bearing_db_a": point.level_without_bearing,
         "in_contact": point.in_contact,
+        "regions": [_region(region) for region in regions],
     }

@@ -11,8 +11,16 @@ from service.convert.run_effects import model_lines
 from service.drawing.figure import Figure, Table, number
 from service.drawing.page import Headline, Page, Part, Section
 from service.studies.bearing_forces import force_words, of_run
-from service.studies.noise.drawings import RPM, bearing_levels, level_over_speed, sound_map, third_octaves
+from service.studies.noise.drawings import (
+    RPM,
+    bearing_levels,
+    level_over_speed,
+    panel_intensity,
+    sound_map,
+    third_octaves,
+)
 from service.studies.noise.over_time import third_octaves_over_time
+from service.studies.noise.region_table import most, region_table
 from service.studies.noise.uncertainty_tables import uncertainty_tables
 from service.studies.presentation import Presentation, dynamics_page
 
@@ -51,14 +59,19 @@ def _row(point: LoudPoint) -> tuple[str, ...]:
     )
 
 
-def sentence(point: LoudPoint) -> str:
-    """Say what radiates there, and through what."""
-    return (
-        f"order {point.order:g} at {number(point.speed / RPM, 4)} rpm, {number(point.frequency, 4)} Hz: "
-        f"{point.weighted_level:.1f} dB(A) through mode {point.mode} of {point.mode_housing} "
+def sentences(sound: RadiatedSound) -> tuple[str, ...]:
+    """Say what radiates at the loudest point, and through what; nothing in silence."""
+    return tuple(
+        f"{where(point)}: {point.weighted_level:.1f} dB(A) through mode {point.mode} of {point.mode_housing} "
         f"({number(point.natural_frequency, 4)} Hz); bearing {point.bearing} alone "
-        f"{point.bearing_level:.1f} dB(A)"
+        f"{point.bearing_level:.1f} dB(A); {most(sound)}"
+        for point in loudest(sound, 1)
     )
+
+
+def where(point: LoudPoint) -> str:
+    """Say order, speed and frequency of a point."""
+    return f"order {point.order:g} at {number(point.speed / RPM, 4)} rpm, {number(point.frequency, 4)} Hz"
 
 
 def headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
@@ -71,7 +84,8 @@ def headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
         where += f"; {total_band['low_db_a']:.1f} to {total_band['high_db_a']:.1f} over the ranges of guesses"
     shown = [Headline("sound power level", f"{total[at]:.1f} dB(A)", where)]
     shown += [
-        Headline("loudest order", f"{point.weighted_level:.1f} dB(A)", sentence(point)) for point in points
+        Headline("loudest order", f"{point.weighted_level:.1f} dB(A)", words)
+        for point, words in zip(points, sentences(sound), strict=True)
     ]
     parting = sound.speed[~sound.in_contact] / RPM
     if parting.size:
@@ -82,15 +96,19 @@ def headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
 
 def _figures(sound: RadiatedSound) -> tuple[Figure, ...]:
     """Return all figures."""
+    points = loudest(sound, 1)
+    panels = panel_intensity(sound, where(points[0]), region_table(sound)) if points else None
     figures = (
-        sound_map(sound, loudest_table(sound), [sentence(point) for point in loudest(sound, 1)]),
+        sound_map(sound, loudest_table(sound), sentences(sound)),
         level_over_speed(sound),
         third_octaves(sound),
         bearing_levels(sound),
+        panels,
     )
+    shown = tuple(figure for figure in figures if figure is not None)
     if sound.facts.get("over_time") is None:
-        return figures
-    return (*figures, third_octaves_over_time(sound.facts))
+        return shown
+    return (*shown, third_octaves_over_time(sound.facts))
 
 
 def limits(sound: RadiatedSound) -> Iterator[tuple[str, str]]:
@@ -131,7 +149,8 @@ def _radiation_limits(sound: RadiatedSound, housing: str) -> Iterator[tuple[str,
 def _text(sound: RadiatedSound) -> Iterator[Table | str]:
     """Yield the loudest points, what the levels rest on, bands, sensitivities and the cost."""
     yield loudest_table(sound)
-    yield from (sentence(point) for point in loudest(sound, 1))
+    yield region_table(sound)
+    yield from sentences(sound)
     yield from (f"{what}: {words}" for what, words in limits(sound))
     yield from uncertainty_tables(sound.facts)
     yield from (f"no sensitivity to {name}: {why}" for name, why in _missing(sound))
@@ -157,7 +176,7 @@ def page(sound: RadiatedSound) -> Page:
 
 
 PAGE = Presentation(
-    lambda sound: _figures(sound)[0],
+    lambda sound: sound_map(sound, loudest_table(sound), sentences(sound)),
     page,
     _text,
 )

@@ -4,10 +4,17 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
-from dynamics.acoustics import BoundaryElements, ElementalRadiators, EquivalentRadiatedPower, RadiationModel
-from dynamics.housing_modes import ReducedHousing
+from dynamics.acoustics import (
+    BoundaryElements,
+    ElementalRadiators,
+    EquivalentRadiatedPower,
+    PanelModel,
+    RadiationModel,
+)
+from dynamics.housing_modes import ReducedHousing, write_surface
 from dynamics.noise import (
     HousingRadiation,
     RadiatedSound,
@@ -27,12 +34,13 @@ from service.studies.computation import Computation, Means
 from service.studies.noise import Inputs
 from service.studies.noise.figures import facts
 from service.studies.noise.over_time import over_time, over_time_json, run_frequencies
+from service.studies.noise.radiating_regions import SoundingHousing, with_regions
 from service.studies.noise.uncertainty import uncertainty
 from service.studies.result_file import array_file
 
 Json = dict[str, Any]
 PLANE, MONOPOLES = EquivalentRadiatedPower(), ElementalRadiators()
-MODELS: dict[str, RadiationModel] = {model.model_name: model for model in (PLANE, MONOPOLES)}
+MODELS: dict[str, PanelModel] = {model.model_name: model for model in (PLANE, MONOPOLES)}
 ADVICE = (
     "Give a housing by step_file, mesh_file or modes_file: matrices alone do not say what the air touches."
 )
@@ -49,18 +57,21 @@ def noise_of(subject: TabledScene, inputs: Inputs, means: Means) -> RadiatedSoun
     inputs = _without_ranges(inputs) if means.run is not None else inputs
     response = forces_of(subject.scene, inputs, means)
     with boundary_errors():
-        sounds, compared, radiation = [], {}, {}
         began = time.process_time()
-        for part in subject.scene.housings:
-            body = subject.housings.get(part.name)
-            if body is not None and body.surface is not None:
-                radiation[part.name] = _radiation(response, body, inputs, means)
-                sound = radiated_sound(response, body, part.bushings, radiation[part.name], part.name)
-                compared[part.name] = _compared(response, body, part.bushings, sound, inputs)
-                sounds.append(sound)
-        if not sounds:
+        housings = [
+            SoundingHousing(part.name, body, part.bushings, _radiation(response, body, inputs, means))
+            for part in subject.scene.housings
+            if (body := subject.housings.get(part.name)) is not None and body.surface is not None
+        ]
+        if not housings:
             raise _silent(subject.inputs)
-        whole = together(sounds)
+        sounds = [_sound(response, housing) for housing in housings]
+        compared = {
+            housing.name: _compared(response, housing, sound, inputs)
+            for housing, sound in zip(housings, sounds, strict=True)
+        }
+        whole = with_regions(together(sounds), response, housings, MODELS[inputs.radiation])
+        radiation = {housing.name: housing.radiation for housing in housings}
         heard = None if means.run is None else over_time(subject, means.run, radiation)
     about = response.facts
     seconds = {**about["seconds"], "sound": time.process_time() - began}
@@ -88,12 +99,13 @@ def _radiation(
     return kept_radiation(body, model, hertz, cache=cache, progress=means.report)
 
 
+def _sound(response: BearingHarmonics, housing: SoundingHousing) -> RadiatedSound:
+    """Return the sound of one housing."""
+    return radiated_sound(response, housing.body, housing.bearings, housing.radiation, housing.name)
+
+
 def _compared(
-    response: BearingHarmonics,
-    body: ReducedHousing,
-    bearings: tuple[str, ...],
-    sound: RadiatedSound,
-    inputs: Inputs,
+    response: BearingHarmonics, housing: SoundingHousing, sound: RadiatedSound, inputs: Inputs
 ) -> Json:
     """Return what the radiation models say where a housing is loudest; nothing if it is silent."""
     points = loudest(sound, 1)
@@ -102,7 +114,7 @@ def _compared(
     finest = (BoundaryElements(),) if inputs.boundary_elements else ()
     models: tuple[RadiationModel, ...] = (PLANE, MONOPOLES, *finest)
     at = points[0].speed_index, points[0].order_index
-    ladder = models_at(response, body, bearings, at, models)
+    ladder = models_at(response, housing.body, housing.bearings, at, models)
     return {
         "order": points[0].order,
         "speed": points[0].speed,
@@ -126,10 +138,20 @@ def _silent(scene: SceneInput) -> BadInput:
     return BadInput.of("housings", names, "at least one with a surface", ADVICE)
 
 
+def write_panels(sound: RadiatedSound, _scene: Any, file: Path) -> None:
+    """Write power and intensity of the panels at the loudest point for ParaView."""
+    panels = sound.panels
+    if panels is None:
+        raise BadInput.of("output", str(file), "another ending than .vtu", "Nothing radiates.")
+    fields = {"intensity": panels.intensity, "power": panels.power}
+    write_surface(file, panels.hull.nodes, panels.hull.triangles, {}, fields)
+
+
 RUN = Computation(
     noise_of,
     facts,
     array_file(RadiatedSound),
     check=check,
     of_scene=lambda tabled: tabled,
+    writers={".vtu": write_panels},
 )

@@ -9,7 +9,7 @@ from dynamics.vibration import VibrationAnalysis
 from dynamics.vibration.vibration_analysis import Shares
 from service.drawing import palette
 from service.drawing.figure import Axis, Bars, Figure, Line, Panel, Reference, number
-from service.drawing.surface_view import EYE, surface_panel
+from service.drawing.surface_view import surface_panels
 from service.studies.bearing_forces import row_axis
 from service.studies.vibration.run import MM_PER_S, HousingVibrationResult
 from service.studies.vibration.tables import contribution_table, largest_table, where
@@ -18,7 +18,6 @@ from service.units import MM
 SHOWN_ORDERS, SHOWN_POINTS, SHOWN_SEATS, SHOWN_MODES = 6, 3, 4, 8
 DRAWN = 0.06
 """Largest motion as it is drawn, over the size of the housing."""
-BEHIND = (-EYE[0], EYE[1], -EYE[2])
 
 
 def velocity_figure(result: HousingVibrationResult) -> Figure:
@@ -175,10 +174,7 @@ def shape_figure(result: HousingVibrationResult) -> Figure | None:
         caption="Colors: peak amplitude normal to the surface. Drawn: the motion at the instant at which it "
         "is largest. Lines: edges at rest.",
         alternative=f"{what}: the largest motion is {number(fastest / one, 3)} {unit}.",
-        content=tuple(
-            surface_panel(shape.points, shape.facets, offset, value, label, f"{side}: {scale}", eye)
-            for side, eye in (("From the front", EYE), ("From behind", BEHIND))
-        ),
+        content=surface_panels(shape.points, shape.facets, offset, value, label, scale),
     )
 
 

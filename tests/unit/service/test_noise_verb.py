@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
+import meshio
 import numpy as np
 import pytest
 from computed_once import computed_once
@@ -18,10 +19,11 @@ from shown_effects import check_effects_shown
 from sounding_housings import smooth_motion, with_surface
 from typer.testing import CliRunner, Result
 
-from dynamics.acoustics import a_weighting
+from dynamics.acoustics import Hull, a_weighting
 from dynamics.noise import RadiatedSound, loudest
 from service.cli.commands import app
-from service.studies.noise import run
+from service.drawing import surface_view
+from service.studies.noise import page, run
 from service.studies.noise.figures import facts
 from service.studies.noise.page import limits
 
@@ -42,8 +44,9 @@ def housing():
 
 @pytest.fixture(scope="module", autouse=True)
 def _once() -> Iterator[None]:
-    """Compute what equal calls ask for once."""
-    with computed_once(run):
+    """Compute what equal calls ask for once; pictures of surfaces are coarse."""
+    with computed_once(run), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(surface_view, "ACROSS", 90)
         yield
 
 
@@ -77,7 +80,7 @@ def test_json_holds_levels_by_order_and_speed_and_the_loudest_points(scene: Path
 
 
 def test_the_table_and_every_kind_of_file_say_the_same(scene: Path, tmp_path: Path) -> None:
-    files = {ending: tmp_path / f"noise.{ending}" for ending in ("nc", "json", "png", "html")}
+    files = {ending: tmp_path / f"noise.{ending}" for ending in ("nc", "json", "png", "html", "vtu")}
     for file in files.values():
         result = loa(scene, *SPEEDS, "-o", file)
         assert result.exit_code == 0, result.stderr
@@ -91,7 +94,7 @@ def test_the_table_and_every_kind_of_file_say_the_same(scene: Path, tmp_path: Pa
         figures.pop("cpu_seconds")
     assert written == expected
     report = files["html"].read_text("utf-8")
-    assert "Sound power in third octaves" in report
+    assert "Sound power in third octaves" in report and '<figure id="sound_panels">' in report
     rows = list(limits(found))
     named = [what for what, _ in rows if "above" not in what]
     assert named == ["forces on bearings", "case", "models at the loudest point"]
@@ -99,6 +102,27 @@ def test_the_table_and_every_kind_of_file_say_the_same(scene: Path, tmp_path: Pa
         assert f"{what}: {words}" in result.stdout
         assert f'<th scope="row">{what}</th><td>{words}</td>' in report
     check_effects_shown(found.facts["effect_ledger"], result.stdout, report)
+
+
+def test_regions_and_panels_add_up_to_the_power_of_their_point(scene: Path, tmp_path: Path) -> None:
+    for file in (tmp_path / "noise.nc", tmp_path / "noise.vtu"):
+        assert loa(scene, *SPEEDS, "-o", file).exit_code == 0
+    found = RadiatedSound.from_netcdf(tmp_path / "noise.nc")
+    points = facts(found)["loudest"]
+    for point in points:
+        whole = 1e-12 * 10.0 ** (point["level_db"] / 10.0)
+        assert sum(region["power_w"] for region in point["regions"]) == pytest.approx(whole, rel=1e-9)
+        assert sum(region["share"] for region in point["regions"]) == pytest.approx(1.0, rel=1e-9)
+    first = points[0]["regions"][0]
+    assert f"{100.0 * first['share']:.0f} % leaves case at {first['facing']}" in page.sentences(found)[0]
+    assert len(page.region_table(found).rows) == sum(len(point["regions"]) for point in points[:3])
+    loud = loudest(found, 1)[0]
+    surface = meshio.read(tmp_path / "noise.vtu")
+    (triangles,) = (cells.data for cells in surface.cells)
+    hull = Hull(surface.points, triangles)
+    (intensity,), (power,) = surface.cell_data["intensity"], surface.cell_data["power"]
+    np.testing.assert_allclose(intensity * hull.areas, power, rtol=1e-9)
+    assert power.sum() == pytest.approx(found.power[loud.speed_index, loud.order_index], rel=1e-9)
 
 
 def test_equivalent_radiated_power_is_louder_where_the_housing_is_small(scene: Path) -> None:

@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 from lattice_meshes import box
 
-from service.drawing.surface_view import folds, rendered, surface_panel, view_of
+from service.drawing import palette
+from service.drawing.figure import Figure
+from service.drawing.interactive import plotly_figure
+from service.drawing.surface_view import folds, rendered, surface_panels, view_of
 
 SIDES = (0.3, 0.2, 0.1)
 
@@ -42,11 +45,25 @@ def test_folds_are_the_edges_of_the_block() -> None:
     assert np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum() == pytest.approx(4.0 * sum(SIDES))
 
 
+def test_values_of_either_sign_have_colors_even_about_zero() -> None:
+    points, triangles = block()
+    size = np.linspace(-0.5, 2.0, len(triangles))
+    front, behind = surface_panels(points, triangles, np.zeros_like(points), size, "I, W/m²", "at rest")
+    assert (
+        (front.shade.least, front.shade.largest) == (-2.0, 2.0) == (behind.shade.least, behind.shade.largest)
+    )
+    assert front.shade.colors == palette.SIGNED
+    (positive, _) = surface_panels(points, triangles, np.zeros_like(points), size + 0.5, "v, m/s", "at rest")
+    assert positive.shade.least == 0.0 and positive.shade.colors == palette.CIVIDIS
+    (heat, *_) = plotly_figure(Figure("k", "t", "c", "a", (front,)))["data"]
+    assert [color for _, color in heat["colorscale"]] == list(palette.SIGNED)
+
+
 def test_a_panel_shows_the_moved_surface_and_the_nine_edges_in_sight_at_rest() -> None:
     points, triangles = block()
     size = np.linspace(0.0, 2.0, len(triangles))
-    still = surface_panel(points, triangles, np.zeros_like(points), size, "v, mm/s", "at rest")
-    away = surface_panel(points, triangles, np.full_like(points, 0.05), size, "v, mm/s", "moved")
+    still = surface_panels(points, triangles, np.zeros_like(points), size, "v, mm/s", "at rest")[0]
+    away = surface_panels(points, triangles, np.full_like(points, 0.05), size, "v, mm/s", "moved")[0]
     assert still.equal
     assert still.shade.largest == 2.0
     assert np.nanmax(still.shade.z) <= 2.0
