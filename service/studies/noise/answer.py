@@ -28,6 +28,7 @@ class HousingSound(Part):
     models_db: dict[str, float]
     model_error_db: dict[str, float]
     models_left_out: dict[str, str]
+    models_cpu_seconds: dict[str, float]
 
 
 class RegionSound(Part):

@@ -74,6 +74,7 @@ def _housing(about: Json, name: str) -> Json:
         "models_db": compared.get("level", {}),
         "model_error_db": compared.get("error", {}),
         "models_left_out": compared.get("left_out", {}),
+        "models_cpu_seconds": compared.get("seconds", {}),
     }
 
 

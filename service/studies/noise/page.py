@@ -139,9 +139,13 @@ def _radiation_limits(sound: RadiatedSound, housing: str) -> Iterator[tuple[str,
         words = "0.7 of the highest mode kept, modes are missing: keep more"
         yield f"above {number(valid, 3)} Hz", words
     levels = compared.get("level", {})
-    words = ", ".join(f"{model.replace('_', ' ')} {level:.1f} dB" for model, level in levels.items())
-    if words:
-        yield "models at the loudest point", words
+    compared_levels = [
+        f"{model.replace('_', ' ')} {level:.1f} dB ({number(compared['seconds'][model], 2)} CPU s)"
+        for model, level in levels.items()
+    ]
+    if compared_levels:
+        at = f"models at order {compared['order']:g}, {number(compared['speed'] / RPM, 4)} rpm"
+        yield at, ", ".join(compared_levels)
     for model, reason in compared.get("left_out", {}).items():
         yield f"without {model.replace('_', ' ')}", reason
 

@@ -8,11 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from dynamics.acoustics import (
+    Air,
     BoundaryElements,
     ElementalRadiators,
     EquivalentRadiatedPower,
     PanelModel,
     RadiationModel,
+    outer_hull,
 )
 from dynamics.housing_modes import ReducedHousing, write_surface
 from dynamics.noise import (
@@ -24,6 +26,7 @@ from dynamics.noise import (
     radiated_sound,
     together,
 )
+from dynamics.noise.housing_radiation import resolved_frequency
 from dynamics.vibration import BearingHarmonics
 from service.convert.case import boundary_errors
 from service.convert.scene import TabledScene
@@ -107,8 +110,12 @@ def _sound(response: BearingHarmonics, housing: SoundingHousing) -> RadiatedSoun
 def _compared(
     response: BearingHarmonics, housing: SoundingHousing, sound: RadiatedSound, inputs: Inputs
 ) -> Json:
-    """Return what the radiation models say where a housing is loudest; nothing if it is silent."""
-    points = loudest(sound, 1)
+    """Return what the radiation models say where a housing is loudest, nothing if it is silent.
+
+    Points that the mesh resolves come first: the others are beyond all models but one.
+    """
+    resolved = resolved_frequency(outer_hull(housing.body), Air())
+    points = [point for point in loudest(sound) if point.frequency <= resolved] or loudest(sound, 1)
     if not points:
         return {}
     finest = (BoundaryElements(),) if inputs.boundary_elements else ()
