@@ -33,6 +33,8 @@ from service.runs.signal_recording import along_direction
 from service.runs.signal_spectrum import signal_spectrum
 from service.runs.sound import Heard, sound_of
 
+ROUNDING = 1e-15
+"""m, of the static displacement of an effect."""
 _ERRORS = {
     "time_step": ("step error", "nm rms"),
     "table_interpolation": ("table error", "nm rms"),
@@ -151,13 +153,18 @@ def ledger_section(ledger: Mapping[str, Any]) -> Section:
             entry["effect"],
             entry["part"],
             entry["on"],
-            f"{number(1e6 * float(entry['worth']), 3)} µm at the line of action",
+            _displacement(float(entry["worth"])),
             entry["reason"],
         )
         for entry in ledger.get("entries", ())
     ]
     left_out = ledger.get("left_out", {})
     return effects_section("", rows, (facts("Not in the model", left_out),))
+
+
+def _displacement(influence: float) -> str:
+    """Write a static displacement in m; what is left by rounding is none."""
+    return f"{number(1e6 * influence, 3)} µm at the line of action" if influence > ROUNDING else "nothing"
 
 
 def _accuracy(run: RunResult) -> Table:

@@ -15,5 +15,6 @@ def check_effects_shown(ledger: Mapping[str, Any], printed: str, report: str) ->
         assert f'<th scope="row">{entry["effect"]}</th>{row}' in report
         assert f"<td>{escape(entry['reason'])}</td>" in report
         assert entry["effect"] in printed or not (entry["on"] or entry["possible"])
+    assert "<td>nothing</td>" in report and "<td>0 µm at" not in report
     for name in ledger["left_out"]:
         assert name.replace("_", " ") in report

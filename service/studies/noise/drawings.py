@@ -153,12 +153,13 @@ def panel_intensity(sound: RadiatedSound, where: str, table: Table) -> Figure | 
     if panels is None:
         return None
     hull, value = panels.hull, 1e3 * panels.intensity
+    least, largest = (number(float(end), 2) for end in (value.min(), value.max()))
     return Figure(
         key="sound_panels",
         title=f"Sound intensity on the surface: {where}",
         caption="Active intensity normal to the hull that the radiation model takes: openings are covered, "
         "fine details rounded off. Negative: takes power that other panels radiate.",
-        alternative=f"From {number(float(value.min()), 2)} to {number(float(value.max()), 2)} mW/m².",
+        alternative=f"The intensity is between {least} and {largest} mW/m².",
         content=surface_panels(
             hull.nodes, hull.triangles, np.zeros_like(hull.nodes), value, "intensity, mW/m²", "outer hull"
         ),
