@@ -24,7 +24,8 @@ def folder() -> Iterator[Path]:
         yield made
 
 
-LONG = {"hear-a-gearbox", "ripple-map", "tolerances", "vibration"}  # half a minute and more, for none else
+# Half a minute and more, for none else.
+LONG = {"deflect", "hear-a-gearbox", "ripple-map", "tolerances", "vibration"}
 PAGES = [
     pytest.param(page, id=page.stem, marks=[pytest.mark.nightly] * (page.stem in LONG))
     for page in manual.pages()

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from condensed_once import find_condensed
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -33,7 +34,8 @@ def run_python(code: str, folder: Path) -> subprocess.CompletedProcess[str]:
     return done
 
 
-def test_the_helical_example_has_five_lines_and_runs(tmp_path: Path) -> None:
+def test_the_helical_example_has_five_lines_and_runs(tmp_path: Path, condensed_bodies: Path) -> None:
+    find_condensed(condensed_bodies, tmp_path / "cache" / "lineofaction")
     (code,) = blocks("python")
     assert len([line for line in code.splitlines() if line]) == 5
     value, error = map(float, re.findall(r"=([\d.e-]+)", run_python(code, tmp_path).stdout))
