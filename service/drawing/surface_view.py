@@ -18,7 +18,8 @@ BEHIND = 3.0
 """Pixels in depth by which an edge may lie behind what hides nothing: facets are flat, pixels coarse."""
 EYE = (1.0, 0.55, 0.65)
 """Direction to the eye: seen from there y points up, as across a gearbox."""
-SIDES = {"From the front": EYE, "From behind": (-EYE[0], EYE[1], -EYE[2])}
+SIDES = {"From the front": EYE, "From behind and below": (-EYE[0], -EYE[1], -EYE[2])}
+"""Opposite eyes: each facet that nothing hides is seen from one of them."""
 
 
 @dataclass(frozen=True)

@@ -39,6 +39,16 @@ def test_a_block_shows_the_three_sides_that_face_the_eye_in_their_projected_area
     assert np.array_equal(np.isnan(image), np.isinf(depth))
 
 
+def test_all_six_sides_of_a_block_are_seen_in_two_pictures() -> None:
+    points, triangles = block()
+    corner = points[triangles]
+    normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+    side = np.argmax(np.abs(normal), axis=1) + np.where(normal.sum(axis=1) > 0.0, 0, 3)
+    pictures = surface_panels(points, triangles, np.zeros_like(points), side.astype(float), "side", "at rest")
+    seen = np.concatenate([np.unique(picture.shade.z) for picture in pictures])
+    assert set(seen[np.isfinite(seen)]) == set(range(6))
+
+
 def test_folds_are_the_edges_of_the_block() -> None:
     points, triangles = block()
     ends = points[folds(points, triangles)]
