@@ -6,29 +6,23 @@ import json
 import os
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
-from typing import Any
 
 import pytest
+from described_api import DESCRIPTION
 from openapi_spec_validator import OpenAPIV30SpecValidator, OpenAPIV31SpecValidator
 
 from service import problems
-from service.app import create_app
 from service.problems import ServiceError
 from service.registry import STUDIES
 from service.routes.openapi30 import in_version_30
 from service.routes.response_headers import OF_STATUS
 from service.schemas.ogc import class_name
-from service.settings import Settings
 from service.worker.catalogue import default_registry
 
-_directory = tempfile.TemporaryDirectory(prefix="loa-description-")
-_app = create_app(Settings(data_directory=Path(_directory.name)))
-DOCUMENT: dict[str, Any] = _app.openapi()
 OPERATIONS = {
     operation["operationId"]: operation
-    for methods in DOCUMENT["paths"].values()
+    for methods in DESCRIPTION["paths"].values()
     for operation in methods.values()
 }
 LINTERS = Path(sys.prefix) / "linters" / "node_modules" / ".bin"
@@ -42,27 +36,27 @@ RULES = {
 
 
 def test_it_is_openapi() -> None:
-    assert [error.message for error in OpenAPIV31SpecValidator(DOCUMENT).iter_errors()] == []
+    assert [error.message for error in OpenAPIV31SpecValidator(DESCRIPTION).iter_errors()] == []
 
 
 def test_it_is_openapi_30_too() -> None:
-    older = in_version_30(DOCUMENT)
+    older = in_version_30(DESCRIPTION)
     assert [error.message for error in OpenAPIV30SpecValidator(older).iter_errors()] == []
-    assert set(older["paths"]) == set(DOCUMENT["paths"])
-    assert set(older["components"]["schemas"]) == set(DOCUMENT["components"]["schemas"])
+    assert set(older["paths"]) == set(DESCRIPTION["paths"])
+    assert set(older["components"]["schemas"]) == set(DESCRIPTION["components"]["schemas"])
     tolerance = older["components"]["schemas"]["AccuracyInput"]["properties"]["tolerance"]
     assert tolerance["nullable"] and tolerance["anyOf"][0]["maximum"] == 0.5
 
 
 def test_operations_are_named_by_words_and_processes_by_their_names() -> None:
-    assert len(OPERATIONS) == sum(len(methods) for methods in DOCUMENT["paths"].values())
+    assert len(OPERATIONS) == sum(len(methods) for methods in DESCRIPTION["paths"].values())
     assert all(name.isidentifier() and name.islower() and "v1" not in name for name in OPERATIONS)
     assert {name.replace("-", "_") for name in default_registry()} <= set(OPERATIONS)
 
 
 def test_every_tag_is_explained() -> None:
     used = {tag for operation in OPERATIONS.values() for tag in operation["tags"]}
-    explained = {tag["name"]: tag["description"] for tag in DOCUMENT["tags"]}
+    explained = {tag["name"]: tag["description"] for tag in DESCRIPTION["tags"]}
     assert used == set(explained) and all(explained.values())
 
 
@@ -75,7 +69,7 @@ def test_every_operation_says_its_refusals() -> None:
 
 
 def test_every_answer_says_its_headers() -> None:
-    components = DOCUMENT["components"]
+    components = DESCRIPTION["components"]
     for name, operation in OPERATIONS.items():
         for status, response in operation["responses"].items():
             entry = components["responses"].get(response.get("$ref", "").rpartition("/")[2], response)
@@ -107,7 +101,7 @@ def test_results_are_typed_by_process() -> None:
     typed = {entry["$ref"].rpartition("/")[2] for entry in content["application/json"]["schema"]["anyOf"]}
     assert typed == {f"{class_name(name)}Results" for name in (*default_registry(), "batch")}
     for study in STUDIES.values():
-        schema = DOCUMENT["components"]["schemas"][f"{class_name(study.name)}Results"]
+        schema = DESCRIPTION["components"]["schemas"][f"{class_name(study.name)}Results"]
         assert (schema["required"], schema["additionalProperties"]) == ([study.kind], False)
 
 
@@ -115,7 +109,7 @@ def linted(tmp_path: Path, linter: str, *options: str) -> str:
     """Return what a linter of npm complains about."""
     if not (LINTERS / linter).exists():
         pytest.skip(f"no {linter} on this machine: scripts/test installs it where npm is")
-    (tmp_path / "openapi.json").write_text(json.dumps(DOCUMENT))
+    (tmp_path / "openapi.json").write_text(json.dumps(DESCRIPTION))
     (tmp_path / "rules.json").write_text(json.dumps(RULES))
     quiet = os.environ | {"REDOCLY_TELEMETRY": "off", "REDOCLY_SUPPRESS_UPDATE_NOTICE": "true"}
     command = (LINTERS / linter, "lint", "openapi.json", *options)

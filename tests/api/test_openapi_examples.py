@@ -12,6 +12,7 @@ from typing import Any
 import cbor2
 import jsonschema
 import pytest
+from described_api import DESCRIPTION
 from fastapi.testclient import TestClient
 from small_table import small_table
 
@@ -23,10 +24,10 @@ from service.settings import Settings
 BINARY = ("application/x-netcdf", "application/octet-stream", "audio/wav")
 _directory = tempfile.TemporaryDirectory(prefix="loa-examples-")
 _app = create_app(Settings(data_directory=Path(_directory.name)))
-DOCUMENT: dict[str, Any] = _app.openapi()
+RESPONSES = DESCRIPTION["components"]["responses"]
 OPERATIONS = [
     (method, path, operation)
-    for path, methods in DOCUMENT["paths"].items()
+    for path, methods in DESCRIPTION["paths"].items()
     for method, operation in methods.items()
 ]
 SENT = [
@@ -39,7 +40,9 @@ ANSWERED = [
     (method, path, status, kind, body)
     for method, path, operation in OPERATIONS
     for status, named in operation["responses"].items()
-    for response in [DOCUMENT["components"]["responses"].get(named.get("$ref", "").rpartition("/")[2], named)]
+    for response in [
+        DESCRIPTION["components"]["responses"].get(named.get("$ref", "").rpartition("/")[2], named)
+    ]
     for kind, body in response.get("content", {}).items()
     if kind not in BINARY
 ]
@@ -59,14 +62,14 @@ def schemas(part: Any) -> Iterator[dict[str, Any]]:
 
 def conforms(example: Any, schema: dict[str, Any]) -> None:
     """Check an example against its schema."""
-    jsonschema.validate(example, {"components": DOCUMENT["components"], **schema})
+    jsonschema.validate(example, {"components": DESCRIPTION["components"], **schema})
 
 
 def test_every_reference_leads_somewhere() -> None:
-    named = re.findall(r'"\$ref": "#/components/(\w+)/([\w-]+)"', text := json.dumps(DOCUMENT))
+    named = re.findall(r'"\$ref": "#/components/(\w+)/([\w-]+)"', text := json.dumps(DESCRIPTION))
     assert len(named) == text.count('"$ref"') > 0
     for part, name in named:
-        assert name in DOCUMENT["components"][part]
+        assert name in DESCRIPTION["components"][part]
 
 
 @pytest.mark.parametrize(("path", "kind", "body"), SENT, ids=[f"{path} {kind}" for path, kind, _ in SENT])
@@ -89,14 +92,14 @@ def test_every_answer_has_an_example_of_its_schema() -> None:
 
 
 def test_every_field_has_examples_of_its_schema() -> None:
-    examples = [(field, example) for field in schemas(DOCUMENT) for example in field.get("examples", [])]
+    examples = [(field, example) for field in schemas(DESCRIPTION) for example in field.get("examples", [])]
     assert len(examples) > 400
     for field, example in examples:
         conforms(example, field)
 
 
 def test_every_array_says_what_its_items_are() -> None:
-    arrays = [schema for schema in schemas(DOCUMENT) if schema.get("type") == "array"]
+    arrays = [schema for schema in schemas(DESCRIPTION) if schema.get("type") == "array"]
     assert len(arrays) > 100
     assert [schema for schema in arrays if "items" not in schema] == []
 

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
-from service.app import create_app
-from service.settings import Settings
+from described_api import DESCRIPTION
 
 OPEN = {
     "FaultBody.value": "what the caller wrote",
@@ -18,9 +15,7 @@ OPEN = {
     "ReportPlot.layout": "a layout of plotly.js",
     "ResultFigures": "the figures of a result, by its kind",
 }
-_directory = tempfile.TemporaryDirectory(prefix="loa-typed-")
-DOCUMENT: dict[str, Any] = create_app(Settings(data_directory=Path(_directory.name))).openapi()
-SCHEMAS = DOCUMENT["components"]["schemas"]
+SCHEMAS = DESCRIPTION["components"]["schemas"]
 WORDS = {"title", "description", "examples", "default"}
 
 
@@ -57,7 +52,7 @@ def test_answers_are_typed_but_for_what_others_define() -> None:
     met: set[str] = set()
     places = [
         place
-        for path, methods in DOCUMENT["paths"].items()
+        for path, methods in DESCRIPTION["paths"].items()
         for method, operation in methods.items()
         for status, response in operation["responses"].items()
         if status.startswith("2")

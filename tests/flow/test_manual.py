@@ -24,8 +24,11 @@ def folder() -> Iterator[Path]:
         yield made
 
 
-# Half a minute and more, for none else.
-LONG = {"deflect", "hear-a-gearbox", "ripple-map", "tolerances", "vibration"}
+# Ten seconds and more, but for the tutorials and for pages whose files others read.
+LONG = {
+    *("deflect", "hear-a-gearbox", "planetary-stage", "quiet-flanks-by-search"),
+    *("ripple-map", "tolerances", "vibration"),
+}
 PAGES = [
     pytest.param(page, id=page.stem, marks=[pytest.mark.nightly] * (page.stem in LONG))
     for page in manual.pages()

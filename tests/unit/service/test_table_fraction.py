@@ -56,12 +56,14 @@ def reports(tmp_path_factory: pytest.TempPathFactory) -> list[Report]:
     return reports_of(helical(model="3d", level="draft"), tmp_path_factory.mktemp("measured"))
 
 
+@pytest.mark.nightly
 def test_the_fraction_is_near_the_share_of_the_time_spent(reports: list[Report]) -> None:
     whole = reports[-1][0]
     error, stage = max((abs(fraction - spent / whole), stage) for spent, stage, fraction in reports)
     assert error < LARGEST_ERROR, stage
 
 
+@pytest.mark.nightly
 def test_the_fraction_never_falls_and_moves_in_small_steps(reports: list[Report]) -> None:
     whole = reports[-1][0]
     assert len({fraction for *_, fraction in reports}) > 50

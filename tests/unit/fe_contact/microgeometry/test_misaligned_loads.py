@@ -113,6 +113,7 @@ def optimized(
     return optimize(request, Run(cache=compliances))
 
 
+@pytest.mark.nightly
 def test_equal_misalignments_give_the_bits_of_one_for_all(pair: GearPair, compliances: Path) -> None:
     torques, further = [150.0, 300.0], {"map_torques": [200.0], "evaluations": 2}
     one, listed = (
@@ -131,6 +132,7 @@ def found(pair: GearPair, compliances: Path) -> Optimization:
     return optimized(pair, compliances, torques, skews, objective=weights, map_torques=[200.0])
 
 
+@pytest.mark.nightly
 def test_every_load_is_confirmed_by_an_analysis_at_its_misalignment(
     found: Optimization, pair: GearPair, compliances: Path
 ) -> None:
