@@ -52,8 +52,6 @@ class Study:
         Whether the verb takes several files.
     housed : bool
         Whether it is about a housing, which a scene then has by its solid.
-    of_run : bool
-        Whether its verb takes a run, whose bearing forces are then those of its speeds.
     aliases : tuple of str
         Other names of the verb's option ``--output``.
     """
@@ -75,7 +73,6 @@ class Study:
     further: tuple[str, ...] = ()
     several: bool = False
     housed: bool = False
-    of_run: bool = False
     aliases: tuple[str, ...] = ()
 
     @property
@@ -272,7 +269,6 @@ STUDIES: dict[str, Study] = {
             version="2",
             further=(".vtu",),
             housed=True,
-            of_run=True,
         ),
         Study(
             "vibration",
@@ -287,7 +283,6 @@ STUDIES: dict[str, Study] = {
             version="2",
             further=(".csv", ".vtu"),
             housed=True,
-            of_run=True,
         ),
         Study(
             "steady",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import sys
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
@@ -50,8 +51,8 @@ def run_study(study: Study, options: Json) -> None:
     """Run a study as its verb was called; `options` holds argument and options by their names."""
     files = options[study.argument] if study.several else [options[study.argument]]
     read = [_read(study, file) for file in files]
-    run = _run(study, options)
-    inputs = _inputs(study, options, run)
+    run = _run(options)
+    inputs = _inputs(study, options)
     subjects = []
     for file, (subject, folder) in zip(files, read, strict=True):
         with located(file):
@@ -98,27 +99,18 @@ def _tell(study: Study, subject: Any, result: Any, targets: list[Path], options:
         _show(study, result, targets)
 
 
-def _run(study: Study, options: Json) -> RunResult | None:
+def _run(options: Json) -> RunResult | None:
     """Return the run that was named."""
-    if options.get("run") is None:
-        return None
-    if options["speed_rpm"] is not None:
-        raise BadInput.of("speed_rpm", options["speed_rpm"], "left out with --run", "The run has its speeds.")
-    return read_run(options["run"], "run")
+    return None if options.get("run") is None else read_run(options["run"], "run")
 
 
-def _inputs(study: Study, options: Json, run: RunResult | None) -> Any:
-    """Return the inputs, from their file or the options that were given; the speeds of a run are its own."""
+def _inputs(study: Study, options: Json) -> Any:
+    """Return the inputs, from their file or the options that were given."""
     if study.from_file:
         if options["study"] is None:
             return validated(study.inputs, {})
         return read_model(study.inputs, options["study"])
-    fields = _fields(study, options)
-    if run is not None:
-        from service.studies.bearing_forces import run_speeds  # noqa: PLC0415 (loads what computes studies)
-
-        fields["speed_rpm"] = run_speeds(run, options["orders"])
-    return validated(study.inputs, fields)
+    return validated(study.inputs, _fields(study, options))
 
 
 def _fields(study: Study, options: Json) -> Json:
@@ -128,6 +120,8 @@ def _fields(study: Study, options: Json) -> Json:
         value, spelling = options[name], spelling_of(field)
         if spelling and spelling.value is not None:
             value = spelling.value if value else field.default
+        elif spelling and spelling.file and value is not None:
+            value = _digest(value)
         elif value is not None and (kind := item_type(field)):
             option = spelling.option if spelling else f"--{name.replace('_', '-')}"
             words = [part.strip() for part in value.split(",")]
@@ -135,6 +129,12 @@ def _fields(study: Study, options: Json) -> Json:
         if value is not None:
             fields[name] = value
     return fields
+
+
+def _digest(file: Path) -> str:
+    """Return the hash of a file, which stands for it in the inputs."""
+    with file.open("rb") as content:
+        return hashlib.file_digest(content, "sha256").hexdigest()
 
 
 def _read(study: Study, file: InputFile) -> tuple[Case | SceneInput, Path]:

@@ -15,9 +15,10 @@ from service.routes.context import Ctx
 from service.routes.kept_answers import VERSION, kept_answer
 from service.routes.refusals import documented
 from service.routes.response_headers import described_headers
-from service.routes.results import HASH, Key, known_result
+from service.routes.results import Key, known_result
 from service.routes.scopes import ScopedRoute, needs
 from service.schemas.report import ReportBody
+from service.schemas.result_kinds import HASH
 from service.version import program_tag
 
 FIGURES = "service.report.as_json:stored_figures"

@@ -20,9 +20,9 @@ from service.routes.query_encodings import READ, WRITE
 from service.routes.refusals import documented
 from service.routes.scopes import needs
 from service.schemas.query import LIMITS, QueryInput, QueryOutput
+from service.schemas.result_kinds import HASH
 
-KEY_PATTERN = "^[0-9a-f]{64}$"
-_KEY = re.compile(KEY_PATTERN[:-1] + r"\Z")
+_KEY = re.compile(HASH[:-1] + r"\Z")
 _COLUMNS = "position,deflection_um"
 _LONGEST_COLUMNS = 100
 _INLINE_BYTES = (
@@ -49,7 +49,7 @@ async def _answer(request: Request) -> Response:
     """Answer a query: small ones at once, others in a thread."""
     key = request.path_params["key"]
     if _KEY.match(key) is None:
-        raise BadInput.of("key", key, f"a text of the form {KEY_PATTERN}", "Content hash of the input.")
+        raise BadInput.of("key", key, f"a text of the form {HASH}", "Content hash of the input.")
     sent = media_type(request.headers.get("content-type", ""))
     if sent not in READ:
         raise UnsupportedMediaType.of(sent, *READ)
@@ -83,7 +83,7 @@ async def _answer(request: Request) -> Response:
 @answered_by(_answer)
 @needs(Scope.READ)
 def query_forces(
-    key: Annotated[str, Path(pattern=KEY_PATTERN, description="Content hash of the input")],
+    key: Annotated[str, Path(pattern=HASH, description="Content hash of the input")],
     columns: Annotated[
         str, Query(description=f"Columns of a raw body, of {', '.join(LIMITS)}", max_length=_LONGEST_COLUMNS)
     ] = _COLUMNS,

@@ -20,12 +20,11 @@ from service.routes.refusals import documented
 from service.routes.response_headers import OF_VERSIONS, described_headers
 from service.routes.scopes import ScopedRoute, needs
 from service.schemas.ogc import ResultFigures
-from service.schemas.result_kinds import RESULT_KINDS, SUFFIX
+from service.schemas.result_kinds import HASH, RESULT_KINDS, SUFFIX
 from service.store import StoredResult
 
 _IMMUTABLE = "public, max-age=31536000, immutable"
 
-HASH = "^[0-9a-f]{64}$"
 Key = Annotated[str, Path(pattern=HASH, description="Content hash of the input")]
 Accept = Annotated[str, Header(description=f"{NETCDF} for the file, application/json for its figures")]
 FILE = {"type": "string", "format": "binary"}

@@ -19,8 +19,9 @@ from service.routes.kept_answers import VERSION, kept_answer
 from service.routes.media_types import WAV
 from service.routes.refusals import documented
 from service.routes.response_headers import described_headers
-from service.routes.results import FILE, HASH, Key, known_result
+from service.routes.results import FILE, Key, known_result
 from service.routes.scopes import ScopedRoute, needs
+from service.schemas.result_kinds import HASH
 from service.version import program_tag
 
 SOUND = "service.runs.stored_sound:stored_sound"

@@ -8,6 +8,7 @@ from pydantic import ConfigDict, Field, model_validator
 
 from service.schemas.case import Case
 from service.schemas.model import BoundaryModel, refuse
+from service.schemas.result_kinds import HASH
 from service.schemas.rules import exactly_one_of, stated
 from service.schemas.scene_stiffness import StiffnessMeshInput
 from service.schemas.scene_types import Name
@@ -58,7 +59,7 @@ class MeshInput(BoundaryModel):
         description="An STE database, relative to the scene file",
         examples=["ste.nc"],
     )
-    database_hash: Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")] | None = Field(
+    database_hash: Annotated[str, Field(pattern=HASH)] | None = Field(
         default=None, description="Content hash of a database of the service", examples=["0" * 64]
     )
     stiffness: StiffnessMeshInput | None = Field(

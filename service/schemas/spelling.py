@@ -11,10 +11,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Spelling:
-    """Beside the type of a field: its option, and the value that the option stands for if it takes none."""
+    """Beside the type of a field: how the option is spelled that it has.
+
+    Attributes
+    ----------
+    option : str
+    value : str, optional
+        What the option stands for if it takes none.
+    file : bool
+        Whether the option takes the file of a result, which the field names by its content hash.
+    """
 
     option: str
     value: str | None = None
+    file: bool = False
 
 
 def spelling_of(field: FieldInfo) -> Spelling | None:

@@ -10,7 +10,6 @@ import numpy as np
 
 from bounds.types import FloatArray
 from dynamics.orders import BearingOrders, bearing_orders
-from dynamics.results import RunResult
 from dynamics.scene import Scene
 from dynamics.vibration import ReportedHarmonics
 from service.convert.case import boundary_errors
@@ -39,13 +38,6 @@ def forces_of(scene: Scene, inputs: OverOrders, means: Means) -> ReportedHarmoni
         orders = bearing_orders(means.run, inputs.orders)
     seconds = {"orders": time.process_time() - began}
     return replace(orders, facts=orders.facts | {"forces": _run_forces(orders), "seconds": seconds})
-
-
-def run_speeds(run: RunResult, orders: int) -> list[float]:
-    """Return the speeds at which a run has orders, rising, rpm."""
-    with boundary_errors():
-        speed: list[float] = (np.unique(bearing_orders(run, orders).speed) / RPM).tolist()
-    return speed
 
 
 def _run_forces(orders: BearingOrders) -> Json:

@@ -51,6 +51,12 @@ def _check_source(field: str, mesh: MeshInput, store: ResultStore) -> None:
         )
 
 
+def check_run(key: str | None, store: ResultStore) -> None:
+    """Refuse the hash of a run that is not stored; raises `BadInput`."""
+    if key is not None and store.find(key, "run") is None:
+        raise BadInput.of("run", key, "the hash of a stored run", "Submit its scene to simulate first.")
+
+
 def _refuse_file(field: str, path: str, instead: str) -> NoReturn:
     """Refuse the name of a file on the caller's disk."""
     bound = "left out: the service reads no files of its callers"

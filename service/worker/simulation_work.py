@@ -60,7 +60,7 @@ def ordered_scene(order: WorkOrder, progress: Progress) -> OrderedScene:
     return OrderedScene(tabled, tuple(products), scene_warnings(inputs, scene, warnings))
 
 
-def _store(order: WorkOrder) -> ResultStore:
+def store_of(order: WorkOrder) -> ResultStore:
     """Return the store of an order."""
     return stored_results(order.data_directory, order.database_url, order.results_url).within(order.project)
 
@@ -70,7 +70,7 @@ def _stored_key(order: WorkOrder, mesh: MeshInput) -> str | None:
     if mesh.case is None:
         return str(mesh.database_hash)
     key = ANALYZE.key({"case": case_json(mesh.case)})
-    return None if _store(order).find(key, "database") is None else key
+    return None if store_of(order).find(key, "database") is None else key
 
 
 def _run(scene: Scene, file: Path, progress: Progress) -> None:
@@ -89,7 +89,7 @@ def _table(
     """Return the database of a mesh, from the store or computed now; what is computed joins `products`."""
     known = _stored_key(order, mesh)
     if known is not None:
-        return SteDatabase.from_netcdf(_store(order).verified(known, "database").path)
+        return SteDatabase.from_netcdf(store_of(order).verified(known, "database").path)
     assert mesh.case is not None
     key = ANALYZE.key({"case": case_json(mesh.case)})
     file = order.workspace / f"database_{index}.nc"

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
+from dynamics.results import RunResult
 from service.registry import STUDIES, Study
 from service.schemas import Case
 from service.schemas.result_kinds import SUFFIX
@@ -14,8 +15,8 @@ from service.store import ResultStore
 from service.studies.computation import Means
 from service.worker.cluster import cluster_of, table_workers
 from service.worker.order import Product, Progress, WorkOrder
-from service.worker.scene_inputs import check_scene_inputs
-from service.worker.simulation_work import ordered_scene
+from service.worker.scene_inputs import check_run, check_scene_inputs
+from service.worker.simulation_work import ordered_scene, store_of
 
 Json = dict[str, Any]
 Work = Callable[[WorkOrder, Progress], tuple[Product, ...]]
@@ -36,6 +37,7 @@ def prepare(study: Study, inputs: Any, store: ResultStore) -> Json:
     subject = study.run.narrowed(getattr(inputs, name), varied)
     if name == "scene":
         check_scene_inputs(subject, store)
+    check_run(getattr(varied, "run", None), store)
     study.run.check(subject, varied)
     return {name: subject.model_dump(mode="json"), **study.run.normalized(subject, varied)}
 
@@ -46,13 +48,20 @@ def _work(study: Study, order: WorkOrder, progress: Progress) -> tuple[Product, 
     varied = {name: value for name, value in order.inputs.items() if name not in ("case", "scene")}
     inputs = study.inputs.model_validate_json(json.dumps(varied))
     with (table_workers if study.run.resumed else cluster_of)(order) as workers:
-        means = Means(order.data_directory, progress, workers, folder=order.workspace / "runs")
+        folder, run = order.workspace / "runs", _run(order, inputs)
+        means = Means(order.data_directory, progress, workers, folder=folder, run=run)
         found = study.run.compute(subject, inputs, means)
     file = order.workspace / f"{study.kind}{SUFFIX}"
     study.run.file.write(found, file)
     own = study.run.warnings(found) if warnings is None else warnings
     runs = (Product(key, "run", run) for key, run in study.run.kept(found, means).items())
     return (*products, *runs, Product(order.key, study.kind, file, own))
+
+
+def _run(order: WorkOrder, inputs: Any) -> RunResult | None:
+    """Return the stored run that the inputs name."""
+    key = getattr(inputs, "run", None)
+    return None if key is None else RunResult.from_netcdf(store_of(order).verified(key, "run").path)
 
 
 def _subject(study: Study, order: WorkOrder, progress: Progress) -> tuple[Any, tuple[Product, ...], Any]:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from inspect import Parameter, Signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, get_args
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from typer.core import TyperGroup
 
 from service.cli.guard import computing
-from service.cli.verbs.options import AsCsv, AsJson, DaskScheduler, StoredRun, TableService, TaskWorkers
+from service.cli.verbs.options import AsCsv, AsJson, DaskScheduler, TableService, TaskWorkers
 from service.cli.verbs.overrides import file_argument, overridable
 from service.input_file import InputFile
 from service.registry import FORMER, STUDIES, Study
@@ -64,10 +64,7 @@ def _parameters(study: Study) -> Iterator[Parameter]:
     if study.from_file:
         yield _study_file(study)
     else:
-        options = (_option(name, field) for name, field in study.inputs.model_fields.items())
-        yield from map(_optional, options) if study.of_run else options
-    if study.of_run:
-        yield _parameter("run", StoredRun, None)
+        yield from (_option(name, field) for name, field in study.inputs.model_fields.items())
     place = "Folder, or a file" if study.folder else "File to write,"
     names = ("-o", "--output", *study.aliases)
     target = typer.Option(*names, help=f"{place} ending in one of {', '.join(study.endings)}.")
@@ -80,14 +77,6 @@ def _parameters(study: Study) -> Iterator[Parameter]:
     if ".csv" in study.endings:
         yield _parameter("csv", AsCsv, False)
     yield _parameter("json", AsJson, False)
-
-
-def _optional(option: Parameter) -> Parameter:
-    """Return an option that may be left out, as a run has what it says; without one the inputs refuse it."""
-    if option.default is not Parameter.empty:
-        return option
-    kind, typed = get_args(option.annotation)
-    return _parameter(option.name, Annotated[kind | None, typed], None)
 
 
 def _study_file(study: Study) -> Parameter:
@@ -104,6 +93,8 @@ def _option(name: str, field: FieldInfo) -> Parameter:
     option = typer.Option(*([spelling.option] if spelling else []), help=field.description)
     if spelling and spelling.value is not None:
         return _parameter(name, Annotated[bool, option], field.default == spelling.value)
+    if spelling and spelling.file:
+        return _parameter(name, Annotated[Path | None, option], field.default)
     kind = str | None if is_list(field) else field.annotation
     if field.is_required():
         return _parameter(name, Annotated[str if is_list(field) else kind, option])

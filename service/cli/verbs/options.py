@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -16,10 +15,6 @@ Service = Annotated[str, typer.Option("--service", envvar="LOA_SERVICE", help="A
 TableService = Annotated[
     str | None,
     typer.Option("--service", help="Fetch the tables from this service instead of computing them locally."),
-]
-StoredRun = Annotated[
-    Path | None,
-    typer.Option("--run", help="Take the bearing forces of this run of the scene, at its speeds (netCDF)."),
 ]
 
 TaskWorkers = Annotated[

@@ -7,10 +7,10 @@ from typing import Literal
 from pydantic import Field
 
 from service.schemas.noise_ranges import NoiseRanges
-from service.schemas.speeds import OverOrders
+from service.schemas.speeds import OverSpeedsOrRun
 
 
-class Inputs(NoiseRanges, OverOrders):
+class Inputs(NoiseRanges, OverSpeedsOrRun):
     """Speeds at which the sound of the housings is looked for, the radiation model, and ranges of guesses."""
 
     radiation: Literal["monopoles", "equivalent_radiated_power"] = Field(

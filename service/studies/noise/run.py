@@ -55,9 +55,10 @@ def noise_of(subject: TabledScene, inputs: Inputs, means: Means) -> RadiatedSoun
     Raises
     ------
     BadInput
-        No housing has a surface, or sensitivities are asked of a run.
+        No housing has a surface.
     """
-    inputs = _without_ranges(inputs) if means.run is not None else inputs
+    if means.run is not None:  # the band varies the linear response, and a run is what it is
+        inputs = inputs.model_copy(update={"band": False})
     response = forces_of(subject.scene, inputs, means)
     with boundary_errors():
         began = time.process_time()
@@ -83,14 +84,6 @@ def noise_of(subject: TabledScene, inputs: Inputs, means: Means) -> RadiatedSoun
     known = {**whole.facts, **own, "models": compared, "seconds": seconds}
     whole = replace(whole, facts=known)
     return replace(whole, facts={**known, **uncertainty(subject, whole, radiation, inputs, means)})
-
-
-def _without_ranges(inputs: Inputs) -> Inputs:
-    """Return the inputs without the band: it varies the linear response, and a run is what it is."""
-    if inputs.sensitivities:
-        advice = "They vary the linear response: leave out --run."
-        raise BadInput.of("sensitivities", True, "left out with a run", advice)
-    return inputs.model_copy(update={"band": False})
 
 
 def _radiation(
@@ -133,8 +126,11 @@ def _compared(
     }
 
 
-def check(subject: SceneInput, _inputs: Inputs) -> None:
-    """Refuse a scene without a housing that has a surface."""
+def check(subject: SceneInput, inputs: Inputs) -> None:
+    """Refuse a scene without a housing that has a surface, and sensitivities of a run."""
+    if inputs.run is not None and inputs.sensitivities:
+        advice = "They vary the linear response: leave out the run."
+        raise BadInput.of("sensitivities", True, "left out with a run", advice)
     if not any(part.is_solid or part.modes_file is not None for part in subject.housings):
         raise _silent(subject)
 

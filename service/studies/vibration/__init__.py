@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from service.schemas.speeds import OverOrders
+from service.schemas.speeds import OverSpeedsOrRun
 
 
-class Inputs(OverOrders):
+class Inputs(OverSpeedsOrRun):
     """Speeds at which a housing's vibration is looked for, and where its parts are."""
 
     housing: str | None = Field(

@@ -110,10 +110,10 @@ def test_velocities_of_a_run_are_by_its_speeds(scene: Path) -> None:
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        (("--run", "run.nc", "--speed-rpm", 2000), ("speed_rpm", "left out with --run")),
+        (("--run", "run.nc", "--speed-rpm", 2000), ("speed_rpm", "left out with a run", "own speeds")),
         (("--run", "ste.nc"), ("run = ", "a run")),
         (("--run", "none.nc"), ("run", "no such file")),
-        (("--run", "run.nc", "--orders", 4, "--sensitivities"), ("sensitivities", "leave out --run")),
+        (("--run", "run.nc", "--orders", 4, "--sensitivities"), ("sensitivities", "leave out the run")),
         (("--run", "run.nc", "--orders", 90), ("orders = 90", "outputs.mesh_orders = 90")),
         ((), ("speed_rpm",)),
     ],
