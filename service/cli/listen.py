@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from bounds import engineering
-from dynamics.acoustics import Recording, wav_file
+from dynamics.acoustics import wav_file
 from service.cli.listen_sounds import RunSound, bearing_sounds
 from service.cli.listen_through_housing import HousingReceiver, housing_sounds
 from service.cli.output import check_writable, console, print_json, table
@@ -16,6 +15,7 @@ from service.comparison.compare import named_files
 from service.drawing.figure import number
 from service.problems import BadInput
 from service.report.inputs import read_run
+from service.runs.heard_run import recording_facts, rms
 from service.runs.run_view import RunView
 from service.runs.sound import full_scale_of
 
@@ -35,7 +35,10 @@ def run_listen(
     for path, sound in zip(paths, sounds, strict=True):
         path.write_bytes(wav_file(sound.recording, scale))
     if as_json:
-        listed = [_facts(path, sound) for path, sound in zip(paths, sounds, strict=True)]
+        listed = [
+            {"file": str(path), **recording_facts(sound.recording), **sound.facts}
+            for path, sound in zip(paths, sounds, strict=True)
+        ]
         print_json({"full_scale": scale, "remark": remark, "files": listed})
         return
     _show(sounds, scale, remark)
@@ -66,25 +69,6 @@ def _outputs(files: Sequence[Path], output: Path) -> list[Path]:
     return [output / f"{stem}.wav" for stem in stems]
 
 
-def _rms(recording: Recording) -> float:
-    """Return the root mean square of a recording."""
-    return math.sqrt(float((recording.samples**2).mean()))
-
-
-def _facts(path: Path, sound: RunSound) -> Json:
-    """Return what a file holds, in its unit."""
-    recording = sound.recording
-    return {
-        "file": str(path),
-        "quantity": recording.quantity,
-        "unit": recording.unit,
-        "rms": _rms(recording),
-        "duration_s": recording.samples.size / recording.sample_rate,
-        "sample_rate_hz": recording.sample_rate,
-        **sound.facts,
-    }
-
-
 def _show(sounds: Sequence[RunSound], scale: float, remark: str) -> None:
     """Print the figures for people."""
     out, unit = console(), sounds[0].recording.unit
@@ -92,7 +76,7 @@ def _show(sounds: Sequence[RunSound], scale: float, remark: str) -> None:
     rows = [
         [
             sound.name,
-            engineering(_rms(sound.recording), 4),
+            engineering(rms(sound.recording), 4),
             f"{sound.recording.samples.size / sound.recording.sample_rate:.3f}",
             *(sound.cells.get(name, "") for name in more),
         ]

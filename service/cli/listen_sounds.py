@@ -10,6 +10,7 @@ from typing import Any
 from dynamics.acoustics import Recording
 from dynamics.results import RunResult
 from service.drawing.figure import number, unit_of
+from service.runs.heard_run import NO_LOUDNESS
 from service.runs.loudest import Loudest, loudest
 from service.runs.run_view import RunView
 from service.runs.sound import heard_runs
@@ -17,7 +18,6 @@ from service.runs.sound import heard_runs
 Json = dict[str, Any]
 FAINT = 1e-3
 """Of the overall level: weaker orders are not printed."""
-NO_LOUDNESS = "loudness is that of a sound pressure alone"
 
 
 @dataclass(frozen=True)

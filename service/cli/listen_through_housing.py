@@ -2,40 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 from bounds import engineering
 from dynamics.results import RunResult
-from service.cli.listen_sounds import NO_LOUDNESS, RunSound
+from service.cli.listen_sounds import RunSound
 from service.cli.output import progress_bar
 from service.cli.warned import warn
 from service.client.portable import scene_of
-from service.convert.housings import modes_in_files, reduced_in
+from service.convert.housings import HousedScene, modes_in_files, reduced_in
 from service.directories import cache_home
 from service.drawing.figure import number
 from service.problems import BadInput
+from service.runs.heard_run import Receiver, heard_run, sound_facts
 from service.runs.run_view import RunView
-from service.runs.sound_figures import SoundFigures, sound_figures
+from service.runs.sound_figures import SoundFigures
 from service.runs.through_housing import SceneHousings
-
-Json = dict[str, Any]
-FREE_FIELD = (
-    "free field: no room, floor or attached parts; the air is at rest and does not act back. Panels as "
-    "monopoles neither scatter nor shadow: at one place mostly 7 dB too low to 2 dB too high, and lower "
-    "where the housing is larger than the wavelength"
-)
 
 
 @dataclass(frozen=True)
 class HousingReceiver:
-    """Where runs are heard through the housings of a scene: at a point, or at a microphone (mm)."""
+    """A scene file, and where runs are heard through its housings."""
 
     scene: Path
-    point: str = ""
-    microphone_mm: tuple[float, ...] = ()
+    receiver: Receiver
 
 
 def housing_receiver(scene: Path | None, point: str, microphone: str) -> HousingReceiver | None:
@@ -52,7 +44,7 @@ def housing_receiver(scene: Path | None, point: str, microphone: str) -> Housing
         given = [name for name, value in (("--point", point), ("--microphone", microphone)) if value]
         bound = "given with --scene, one of --point and --microphone"
         raise BadInput.of("--scene", None if scene is None else str(scene), bound, f"Given: {given}.")
-    return HousingReceiver(scene, point, _position(microphone) if microphone else ())
+    return HousingReceiver(scene, Receiver(_position(microphone) if microphone else (), point))
 
 
 def _position(text: str) -> tuple[float, ...]:
@@ -66,61 +58,37 @@ def _position(text: str) -> tuple[float, ...]:
 
 
 def housing_sounds(
-    runs: Mapping[str, RunResult], receiver: HousingReceiver, view: RunView
+    runs: Mapping[str, RunResult], through: HousingReceiver, view: RunView
 ) -> tuple[list[RunSound], str]:
     """Return runs through the housings of a scene, and what to say of all."""
+    receiver = replace(through.receiver, direction=view.direction)
     _require_no_view(view, receiver)
-    scene, folder = scene_of(receiver.scene)
+    scene, folder = scene_of(through.scene)
     with progress_bar() as report:
         bodies = reduced_in(scene, cache_home(), report) | modes_in_files(scene, folder)
-    housings = SceneHousings(bodies, {part.name: part.bushings for part in scene.housings})
-    sounds = []
+    housings = SceneHousings.of(HousedScene(scene, bodies))
+    sounds: list[RunSound] = []
+    remarks: list[str] = []
     for name, run in runs.items():
-        warn(_strangers(name, housings.strangers(run)))
         try:
-            sounds.append(_through(name, run, housings, receiver, view.direction))
+            heard = heard_run(name, run, housings, receiver)
         except BadInput as error:
             raise error.within(name) from None
-    return sounds, NO_LOUDNESS if receiver.point else FREE_FIELD
+        warn(heard.warnings)
+        cells = {} if heard.figures is None else _figures_cells(heard.figures)
+        sounds.append(RunSound(name, heard.recording, sound_facts(heard), cells))
+        remarks += heard.remarks
+    return sounds, "; ".join(dict.fromkeys(remarks))
 
 
-def _through(
-    name: str, run: RunResult, housings: SceneHousings, receiver: HousingReceiver, direction: str
-) -> RunSound:
-    """Return one run through the housings."""
-    if receiver.point:
-        return RunSound(name, housings.velocity(run, receiver.point, direction))
-    recording = housings.pressure(run, receiver.microphone_mm)
-    figures = sound_figures(recording, run)
-    return RunSound(name, recording, {"sound": _figures_facts(figures)}, _figures_cells(figures))
-
-
-def _require_no_view(view: RunView, receiver: HousingReceiver) -> None:
+def _require_no_view(view: RunView, receiver: Receiver) -> None:
     """Refuse options for what a run itself holds."""
-    heard = {"quantity": view.quantity, "bearing": view.bearing, "mesh": view.mesh}
+    named = {"quantity": view.quantity, "bearing": view.bearing, "mesh": view.mesh}
     if not receiver.point:
-        heard["direction"] = view.direction
-    for name, value in heard.items():
+        named["direction"] = view.direction
+    for name, value in named.items():
         if value:
             raise BadInput.of(f"--{name}", value, "left out with --microphone or --point")
-
-
-def _strangers(run: str, names: Sequence[str]) -> list[Json]:
-    """Warn of housings that the scene of a run did not have."""
-    message = 'run {}: it did not move in housing "{}" as the scene has it; its forces lack what that does'
-    return [{"check": "other_housing", "message": message.format(run, name)} for name in names]
-
-
-def _figures_facts(figures: SoundFigures) -> Json:
-    """Return figures of a sound pressure as JSON."""
-    return {
-        "level_db": figures.level,
-        "level_db_a": figures.weighted_level,
-        "steady": figures.steady,
-        "loudness_sone": figures.loudness,
-        "sharpness_acum": figures.sharpness,
-        "tones": [{"frequency_hz": hertz, "tone_to_noise_db": ratio} for hertz, ratio in figures.tones],
-    }
 
 
 def _figures_cells(figures: SoundFigures) -> dict[str, str]:

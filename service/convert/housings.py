@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -28,6 +30,14 @@ _MOTIONS = 5
 """Of a seat that a bearing holds."""
 _ANY_STIFFNESS, _ANY_MASS = 1e8, 1.0
 """N/m, kg; checks that need no reduction do not read them."""
+
+
+@dataclass(frozen=True)
+class HousedScene:
+    """A scene as written, and by name the reductions of its housings with a solid or a file of modes."""
+
+    inputs: SceneInput
+    housings: Mapping[str, ReducedHousing]
 
 
 def reduced_in(scene: SceneInput, home: Path, progress: Progress = silent) -> dict[str, ReducedHousing]:

@@ -204,7 +204,12 @@ def _orders(run: RunResult, orders: tuple[float, ...], mesh: int) -> tuple[int, 
 def run_axis(run: RunResult, time: FloatArray, mesh: int = 0) -> tuple[Axis, FloatArray]:
     """Return the axis for blocks at `time`: speed where it rises or falls all along, else time."""
     shaft = run.shaft.index(driving_shaft(run, mesh))
-    speed = np.interp(time, run.time, np.abs(run.speed[shaft])) * 30.0 / np.pi
+    return speed_axis(time, np.interp(time, run.time, np.abs(run.speed[shaft])))
+
+
+def speed_axis(time: FloatArray, speed: FloatArray) -> tuple[Axis, FloatArray]:
+    """Return the axis of what is at speeds (rad/s) over time: the speed where it rises or falls all along."""
+    speed = speed * 30.0 / np.pi
     steps = np.diff(speed)
     swept = bool(np.all(steps > 0.0) or np.all(steps < 0.0))
     if swept and np.ptp(speed) > MONOTONE * speed.max():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -13,8 +13,10 @@ from dynamics.housing_modes import scene_housing
 from dynamics.noise import pressure_recording, velocity_recording
 from dynamics.results import RunResult
 from service.convert.case import boundary_errors
+from service.convert.housings import HousedScene
 from service.problems import BadInput
 from service.runs.run_view import DIRECTIONS, PRINCIPAL
+from service.schemas.scene import SceneInput
 from service.units import MM
 
 if TYPE_CHECKING:
@@ -34,6 +36,11 @@ class SceneHousings:
     housings: Mapping[str, ReducedHousing]
     bearings: Mapping[str, tuple[str, ...]]
 
+    @classmethod
+    def of(cls, subject: HousedScene) -> SceneHousings:
+        """Return those of a scene."""
+        return cls(subject.housings, {part.name: part.bushings for part in subject.inputs.housings})
+
     def pressure(self, run: RunResult, microphone_mm: tuple[float, ...]) -> Recording:
         """Return the sound pressure at a microphone in the scene's frame, the sum over the housings.
 
@@ -51,7 +58,7 @@ class SceneHousings:
                 if body.surface is not None
             ]
         if not heard:
-            raise BadInput.of("housings", list(self.bearings), "at least one with a surface", ADVICE)
+            raise silent(list(self.bearings))
         quantity = "; ".join(dict.fromkeys(one.quantity for one in heard))
         return replace(heard[0], samples=np.sum([one.samples for one in heard], axis=0), quantity=quantity)
 
@@ -64,10 +71,7 @@ class SceneHousings:
             No housing or several have such a point, or there is no such direction.
         """
         owners = [name for name, body in self.housings.items() for one in body.points if one.name == point]
-        if len(owners) != 1:
-            names = [one.name for body in self.housings.values() for one in body.points]
-            bound = f"the name of one point; known: {', '.join(names) or 'none'}"
-            raise BadInput.of("point", point, bound, "Name points in the housing's table of the scene.")
+        require_point(point, [one.name for body in self.housings.values() for one in body.points])
         if direction and direction not in DIRECTIONS:
             raise BadInput.of("direction", direction, f"one of {', '.join(DIRECTIONS)}")
         axis = None if direction in ("", PRINCIPAL) else np.eye(3)[DIRECTIONS.index(direction)]
@@ -80,6 +84,24 @@ class SceneHousings:
         """Return the names of housings in which a run did not move: its forces lack what they do to them."""
         moved = {part["name"]: part for part in run.case.get("housings", ())}
         return tuple(name for name, body in self.housings.items() if not _same(body, moved.get(name)))
+
+
+def silent(housings: list[str]) -> BadInput:
+    """Return the error of housings of which none has a surface, by their names."""
+    return BadInput.of("housings", housings, "at least one with a surface", ADVICE)
+
+
+def require_surface(scene: SceneInput) -> None:
+    """Refuse a scene of whose housings none can have a surface; raises `BadInput`."""
+    if not any(part.is_solid or part.modes_file is not None for part in scene.housings):
+        raise silent([part.name for part in scene.housings])
+
+
+def require_point(point: str, names: Sequence[str]) -> None:
+    """Refuse a point that is not one of the names, or several; raises `BadInput`."""
+    if names.count(point) != 1:
+        bound = f"the name of one point; known: {', '.join(names) or 'none'}"
+        raise BadInput.of("point", point, bound, "Name points in the housing's table of the scene.")
 
 
 def _same(body: ReducedHousing, part: dict[str, Any] | None) -> bool:

@@ -31,6 +31,7 @@ from dynamics.vibration import BearingHarmonics
 from service.convert.case import boundary_errors
 from service.convert.scene import TabledScene
 from service.problems import BadInput
+from service.runs.through_housing import require_surface, silent
 from service.schemas.scene import SceneInput
 from service.studies.bearing_forces import forces_of
 from service.studies.computation import Computation, Means
@@ -44,9 +45,6 @@ from service.studies.result_file import array_file
 Json = dict[str, Any]
 PLANE, MONOPOLES = EquivalentRadiatedPower(), ElementalRadiators()
 MODELS: dict[str, PanelModel] = {model.model_name: model for model in (PLANE, MONOPOLES)}
-ADVICE = (
-    "Give a housing by step_file, mesh_file or modes_file: matrices alone do not say what the air touches."
-)
 
 
 def noise_of(subject: TabledScene, inputs: Inputs, means: Means) -> RadiatedSound:
@@ -68,7 +66,7 @@ def noise_of(subject: TabledScene, inputs: Inputs, means: Means) -> RadiatedSoun
             if (body := subject.housings.get(part.name)) is not None and body.surface is not None
         ]
         if not housings:
-            raise _silent(subject.inputs)
+            raise silent([part.name for part in subject.inputs.housings])
         sounds = [_sound(response, housing) for housing in housings]
         compared = {
             housing.name: _compared(response, housing, sound, inputs)
@@ -131,14 +129,7 @@ def check(subject: SceneInput, inputs: Inputs) -> None:
     if inputs.run is not None and inputs.sensitivities:
         advice = "They vary the linear response: leave out the run."
         raise BadInput.of("sensitivities", True, "left out with a run", advice)
-    if not any(part.is_solid or part.modes_file is not None for part in subject.housings):
-        raise _silent(subject)
-
-
-def _silent(scene: SceneInput) -> BadInput:
-    """Return the error of a scene whose housings have no surface."""
-    names = [part.name for part in scene.housings]
-    return BadInput.of("housings", names, "at least one with a surface", ADVICE)
+    require_surface(subject)
 
 
 def write_panels(sound: RadiatedSound, _scene: Any, file: Path) -> None:
