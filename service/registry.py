@@ -285,6 +285,19 @@ STUDIES: dict[str, Study] = {
             housed=True,
         ),
         Study(
+            "listen",
+            "scene",
+            "Sound of a run",
+            "Listen to the run",
+            "Hear a run through the housings of a scene: sound pressure at a microphone, with level, "
+            "loudness and tones, or velocity of a point.",
+            "run.nc --scene scene.toml --microphone 40,60,1000 -o run.wav",
+            kind="recording",
+            stages=(("sound", 1.0),),
+            version="1",
+            housed=True,
+        ),
+        Study(
             "steady",
             "scene",
             "Steady states",

@@ -21,12 +21,14 @@ from fe_contact.ste import SteDatabase
 from service.client.portable import CaseLike, SceneLike, StudyLike
 from service.client.process import Offered
 from service.client.surface import Surface
+from service.runs.heard_run import HeardRun as ServiceHeardRun
 from service.schemas.figures import Figures, RunFigures, TableFigures
 from service.studies.ablate.answer import AblationFigures as ServiceAblationFigures
 from service.studies.deflect.answer import DeflectionFigures as ServiceDeflectionFigures
 from service.studies.deflect.result import GearboxDeflection as ServiceGearboxDeflection
 from service.studies.flank.answer import FlankFigures as ServiceFlankFigures
 from service.studies.frontier.answer import FrontierFigures as ServiceFrontierFigures
+from service.studies.listen.answer import RecordingFigures as ServiceRecordingFigures
 from service.studies.modes.answer import ModesFigures as ServiceModesFigures
 from service.studies.noise.answer import NoiseFigures as ServiceNoiseFigures
 from service.studies.optimize.answer import OptimizationFigures as ServiceOptimizationFigures
@@ -171,6 +173,16 @@ class Processes(Surface):
         at_order: float | None = ...,
         mode: int | None = ...,
     ) -> ServiceHousingVibrationResult: ...
+    @_offered(ServiceRecordingFigures)
+    def listen(
+        self,
+        scene: SceneLike,
+        *,
+        run: str,
+        microphone_mm: Sequence[float] | None = ...,
+        point: str | None = ...,
+        direction: Literal["x", "y", "z", "principal"] | None = ...,
+    ) -> ServiceHeardRun: ...
     @_offered(ServiceSteadyFigures)
     def steady(
         self,

@@ -1,4 +1,4 @@
-"""Stored runs to listen to, as `loa listen` writes them."""
+"""Stored runs and recordings to listen to, as `loa listen` writes them."""
 
 from __future__ import annotations
 
@@ -25,6 +25,8 @@ from service.schemas.result_kinds import HASH
 from service.version import program_tag
 
 SOUND = "service.runs.stored_sound:stored_sound"
+HEARD = ("run", "recording")
+"""Kinds of results that have a sound."""
 _NAME = 200  # characters
 
 router = APIRouter(tags=["results"], route_class=ScopedRoute)
@@ -37,7 +39,7 @@ def _named(description: str) -> object:
 
 @router.get(
     "/results/{key}/sound",
-    summary="The sound of a run",
+    summary="The sound of a run or a recording",
     response_class=Response,
     responses={
         200: {
@@ -59,15 +61,19 @@ async def result_sound(
     mesh: Annotated[str, _named("Mesh; left out: the first")] = "",
     direction: Annotated[str, _named("x, y, z; left out: in which it varies most")] = "",
     against: Annotated[
-        str | None, Query(pattern=HASH, description="Another run, whose sound is then on the same full scale")
+        str | None,
+        Query(pattern=HASH, description="Another one of its kind; both are then on one full scale"),
     ] = None,
 ) -> Response:
-    """Return forces or motions of a run made audible: no sound pressure."""
-    stored = [await run_in_threadpool(known_result, context, one, "run") for one in (key, against) if one]
+    """Return a recording of `listen`, or forces or motions of a run made audible: no sound pressure."""
+    kind = (await run_in_threadpool(known_result, context, key)).kind
+    if kind not in HEARD:
+        raise NotFound(f"Result {key!r} is no run and no recording, but of the kind {kind}.")
+    stored = [await run_in_threadpool(known_result, context, one, kind) for one in (key, against) if one]
     view = {"quantity": quantity, "bearing": bearing, "mesh": mesh, "direction": direction}
     named = json.dumps([*(one.sha256 for one in stored), view, program_tag()])
     tag = f'"{hashlib.sha256(named.encode()).hexdigest()}-sound"'
-    order = LiveOrder(SOUND, {"files": [str(one.path) for one in stored], "view": view})
+    order = LiveOrder(SOUND, {"kind": kind, "files": [str(one.path) for one in stored], "view": view})
     return await kept_answer(request, context, tag, order, WAV, _wav)
 
 

@@ -10,7 +10,6 @@ from typing import Any
 
 from dynamics.results import RunResult
 from fe_contact.workers import InProcess, Workers
-from service.convert.scene import TabledScene
 from service.schemas.model import BoundaryModel
 from service.studies.result_file import ResultFile
 
@@ -69,6 +68,8 @@ class Computation:
         computed. Default: all of it.
     of_scene : callable
         What `compute` takes of a `TabledScene`; default: the scene in SI.
+    tables : bool
+        Whether it takes the tables of a scene's meshes; else `of_scene` takes a `HousedScene`.
     check : callable
         ``check(subject, inputs)`` refuses what a schema accepts, and computes nothing; raises `BadInput`.
         Here and below a scene is a `SceneInput`.
@@ -95,7 +96,8 @@ class Computation:
     facts: Callable[[Result], Json]
     file: ResultFile
     narrowed: Callable[[Any, Any], Any] = lambda subject, _inputs: subject
-    of_scene: Callable[[TabledScene], Any] = lambda tabled: tabled.scene
+    of_scene: Callable[[Any], Any] = lambda tabled: tabled.scene
+    tables: bool = True
     check: Callable[[Any, Any], object] = lambda _subject, _inputs: None
     normalized: Callable[[Any, Any], Json] = lambda _subject, inputs: with_defaults(inputs)
     warnings: Callable[[Result], list[Json] | None] = lambda _found: None

@@ -14,7 +14,7 @@ from dynamics.simulation import simulate_to_file
 from fe_contact.ste import SteDatabase
 from model_studies.progress import Report, by_cost
 from service.convert.case import case_json
-from service.convert.housings import reduced_in
+from service.convert.housings import HousedScene, reduced_in
 from service.convert.plausibility import scene_warnings
 from service.convert.runs import staged
 from service.convert.scene import TabledScene, dynamic_scene
@@ -46,8 +46,8 @@ class OrderedScene:
 
 def ordered_scene(order: WorkOrder, progress: Progress) -> OrderedScene:
     """Reduce the housings of the scene of an order, gather or compute its tables."""
-    inputs = SceneInput.model_validate_json(json.dumps(order.inputs["scene"]))
-    housings = reduced_in(inputs, order.data_directory, progress)
+    housed = housed_scene(order, progress)
+    inputs, housings = housed.inputs, housed.housings
     products: list[Product] = []
     databases: dict[str, SteDatabase] = {}
     costs = {mesh.name: float(_stored_key(order, mesh) is None) for _, mesh in inputs.with_database}
@@ -58,6 +58,12 @@ def ordered_scene(order: WorkOrder, progress: Progress) -> OrderedScene:
     warnings = {name: database.metadata.warnings for name, database in databases.items()}
     tabled = TabledScene(inputs, databases, scene, housings)
     return OrderedScene(tabled, tuple(products), scene_warnings(inputs, scene, warnings))
+
+
+def housed_scene(order: WorkOrder, progress: Progress) -> HousedScene:
+    """Reduce the housings of the scene of an order."""
+    inputs = SceneInput.model_validate_json(json.dumps(order.inputs["scene"]))
+    return HousedScene(inputs, reduced_in(inputs, order.data_directory, progress))
 
 
 def store_of(order: WorkOrder) -> ResultStore:

@@ -16,7 +16,7 @@ from service.studies.computation import Means
 from service.worker.cluster import cluster_of, table_workers
 from service.worker.order import Product, Progress, WorkOrder
 from service.worker.scene_inputs import check_run, check_scene_inputs
-from service.worker.simulation_work import ordered_scene, store_of
+from service.worker.simulation_work import housed_scene, ordered_scene, store_of
 
 Json = dict[str, Any]
 Work = Callable[[WorkOrder, Progress], tuple[Product, ...]]
@@ -66,6 +66,8 @@ def _run(order: WorkOrder, inputs: Any) -> RunResult | None:
 
 def _subject(study: Study, order: WorkOrder, progress: Progress) -> tuple[Any, tuple[Product, ...], Any]:
     """Return what is studied, the tables that were computed for it, and its warnings if they are known."""
+    if not study.run.tables:
+        return study.run.of_scene(housed_scene(order, progress)), (), None
     if "scene" in order.inputs:
         ordered = ordered_scene(order, progress)
         return study.run.of_scene(ordered.tabled), ordered.products, ordered.warnings

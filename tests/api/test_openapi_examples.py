@@ -18,7 +18,7 @@ from small_table import small_table
 
 from service.app import create_app
 from service.schemas.answer_examples import HASH
-from service.schemas.request_examples import request_example
+from service.schemas.request_examples import INPUTS, request_example
 from service.settings import Settings
 
 BINARY = ("application/x-netcdf", "application/octet-stream", "audio/wav")
@@ -106,10 +106,13 @@ def test_every_array_says_what_its_items_are() -> None:
 
 @pytest.fixture(scope="module")
 def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
-    """A client of the app with a table; nothing is computed, for it is not started."""
+    """A client of the app with a table, and what is taken for a run: nothing is computed here."""
     file = tmp_path_factory.mktemp("table") / "table.nc"
     small_table().to_netcdf(file)
+    run = file.with_name("run.nc")
+    run.touch()
     _app.state.context.store.put(HASH, "database", file)
+    _app.state.context.store.put(INPUTS["listen"]["run"], "run", run)
     yield TestClient(_app)
 
 

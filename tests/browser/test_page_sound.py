@@ -42,7 +42,7 @@ class Runs:
         other = query.pop("against", None)
         files = [self.files[one] for one in (key, other) if one]
         if what == "sound":
-            wav = stored_sound({"files": files, "view": query})["wav"]
+            wav = stored_sound({"kind": "run", "files": files, "view": query})["wav"]
             route.fulfill(body=base64.b64decode(wav), content_type="audio/wav")
         else:
             route.fulfill(

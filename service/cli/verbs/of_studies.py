@@ -22,16 +22,19 @@ if TYPE_CHECKING:
 
 
 class StudyGroup(TyperGroup):
-    """A group of verbs that has those of all studies too; each is made when it is requested."""
+    """A group of verbs that has those of all studies too; each is made when it is requested.
+
+    A study whose verb is in the group already has that one.
+    """
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Return the names of all verbs."""
-        return [*super().list_commands(ctx), *STUDIES]
+        return list(dict.fromkeys([*super().list_commands(ctx), *STUDIES]))
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """Return a verb."""
-        study = STUDIES.get(FORMER.get(cmd_name, cmd_name))
-        return super().get_command(ctx, cmd_name) if study is None else _command(study)
+        own, study = super().get_command(ctx, cmd_name), STUDIES.get(FORMER.get(cmd_name, cmd_name))
+        return own if own is not None or study is None else _command(study)
 
 
 def _command(study: Study) -> Any:
