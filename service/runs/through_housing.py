@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -10,8 +10,10 @@ import numpy as np
 
 from dynamics.acoustics import Recording
 from dynamics.housing_modes import scene_housing
+from dynamics.joints import Housing
 from dynamics.noise import pressure_recording, velocity_recording
 from dynamics.results import RunResult
+from dynamics.types import FloatArray
 from service.convert.case import boundary_errors
 from service.convert.housings import HousedScene
 from service.problems import BadInput
@@ -82,8 +84,7 @@ class SceneHousings:
 
     def strangers(self, run: RunResult) -> tuple[str, ...]:
         """Return the names of housings in which a run did not move: its forces lack what they do to them."""
-        moved = {part["name"]: part for part in run.case.get("housings", ())}
-        return tuple(name for name, body in self.housings.items() if not _same(body, moved.get(name)))
+        return other_housings([scene_housing(body, name) for name, body in self.housings.items()], run)
 
 
 def silent(housings: list[str]) -> BadInput:
@@ -104,13 +105,25 @@ def require_point(point: str, names: Sequence[str]) -> None:
         raise BadInput.of("point", point, bound, "Name points in the housing's table of the scene.")
 
 
-def _same(body: ReducedHousing, part: dict[str, Any] | None) -> bool:
+def other_housings(housings: Iterable[Housing], run: RunResult) -> tuple[str, ...]:
+    """Return the names of housings with mass in which a run did not move."""
+    moved = {part["name"]: part for part in run.case.get("housings", ())}
+    massive = (housing for housing in housings if housing.mass is not None)
+    return tuple(housing.name for housing in massive if not _same(housing, moved.get(housing.name)))
+
+
+def _same(housing: Housing, part: dict[str, Any] | None) -> bool:
     """Whether a part of a stored scene has a housing's matrices at the seats: signs of modes are free."""
     if part is None or part["mass"] is None:
         return False
-    own, seats = vars(scene_housing(body, part["name"])), slice(body.motions)
+    seats = slice(len(housing.stiffness) - housing.modal_coordinates)
     for name in ("stiffness", "mass", "damping"):
-        mine, other = (np.array(of[name], dtype=float)[seats, seats] for of in (own, part))
-        if mine.shape != other.shape or np.abs(mine - other).max() > SAME * np.abs(mine).max():
+        mine, other = (_matrix(of[name])[seats, seats] for of in (vars(housing), part))
+        if mine.shape != other.shape or np.any(np.abs(mine - other) > SAME * np.abs(mine).max(initial=0.0)):
             return False
     return True
+
+
+def _matrix(values: Any) -> FloatArray:
+    """Return a matrix as an array, (0, 0) without one."""
+    return np.zeros((0, 0)) if values is None else np.array(values, dtype=float)

@@ -15,3 +15,4 @@ class BearingForces(Part):
     speed_change: list[float] | None = None
     smearing: list[list[float]] | None = None
     remainder: dict[str, list[float]] | None = None
+    other_housings: list[str] | None = None

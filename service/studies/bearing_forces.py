@@ -14,6 +14,7 @@ from dynamics.scene import Scene
 from dynamics.vibration import ReportedHarmonics
 from service.convert.case import boundary_errors
 from service.drawing.figure import Axis, number
+from service.runs.through_housing import other_housings
 from service.schemas.speeds import OverOrders
 from service.studies.computation import Means
 from service.studies.response.run import response_of
@@ -37,7 +38,8 @@ def forces_of(scene: Scene, inputs: OverOrders, means: Means) -> ReportedHarmoni
     with boundary_errors():
         orders = bearing_orders(means.run, inputs.orders)
     seconds = {"orders": time.process_time() - began}
-    return replace(orders, facts=orders.facts | {"forces": _run_forces(orders), "seconds": seconds})
+    forces = _run_forces(orders) | {"other_housings": list(other_housings(scene.housings, means.run))}
+    return replace(orders, facts=orders.facts | {"forces": forces, "seconds": seconds})
 
 
 def _run_forces(orders: BearingOrders) -> Json:
@@ -83,6 +85,10 @@ def force_words(facts: Json) -> tuple[tuple[str, str], ...]:
     if run["windows_left_out"]:
         windows += f", {run['windows_left_out']} left out: standstill, or too fast a change of speed"
     rows = [("forces on bearings", f"orders of the run, {windows}")]
+    rows += [
+        (f"housing {name}", "not that in which the run moved: its forces lack what this one does")
+        for name in run.get("other_housings", ())
+    ]
     name, share = _largest_remainder(run)
     rows.append(
         (

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -72,6 +73,19 @@ def test_levels_of_a_run_go_over_its_speeds_and_its_time(scene: Path) -> None:
     assert np.median(np.array(heard["total_level_db"]) - total) > -0.3  # it holds more than the orders
     bands = np.sum(10.0 ** (np.array(heard["third_octave_db"]) / 10.0), axis=0)
     assert np.all(10.0 * np.log10(bands) <= np.array(heard["total_level_db"]) + 1e-6)
+
+
+def test_a_housing_in_which_the_run_did_not_move_is_named(scene: Path, tmp_path: Path) -> None:
+    run, call = RunResult.from_netcdf(run_of(scene)), ("--orders", ORDERS)
+    assert told("vibration", scene, "--run", run_of(scene), *call)["forces"]["other_housings"] == []
+    (part,) = run.case["housings"]
+    softer = part | {"stiffness": (0.99 * np.array(part["stiffness"])).tolist()}
+    for housings in ([], [softer]):
+        replace(run, case=run.case | {"housings": housings}).to_netcdf(tmp_path / "other.nc")
+        forces = told("vibration", scene, "--run", tmp_path / "other.nc", *call)["forces"]
+        assert forces["other_housings"] == ["case"]
+    printed = loa("vibration", scene, "--run", tmp_path / "other.nc", *call).stdout
+    assert "housing case: not that in which the run moved" in " ".join(printed.split())
 
 
 def test_at_constant_speed_it_is_near_the_linear_response(scene: Path) -> None:

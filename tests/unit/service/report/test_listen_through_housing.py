@@ -18,9 +18,12 @@ from typer.testing import CliRunner, Result
 from dynamics.acoustics import read_wav
 from dynamics.housing_modes import ReducedHousing, scene_housing
 from dynamics.housing_modes.reduced_housing import PointMotion
+from dynamics.joints import Housing
 from dynamics.noise import pressure_recording, sound_limit, velocity_recording
 from dynamics.results import RunResult
+from dynamics.types import FloatArray
 from service.cli.commands import app
+from service.runs.through_housing import other_housings
 
 MICROPHONE = ("--microphone", "600,800,-200")
 
@@ -128,6 +131,27 @@ def test_a_run_that_moved_in_no_or_another_housing_is_warned_of(
         )
         (warning,) = json.loads(done.stdout)["warnings"]
         assert 'did not move in housing "case"' in warning["message"]
+
+
+def test_housings_are_compared_by_what_they_state(run: RunResult) -> None:
+    """Matrices without damping are the same again, and not those with another mass; without mass none is."""
+    unit = np.eye(10)
+    damped, bare, heavy = (
+        Housing("case", ("left", "right"), _rows(1e8 * unit), mass=_rows(mass * unit), **further)
+        for mass, further in ((1.0, {"damping": _rows(10.0 * unit)}), (1.0, {}), (1.1, {}))
+    )
+    massless = Housing("case", ("left", "right"), _rows(1e8 * unit))
+    part = json.loads(json.dumps(vars(bare), default=list))
+    moved = replace(run, case=run.case | {"housings": [part]})
+    assert other_housings([bare, massless], moved) == ()
+    for other in (damped, heavy):
+        assert other_housings([other], moved) == ("case",)
+    assert other_housings([bare], run) == ("case",)
+
+
+def _rows(matrix: FloatArray) -> tuple[tuple[float, ...], ...]:
+    """Return a matrix as rows."""
+    return tuple(map(tuple, matrix.tolist()))
 
 
 @pytest.mark.parametrize(
