@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import tomllib
 from collections.abc import Iterator
@@ -9,12 +10,22 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from page_visit import Visit, shown
+from housing_solid import housed_scene, write_block
+from page_visit import PATIENCE, Visit, shown
 from playwright.sync_api import Browser, Route, expect
+from running_service import until
 
+from service.convert.toml import toml_text
 from service.registry import studies_of
 
 UNIT = Path(__file__).parents[2] / "examples" / "two_stage_gearbox.rexs"
+STIFFNESS = {
+    "teeth": [20, 20],
+    "base_radius_mm": 40.0 * math.cos(math.radians(20.0)),
+    "working_pressure_angle_deg": 20.0,
+    "face_width_mm": 25.0,
+    "stiffness_n_per_m": {"value": [4e8], "amplitude": [5e7]},
+}
 EXAMPLE = Path(__file__).parents[2] / "examples" / "planetary_scene.toml"
 
 
@@ -49,6 +60,38 @@ def test_a_run_and_every_study_of_a_scene_are_offered(visit: Visit) -> None:
     offered = visit.page.get_by_label("Compute", exact=True).locator("option")
     names = offered.evaluate_all("options => options.map((option) => option.value)")
     assert sorted(names) == sorted(["simulate", *studies_of("scene")])
+
+
+def test_the_last_run_is_heard_at_a_microphone(visit: Visit, tmp_path: Path) -> None:
+    page = visit.page
+    step, file = write_block(tmp_path / "block.step"), tmp_path / "scene.toml"
+    scene = housed_scene(tmp_path)
+    scene["run"]["duration_s"] = 0.2
+    scene["drives"][0] |= {"time_s": [0.0], "speed_rpm": [6000.0]}
+    scene["meshes"][0] |= {"database_file": None, "stiffness": STIFFNESS}
+    file.write_text(toml_text(scene), encoding="utf-8")
+    page.locator("#scene-file").set_input_files([file, step])
+    expect(page.get_by_text("With block.step.")).to_be_visible()
+    process, compute = (
+        page.get_by_label("Compute", exact=True),
+        page.get_by_role("button", name="Compute the scene"),
+    )
+    process.select_option("simulate")
+    compute.press("Enter")
+    expect(page.locator("#scene-body [data-figure=order_map] .plot")).to_have_attribute("data-drawn", "yes")
+    process.select_option("listen")
+    page.get_by_label("Microphone x, y, z, mm").fill("40, 60, 400")
+    compute.press("Enter")
+    level = page.locator("#scene-body [data-figure=heard_level]")
+    refused = page.locator("#scene-body [role=alert]")
+    level.or_(refused).first.wait_for(timeout=PATIENCE)
+    assert refused.all_text_contents() == []
+    expect(level.locator(".plot")).to_have_attribute("data-drawn", "yes")
+    expect(page.locator("#scene-body .headline")).to_contain_text("dB(A)")
+    level.get_by_role("button", name="Listen to: Level of the sound pressure").press("Enter")
+    player = level.locator("audio")
+    until(lambda: player.evaluate("one => one.readyState") > 0)
+    assert player.evaluate("one => one.duration") == pytest.approx(0.2, abs=1e-3)
 
 
 def test_many_runs_at_constant_speeds_are_drawn_over_speed(visit: Visit, analyzed: str) -> None:

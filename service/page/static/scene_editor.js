@@ -10,6 +10,7 @@ import { textAndFiles } from "./named_files.js";
 const WHAT = [
   ["simulate", "Run over time"], ["modes", "Modes over speed"], ["response", "Forced response over speed"],
   ["vibration", "Vibration of the housing over speed"], ["noise", "Sound power over speed"],
+  ["listen", "Sound of the last run at a microphone"],
   ["steady", "Steady states over speed"], ["deflect", "Deflection under its loads"],
   ["study", "Many runs, at constant speeds"],
 ];
@@ -20,6 +21,7 @@ const FIELDS = [
   { name: "from", label: "Speeds from, rpm", value: "300" },
   { name: "to", label: "to, rpm", value: "3000" },
   { name: "count", label: "number", value: "10" },
+  { name: "microphone_mm", label: "Microphone x, y, z, mm", list: true, value: "0, 0, 1000" },
 ];
 
 export class SceneEditor {
@@ -32,12 +34,17 @@ export class SceneEditor {
     this.spectrum = make("p", { class: "hint", role: "status" });
     this.chosen = make("p", { class: "hint", role: "status" });
     this.cases = [];
+    /** Hash of the run that was shown last, whose sound is heard. */
+    this.run = undefined;
     /** Files that the scene names, as they go with its text. */
     this.files = [];
     this.fromPair = make("button", { type: "button", disabled: true, onclick: () => this.write() }, "Write the scene of the pair above");
     byId("scene-body").replaceChildren(card(
       { title: "A scene of your own", action: "Compute the scene", text: HELP, fields: FIELDS, more: this.parts() },
-      (parts) => slot("scene", parts, show),
+      (parts) => slot("scene", parts, (target, reference, signal) => {
+        if (reference.kind === "run") this.run = reference.hash;
+        return show(target, reference, signal);
+      }),
       (values) => this.job(values),
     ));
   }
@@ -132,12 +139,13 @@ export class SceneEditor {
     }
   }
 
-  job({ process, from, to, count }) {
+  job({ process, from, to, count, microphone_mm: microphone }) {
     this.refusal.replaceChildren();
     return {
       process,
       inputs: async () => {
         const scene = await this.read();
+        if (process === "listen") return { scene, run: this.run, microphone_mm: microphone };
         return { scene, ...this.varied(process, scene, evenly(from, to, count)) };
       },
     };
@@ -161,4 +169,5 @@ const RESPONSES = [
 const HELP = "Shafts, gears, bearings, meshes, drives and loads as in a scene file. A mesh carries its pair written out "
   + "([meshes.case]), names a result of this service (database_hash) or a file: choose the files of cases, flanks "
   + "and housings (STEP, mesh) together with the scene. "
-  + "Speeds are those of the first driven shaft.";
+  + "Speeds are those of the first driven shaft. A sound is that of the last run over time that was shown here, through "
+  + "the housing of the scene, in the scene's frame.";

@@ -21,6 +21,8 @@ from service.studies.presentation import Presentation
 
 BLOCK = 0.1
 """s over which a level is taken."""
+LEAST_SPAN, DEPTH, MARGIN = 20.0, 60.0, 2.0
+"""dB shown below the loudest, at least and at most; beyond both ends."""
 
 
 def level_figure(heard: HeardRun) -> Figure:
@@ -31,6 +33,9 @@ def level_figure(heard: HeardRun) -> Figure:
     ends = (float(track.min()), float(track.max()))
     x, unit = replace(axis, limits=ends if ends[1] > ends[0] else None), level_unit(heard)
     name, loudest = _noun(heard), int(np.argmax(level))
+    top = float(level[loudest])
+    lowest = min(top - LEAST_SPAN, max(float(level.min()), top - DEPTH))
+    y = Axis(f"level, {unit}", limits=(lowest - MARGIN, top + MARGIN))
     return Figure(
         key="heard_level",
         title=f"Level of the {name}",
@@ -38,7 +43,7 @@ def level_figure(heard: HeardRun) -> Figure:
         f"{number(time[0] * 2.0, 2)} s.",
         alternative=f"Loudest at {number(float(along[loudest]), 4)} {x.label.rpartition(', ')[2]}: "
         f"{level[loudest]:.1f} {unit.partition(' re ')[0]}.",
-        content=(Panel(x, Axis(f"level, {unit}"), (Line(name, along, level, palette.INK, width=1.4),)),),
+        content=(Panel(x, y, (Line(name, along, level, palette.INK, width=1.4),)),),
         table=_table(time, along, level, x.label, unit),
         sound=_sound(heard, track),
     )
@@ -81,7 +86,7 @@ def _sound(heard: HeardRun, along: FloatArray) -> Sound | None:
         return None
     fits = SAMPLE_BYTES * recording.samples.size <= PAGE_BYTES
     files = (wav_file(recording, recording.peak),) if fits else ()
-    caption = f"Full scale: {number(recording.peak, 2)} {recording.unit}. {'; '.join(heard.remarks)}."
+    caption = f"Full scale: {number(recording.peak, 2)} {recording.unit}."
     return Sound(caption, (Track("run", heard.time, along, {}),), files)
 
 
@@ -107,11 +112,9 @@ def headlines(heard: HeardRun) -> tuple[Headline, ...]:
 
 def page(heard: HeardRun) -> Page:
     """Return the report."""
-    section = Section(
-        f"{_noun(heard).capitalize()} of the run",
-        f"{'; '.join(heard.remarks)}.",
-        figures=(level_figure(heard),),
-    )
+    title = f"{_noun(heard).capitalize()} of the run"
+    text = f"{heard.remark[0].upper()}{heard.remark[1:]}."
+    section = Section(title, text, figures=(level_figure(heard),))
     return Page("A run heard through its housing", "", headlines(heard), (section,))
 
 
