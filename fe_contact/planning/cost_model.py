@@ -20,10 +20,10 @@ from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.planning.contact_cost import contact_bytes, contact_seconds, expected_positions
 from fe_contact.planning.discretization import FaceDiscretization, PlaneDiscretization
-from fe_contact.planning.host_speed import host_slowness
 from fe_contact.planning.plan import Plan
-from fe_contact.planning.run_log import corrections
 from fe_contact.types import Json
+from model_studies.host_speed import host_slowness
+from model_studies.run_log import corrections
 
 STAGES = ("compliance", "contact", "error estimate")
 PROCESS_BYTES = 210_000_000

@@ -21,7 +21,6 @@ from fe_contact.analysis.request.request import Checked, Request
 from fe_contact.analysis.tables.solved_table import SolvedTable, condensed_bodies, solve_table
 from fe_contact.options import Run
 from fe_contact.planning.cost_model import log_name
-from fe_contact.planning.run_log import record
 from fe_contact.plausibility import merged, table_findings
 from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.stage_clock import StageClock
@@ -31,6 +30,7 @@ from fe_contact.ste.facts import SCHEMA_VERSION
 from fe_contact.types import Json
 from fe_contact.workers import InProcess, RunCost
 from model_studies.progress import by_cost
+from model_studies.run_log import record
 
 PACKAGES = ("lineofaction", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
 

@@ -1,10 +1,9 @@
-"""Predicting a run: speed of the host, the log that corrects it, choice of a mesh; nothing is computed."""
+"""Predicting a run, choice of a mesh; nothing is computed."""
 
 import json
 import math
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from analysis_requests import table_request
 
@@ -15,13 +14,11 @@ from fe_contact.analysis.run_plan import plan_run
 from fe_contact.compliance.cache import kept_size
 from fe_contact.errors import InputError
 from fe_contact.options import AnalysisOptions, TableAxes
-from fe_contact.planning import cost_model, host_speed, predict_run
+from fe_contact.planning import cost_model, predict_run
 from fe_contact.planning.contact_cost import contact_bytes, contact_seconds, expected_positions
 from fe_contact.planning.error_model import ExpectedError
-from fe_contact.planning.host_speed import FILE, host_slowness
 from fe_contact.planning.mesh_choice import MeshOption, mesh_for_time, mesh_for_tolerance
-from fe_contact.planning.run_log import FILE as LOG
-from fe_contact.planning.run_log import corrections, record
+from model_studies.run_log import FILE as LOG
 
 LEVELS = ("draft", "standard", "fine")
 
@@ -39,74 +36,6 @@ def pair(helix: float = 0.0, width: float = 8e-3, teeth: int = 20) -> GearPair:
         teeth=teeth, normal_module=2e-3, face_width=width, bore_diameter=teeth * 1e-3, helix_angle=-helix
     )
     return GearPair(gear, mate, teeth * 2e-3 / math.cos(helix))
-
-
-def test_the_speed_of_the_host_is_kept(tmp_path, monkeypatch):
-    first = host_slowness(tmp_path)
-    assert 0.001 <= first <= 1000.0
-    monkeypatch.setattr(host_speed, "measured_slowness", lambda: pytest.fail("measured again"))
-    assert host_slowness(tmp_path) == first
-
-
-@pytest.mark.parametrize(
-    "damage",
-    [
-        "",
-        "{",
-        "[1]",
-        '{"slowness": 2.0}',
-        '{"identity": {"version": -1}, "slowness": 2.0}',
-        '{"identity": null, "slowness": NaN}',
-    ],
-)
-def test_a_damaged_or_foreign_measurement_is_made_anew(tmp_path, monkeypatch, damage):
-    (tmp_path / FILE).write_text(damage, encoding="utf-8")
-    monkeypatch.setattr(host_speed, "measured_slowness", lambda: 3.0)
-    assert host_slowness(tmp_path) == 3.0
-    assert json.loads((tmp_path / FILE).read_text(encoding="utf-8"))["slowness"] == 3.0
-
-
-@pytest.mark.parametrize("value", [math.nan, 0.0, -1.0, 1e9])
-def test_a_measurement_that_cannot_be_is_made_anew(tmp_path, monkeypatch, value):
-    monkeypatch.setattr(host_speed, "measured_slowness", lambda: 3.0)
-    host_slowness(tmp_path)
-    content = json.loads((tmp_path / FILE).read_text(encoding="utf-8"))
-    (tmp_path / FILE).write_text(json.dumps(content | {"slowness": value}), encoding="utf-8")
-    assert host_slowness(tmp_path) == 3.0
-
-
-def test_the_correction_converges_to_what_runs_agree_on(tmp_path):
-    """Runs of 2.5 times the predicted time with 10 % of scatter: within the scatter from the third run on."""
-    random = np.random.default_rng(5)
-    found = []
-    for _ in range(12):
-        record(tmp_path, {"stage": 1.0}, {"stage": 2.5 * math.exp(0.1 * random.standard_normal())})
-        found.append(corrections(tmp_path)["stage"])
-    assert found[0] == 1.0
-    assert max(abs(value / 2.5 - 1.0) for value in found[2:]) < 0.3
-    assert found[-1] == pytest.approx(2.5, rel=0.1)
-
-
-def test_one_odd_run_moves_nothing_far(tmp_path):
-    for ratio in (2.0, 2.0, 2.0, 2.0, 2.0, 100.0):
-        record(tmp_path, {"stage": 1.0}, {"stage": ratio})
-    assert corrections(tmp_path) == {"stage": pytest.approx(2.0)}
-
-
-def test_the_last_runs_decide(tmp_path):
-    """A host that becomes faster is believed after as many runs as count."""
-    for ratio in [4.0] * 60 + [1.5] * 40:
-        record(tmp_path, {"stage": 1.0}, {"stage": ratio})
-    assert corrections(tmp_path)["stage"] == pytest.approx(1.5)
-
-
-def test_damaged_lines_and_missing_stages_are_passed_over(tmp_path):
-    for _ in range(5):
-        record(tmp_path, {"a": 1.0, "b": 0.0, "c": 1.0}, {"a": 3.0, "b": 1.0, "d": 1.0})
-    with (tmp_path / LOG).open("a", encoding="utf-8") as stream:
-        stream.write('{"stage": "a"\nnonsense\n{"stage": "a", "predicted": 0, "measured": 1}\n')
-    assert corrections(tmp_path) == {"a": pytest.approx(3.0)}
-    assert corrections(None) == {}
 
 
 def options(model: float = 0.0, **meshes: float) -> list[MeshOption]:

@@ -1,7 +1,7 @@
-"""Speed of this host relative to the one that set the cost model's constants; measured once and cached.
+"""Speed of this host relative to the one that set the constants of cost models; measured once and cached.
 
-A short factorisation of a sparse matrix stands for the work in the plane and of the contact; dense algebra,
-which decides three dimensions, has its own measurement (`fe_contact.compliance.cost_3d.dense_rate`).
+A short factorisation of a sparse matrix stands for all work but dense algebra, which has a measurement of its
+own (`fe_contact.compliance.cost_3d.dense_rate`).
 """
 
 from __future__ import annotations
