@@ -5,10 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 Progress = Callable[[str, float], None]
-"""Called as progress(stage, fraction)."""
+"""Called as progress(stage, fraction); behind a semicolon the stage may say more, see `stage_name`."""
 
 Report = Callable[[float], None]
 """Called with the fraction done of one piece of work, from 0 to 1."""
+
+
+def stage_name(reported: str) -> str:
+    """Return the name of a stage without what is said of it behind a semicolon."""
+    return reported.partition(";")[0]
 
 
 def silent(_stage: str, _fraction: float) -> None:

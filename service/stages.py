@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from model_studies.progress import Progress, by_cost, silent
+from model_studies.progress import Progress, by_cost, silent, stage_name
 
 
 class Stage(NamedTuple):
@@ -49,6 +49,7 @@ class PacedFraction:
         elapsed_s : float
             Seconds on a clock that never falls.
         """
+        stage = stage_name(stage)
         if stage not in self._shares:
             return None
         if not self._seen:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -10,11 +11,14 @@ from dynamics.acoustics.hull import ComplexArray, Hull
 from host import MissingExtra
 
 
-def layer_operators(hull: Hull, wavenumber: float) -> tuple[ComplexArray, ComplexArray]:
+def layer_operators(
+    hull: Hull, wavenumber: float, done: Callable[[str], None] = lambda _layer: None
+) -> tuple[ComplexArray, ComplexArray]:
     """Return the dense single layer (T, T) and double layer (T, N), tested with the panels, m^3 and m^2.
 
     Kernel e^{+ikr}/(4 pi r); the single layer acts on constants of the panels, the double layer on hats of
-    the nodes. Singular pairs are integrated by the library's own transformations.
+    the nodes. Singular pairs are integrated by the library's own transformations. `done` is called with
+    "single layer" and "double layer".
 
     Raises
     ------
@@ -30,9 +34,11 @@ def layer_operators(hull: Hull, wavenumber: float) -> tuple[ComplexArray, Comple
     hats = ngsolve.H1(mesh, order=1, complex=True, definedon=mesh.Boundaries(".*")).TrialFunction()
     constant, test = ngsolve.SurfaceL2(mesh, order=0, complex=True).TnT()
     ds = ngsolve.ds
-    single = HelmholtzSL(constant * ds, wavenumber, use_fmm=False) * test * ds
-    double = HelmholtzDL(hats * ds, wavenumber, use_fmm=False) * test * ds
-    return _dense(single.mat), _dense(double.mat)
+    single = _dense((HelmholtzSL(constant * ds, wavenumber, use_fmm=False) * test * ds).mat)
+    done("single layer")
+    double = _dense((HelmholtzDL(hats * ds, wavenumber, use_fmm=False) * test * ds).mat)
+    done("double layer")
+    return single, double
 
 
 def _mesh(hull: Hull) -> Any:

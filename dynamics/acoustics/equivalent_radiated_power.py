@@ -8,7 +8,14 @@ import numpy as np
 
 from dynamics.acoustics.air import Air
 from dynamics.acoustics.hull import ComplexArray, Hull
+from dynamics.acoustics.multipoles import errors_db
 from dynamics.types import FloatArray
+from dynamics.work_cost import Cost
+
+PRODUCT = 0.1e-9
+"""CPU seconds for a panel and a pair of shapes."""
+SMALLER = 0.8
+"""Size of the sphere: two waves on a wall are shorter than those around the body."""
 
 
 @dataclass(frozen=True)
@@ -27,6 +34,15 @@ class EquivalentRadiatedPower:
         """Return rho c Phi^H diag(S) Phi."""
         del frequency
         return np.asarray(air.impedance * shapes.conj().T @ (hull.areas[:, None] * shapes))
+
+    def cost(self, panels: int, ka: float, shapes: int) -> Cost:
+        """Predict the cost: one product of matrices."""
+        del ka
+        return Cost(PRODUCT * panels * shapes**2, 16.0 * panels * shapes)
+
+    def error_band(self, ka: float) -> tuple[float, float]:
+        """Return -2 dB, and what a smaller sphere with four poles is off, at least 4 dB."""
+        return -2.0, max(4.0, *errors_db(SMALLER * ka)[self.model_name].tolist())
 
     def panel_power(
         self, hull: Hull, frequency: float, normal_velocity: ComplexArray, air: Air

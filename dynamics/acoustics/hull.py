@@ -96,6 +96,16 @@ class Hull:
         """Return the enclosed volume, m^3; negative where normals point inwards; of a closed hull alone."""
         return float(np.sum(self.centers * self.area_vectors) / 3.0)
 
+    @property
+    def equivalent_radius(self) -> float:
+        """Return the radius of the sphere of the same volume, m; of a closed hull alone."""
+        return float(np.cbrt(3.0 * abs(self.volume) / (4.0 * np.pi)))
+
+    @cached_property
+    def outer_radius(self) -> float:
+        """Return the largest distance of a panel from the middle of all, m."""
+        return float(np.linalg.norm(self.centers - self.centers.mean(axis=0), axis=1).max())
+
     @cached_property
     def _edges(self) -> FloatArray:
         """Return the lengths of the edges, (T, 3), m."""

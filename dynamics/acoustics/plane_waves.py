@@ -35,8 +35,12 @@ def directions(order: int) -> tuple[FloatArray, FloatArray]:
 
 def order_of_waves(points: FloatArray, wavenumber: float) -> int:
     """Return the order of directions that resolve the sound of sources at points (P, 3)."""
-    radius = float(np.linalg.norm(points - points.mean(axis=0), axis=1).max())
-    return int(np.ceil(wavenumber * radius)) + MARGIN
+    return order_of(wavenumber * float(np.linalg.norm(points - points.mean(axis=0), axis=1).max()))
+
+
+def order_of(ka: float) -> int:
+    """Return the order of directions by the wavenumber times the radius of the sources."""
+    return int(np.ceil(ka)) + MARGIN
 
 
 def mutual_resistance(points: FloatArray, strength: ComplexArray, wavenumber: float) -> ComplexArray:

@@ -15,6 +15,7 @@ from dynamics.acoustics.hull import ComplexArray, Hull
 from dynamics.checks import positive
 from dynamics.errors import InputError
 from dynamics.types import FloatArray
+from dynamics.work_cost import Cost
 
 
 class RadiationModel(Protocol):
@@ -38,6 +39,29 @@ class RadiationModel(Protocol):
         -------
         (M, M) array
             W s^2 over the square of the amplitudes' unit: kg/s for amplitudes in m/s.
+        """
+
+    def cost(self, panels: int, ka: float, shapes: int) -> Cost:
+        """Predict the cost of `resistance` at one frequency on the reference host of `host_speed`.
+
+        Parameters
+        ----------
+        panels, shapes : int
+            T and M.
+        ka : float
+            Wavenumber times `Hull.outer_radius`.
+        """
+
+    def error_band(self, ka: float) -> tuple[float, float]:
+        """Return by how much levels are off, dB: from (below 0: too quiet) and to.
+
+        Of bodies that breathe, move as a whole or bend once around, and of walls of boxes
+        (docs/theory/sound-power.md).
+
+        Parameters
+        ----------
+        ka : float
+            Wavenumber times `Hull.equivalent_radius`.
         """
 
 

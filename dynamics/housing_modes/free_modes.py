@@ -114,7 +114,7 @@ def _lanczos(
     size = housing.stiffness.shape[0]
     inverse = LinearOperator((size, size), matvec=solve, dtype=float)
     start = np.cos(np.arange(size, dtype=float))  # the same in every run
-    basis = min(size - 1, count + max(count // 2, 20))
+    basis = min(size - 1, basis_vectors(count))
     try:
         square, shape = eigsh(
             housing.stiffness, count, housing.mass, sigma=-shift, OPinv=inverse, v0=start, ncv=basis
@@ -123,6 +123,11 @@ def _lanczos(
         square, shape = error.eigenvalues, error.eigenvectors
     order = np.argsort(square)
     return square[order], shape[:, order]
+
+
+def basis_vectors(count: int) -> int:
+    """Return how many vectors Lanczos' method holds for so many modes."""
+    return count + max(count // 2, 20)
 
 
 def _orthonormal(vectors: FloatArray, mass: sp.csr_array) -> FloatArray:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 
@@ -13,16 +14,19 @@ from dynamics.errors import ResultError
 from dynamics.housing_modes.meshed_housing import MeshedHousing
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.housing_modes.reduction import reduce_housing
-from dynamics.housing_modes.reduction_cost import CostLimit, check_cost
+from dynamics.housing_modes.reduction_cost import CostLimit, check_cost, cost_of
 from dynamics.housing_modes.step_mesh import WALL_ELEMENTS, mesh_step
 from dynamics.housing_modes.tetrahedral_mesh import TetrahedralMesh
 from dynamics.types import FloatArray, IntArray
+from dynamics.work_cost import Cost, measured, on_this_host
 from model_studies.array_file import UnreadableFile
 from model_studies.kept_file import kept_in
 from model_studies.record_file import read_record, write_record
 
-REDUCTION_VERSION = 3
-"""Raised with every change of the numbers of a reduction."""
+REDUCTION_VERSION = 4
+"""Raised with every change of the numbers of a reduction, or of what is kept with them."""
+WORK = "housing reduction"
+"""Name of a reduction in the log of runs."""
 MESH_VERSION = 1
 """Raised with every change of the mesh of a STEP file."""
 MESH_SCHEMA = "lineofaction housing mesh"
@@ -68,17 +72,23 @@ def _write_mesh(mesh: TetrahedralMesh, file: Path) -> None:
 
 
 def reduced_housing(
-    housing: MeshedHousing, cache: Path | None = None, limit: CostLimit | None = None
+    housing: MeshedHousing,
+    cache: Path | None = None,
+    limit: CostLimit | None = None,
+    expected: Callable[[Cost], object] = lambda _cost: None,
 ) -> ReducedHousing:
-    """Return a housing's reduction, from the cache if it is there.
+    """Return a housing's reduction with what it cost, from the cache if it is there.
 
     Parameters
     ----------
     housing : MeshedHousing
     cache : Path, optional
-        Directory of kept results (see `host.default_cache_directory`); None: neither read nor written.
+        Directory of kept results (see `host.default_cache_directory`) and of what is known of the host; None:
+        neither read nor written.
     limit : CostLimit, optional
         What computing it may cost. Default: 600 CPU s and 8 GB.
+    expected : callable, optional
+        Called with the predicted cost before it is computed; not where it is in the cache.
 
     Raises
     ------
@@ -88,14 +98,16 @@ def reduced_housing(
         As `reduce_housing`.
     """
     file = None if cache is None else cache / f"housing-{content_key(housing)}.nc"
-    read, write = ReducedHousing.from_netcdf, ReducedHousing.to_netcdf
-    return kept_in(file, read, lambda: _reduced(housing, limit), write, ResultError)
 
+    def reduced() -> ReducedHousing:
+        reference = cost_of(housing)
+        predicted = on_this_host(WORK, reference, cache)
+        check_cost(housing, predicted, limit or CostLimit())
+        expected(predicted)
+        body, cost = measured(WORK, reference, cache, lambda: reduce_housing(housing))
+        return replace(body, cost=cost)
 
-def _reduced(housing: MeshedHousing, limit: CostLimit | None) -> ReducedHousing:
-    """Reduce a housing unless it costs too much."""
-    check_cost(housing, limit or CostLimit())
-    return reduce_housing(housing)
+    return kept_in(file, ReducedHousing.from_netcdf, reduced, ReducedHousing.to_netcdf, ResultError)
 
 
 def content_key(housing: MeshedHousing) -> str:

@@ -12,6 +12,7 @@ from dynamics.errors import ResultError
 from dynamics.housing_modes.rigid_motion import RigidBody
 from dynamics.housing_modes.seats import SeatFrame
 from dynamics.types import FloatArray, IntArray
+from dynamics.work_cost import WorkCost
 
 SCHEMA = "lineofaction reduced housing"
 SINGULAR = 1e-14
@@ -108,6 +109,8 @@ class ReducedHousing:
         What of `stiffness` is that of the mounts; the same.
     loss_factor : float or None
         Of the material, where the rest of `damping` follows from it (`MaterialDamping`).
+    cost : WorkCost or None
+        Of the reduction, predicted and measured; None: nobody measured it.
     """
 
     mass: FloatArray
@@ -123,6 +126,7 @@ class ReducedHousing:
     mount_damping: FloatArray | None = None
     mount_stiffness: FloatArray | None = None
     loss_factor: float | None = None
+    cost: WorkCost | None = None
 
     @property
     def motions(self) -> int:

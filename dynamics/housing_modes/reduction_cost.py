@@ -6,23 +6,25 @@ from typing import NamedTuple
 
 from bounds import at_most
 from dynamics.errors import InputError
+from dynamics.housing_modes.free_modes import basis_vectors
 from dynamics.housing_modes.meshed_housing import MeshedHousing
+from dynamics.work_cost import Cost
 
 REFERENCE = 1e5
-"""Freedoms at which the figures below hold: walls 10 mm thick, one CPU core of 2020 or later."""
+"""Freedoms at which the figures below hold: walls 10 mm thick, the reference host of `host_speed`.
 
-ASSEMBLY, FACTOR, SOLVE = 5.0, 10.0, 0.1
+Fitted to a thin-walled cast box of 9 500 to 221 000 freedoms and 20 to 80 modes.
+"""
+ASSEMBLY, FACTOR, SOLVE = 2.9, 6.8, 0.074
 """CPU seconds: matrices and their ordering, factor, one step of Lanczos' method or one deflection."""
-SOLVES_PER_MODE = 2.3
-FILL = 1.0e9
+ORTHOGONALIZATION, PROJECTION = 2.7e-4, 1.6e-4
+"""CPU seconds: of a step against a vector of Lanczos' basis, of a pair of vectors in Galerkin's matrices."""
+FIRST_STEPS, STEPS_PER_MODE = 36.0, 1.8
+"""Of Lanczos' method, its restarts among them."""
+REFINED = 2.0
+"""Solutions for a deflection: one, and its refinement."""
+FILL = 0.935e9
 """Bytes of the matrices and their factor."""
-
-
-class ReductionCost(NamedTuple):
-    """CPU seconds on one thread, and bytes of the largest working set."""
-
-    seconds: float
-    bytes: float
 
 
 class CostLimit(NamedTuple):
@@ -32,10 +34,10 @@ class CostLimit(NamedTuple):
     bytes: float = 8e9
 
 
-def reduction_cost(freedoms: int, modes: int, motions: int) -> ReductionCost:
-    """Predict the cost of `reduce_housing`.
+def reduction_cost(freedoms: int, modes: int, motions: int) -> Cost:
+    """Predict the cost of `reduce_housing` on the reference host.
 
-    Fitted to a thin-walled cast box of 20 000 to 200 000 freedoms; a solid block fills its factor more.
+    A solid block fills its factor more.
 
     Parameters
     ----------
@@ -46,25 +48,33 @@ def reduction_cost(freedoms: int, modes: int, motions: int) -> ReductionCost:
         Of all seats.
     """
     size = freedoms / REFERENCE
-    solves = SOLVES_PER_MODE * modes + motions
-    seconds = ASSEMBLY * size + FACTOR * size**1.5 + SOLVE * size**1.2 * solves
-    vectors = 1.5 * modes + 4.0 * motions + modes  # of Lanczos' method, deflections, coordinates
-    return ReductionCost(seconds, FILL * size**1.2 + 8.0 * freedoms * vectors)
+    steps, basis = FIRST_STEPS + STEPS_PER_MODE * modes, basis_vectors(modes)
+    seconds = (
+        ASSEMBLY * size**1.3
+        + FACTOR * size**1.55
+        + SOLVE * size**1.25 * (steps + REFINED * motions)
+        + size**1.1 * (ORTHOGONALIZATION * steps * basis + PROJECTION * (modes + motions) ** 2)
+    )
+    vectors = basis + modes + 4.0 * motions
+    return Cost(seconds, FILL * size**1.1 + 8.0 * freedoms * vectors)
 
 
-def check_cost(housing: MeshedHousing, limit: CostLimit) -> ReductionCost:
-    """Return the predicted cost.
+def cost_of(housing: MeshedHousing) -> Cost:
+    """Return the predicted cost of a housing's reduction on the reference host."""
+    motions = sum(seat.motions for seat in housing.seats)
+    return reduction_cost(housing.mesh.freedoms, housing.modes, motions)
+
+
+def check_cost(housing: MeshedHousing, cost: Cost, limit: CostLimit) -> None:
+    """Refuse a housing whose predicted cost on this host is above a limit.
 
     Raises
     ------
     InputError
-        It is above the limit.
+        It is.
     """
-    motions = sum(seat.motions for seat in housing.seats)
-    cost = reduction_cost(housing.mesh.freedoms, housing.modes, motions)
     advice = f"{housing.mesh.freedoms} freedoms, {housing.modes} modes: use a coarser mesh or fewer modes."
     if cost.seconds > limit.seconds:
         raise InputError("predicted_seconds", cost.seconds, at_most(limit.seconds, "s"), advice)
     if cost.bytes > limit.bytes:
         raise InputError("predicted_bytes", cost.bytes, at_most(limit.bytes), advice)
-    return cost

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, field
 from functools import partial
+from pathlib import Path
 from typing import cast
 
 import numpy as np
@@ -18,12 +18,16 @@ from dynamics.checks import positive
 from dynamics.errors import InputError
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.noise.coarse_hull import RadiatingHull, radiating_hull
-from dynamics.noise.knots import Knots, constant_knots, knots_between
+from dynamics.noise.knots import Knots, constant_knots, knots_between, octaves
+from dynamics.noise.radiation_cost import Octave, radiation_cost
 from dynamics.results.array_file import ArrayFile, Stored
 from dynamics.types import FloatArray, Json
+from dynamics.work_cost import Cost, measured, on_this_host
 
 BAND = 10.0**0.05
 """Half a third octave: the range grows to edges of bands."""
+WORK = "radiation resistance by {}"
+"""Name of a model over a range of frequencies in the log of runs."""
 ROUNDED_DOWN = 1.0 - 1e-12
 """Of a limit in Hz whose wavenumber must not be above that of the limit."""
 
@@ -51,7 +55,8 @@ class HousingRadiation(ModalResistance, ArrayFile):
         Of the radiation model.
     facts : dict
         Plain JSON: `resolved_frequency` in Hz, above which panels move as parts of a plane (ERP),
-        `interpolation_error` in dB, `inner_area` and `cap_area` in m^2, `panels` (most), `seconds`.
+        `interpolation_error` in dB, `inner_area` and `cap_area` in m^2, `panels` (most), `cost`
+        (`WorkCost`, without that of the hulls).
     """
 
     SCHEMA = "lineofaction housing radiation"
@@ -66,7 +71,7 @@ class HousingRadiation(ModalResistance, ArrayFile):
     def hull_at(self, outer: OuterHull, frequency: float, sound_speed: float) -> RadiatingHull | None:
         """Return the panels at a computed frequency, Hz; None above those that the mesh resolves."""
         low, high = float(self.frequency[0]), float(self.frequency[-1])
-        for first, last in _octaves(low, min(high, self.facts["resolved_frequency"])):
+        for first, last in octaves(low, min(high, self.facts["resolved_frequency"])):
             if first <= frequency <= last:
                 return radiating_hull(outer, last, sound_speed)
         return None
@@ -83,6 +88,8 @@ def housing_radiation(
     frequencies: ArrayLike,
     air: Air | None = None,
     progress: Callable[[float], None] | None = None,
+    expected: Callable[[Cost], object] = lambda _cost: None,
+    cache: Path | None = None,
 ) -> HousingRadiation:
     """Return the radiation resistance of a housing from the lowest to the highest of some frequencies.
 
@@ -100,6 +107,10 @@ def housing_radiation(
     air : Air, optional
     progress : callable, optional
         Called with the fraction done.
+    expected : callable, optional
+        Called with the predicted cost before it is computed.
+    cache : Path, optional
+        Directory of what is known of the host, see `work_cost.on_this_host`.
 
     Raises
     ------
@@ -110,15 +121,14 @@ def housing_radiation(
     if not asked.size:
         raise InputError("frequencies", [], "at least one frequency")
     low, high = positive("frequencies", float(asked.min())) / BAND, float(asked.max()) * BAND
-    began = time.process_time()
     outer = outer_hull(housing)
     resolved = 0.0 if isinstance(model, EquivalentRadiatedPower) else resolved_frequency(outer, air)
-    done = progress or (lambda _fraction: None)
+    ends, done = octaves(low, min(high, resolved)), progress or (lambda _fraction: None)
 
     def reached(frequency: float) -> None:
         done(((frequency - low) / (high - low)) ** 2)
 
-    parts, most = _resolved_parts(outer, model, air, (low, min(high, resolved)), housing.modes[1], reached)
+    parts, own = _resolved_parts(outer, model, air, ends, housing.modes[1], reached, expected, cache)
     if high > resolved:
         first = max(low, float(np.nextafter(resolved, np.inf)))
         parts.append(constant_knots(first, high, cast(ComplexArray, air.impedance * outer.surface)))
@@ -127,8 +137,7 @@ def housing_radiation(
         "interpolation_error": 0.25 * max(part.error for part in parts),
         "inner_area": outer.inner_area,
         "cap_area": outer.cap_area,
-        "panels": most or len(outer.hull.triangles),
-        "seconds": time.process_time() - began,
+        **own,
     }
     return HousingRadiation(
         np.concatenate([part.frequency for part in parts]),
@@ -145,30 +154,28 @@ def _resolved_parts(
     outer: OuterHull,
     model: RadiationModel,
     air: Air,
-    band: tuple[float, float],
+    ends: Sequence[tuple[float, float]],
     modes: FloatArray,
     reached: Callable[[float], None],
-) -> tuple[list[Knots], int]:
-    """Return the knots of each octave of a band, Hz, and the most panels of one."""
-    parts, most = [], 0
-    for first, last in _octaves(*band):
-        hull = radiating_hull(outer, last, air.sound_speed)
-        parts.append(knots_between(first, last, partial(_resistance, model, hull, air), modes))
-        most = max(most, len(hull.hull.triangles))
-        reached(last)
-    return parts, most
+    expected: Callable[[Cost], object],
+    cache: Path | None,
+) -> tuple[list[Knots], Json]:
+    """Return the knots of each octave between `ends`, Hz, and the facts `panels` and `cost`."""
+    parted = [Octave(*each, radiating_hull(outer, each[1], air.sound_speed)) for each in ends]
+    kind, reference = WORK.format(model.model_name), radiation_cost(parted, model, air)
+    expected(on_this_host(kind, reference, cache))
 
+    def computed() -> list[Knots]:
+        parts = []
+        for octave in parted:
+            resistance_at = partial(_resistance, model, octave.hull, air)
+            parts.append(knots_between(octave.first, octave.last, resistance_at, modes))
+            reached(octave.last)
+        return parts
 
-def _octaves(low: float, high: float) -> list[tuple[float, float]]:
-    """Return ranges of at most an octave from `low` to `high`, each a bit above the one before.
-
-    Each has its own panels: the highest are too many for the lowest.
-    """
-    if low >= high:
-        return []
-    ends = np.geomspace(low, high, max(int(np.ceil(np.log2(high / low))), 1) + 1).tolist()
-    starts = [low, *(float(np.nextafter(end, np.inf)) for end in ends[1:-1])]
-    return list(zip(starts, ends[1:], strict=True))
+    parts, cost = measured(kind, reference, cache, computed)
+    panels = max((len(octave.hull.shapes) for octave in parted), default=len(outer.hull.triangles))
+    return parts, {"panels": panels, "cost": asdict(cost)}
 
 
 def _resistance(model: RadiationModel, hull: RadiatingHull, air: Air, frequency: float) -> ComplexArray:

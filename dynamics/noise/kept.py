@@ -12,11 +12,13 @@ from dynamics.acoustics import Air, RadiationModel
 from dynamics.errors import ResultError
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.noise.housing_radiation import HousingRadiation, housing_radiation
+from dynamics.work_cost import announce
 from model_studies.kept_file import kept_in
 from model_studies.progress import Progress, silent
 
-RADIATION_VERSION = 1
-"""Raised with every change of the numbers of a resistance."""
+RADIATION_VERSION = 2
+"""Raised with every change of the numbers of a resistance, or of what is kept with them."""
+STAGE = "radiation"
 LEAST_COST = 1.0
 """CPU seconds."""
 
@@ -34,7 +36,10 @@ def kept_radiation(
     Parameters
     ----------
     cache : Path, optional
-        Directory of kept results; None: neither read nor written. What takes below a second is not kept.
+        Directory of kept results and of what is known of the host; None: neither read nor written. What takes
+        below a second is not kept.
+    progress : callable, optional
+        Called as progress("radiation", fraction), before costly work with its predicted cost behind it.
 
     Raises
     ------
@@ -45,10 +50,18 @@ def kept_radiation(
     file = None if cache is None else cache / f"radiation-{_content_key(housing, model, ends, air)}.nc"
 
     def computed() -> HousingRadiation:
-        return housing_radiation(housing, model, ends, air, lambda fraction: progress("radiation", fraction))
+        return housing_radiation(
+            housing,
+            model,
+            ends,
+            air,
+            lambda fraction: progress(STAGE, fraction),
+            lambda cost: announce(progress, STAGE, model.model_name.replace("_", " "), cost),
+            cache,
+        )
 
     def costly(made: HousingRadiation) -> bool:
-        return bool(made.facts["seconds"] > LEAST_COST)
+        return bool(made.facts["cost"]["seconds"] > LEAST_COST)
 
     read, write = HousingRadiation.from_netcdf, HousingRadiation.to_netcdf
     return kept_in(file, read, computed, write, ResultError, costly)

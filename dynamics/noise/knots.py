@@ -17,6 +17,8 @@ NOTHING = 1e-6
 """Resistance over the largest of all modes that counts as none."""
 CONSTANT, CONSTANT_ERROR = 1.05, 0.008
 """Ratio of frequencies for R that does not change: R/f^2 is convex, 3/4 (step/f)^2 off in the middle, dB."""
+FEWEST, KNOTS = 8.0, (0.9, 0.025)
+"""Frequencies of an octave where the body is small beside the wavelength, and more with ka and its square."""
 WIDEST, CLOSEST = 1.5, 1.03
 """Largest ratio of frequencies side by side; the smallest that is parted."""
 
@@ -63,6 +65,26 @@ def knots_between(
             error = max(error, missed)
     frequency = np.array(sorted(found))
     return Knots(frequency, np.stack([found[float(at)] for at in frequency]), error)
+
+
+def octaves(low: float, high: float) -> list[tuple[float, float]]:
+    """Return ranges of at most an octave from `low` to `high`, each a bit above the one before.
+
+    Each has its own panels: the highest are too many for the lowest.
+    """
+    if low >= high:
+        return []
+    ends = np.geomspace(low, high, max(int(np.ceil(np.log2(high / low))), 1) + 1).tolist()
+    starts = [low, *(float(np.nextafter(end, np.inf)) for end in ends[1:-1])]
+    return list(zip(starts, ends[1:], strict=True))
+
+
+def expected_knots(ka: float) -> float:
+    """Return how many frequencies `knots_between` about takes in an octave up to a wavenumber times radius.
+
+    Counted on cast boxes with 40 and 100 coordinates, ka of 0.6 to 28: within a quarter.
+    """
+    return FEWEST + KNOTS[0] * ka + KNOTS[1] * ka**2
 
 
 def constant_knots(low: float, high: float, matrix: ComplexArray) -> Knots:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from dynamics.acoustics.hull import ComplexArray
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.noise.coarse_hull import radiating_hull
 from dynamics.vibration import BearingHarmonics, housing_motion, seat_forces
+from model_studies.progress import Progress, silent
 
 
 def models_at(
@@ -20,6 +22,9 @@ def models_at(
     at: tuple[int, int],
     models: Sequence[RadiationModel],
     air: Air | None = None,
+    progress: Progress = silent,
+    offered: Sequence[RadiationModel] = (),
+    cache: Path | None = None,
 ) -> ModelLadder:
     """Compute the sound power at one speed and order by several radiation models, on one hull.
 
@@ -30,8 +35,9 @@ def models_at(
     at : (int, int)
         Numbers of speed and order.
     models : sequence of RadiationModel
-        From coarse to fine; boundary elements take 7 to 12 us and 110 bytes times the
-        square of the panels.
+        From coarse to fine.
+    progress, offered, cache
+        As of `compare_models`.
 
     Raises
     ------
@@ -41,7 +47,7 @@ def models_at(
     air, hertz = air or Air(), float(response.frequency[at])
     hull = radiating_hull(outer_hull(housing), hertz, air.sound_speed)
     velocity = hull.shapes @ coordinate_velocity(response, housing, bearings, at)
-    return compare_models(hull.hull, hertz, velocity, air, models)
+    return compare_models(hull.hull, hertz, velocity, air, models, progress, offered, cache)
 
 
 def coordinate_velocity(

@@ -15,6 +15,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
+from model_studies.progress import stage_name
 from service.cli.warned import warnings_so_far
 from service.problems import BadInput
 
@@ -78,9 +79,10 @@ def progress_bar() -> Iterator[Report]:
         tasks: dict[str, TaskID] = {}
 
         def report(stage: str, fraction: float) -> None:
-            if stage not in tasks:
-                tasks[stage] = bars.add_task(stage, total=1.0)
-            bars.update(tasks[stage], completed=min(max(fraction, 0.0), 1.0))
+            name = stage_name(stage)
+            if name not in tasks:
+                tasks[name] = bars.add_task(name, total=1.0)
+            bars.update(tasks[name], description=stage, completed=min(max(fraction, 0.0), 1.0))
 
         yield report
 

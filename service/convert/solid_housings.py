@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -33,6 +34,7 @@ from dynamics.housing_modes import (
     reduced_housing,
 )
 from dynamics.joints.matrix import Matrix
+from dynamics.work_cost import announce
 from model_studies.progress import Progress, by_cost, silent
 from service.convert.declared import in_si
 from service.convert.errors import named
@@ -62,7 +64,7 @@ def reduced_housings(
     cache : Path or None
         Directory of kept meshes and reductions.
     progress : callable
-        Called as progress("housing", fraction).
+        Called as progress("housing", fraction), before a costly reduction with what it will take behind it.
 
     Returns
     -------
@@ -83,7 +85,9 @@ def reduced_housings(
         with _named(f"housings[{index}]", part):
             mesh = _mesh(part, cache)
             parts(part.name, _MESHED)
-            reduced[part.name] = reduced_housing(_meshed(part, scene, mesh), cache)
+            reduced[part.name] = reduced_housing(
+                _meshed(part, scene, mesh), cache, expected=partial(announce, progress, STAGE, part.name)
+            )
             parts(part.name, 1.0)
     return reduced
 

@@ -10,6 +10,7 @@ import time
 from collections.abc import Iterable
 from datetime import datetime
 
+from model_studies.progress import stage_name
 from service.queue.claims import Claim
 from service.tracing.tracer import Fact, Span, tracer
 from service.worker.usage import Usage
@@ -54,7 +55,7 @@ class AttemptTrace:
     def see(self, steps: Iterable[Step]) -> None:
         """Take what the worker reported: another name ends a stage and begins the next."""
         for step in steps:
-            name = step.stage.partition(";")[0]  # figures of a draft follow
+            name = stage_name(step.stage)
             if name != self._name and self._left > 0:
                 self._stage.end(step.at, {"loa.cpu_s": step.cpu_s - self._cpu_s})
                 self._stage = self._begun(name, step.at, step.cpu_s)

@@ -23,7 +23,7 @@ class Inputs(NoiseRanges, OverSpeedsOrRun):
     boundary_elements: bool = Field(
         default=False,
         description="Whether boundary elements check the model where each housing is loudest: 20 CPU s and "
-        "0.5 GB for 1600 panels, 10 CPU min and 6 GB for 7000, six edges in a wavelength; with the extra "
-        "boundary-elements",
+        "0.4 GB for 1600 panels, 10 CPU min and 6 GB for 7000, six edges in a wavelength; every result says "
+        "what they would take for its housings; with the extra boundary-elements",
         examples=[True],
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from service.schemas.bearing_forces import BearingForces
 from service.schemas.figures import Figures, Json, Part
+from service.schemas.housing_costs import HousingCost, PredictedCost
 from service.studies.equilibrium import Equilibrium
 
 
@@ -15,7 +16,10 @@ class BearingSound(Part):
 
 
 class HousingSound(Part):
-    """How a housing radiates: outer hull, radiation model, and the models where it is loudest."""
+    """How a housing radiates: outer hull, radiation model, the models where it is loudest, and what it cost.
+
+    Stated error and predicted cost are those of all models, computed or not.
+    """
 
     radiation: str
     outer_area_m2: float
@@ -29,6 +33,10 @@ class HousingSound(Part):
     model_error_db: dict[str, float]
     models_left_out: dict[str, str]
     models_cpu_seconds: dict[str, float]
+    models_error_band_db: dict[str, tuple[float, float]]
+    models_predicted: dict[str, PredictedCost]
+    reduction_cost: HousingCost | None
+    radiation_cost: HousingCost | None
 
 
 class RegionSound(Part):

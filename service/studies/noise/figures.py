@@ -10,6 +10,7 @@ from dynamics.acoustics import a_weighting, sound_power_level
 from dynamics.noise import LoudPoint, RadiatedSound, loudest
 from service.studies.bearing_forces import LINEAR
 from service.studies.equilibrium import equilibrium_figures
+from service.studies.housing_costs import cost_figures
 from service.units import MM, RPM
 
 Json = dict[str, Any]
@@ -75,6 +76,13 @@ def _housing(about: Json, name: str) -> Json:
         "model_error_db": compared.get("error", {}),
         "models_left_out": compared.get("left_out", {}),
         "models_cpu_seconds": compared.get("seconds", {}),
+        "models_error_band_db": compared.get("error_band", {}),
+        "models_predicted": {
+            model: {"cpu_seconds": cost["seconds"], "bytes": cost["bytes"]}
+            for model, cost in compared.get("predicted", {}).items()
+        },
+        "reduction_cost": cost_figures(about.get("reduction_cost", {}).get(name)),
+        "radiation_cost": cost_figures(radiation.get("cost")),
     }
 
 

@@ -19,6 +19,7 @@ from service.studies.noise.drawings import (
     sound_map,
     third_octaves,
 )
+from service.studies.noise.model_table import model_tables
 from service.studies.noise.over_time import third_octaves_over_time
 from service.studies.noise.region_table import most, region_table
 from service.studies.noise.uncertainty_tables import uncertainty_tables
@@ -138,14 +139,6 @@ def _radiation_limits(sound: RadiatedSound, housing: str) -> Iterator[tuple[str,
     if highest > valid:
         words = "0.7 of the highest mode kept, modes are missing: keep more"
         yield f"above {number(valid, 3)} Hz", words
-    levels = compared.get("level", {})
-    compared_levels = [
-        f"{model.replace('_', ' ')} {level:.1f} dB ({number(compared['seconds'][model], 2)} CPU s)"
-        for model, level in levels.items()
-    ]
-    if compared_levels:
-        at = f"models at order {compared['order']:g}, {number(compared['speed'] / RPM, 4)} rpm"
-        yield at, ", ".join(compared_levels)
     for model, reason in compared.get("left_out", {}).items():
         yield f"without {model.replace('_', ' ')}", reason
 
@@ -156,6 +149,7 @@ def _text(sound: RadiatedSound) -> Iterator[Table | str]:
     yield region_table(sound)
     yield from sentences(sound)
     yield from (f"{what}: {words}" for what, words in limits(sound))
+    yield from model_tables(sound)
     yield from uncertainty_tables(sound.facts)
     yield from (f"no sensitivity to {name}: {why}" for name, why in _missing(sound))
     yield f"cost {engineering(sum(sound.facts['seconds'].values()), 3)} CPU s"
@@ -175,7 +169,7 @@ def page(sound: RadiatedSound) -> Page:
         tables += (Table("No sensitivity", ("to", "because"), missing),)
     bands = (Section("Bands, and what 1 dB costs", tables=tables),) if tables else ()
     rests = Table("Radiation models, and what the levels do not hold", ("what", "how"), tuple(limits(sound)))
-    accuracy = Section("Accuracy of the levels", tables=(rests,), part=Part.ACCURACY)
+    accuracy = Section("Accuracy of the levels", tables=(rests, *model_tables(sound)), part=Part.ACCURACY)
     return replace(whole, sections=(*whole.sections, *bands, accuracy))
 
 

@@ -29,12 +29,14 @@ from dynamics.noise import (
 from dynamics.noise.housing_radiation import resolved_frequency
 from dynamics.vibration import BearingHarmonics
 from service.convert.case import boundary_errors
+from service.convert.housings import FOLDER
 from service.convert.scene import TabledScene
 from service.problems import BadInput
 from service.runs.through_housing import require_surface, silent
 from service.schemas.scene import SceneInput
 from service.studies.bearing_forces import forces_of
 from service.studies.computation import Computation, Means
+from service.studies.housing_costs import reduction_cost_of
 from service.studies.noise import Inputs
 from service.studies.noise.figures import facts
 from service.studies.noise.over_time import over_time, over_time_json, run_frequencies
@@ -69,7 +71,7 @@ def noise_of(subject: TabledScene, inputs: Inputs, means: Means) -> RadiatedSoun
             raise silent([part.name for part in subject.inputs.housings])
         sounds = [_sound(response, housing) for housing in housings]
         compared = {
-            housing.name: _compared(response, housing, sound, inputs)
+            housing.name: _compared(response, housing, sound, inputs, means)
             for housing, sound in zip(housings, sounds, strict=True)
         }
         whole = with_regions(together(sounds), response, housings, MODELS[inputs.radiation])
@@ -79,6 +81,7 @@ def noise_of(subject: TabledScene, inputs: Inputs, means: Means) -> RadiatedSoun
     seconds = {**about["seconds"], "sound": time.process_time() - began}
     own = {name: about.get(name) for name in ("leading_shaft", "equilibrium", "effect_ledger", "forces")}
     own["over_time"] = over_time_json(heard)
+    own["reduction_cost"] = {housing.name: reduction_cost_of(housing.body) for housing in housings}
     known = {**whole.facts, **own, "models": compared, "seconds": seconds}
     whole = replace(whole, facts=known)
     return replace(whole, facts={**known, **uncertainty(subject, whole, radiation, inputs, means)})
@@ -88,7 +91,7 @@ def _radiation(
     response: BearingHarmonics, body: ReducedHousing, inputs: Inputs, means: Means
 ) -> HousingRadiation:
     """Return the radiation resistance of one housing."""
-    model, cache = MODELS[inputs.radiation], means.home / "housings"
+    model, cache = MODELS[inputs.radiation], means.home / FOLDER
     hertz = response.frequency if means.run is None else run_frequencies(means.run, response.frequency)
     return kept_radiation(body, model, hertz, cache=cache, progress=means.report)
 
@@ -99,28 +102,40 @@ def _sound(response: BearingHarmonics, housing: SoundingHousing) -> RadiatedSoun
 
 
 def _compared(
-    response: BearingHarmonics, housing: SoundingHousing, sound: RadiatedSound, inputs: Inputs
+    response: BearingHarmonics, housing: SoundingHousing, sound: RadiatedSound, inputs: Inputs, means: Means
 ) -> Json:
     """Return what the radiation models say where a housing is loudest, nothing if it is silent.
 
-    Points that the mesh resolves come first: the others are beyond all models but one.
+    Error and cost are those of all models, computed or not. Points that the mesh resolves come first: the
+    others are beyond all models but one.
     """
     resolved = resolved_frequency(outer_hull(housing.body), Air())
     points = [point for point in loudest(sound) if point.frequency <= resolved] or loudest(sound, 1)
     if not points:
         return {}
-    finest = (BoundaryElements(),) if inputs.boundary_elements else ()
-    models: tuple[RadiationModel, ...] = (PLANE, MONOPOLES, *finest)
-    at = points[0].speed_index, points[0].order_index
-    ladder = models_at(response, housing.body, housing.bearings, at, models)
+    ladder_of = (PLANE, MONOPOLES, BoundaryElements(progress=means.report))
+    models: tuple[RadiationModel, ...] = ladder_of if inputs.boundary_elements else ladder_of[:-1]
+    at, cache = (points[0].speed_index, points[0].order_index), means.home / FOLDER
+    ladder = models_at(
+        response,
+        housing.body,
+        housing.bearings,
+        at,
+        models,
+        progress=means.report,
+        offered=ladder_of,
+        cache=cache,
+    )
     return {
         "order": points[0].order,
         "speed": points[0].speed,
         "level": {name: result.level for name, result in ladder.results.items()},
         "error": ladder.errors,
         "efficiency": {name: result.efficiency for name, result in ladder.results.items()},
-        "seconds": {name: result.cpu_seconds for name, result in ladder.results.items()},
+        "seconds": {name: result.cost.seconds for name, result in ladder.results.items()},
         "left_out": dict(ladder.left_out),
+        "error_band": {name: list(band) for name, band in ladder.error_band.items()},
+        "predicted": {name: cost._asdict() for name, cost in ladder.predicted.items()},
     }
 
 

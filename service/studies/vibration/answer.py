@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from service.schemas.bearing_forces import BearingForces
 from service.schemas.figures import Figures, Json, Part
+from service.schemas.housing_costs import HousingCost
 
 
 class PointVelocity(Part):
@@ -49,6 +50,7 @@ class VibrationFigures(Figures):
     contributions: Contributions
     forces: BearingForces
     cpu_seconds: dict[str, float]
+    reduction_cost: HousingCost | None
     effect_ledger: Json
 
 

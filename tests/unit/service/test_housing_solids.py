@@ -146,6 +146,21 @@ def test_the_second_time_a_housing_comes_from_the_cache(folder: Path, monkeypatc
         tabled(folder, element_size_mm=30.0)
 
 
+def test_what_a_reduction_takes_is_told_before_it_begins_and_kept(folder: Path, monkeypatch) -> None:
+    monkeypatch.setattr("dynamics.work_cost.ANNOUNCED", 0.0)
+    told: list[str] = []
+    file = folder / "scene.json"
+    file.write_text(json.dumps(housed_scene(folder, modes=7)))
+    first, again = (
+        tabled_scene(*scene_of(file), None, lambda stage, _: told.append(stage)).housings["case"].cost
+        for _ in range(2)
+    )
+    (words,) = (stage for stage in told if "; " in stage)
+    assert words.startswith("housing; case: about ") and words.endswith(" GB")
+    assert told.index(words) < len(told) - 1
+    assert first == again and first.seconds > 0.0 and first.predicted_bytes > 0.0
+
+
 def test_a_study_reduces_a_housing_anew_where_a_factor_changes_it(folder: Path, monkeypatch) -> None:
     """A loss factor changes the damping alone; a load leaves the housing as it is."""
     own = tabled(folder, loss_factor=LOSS)

@@ -6,6 +6,7 @@ import json
 import re
 from collections.abc import Iterator
 from functools import cache
+from html import escape
 from pathlib import Path
 
 import meshio
@@ -26,6 +27,7 @@ from service.cli.commands import app
 from service.drawing import surface_view
 from service.studies.noise import page, run
 from service.studies.noise.figures import facts
+from service.studies.noise.model_table import model_tables
 from service.studies.noise.page import limits
 
 BANDS = ("--speed-rpm", "300:6000:600", "--orders", 4)
@@ -88,7 +90,7 @@ def test_the_table_and_every_kind_of_file_say_the_same(scene: Path, tmp_path: Pa
     found = RadiatedSound.from_netcdf(files["nc"])
     point = loudest(found)[0]
     assert f"{point.weighted_level:.1f} dB(A) through mode {point.mode} of case" in result.stdout
-    assert f"models at order {point.order:g}, " in result.stdout
+    assert f"Radiation models of case at order {point.order:g}, " in result.stdout
     written = json.loads(files["json"].read_text())
     assert written.pop("warnings") == []
     for figures in (written, expected := facts(found)):
@@ -98,12 +100,30 @@ def test_the_table_and_every_kind_of_file_say_the_same(scene: Path, tmp_path: Pa
     assert "Sound power in third octaves" in report and '<figure id="sound_panels">' in report
     rows = list(limits(found))
     named = [what for what, _ in rows if "above" not in what]
-    assert named[:2] == ["forces on bearings", "case"]
-    assert named[2].startswith("models at order") and len(named) == 3
+    assert named == ["forces on bearings", "case"]
     for what, words in rows:
         assert f"{what}: {words}" in result.stdout
         assert f'<th scope="row">{what}</th><td>{words}</td>' in report
+    for row in (row for table in model_tables(found) for row in table.rows):
+        assert re.search(r"\s+".join(map(re.escape, row)), result.stdout)
+        assert all(f">{escape(cell)}</td>" in report for cell in row[1:])
     check_effects_shown(found.facts["effect_ledger"], result.stdout, report)
+
+
+def test_every_model_states_its_error_and_cost_before_it_is_asked_for(scene: Path) -> None:
+    """Of this housing; boundary elements were not computed, its modes come from a file without a cost."""
+    own = json.loads(loa(scene, *SPEEDS, "--json").stdout)["housings"]["case"]
+    ladder = ["equivalent_radiated_power", "monopoles", "boundary_elements"]
+    assert list(own["models_predicted"]) == list(own["models_error_band_db"]) == ladder
+    assert list(own["models_db"]) == ladder[:2] and not own["models_left_out"]
+    costs = [own["models_predicted"][name]["cpu_seconds"] for name in ladder]
+    assert costs == sorted(costs) and costs[0] >= 0.0 and costs[2] > 100.0 * costs[1]
+    for low, high in own["models_error_band_db"].values():
+        assert low < 0.0 < high
+    assert own["reduction_cost"] is None
+    radiation = own["radiation_cost"]
+    assert min(radiation["predicted_cpu_seconds"], radiation["cpu_seconds"]) > 0.0
+    assert radiation["predicted_bytes"] > 0.0
 
 
 def test_regions_and_panels_add_up_to_the_power_of_their_point(scene: Path, tmp_path: Path) -> None:
@@ -146,10 +166,10 @@ def test_boundary_elements_check_the_loudest_point_that_the_mesh_resolves(
     result = loa(scene, *speeds, "-o", report)
     assert result.exit_code == 0, result.stderr
     assert "order 1 at 5700 rpm" in result.stdout and "without boundary" not in result.stdout
-    (line,) = (line for line in result.stdout.splitlines() if line.startswith("models at order 2, 1750 rpm"))
-    assert line.split(": ", 1)[1] in report.read_text("utf-8")
+    caption = "Radiation models of case at order 2, 1750 rpm"
+    assert caption in result.stdout and caption in report.read_text("utf-8")
     names = ("equivalent radiated power", "monopoles", "boundary elements")
-    found = [re.search(rf"{name} ([\d.]+) dB \(\S+ CPU s\)", line) for name in names]
+    found = [re.search(rf"^ *{name} +([\d.]+) ", result.stdout, re.MULTILINE) for name in names]
     plane, monopoles, finest = (float(match[1]) for match in found if match)
     assert abs(monopoles - finest) < 7.0 and plane > finest
 

@@ -63,3 +63,11 @@ def test_an_undeclared_stage_says_nothing() -> None:
     paced = PacedFraction(SHARES.items())
     assert paced.at("meanwhile", 0.5, 1.0) is None
     assert paced.at("analysis", 0.5, 1.0) == 0.25
+
+
+def test_what_a_stage_says_behind_its_name_is_no_other_stage() -> None:
+    plain, telling = PacedFraction(SHARES.items()), PacedFraction(SHARES.items())
+    for fraction, elapsed in ((0.0, 1.0), (0.5, 3.0), (1.0, 5.0)):
+        expected = plain.at("analysis", fraction, elapsed)
+        assert expected is not None
+        assert telling.at("analysis; case: about 25 CPU s, 1.2 GB", fraction, elapsed) == expected

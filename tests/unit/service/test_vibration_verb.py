@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import struct
 from collections.abc import Iterator
 from pathlib import Path
@@ -91,6 +92,10 @@ def test_every_kind_of_output_says_the_same(scene: Path, tmp_path: Path) -> None
     check_effects_shown(
         found.analysis.facts["effect_ledger"], result.stdout, files["html"].read_text("utf-8")
     )
+    cost = written["reduction_cost"]
+    assert cost["predicted_cpu_seconds"] > 0.0 and cost["cpu_seconds"] > 0.0 and cost["predicted_bytes"] > 0.0
+    assert re.search(r"case: reduction +\S+ ", result.stdout)
+    assert "case: reduction" in files["html"].read_text("utf-8")
     page = tmp_path / "page.html"
     write_report(files["nc"], page)
     for text in ("housing_velocity", "housing_shape", "housing_contributions", "housing_transfer"):

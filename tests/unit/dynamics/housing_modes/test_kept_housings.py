@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import math
+import time
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
 from lattice_meshes import tube
 from scipy.io import mmwrite
+from varied_housing import meshed
 
 from dynamics.errors import InputError, ResultError
 from dynamics.housing_modes import (
@@ -31,6 +35,11 @@ from dynamics.housing_modes import (
 )
 from dynamics.housing_modes import kept as kept_module
 from dynamics.housing_modes.kept import content_key
+from dynamics.housing_modes.reduction import reduce_housing
+from dynamics.housing_modes.reduction_cost import cost_of
+
+WITHIN = 1.3
+"""Factor within which a cost is predicted."""
 
 SEAT = SeatBore("upper", Bore((0.0, 0.0, 0.075), (0.0, 0.0, 1.0), 0.08, 0.05))
 HOUSING = MeshedHousing(
@@ -57,7 +66,7 @@ def test_the_second_time_comes_from_the_cache_to_the_last_bit(tmp_path: Path, mo
 
 def test_a_damaged_file_is_computed_again(tmp_path: Path) -> None:
     first = reduced_housing(HOUSING, tmp_path)
-    (file,) = tmp_path.iterdir()
+    (file,) = tmp_path.glob("housing-*.nc")
     file.write_bytes(file.read_bytes()[:-400])
     assert np.array_equal(reduced_housing(HOUSING, tmp_path).mass, first.mass)
     with pytest.raises(ResultError):
@@ -88,10 +97,36 @@ def test_what_would_cost_too_much_is_refused_before_it_runs(limit, field: str, m
     assert caught.value.field == f"predicted_{field}"
 
 
-def test_cost_grows_with_freedoms_and_modes() -> None:
-    costs = [reduction_cost(*size) for size in ((50_000, 40, 20), (100_000, 40, 20), (100_000, 80, 20))]
-    assert sorted(costs) == costs
+def test_cost_grows_with_freedoms_modes_and_seats() -> None:
+    sizes = ((50_000, 40, 20), (100_000, 40, 20), (100_000, 80, 20), (100_000, 80, 40))
+    costs = [reduction_cost(*size) for size in sizes]
+    for less, more in pairwise(costs):
+        assert less.seconds < more.seconds and less.bytes < more.bytes
     assert costs[1].seconds > 2.0 * costs[0].seconds
+
+
+def test_the_predicted_cost_of_two_sizes_is_in_the_ratio_of_the_measured() -> None:
+    """Each is within 1.3 of what it takes, their ratio within the square; the lesser of two counts."""
+    sizes = [meshed(), meshed((24, 1, 10))]
+    least = [math.inf, math.inf]
+    for _ in range(2):
+        for index, housing in enumerate(sizes):
+            began = time.process_time()
+            reduce_housing(housing)
+            least[index] = min(least[index], time.process_time() - began)
+    small, large = (cost_of(housing).seconds for housing in sizes)
+    assert large / small > 2.0
+    assert 1.0 / WITHIN**2 < (large / small) / (least[1] / least[0]) < WITHIN**2
+
+
+def test_the_cost_is_kept_with_the_housing_and_told_before(tmp_path: Path) -> None:
+    told = []
+    first = reduced_housing(HOUSING, tmp_path, expected=told.append)
+    assert first.cost.seconds > 0.0
+    assert [tuple(cost) for cost in told] == [(first.cost.predicted_seconds, first.cost.predicted_bytes)]
+    again = reduced_housing(HOUSING, tmp_path, expected=lambda _: pytest.fail("told of what is kept"))
+    assert again.cost == first.cost
+    assert reduce_housing(HOUSING).cost is None
 
 
 def saved(path: Path, reduced: ReducedHousing):

@@ -1,0 +1,112 @@
+"""Cost of a piece of work: predicted before it runs, corrected by what is known of the host, measured."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple, TypeVar
+
+from bounds import engineering
+from host import memory_figure, peak_memory
+from model_studies.progress import Progress
+
+Result = TypeVar("Result")
+ANNOUNCED = 3.0
+"""CPU seconds from which on a cost is reported before the work begins."""
+
+
+class Cost(NamedTuple):
+    """CPU seconds on one thread, and bytes of the largest working set."""
+
+    seconds: float
+    bytes: float
+
+    def then(self, later: Cost) -> Cost:
+        """Return the cost of this work and another after it: seconds add up, memory is used again."""
+        return Cost(self.seconds + later.seconds, max(self.bytes, later.bytes))
+
+    def times(self, count: float) -> Cost:
+        """Return the cost of so many pieces of the same work, one after the other."""
+        return Cost(self.seconds * count, self.bytes)
+
+    @property
+    def words(self) -> str:
+        """Say the cost: "about 25 CPU s, 1.2 GB"."""
+        return f"about {engineering(self.seconds, 2)} CPU s, {engineering(self.bytes / 1e9, 2)} GB"
+
+
+@dataclass(frozen=True)
+class WorkCost:
+    """Predicted and measured cost of work that was done.
+
+    Attributes
+    ----------
+    predicted_seconds, seconds : float
+        CPU seconds; predicted for this host.
+    predicted_bytes : float
+        Of the largest working set.
+    bytes : float or None
+        By how much the process grew above what it held before; None where it had been as large before, and
+        nobody can tell.
+    """
+
+    predicted_seconds: float
+    predicted_bytes: float
+    seconds: float
+    bytes: float | None = None
+
+
+def on_this_host(kind: str, cost: Cost, cache: Path | None) -> Cost:
+    """Return a predicted cost with the speed of this host, and with what earlier work of a kind took.
+
+    Parameters
+    ----------
+    kind : str
+        The name under which `run_log` keeps the work.
+    cost : Cost
+        On the reference host of `host_speed`.
+    cache : Path, optional
+        Directory of what is known of the host; None: its speed is measured once per process.
+    """
+    from model_studies.host_speed import host_slowness  # noqa: PLC0415 (start-up time)
+    from model_studies.run_log import corrections  # noqa: PLC0415
+
+    factor = host_slowness(cache) * corrections(cache).get(kind, 1.0)
+    return cost._replace(seconds=cost.seconds * factor)
+
+
+def measured(
+    kind: str, cost: Cost, cache: Path | None, work: Callable[[], Result]
+) -> tuple[Result, WorkCost]:
+    """Do work; return its result and what it cost beside what was predicted, which the log keeps too.
+
+    Parameters
+    ----------
+    kind, cost, cache
+        As of `on_this_host`.
+    work : callable
+    """
+    from model_studies.host_speed import host_slowness  # noqa: PLC0415 (start-up time)
+    from model_studies.run_log import record  # noqa: PLC0415
+
+    predicted = on_this_host(kind, cost, cache)
+    held, peak, began = memory_figure("VmRSS"), peak_memory(), time.process_time()
+    result = work()
+    seconds, highest = time.process_time() - began, peak_memory()
+    record(cache, {kind: cost.seconds * host_slowness(cache)}, {kind: seconds})
+    grown = float(highest - held) if held is not None and highest > peak else None
+    return result, WorkCost(predicted.seconds, predicted.bytes, seconds, grown)
+
+
+def announce(progress: Progress, stage: str, subject: str, cost: Cost) -> None:
+    """Report what a stage will take before it begins, behind its name, if that is more than a moment.
+
+    Parameters
+    ----------
+    progress : callable
+        Called as progress("stage; subject: about 25 CPU s, 1.2 GB", 0.0).
+    """
+    if cost.seconds > ANNOUNCED:
+        progress(f"{stage}; {subject}: {cost.words}", 0.0)

@@ -1,0 +1,67 @@
+"""Predicted and measured cost: speed of the host, log of earlier work, growth of memory, announcement."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dynamics import work_cost
+from dynamics.work_cost import Cost, announce, measured, on_this_host
+from host import memory_figure
+from model_studies import host_speed
+from model_studies.run_log import FILE, record
+
+KIND, COST = "work", Cost(10.0, 2e9)
+
+
+@pytest.fixture(autouse=True)
+def _host_three_times_as_slow(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(host_speed, "measured_slowness", lambda: 3.0)
+
+
+def test_a_slow_host_takes_longer_and_no_more_memory(tmp_path: Path) -> None:
+    for cache in (None, tmp_path):
+        assert on_this_host(KIND, COST, cache) == (30.0, 2e9)
+
+
+def test_earlier_work_of_a_kind_corrects_its_prediction_alone(tmp_path: Path) -> None:
+    for _ in range(5):
+        record(tmp_path, {KIND: 30.0}, {KIND: 60.0})
+    assert on_this_host(KIND, COST, tmp_path).seconds == pytest.approx(60.0)
+    assert on_this_host("other work", COST, tmp_path).seconds == 30.0
+
+
+def test_work_is_logged_beside_its_uncorrected_prediction(tmp_path: Path) -> None:
+    """Else a correction would be corrected again, and forgotten after so many runs."""
+    for _ in range(5):
+        record(tmp_path, {KIND: 30.0}, {KIND: 60.0})
+    result, cost = measured(KIND, COST, tmp_path, lambda: float(np.sum(np.sin(np.arange(3_000_000.0)))))
+    assert np.isfinite(result)
+    last = json.loads((tmp_path / FILE).read_text("utf-8").splitlines()[-1])
+    assert (last["stage"], last["predicted"]) == (KIND, 30.0)
+    assert last["measured"] == cost.seconds > 0.0
+    assert (cost.predicted_seconds, cost.predicted_bytes) == (pytest.approx(60.0), COST.bytes)
+
+
+@pytest.mark.skipif(memory_figure("VmRSS") is None, reason="the system does not tell resident memory")
+def test_memory_is_what_the_process_grew_by_or_not_known(tmp_path: Path) -> None:
+    size = 2 * work_cost.peak_memory()
+    grown = measured(KIND, COST, None, lambda: np.ones(size // 8).sum())[1].bytes
+    assert grown == pytest.approx(size, rel=0.05)
+    assert measured(KIND, COST, None, lambda: np.ones(size // 16).sum())[1].bytes is None
+
+
+def test_one_after_the_other_seconds_add_up_and_memory_is_used_again() -> None:
+    assert COST.then(Cost(5.0, 3e9)) == (15.0, 3e9)
+    assert COST.times(4) == (40.0, 2e9)
+
+
+def test_what_takes_a_moment_is_not_announced() -> None:
+    told: list[tuple[str, float]] = []
+    announce(lambda *step: told.append(step), "housing", "case", Cost(2.9, 1e9))
+    assert not told
+    announce(lambda *step: told.append(step), "housing", "case", Cost(24.6, 1.16e9))
+    assert told == [("housing; case: about 25 CPU s, 1.2 GB", 0.0)]
