@@ -281,7 +281,7 @@ STUDIES: dict[str, Study] = {
             "scene.toml --speed-rpm 500:3000:25 -o deflection.png",
             kind="vibration",
             stages=(("analysis", 0.9), ("response", 0.1)),
-            version="3",
+            version="2",
             further=(".csv", ".vtu"),
             housed=True,
         ),

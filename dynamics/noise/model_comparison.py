@@ -21,12 +21,11 @@ def models_at(
     bearings: Sequence[str] | None,
     at: tuple[int, int],
     models: Sequence[RadiationModel],
-    air: Air | None = None,
     progress: Progress = silent,
     offered: Sequence[RadiationModel] = (),
     cache: Path | None = None,
 ) -> ModelLadder:
-    """Compute the sound power at one speed and order by several radiation models, on one hull.
+    """Compute the sound power at one speed and order by several radiation models, on one hull in usual air.
 
     Parameters
     ----------
@@ -44,7 +43,7 @@ def models_at(
     InputError
         As `radiated_sound` does, or nothing moves.
     """
-    air, hertz = air or Air(), float(response.frequency[at])
+    air, hertz = Air(), float(response.frequency[at])
     hull = radiating_hull(outer_hull(housing), hertz, air.sound_speed)
     velocity = hull.shapes @ coordinate_velocity(response, housing, bearings, at)
     return compare_models(hull.hull, hertz, velocity, air, models, progress, offered, cache)

@@ -1,29 +1,47 @@
-"""What the work on housings cost beside what was predicted: figures and the table of terminal and report."""
+"""What the housings of a scene cost beside what was predicted: facts of results, their figures, the table."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import asdict, replace
+from typing import TYPE_CHECKING, Any, TypeVar
 
+from bounds import engineering
 from service.drawing.figure import Table, number
 
 if TYPE_CHECKING:
-    from dynamics.housing_modes import ReducedHousing
+    from service.convert.scene import TabledScene
 
 Json = dict[str, Any]
+Result = TypeVar("Result")
 GIGABYTE = 1e9
 HEAD = ("work", "CPU s", "CPU s predicted", "GB", "GB predicted")
 UNKNOWN, LEAST = "-", 1e-3
 
 
-def reduction_cost_of(housing: ReducedHousing) -> Json | None:
-    """Return the fields of the `WorkCost` of a housing's reduction; None where nobody measured it."""
-    return None if housing.cost is None else asdict(housing.cost)
+def with_housing_costs(compute: Callable[..., Result]) -> Callable[..., Result]:
+    """Return the work of a study on a scene as one on a `TabledScene`, with the fact `reduction_cost`."""
+
+    def computed(subject: TabledScene, *means: Any) -> Result:
+        result: Any = compute(subject.scene, *means)
+        whole: Result = replace(result, facts={**result.facts, "reduction_cost": reduction_costs(subject)})
+        return whole
+
+    return computed
+
+
+def reduction_costs(subject: TabledScene) -> Json:
+    """Return the fields of the `WorkCost` of reductions by housing; a file of modes may be without them."""
+    return {name: asdict(body.cost) for name, body in subject.housings.items() if body.cost is not None}
+
+
+def reduction_figures(facts: Mapping[str, Any]) -> Json:
+    """Return the figures of the reductions by housing; none of results of versions that did not know them."""
+    return {name: cost_figures(cost) for name, cost in facts.get("reduction_cost", {}).items()}
 
 
 def cost_figures(cost: Json | None) -> Json | None:
-    """Return the figures of a `HousingCost` from the fields of a `WorkCost`; None where nobody measured."""
+    """Return the figures of a `HousingCost` from the fields of a `WorkCost`."""
     if cost is None:
         return None
     return {
@@ -34,20 +52,32 @@ def cost_figures(cost: Json | None) -> Json | None:
     }
 
 
-def cost_table(work: Iterable[tuple[str, Json | None]]) -> Table:
-    """List what was predicted and measured; `work` is names and fields of a `WorkCost`."""
-    rows = tuple((name, *_row(cost)) for name, cost in work if cost is not None)
-    return Table("Cost of the housings, once: results are kept", HEAD, rows)
+def cost_parts(facts: Mapping[str, Any]) -> Iterator[Table | str]:
+    """Yield what the housings cost and what the rest did, for the terminal; `facts` hold `seconds`."""
+    yield from cost_tables(facts)
+    yield f"cost {engineering(sum(facts['seconds'].values()), 3)} CPU s"
 
 
-def _row(cost: Json) -> tuple[str, ...]:
+def cost_tables(facts: Mapping[str, Any]) -> tuple[Table, ...]:
+    """Return the table of predicted and measured cost of the housings; none without any."""
+    rows = tuple(_row(name, cost) for name, cost in _work(facts))
+    return (Table("Cost of the housings, once: results are kept", HEAD, rows),) if rows else ()
+
+
+def _work(facts: Mapping[str, Any]) -> Iterator[tuple[str, Json]]:
+    """Yield reductions and radiation resistances, and what they cost."""
+    for housing, cost in facts.get("reduction_cost", {}).items():
+        yield f"{housing}: reduction", cost
+    for housing, radiation in facts.get("radiation", {}).items():
+        if "cost" in radiation:
+            model = radiation["model_name"].replace("_", " ")
+            yield f"{housing}: {model}, all frequencies", radiation["cost"]
+
+
+def _row(name: str, cost: Json) -> tuple[str, ...]:
     """Describe a cost."""
-    return (
-        amount(cost["seconds"]),
-        amount(cost["predicted_seconds"]),
-        gigabytes(cost["bytes"]),
-        gigabytes(cost["predicted_bytes"]),
-    )
+    seconds = amount(cost["seconds"]), amount(cost["predicted_seconds"])
+    return name, *seconds, gigabytes(cost["bytes"]), gigabytes(cost["predicted_bytes"])
 
 
 def amount(value: float | None) -> str:

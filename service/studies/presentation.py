@@ -9,8 +9,9 @@ from typing import Any
 from fe_contact.ste import SteDatabase
 from service.convert.effect_lines import run_lines
 from service.drawing.figure import Figure, Table
-from service.drawing.page import Headline, Page, Section
+from service.drawing.page import Headline, Page, Part, Section
 from service.runs.dynamic_part import ledger_section
+from service.studies.housing_costs import cost_tables
 
 
 @dataclass(frozen=True)
@@ -41,9 +42,11 @@ class Presentation:
 def dynamics_page(
     title: str, figures: tuple[Figure, ...], headlines: tuple[Headline, ...], facts: Mapping[str, Any]
 ) -> Page:
-    """Return the page of a study of a scene: its figures, the effects of the scene, and what does not hold.
+    """Return the page of a study of a scene: its figures, effects, cost of its housings, what does not hold.
 
     `facts` hold `effect_ledger`.
     """
-    sections = Section(title, figures=figures), ledger_section(facts["effect_ledger"])
-    return Page("Dynamics of geared shafts", "", headlines, sections, tuple(run_lines(facts)))
+    sections = [Section(title, figures=figures), ledger_section(facts["effect_ledger"])]
+    if tables := cost_tables(facts):
+        sections.append(Section("Cost", tables=tables, part=Part.RECEIPT))
+    return Page("Dynamics of geared shafts", "", headlines, tuple(sections), tuple(run_lines(facts)))

@@ -14,6 +14,7 @@ from fastapi.testclient import TestClient
 from housing_solid import SEAT, housed_scene, housing, write_block
 from study_service import empty_service
 
+from dynamics.housing_modes import ReducedHousing
 from dynamics.linearize import ModalAnalysis
 from service.cli.scene_tables import tabled_scene
 from service.client import JobState, LineOfActionClient
@@ -63,7 +64,12 @@ def test_modes_on_a_solid_are_those_of_the_command_line(served: Served, monkeypa
     np.testing.assert_array_equal(found.natural_frequency, expected.natural_frequency)
     assert "housing" in [state.stage for state in seen if state.stage]
     assert sorted(state.progress for state in seen) == [state.progress for state in seen]
-    assert [each.name[:4] for each in sorted((folder / "data" / "housings").iterdir())] == ["hous", "mesh"]
+    kept = sorted((folder / "data" / "housings").glob("*.nc"))
+    assert [each.name[:4] for each in kept] == ["hous", "mesh"]
+    cost = ReducedHousing.from_netcdf(kept[0]).cost
+    assert cost is not None
+    own = found.facts["reduction_cost"]["case"]
+    assert (own["seconds"], own["predicted_seconds"]) == (cost.seconds, cost.predicted_seconds)
 
 
 def test_the_content_of_a_file_is_part_of_the_address_of_a_result(served: Served) -> None:

@@ -6,13 +6,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from bounds import engineering, leftover
+from bounds import leftover
 from dynamics.linearize import ModalAnalysis
 from service.convert.run_effects import model_lines
 from service.drawing import palette
 from service.drawing.figure import Axis, Dash, Figure, FloatArray, Line, Note, Panel, Table, number
 from service.drawing.mode_bars import mode_bars
 from service.drawing.page import Headline
+from service.studies.housing_costs import cost_parts
 from service.studies.presentation import Presentation, dynamics_page
 
 RPM = np.pi / 30.0
@@ -260,7 +261,7 @@ def _text(modes: ModalAnalysis) -> Iterator[Table | str]:
     if modes.speed.size:
         yield ""
         yield critical_table(modes)
-    yield f"cost {engineering(sum(modes.facts['seconds'].values()), 3)} CPU s"
+    yield from cost_parts(modes.facts)
     yield from model_lines(modes.facts)
 
 

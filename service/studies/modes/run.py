@@ -12,6 +12,7 @@ from dynamics.scene import Scene
 from service.convert.case import boundary_errors
 from service.studies.computation import Computation, Means
 from service.studies.equilibrium import equilibrium_figures
+from service.studies.housing_costs import reduction_figures, with_housing_costs
 from service.studies.modes import Inputs
 from service.studies.result_file import array_file
 from service.units import RPM
@@ -48,6 +49,7 @@ def facts(modes: ModalAnalysis) -> Json:
         "modes": [_over_speed(modes, mode) for mode in range(modes.frequency.shape[1])],
         "critical_speeds": [_crossing(modes, index) for index in range(modes.critical_speed.size)],
         "cpu_seconds": about["seconds"],
+        "reduction_cost": reduction_figures(about),
         "effect_ledger": about["effect_ledger"],
     }
 
@@ -105,7 +107,8 @@ def _crossing(modes: ModalAnalysis, index: int) -> Json:
 
 
 RUN = Computation(
-    modes_of,
+    with_housing_costs(modes_of),
     facts,
     array_file(ModalAnalysis),
+    of_scene=lambda tabled: tabled,
 )

@@ -35,7 +35,6 @@ class HousingSound(Part):
     models_cpu_seconds: dict[str, float]
     models_error_band_db: dict[str, tuple[float, float]]
     models_predicted: dict[str, PredictedCost]
-    reduction_cost: HousingCost | None
     radiation_cost: HousingCost | None
 
 
@@ -154,6 +153,7 @@ class NoiseFigures(Figures):
     forces: BearingForces
     over_time: SoundOverTime | None
     cpu_seconds: dict[str, float]
+    reduction_cost: dict[str, HousingCost]
     effect_ledger: Json
 
 

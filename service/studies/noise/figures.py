@@ -10,7 +10,7 @@ from dynamics.acoustics import a_weighting, sound_power_level
 from dynamics.noise import LoudPoint, RadiatedSound, loudest
 from service.studies.bearing_forces import LINEAR
 from service.studies.equilibrium import equilibrium_figures
-from service.studies.housing_costs import cost_figures
+from service.studies.housing_costs import cost_figures, reduction_figures
 from service.units import MM, RPM
 
 Json = dict[str, Any]
@@ -46,6 +46,7 @@ def facts(sound: RadiatedSound) -> Json:
         "sensitivities": about["sensitivities"],
         "sensitivities_left_out": about["sensitivities_left_out"],
         "cpu_seconds": about["seconds"],
+        "reduction_cost": reduction_figures(about),
         "effect_ledger": about["effect_ledger"],
     }
 
@@ -81,7 +82,6 @@ def _housing(about: Json, name: str) -> Json:
             model: {"cpu_seconds": cost["seconds"], "bytes": cost["bytes"]}
             for model, cost in compared.get("predicted", {}).items()
         },
-        "reduction_cost": cost_figures(about.get("reduction_cost", {}).get(name)),
         "radiation_cost": cost_figures(radiation.get("cost")),
     }
 

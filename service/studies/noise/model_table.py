@@ -7,7 +7,7 @@ from typing import Any
 
 from dynamics.noise import RadiatedSound
 from service.drawing.figure import Table, number
-from service.studies.housing_costs import amount, cost_table, gigabytes
+from service.studies.housing_costs import amount, gigabytes
 from service.units import RPM
 
 Json = dict[str, Any]
@@ -15,14 +15,11 @@ HEAD = ("model", "level, dB", "stated error, dB", "CPU s", "CPU s predicted", "G
 
 
 def model_tables(sound: RadiatedSound) -> Iterator[Table]:
-    """Yield the models of each housing where it is loudest, and the cost of the housings."""
+    """Yield the models of each housing where it is loudest."""
     for housing in sound.housing:
         compared = sound.facts["models"][housing]
         if compared.get("predicted"):
             yield _models(housing, compared)
-    work = tuple(_work(sound))
-    if any(cost is not None for _, cost in work):
-        yield cost_table(work)
 
 
 def _models(housing: str, compared: Json) -> Table:
@@ -45,12 +42,3 @@ def _model(name: str, compared: Json) -> tuple[str, ...]:
         amount(predicted["seconds"]),
         gigabytes(predicted["bytes"]),
     )
-
-
-def _work(sound: RadiatedSound) -> Iterator[tuple[str, Json | None]]:
-    """Yield the work on each housing and its cost."""
-    for housing in sound.housing:
-        radiation = sound.facts["radiation"][housing]
-        yield f"{housing}: reduction", sound.facts.get("reduction_cost", {}).get(housing)
-        model = radiation["model_name"].replace("_", " ")
-        yield f"{housing}: {model}, all frequencies", radiation.get("cost")

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from bounds import engineering
 from dynamics.noise import LoudPoint, RadiatedSound, loudest
 from service.convert.run_effects import model_lines
 from service.drawing.figure import Figure, Table, number
 from service.drawing.page import Headline, Page, Part, Section
 from service.studies.bearing_forces import force_words, of_run
+from service.studies.housing_costs import cost_parts
 from service.studies.noise.drawings import (
     RPM,
     bearing_levels,
@@ -152,7 +152,7 @@ def _text(sound: RadiatedSound) -> Iterator[Table | str]:
     yield from model_tables(sound)
     yield from uncertainty_tables(sound.facts)
     yield from (f"no sensitivity to {name}: {why}" for name, why in _missing(sound))
-    yield f"cost {engineering(sum(sound.facts['seconds'].values()), 3)} CPU s"
+    yield from cost_parts(sound.facts)
     yield from model_lines(sound.facts)
 
 

@@ -36,7 +36,7 @@ from service.runs.through_housing import require_surface, silent
 from service.schemas.scene import SceneInput
 from service.studies.bearing_forces import forces_of
 from service.studies.computation import Computation, Means
-from service.studies.housing_costs import reduction_cost_of
+from service.studies.housing_costs import reduction_costs
 from service.studies.noise import Inputs
 from service.studies.noise.figures import facts
 from service.studies.noise.over_time import over_time, over_time_json, run_frequencies
@@ -81,7 +81,7 @@ def noise_of(subject: TabledScene, inputs: Inputs, means: Means) -> RadiatedSoun
     seconds = {**about["seconds"], "sound": time.process_time() - began}
     own = {name: about.get(name) for name in ("leading_shaft", "equilibrium", "effect_ledger", "forces")}
     own["over_time"] = over_time_json(heard)
-    own["reduction_cost"] = {housing.name: reduction_cost_of(housing.body) for housing in housings}
+    own["reduction_cost"] = reduction_costs(subject)
     known = {**whole.facts, **own, "models": compared, "seconds": seconds}
     whole = replace(whole, facts=known)
     return replace(whole, facts={**known, **uncertainty(subject, whole, radiation, inputs, means)})

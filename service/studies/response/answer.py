@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from service.schemas.figures import Figures, Json, Part
+from service.schemas.housing_costs import HousingCost
 from service.studies.equilibrium import Equilibrium
 
 
@@ -68,6 +69,7 @@ class ResponseFigures(Figures):
     residual: float
     equilibrium: Equilibrium
     cpu_seconds: dict[str, float]
+    reduction_cost: dict[str, HousingCost]
     effect_ledger: Json
 
 

@@ -13,6 +13,7 @@ from service.convert.case import boundary_errors
 from service.schemas.speeds import OverOrders
 from service.studies.computation import Computation, Means
 from service.studies.equilibrium import equilibrium_figures
+from service.studies.housing_costs import reduction_figures, with_housing_costs
 from service.studies.result_file import array_file
 from service.units import N_PER_UM, RPM, UM
 
@@ -49,6 +50,7 @@ def facts(response: ForcedResponse) -> Json:
         "residual": response.residual,
         "equilibrium": equilibrium_figures(about["equilibrium"]),
         "cpu_seconds": about["seconds"],
+        "reduction_cost": reduction_figures(about),
         "effect_ledger": about["effect_ledger"],
     }
 
@@ -91,7 +93,8 @@ def _peak_json(peak: Peak) -> Json:
 
 
 RUN = Computation(
-    response_of,
+    with_housing_costs(response_of),
     facts,
     array_file(ForcedResponse),
+    of_scene=lambda tabled: tabled,
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from service.schemas.figures import Figures, Json, Part
+from service.schemas.housing_costs import HousingCost
 
 
 class MeshMotion(Part):
@@ -72,6 +73,7 @@ class SteadyFigures(Figures):
     jumps: list[Jump]
     steps_per_period: int
     cpu_seconds: dict[str, float]
+    reduction_cost: dict[str, HousingCost]
     effect_ledger: Json
 
 

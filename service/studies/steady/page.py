@@ -6,13 +6,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from bounds import engineering, leftover
+from bounds import leftover
 from dynamics.periodic import SteadyStates
 from dynamics.periodic.steady_states import BRANCH, DOWN, UP
 from service.convert.run_effects import model_lines
 from service.drawing import palette
 from service.drawing.figure import Axis, Dash, Figure, FloatArray, Line, Panel, Reference, Table, number
 from service.drawing.page import Headline
+from service.studies.housing_costs import cost_parts
 from service.studies.presentation import Presentation, dynamics_page
 from service.studies.steady.run import KINDS, facts, status_name
 
@@ -228,7 +229,7 @@ def _text(states: SteadyStates) -> Iterator[Table | str]:
         branch, points = answer["branch"], answer["bifurcations"]
         turns = ", ".join(f"{point['kind']} at {point['speed_rpm']:.6g} rpm" for point in points)
         yield f"branch {branch['status']}, {len(branch['points'])} motions; {turns or 'no bifurcation'}"
-    yield f"cost {engineering(sum(states.facts['seconds'].values()), 3)} CPU s"
+    yield from cost_parts(states.facts)
     yield from model_lines(states.facts)
 
 

@@ -12,6 +12,7 @@ from dynamics.periodic.steady_states import BRANCH, CURVES, UP
 from dynamics.scene import Scene
 from service.convert.case import boundary_errors
 from service.studies.computation import Computation, Means
+from service.studies.housing_costs import reduction_figures, with_housing_costs
 from service.studies.result_file import array_file
 from service.studies.steady import Inputs
 from service.units import RPM, UM
@@ -64,6 +65,7 @@ def facts(states: SteadyStates) -> Json:
         ],
         "steps_per_period": about["steps_per_period"],
         "cpu_seconds": about["seconds"],
+        "reduction_cost": reduction_figures(about),
         "effect_ledger": about["effect_ledger"],
     }
 
@@ -119,8 +121,9 @@ def not_found(states: SteadyStates) -> str:
 
 
 RUN = Computation(
-    steady_of,
+    with_housing_costs(steady_of),
     facts,
     array_file(SteadyStates),
+    of_scene=lambda tabled: tabled,
     failure=not_found,
 )

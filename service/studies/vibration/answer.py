@@ -50,7 +50,7 @@ class VibrationFigures(Figures):
     contributions: Contributions
     forces: BearingForces
     cpu_seconds: dict[str, float]
-    reduction_cost: HousingCost | None
+    reduction_cost: dict[str, HousingCost]
     effect_ledger: Json
 
 

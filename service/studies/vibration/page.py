@@ -7,12 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from bounds import engineering
 from service.convert.run_effects import model_lines
 from service.drawing.figure import Figure, Table, number
 from service.drawing.page import Headline, Page, Part, Section
 from service.studies.bearing_forces import force_words
-from service.studies.housing_costs import cost_table
+from service.studies.housing_costs import cost_parts
 from service.studies.presentation import Presentation, dynamics_page
 from service.studies.vibration.plots import (
     contribution_figure,
@@ -36,8 +35,7 @@ def page(result: HousingVibrationResult) -> Page:
     drawn = figures if shape is None else (figures[0], shape, *figures[1:])
     whole = dynamics_page("Vibration of the housing", drawn, headlines(result), result.analysis.facts)
     rests = Table("Forces that move the housing", ("what", "how"), force_words(result.analysis.facts))
-    tables = (rests, *_costs(result))
-    accuracy = Section("Accuracy of the velocities", tables=tables, part=Part.ACCURACY)
+    accuracy = Section("Accuracy of the velocities", tables=(rests,), part=Part.ACCURACY)
     return replace(whole, sections=(*whole.sections, accuracy))
 
 
@@ -63,12 +61,6 @@ def headlines(result: HousingVibrationResult) -> tuple[Headline, ...]:
     return (first, *most)
 
 
-def _costs(result: HousingVibrationResult) -> tuple[Table, ...]:
-    """Return the table of what the housing cost, none where nobody measured it."""
-    cost = result.analysis.facts.get("reduction_cost")
-    return () if cost is None else (cost_table([(f"{result.analysis.housing}: reduction", cost)]),)
-
-
 def _speed(rms: float) -> str:
     """Write a velocity."""
     return f"{number(rms / MM_PER_S, 3)} mm/s rms"
@@ -85,8 +77,7 @@ def _text(result: HousingVibrationResult) -> Iterator[Table | str]:
         limit = number(vibration.highest_valid_frequency, 4)
         yield f"orders {orders} go beyond {limit} Hz, 0.7 of the highest mode kept: keep more modes"
     yield from (f"{what}: {words}" for what, words in force_words(found.facts))
-    yield from _costs(result)
-    yield f"cost {engineering(sum(found.facts['seconds'].values()), 3)} CPU s"
+    yield from cost_parts(found.facts)
     yield from model_lines(found.facts)
 
 

@@ -27,7 +27,7 @@ from service.problems import BadInput
 from service.schemas.scene import SceneInput
 from service.studies.bearing_forces import LINEAR, forces_of
 from service.studies.computation import Computation, Means
-from service.studies.housing_costs import cost_figures, reduction_cost_of
+from service.studies.housing_costs import reduction_costs, reduction_figures
 from service.studies.result_file import record_file
 from service.studies.vibration import Inputs
 from service.units import RPM
@@ -83,7 +83,7 @@ def vibration_of(tabled: TabledScene, inputs: Inputs, means: Means) -> HousingVi
         )
         mode = None if inputs.mode is None else _mode(housing, inputs.mode)
     seconds = {**found.facts["seconds"], "vibration": time.process_time() - began}
-    costs = {"seconds": seconds, "reduction_cost": reduction_cost_of(housing)}
+    costs = {"seconds": seconds, "reduction_cost": reduction_costs(tabled)}
     found = replace(found, facts={**found.facts, **costs})
     return HousingVibrationResult(found, housing.frequency, inputs.mode or 0, mode)
 
@@ -136,7 +136,7 @@ def facts(result: HousingVibrationResult) -> Json:
         },
         "forces": found.facts.get("forces", LINEAR),
         "cpu_seconds": found.facts["seconds"],
-        "reduction_cost": cost_figures(found.facts.get("reduction_cost")),
+        "reduction_cost": reduction_figures(found.facts),
         "effect_ledger": found.facts["effect_ledger"],
     }
 

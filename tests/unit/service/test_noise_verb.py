@@ -112,7 +112,8 @@ def test_the_table_and_every_kind_of_file_say_the_same(scene: Path, tmp_path: Pa
 
 def test_every_model_states_its_error_and_cost_before_it_is_asked_for(scene: Path) -> None:
     """Of this housing; boundary elements were not computed, its modes come from a file without a cost."""
-    own = json.loads(loa(scene, *SPEEDS, "--json").stdout)["housings"]["case"]
+    answer = json.loads(loa(scene, *SPEEDS, "--json").stdout)
+    own = answer["housings"]["case"]
     ladder = ["equivalent_radiated_power", "monopoles", "boundary_elements"]
     assert list(own["models_predicted"]) == list(own["models_error_band_db"]) == ladder
     assert list(own["models_db"]) == ladder[:2] and not own["models_left_out"]
@@ -120,7 +121,7 @@ def test_every_model_states_its_error_and_cost_before_it_is_asked_for(scene: Pat
     assert costs == sorted(costs) and costs[0] >= 0.0 and costs[2] > 100.0 * costs[1]
     for low, high in own["models_error_band_db"].values():
         assert low < 0.0 < high
-    assert own["reduction_cost"] is None
+    assert answer["reduction_cost"] == {}
     radiation = own["radiation_cost"]
     assert min(radiation["predicted_cpu_seconds"], radiation["cpu_seconds"]) > 0.0
     assert radiation["predicted_bytes"] > 0.0

@@ -92,7 +92,7 @@ def test_every_kind_of_output_says_the_same(scene: Path, tmp_path: Path) -> None
     check_effects_shown(
         found.analysis.facts["effect_ledger"], result.stdout, files["html"].read_text("utf-8")
     )
-    cost = written["reduction_cost"]
+    cost = written["reduction_cost"]["case"]
     assert cost["predicted_cpu_seconds"] > 0.0 and cost["cpu_seconds"] > 0.0 and cost["predicted_bytes"] > 0.0
     assert re.search(r"case: reduction +\S+ ", result.stdout)
     assert "case: reduction" in files["html"].read_text("utf-8")
