@@ -82,7 +82,8 @@ def octaves(low: float, high: float) -> list[tuple[float, float]]:
 def expected_knots(ka: float) -> float:
     """Return how many frequencies `knots_between` about takes in an octave up to a wavenumber times radius.
 
-    Counted on cast boxes with 40 and 100 coordinates, ka of 0.6 to 28: within a quarter.
+    Counted on cast boxes with 40 and 100 coordinates, ka of 0.6 to 28: within a quarter. Few simple modes
+    need half as many.
     """
     return FEWEST + KNOTS[0] * ka + KNOTS[1] * ka**2
 
