@@ -81,7 +81,7 @@ def progress_bar() -> Iterator[Report]:
         def report(stage: str, fraction: float) -> None:
             name = stage_name(stage)
             if name not in tasks:
-                tasks[name] = bars.add_task(name, total=1.0)
+                tasks[name] = bars.add_task(stage, total=1.0)
             bars.update(tasks[name], description=stage, completed=min(max(fraction, 0.0), 1.0))
 
         yield report
