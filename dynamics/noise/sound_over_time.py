@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -128,16 +128,16 @@ def sound_over_time(
         raise InputError(
             "block", block, between(4 * LEAKAGE / rate, result.time.size / rate, "s", "the run's")
         )
-    velocity = _velocity(result, housing, bearings)
-    starts = np.arange(0, len(velocity) - samples + 1, samples // 2)
+    velocities = _blocks(_velocity(result, housing, bearings), samples)
+    starts = np.arange(0, result.time.size - samples + 1, samples // 2)
     width = rate / samples
     line = np.arange(1.0, samples // 2) * width
     lowest = max(LOWEST, LEAKAGE * width, float(radiation.frequency[0]))
     highest = min(float(result.receipt["sampling"]["pass_frequency"]), float(radiation.frequency[-1]))
     inside = (line >= lowest) & (line <= highest)
     power = np.zeros((starts.size, line.size))
-    for row, start in zip(power, starts, strict=True):
-        row[inside] = _line_powers(velocity[start : start + samples], line, inside, radiation)
+    for row, velocity in zip(power, velocities, strict=True):
+        row[inside] = _line_powers(velocity, line, inside, radiation)
     band, _, within = band_sums(width, power, highest, lowest)
     middle = starts + samples // 2
     speed = result.speed[result.shaft.index(leading_shaft(result))]
@@ -148,11 +148,28 @@ def sound_over_time(
     )
 
 
-def _velocity(result: RunResult, housing: ReducedHousing, bearings: Sequence[str] | None) -> FloatArray:
-    """Return the velocities of the reduced coordinates at the samples of the run, (T, r)."""
+def _velocity(
+    result: RunResult, housing: ReducedHousing, bearings: Sequence[str] | None
+) -> Iterator[FloatArray]:
+    """Yield the velocities of the reduced coordinates at the samples of the run, (T, r), in pieces."""
     time, force = finer_seat_forces(result, housing, bearings, FINER)
     every = np.eye(len(housing.stiffness))
-    return np.concatenate([piece[::FINER] for piece in motion_pieces(housing, time, force, every)])
+    for piece in motion_pieces(housing, time, force, every):
+        yield piece[::FINER]  # pieces have an even number of samples
+
+
+def _blocks(pieces: Iterable[FloatArray], samples: int) -> Iterator[FloatArray]:
+    """Yield blocks of `samples` that overlap by half, of a series in pieces; no more of it is held."""
+    held: list[FloatArray] = []
+    for piece in pieces:
+        held.append(piece)
+        if sum(map(len, held)) < samples:
+            continue
+        series = np.concatenate(held)
+        starts = range(0, len(series) - samples + 1, samples // 2)
+        for start in starts:
+            yield series[start : start + samples]
+        held = [series[starts[-1] + samples // 2 :]]
 
 
 def _line_powers(

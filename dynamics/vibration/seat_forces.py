@@ -68,7 +68,9 @@ def finer_seat_forces(
     Between finer samples a cubic spline follows what the run's output passes: see `motion_signal`.
     """
     force = run_seat_forces(result, housing, bearings)
-    finer = np.stack([interpolated(row, factor, HALF_LENGTH) for row in force.T], axis=1)
+    finer = np.empty((factor * (len(force) - 1) + 1, force.shape[1]))
+    for column, series in zip(finer.T, force.T, strict=True):
+        column[:] = interpolated(series, factor, HALF_LENGTH)
     return result.time[0] + np.arange(len(finer)) / (factor * result.sample_rate), finer
 
 

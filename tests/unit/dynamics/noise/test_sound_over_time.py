@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from functools import cache
 
 import numpy as np
 import pytest
+from hulls import box
+from reduced_housings import bare_housing
+from sounding_housings import smooth_motion, with_surface
 from sounding_scene import housing
 from swept_runs import RATE, drawn_amplitudes, order_forces, swept_run
 
@@ -13,7 +17,7 @@ from dynamics.acoustics import EquivalentRadiatedPower, a_weighting
 from dynamics.errors import InputError
 from dynamics.noise import SoundOverTime, housing_radiation, radiated_sound, sound_over_time
 from dynamics.orders import bearing_orders
-from dynamics.vibration import motion_signal, run_seat_forces
+from dynamics.vibration import motion_signal, run_seat_forces, time_signal
 
 ORDERS, TOLERANCE = 3, 0.3  # dB
 FORCE = order_forces(drawn_amplitudes(ORDERS))
@@ -130,3 +134,29 @@ def test_housings_of_one_run_add_up_in_power():
         SoundOverTime.of_all([found, shorter])
     with pytest.raises(InputError, match="sounds"):
         SoundOverTime.of_all([])
+
+
+@pytest.mark.parametrize("block", [0.05, 0.25])
+def test_pieces_in_which_it_is_computed_do_not_show(monkeypatch, block):
+    """Blocks are shorter and longer than a piece of 0.1 s."""
+    run = swept_run(620.0, 700.0, 1.0, FORCE)
+    found = sound_over_time(run, housing(), None, radiation(), block)
+    monkeypatch.setattr(time_signal, "PIECE", 2 * run.time.size)
+    whole = sound_over_time(run, housing(), None, radiation(), block)
+    np.testing.assert_allclose(found.total, whole.total, rtol=1e-12)
+    np.testing.assert_allclose(found.power, whole.power, rtol=1e-9, atol=1e-12 * whole.power.max())
+
+
+def test_of_a_longer_run_only_forces_are_held():
+    """Those of the run, and at twice its rate; velocities of 80 coordinates would be four times as much."""
+    bare, hull = bare_housing(modal=60), box((0.36, 0.24, 0.18), (4, 3, 2))
+    body = with_surface(bare, hull, smooth_motion(hull, len(bare.stiffness)))
+    air = housing_radiation(body, EquivalentRadiatedPower(), [25.0, 7800.0])
+    peaks = []
+    for seconds in (1.0, 2.0):
+        run = swept_run(620.0, 620.0, seconds, FORCE)
+        tracemalloc.start()
+        sound_over_time(run, body, None, air)
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    assert peaks[1] - peaks[0] < 1.2 * RATE * 8.0 * body.motions * (1 + 2)
