@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -195,34 +195,15 @@ def make_workspace(
     system: SystemArrays, step_sizes: FloatArray, q: FloatArray, first_step: float
 ) -> Workspace:
     """Allocate for a run that starts at t = 0 at rest in the displacements `q` (n,)."""
-    n, rows, meshes, r = q.size, system.direction.shape[0], system.turn.shape[0], step_sizes.size
-    laws, bodies = system.inertial.shape[0], system.sparse.modal.first
-    counts = np.zeros(len(Count), dtype=np.int64)
-    counts[Count.LEVEL] = min(int(np.searchsorted(-step_sizes, -first_step)), r - 2)
-    counts[Count.SMALLEST_LEVEL] = r - 1
-    per_freedom = (
-        "v",
-        "v_rest",
-        "a",
-        "q_new",
-        "v_new",
-        "a_new",
-        "q_error",
-        "v_error",
-        "external",
-        "unloaded",
-    )
-    linear = _linear_rows(system.elements)
-    per_row = ("force", "free", "free_rate", "free_acceleration", "update", "correction")
+    rows, meshes, laws = system.direction.shape[0], system.turn.shape[0], system.inertial.shape[0]
+    linear, bodies = _linear_rows(system.elements), system.sparse.modal.first
     return Workspace(
         time=np.zeros(1),
         time_rest=np.zeros(1),
         error=np.ones(1),
         q=np.array(q, dtype=float),
-        **{name: np.zeros(n) for name in per_freedom},
-        stage_v=np.zeros((STAGES, n)),
-        stage_a=np.zeros((STAGES, n)),
-        **{name: np.zeros(rows) for name in per_row},
+        **_per_freedom(q.size),
+        **_per_row(rows),
         local=make_local(system.elements, meshes),
         before=_step_end(meshes, rows, laws),
         after=_step_end(meshes, rows, laws),
@@ -232,20 +213,58 @@ def make_workspace(
         response=np.zeros(rows + meshes),
         motion=np.zeros((laws, MOTION_COLUMNS)),
         moved=np.zeros(laws, dtype=np.int64),
-        solved=np.full(rows + 1, -1, dtype=np.int64),
-        jacobian=np.zeros((rows, 2 * rows)),
-        power=np.zeros((STAGES, len(Power))),
-        work=np.zeros(len(Power)),
-        highest=np.zeros(len(LOSSES)),
-        fallen=np.zeros(len(LOSSES)),
-        counts=counts,
+        **_works(),
+        counts=_counts(step_sizes, first_step),
         step_sizes=step_sizes,
         matrix=np.zeros((bodies, bodies)),
-        ready=np.zeros(r, dtype=np.bool_),
-        inverse=np.zeros((r, system.sparse.coupling.column.size)),
-        approach=np.zeros((r, rows, rows + meshes)),
-        held=np.zeros((r, rows + meshes, 2 * len(linear))),
+        **_per_level(step_sizes.size, rows, meshes, len(linear), system.sparse.coupling.column.size),
     )
+
+
+def _per_freedom(n: int) -> dict[str, Any]:
+    """Allocate state and scratch of the freedoms."""
+    names = ("v", "v_rest", "a", "q_new", "v_new", "a_new", "q_error", "v_error", "external", "unloaded")
+    stages = {name: np.zeros((STAGES, n)) for name in ("stage_v", "stage_a")}
+    return {name: np.zeros(n) for name in names} | stages
+
+
+def _per_row(rows: int) -> dict[str, Any]:
+    """Allocate local forces and coordinates, and the equations of Newton's method for them."""
+    names = ("force", "free", "free_rate", "free_acceleration", "update", "correction")
+    own: dict[str, Any] = {name: np.zeros(rows) for name in names}
+    return own | {
+        "solved": np.full(rows + 1, -1, dtype=np.int64),
+        "jacobian": np.zeros((rows, 2 * rows)),
+    }
+
+
+def _works() -> dict[str, Any]:
+    """Allocate powers and works."""
+    return {
+        "power": np.zeros((STAGES, len(Power))),
+        "work": np.zeros(len(Power)),
+        "highest": np.zeros(len(LOSSES)),
+        "fallen": np.zeros(len(LOSSES)),
+    }
+
+
+def _counts(step_sizes: FloatArray, first_step: float) -> IntArray:
+    """Return the step statistics before the first step."""
+    counts = np.zeros(len(Count), dtype=np.int64)
+    levels = step_sizes.size
+    counts[Count.LEVEL] = min(int(np.searchsorted(-step_sizes, -first_step)), levels - 2)
+    counts[Count.SMALLEST_LEVEL] = levels - 1
+    return counts
+
+
+def _per_level(levels: int, rows: int, meshes: int, linear: int, entries: int) -> dict[str, Any]:
+    """Allocate the matrices of each step size."""
+    return {
+        "ready": np.zeros(levels, dtype=np.bool_),
+        "inverse": np.zeros((levels, entries)),
+        "approach": np.zeros((levels, rows, rows + meshes)),
+        "held": np.zeros((levels, rows + meshes, 2 * linear)),
+    }
 
 
 def _linear_rows(elements: Elements) -> IntArray:

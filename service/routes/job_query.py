@@ -16,42 +16,49 @@ from service.schemas.ogc import JobStatus
 _DURATION: dict[str, Any] = {"ge": 0, "le": 1_000_000_000}
 
 
+Processes = Annotated[
+    list[Annotated[str, Field(pattern="^[A-Za-z0-9_-]{1,64}$")]],
+    Query(alias="processID", max_length=32, description="Jobs of these processes"),
+]
+States = Annotated[list[JobStatus], Query(max_length=16, description="Jobs in these states")]
+Types = Annotated[
+    list[Literal["process"]],
+    Query(alias="type", max_length=4, description="Type of jobs; all jobs are of type process"),
+]
+Created = Annotated[
+    str,
+    Query(
+        alias="datetime",
+        max_length=100,
+        description="Jobs created at this instant, or in an interval start/end with .. for an open end",
+    ),
+]
+AtLeast = Annotated[
+    int,
+    Query(alias="minDuration", description="Jobs that ran for at least this many seconds", **_DURATION),
+]
+AtMost = Annotated[
+    int | None,
+    Query(alias="maxDuration", description="Jobs that ran for at most this many seconds", **_DURATION),
+]
+Tags = Annotated[list[Tag], Query(max_length=16, description="Jobs that have all of these tags")]
+Words = Annotated[Title, Query(description="Jobs with all of these words in their title, in any case")]
+Parent = Annotated[
+    str | None,
+    Query(pattern="^[0-9a-f-]{36}$", description="Jobs of this batch; without it, batches and jobs of none"),
+]
+
+
 def job_filter(
-    process_id: Annotated[
-        list[Annotated[str, Field(pattern="^[A-Za-z0-9_-]{1,64}$")]],
-        Query(alias="processID", max_length=32, description="Jobs of these processes"),
-    ] = [],  # noqa: B006 (the framework copies it)
-    status: Annotated[list[JobStatus], Query(max_length=16, description="Jobs in these states")] = [],  # noqa: B006
-    kind: Annotated[
-        list[Literal["process"]],
-        Query(alias="type", max_length=4, description="Type of jobs; all jobs are of type process"),
-    ] = [],  # noqa: B006
-    instant: Annotated[
-        str,
-        Query(
-            alias="datetime",
-            max_length=100,
-            description="Jobs created at this instant, or in an interval start/end with .. for an open end",
-        ),
-    ] = "../..",
-    shortest: Annotated[
-        int,
-        Query(alias="minDuration", description="Jobs that ran for at least this many seconds", **_DURATION),
-    ] = 0,
-    longest: Annotated[
-        int | None,
-        Query(alias="maxDuration", description="Jobs that ran for at most this many seconds", **_DURATION),
-    ] = None,
-    tag: Annotated[list[Tag], Query(max_length=16, description="Jobs that have all of these tags")] = [],  # noqa: B006
-    title: Annotated[
-        Title, Query(description="Jobs with all of these words in their title, in any case")
-    ] = "",
-    parent: Annotated[
-        str | None,
-        Query(
-            pattern="^[0-9a-f-]{36}$", description="Jobs of this batch; without it, batches and jobs of none"
-        ),
-    ] = None,
+    process_id: Processes = [],  # noqa: B006 (the framework copies it)
+    status: States = [],  # noqa: B006
+    kind: Types = [],  # noqa: B006
+    instant: Created = "../..",
+    shortest: AtLeast = 0,
+    longest: AtMost = None,
+    tag: Tags = [],  # noqa: B006
+    title: Words = "",
+    parent: Parent = None,
 ) -> JobFilter:
     """Return what the parameters ask for."""
     earliest, latest = _interval(instant)

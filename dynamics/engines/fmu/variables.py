@@ -50,6 +50,14 @@ def _turns(name: str, text: str) -> Variable:
     return Variable(name, INTEGER, "input", "discrete", text, "", 0)
 
 
+def _tunable(name: str, unit: str, text: str, start: float) -> Variable:
+    return Variable(name, REAL, "parameter", "tunable", text, unit, float(start))
+
+
+def _switch(name: str, text: str, start: bool) -> Variable:
+    return Variable(name, BOOLEAN, "parameter", "fixed", text, "", start)
+
+
 def _output(name: str, unit: str, text: str) -> Variable:
     return Variable(name, REAL, "output", "continuous", text, unit)
 
@@ -88,62 +96,18 @@ def _parameters(element: MeshElement) -> list[Variable]:
     """Return what is set before a run, numbers also during it."""
     coast = element.coast
     backlash, thickness = (0.0, 0.5) if coast is None else (coast.backlash, coast.thickness)
+    along = "Backlash along the transverse line of action at zero displacements"
+    share = "Tooth thickness of the driver over the pitch, on the operating pitch circle"
+    touching = "True: the coast flanks touch where the backlash is used up"
+    from_angles = "True: r_b1 driver_angle - r_b2 driven_angle + displacement; false: displacement is the dte"
     return [
-        Variable("damping", REAL, "parameter", "tunable", "In full contact", "N.s/m", float(element.damping)),
-        Variable(
-            "damping_reach",
-            REAL,
-            "parameter",
-            "tunable",
-            "Elastic force from which the damping acts in full",
-            "N",
-            element.reach,
-        ),
-        Variable(
-            "position_offset",
-            REAL,
-            "parameter",
-            "tunable",
-            "Position at zero angle in base pitches",
-            "",
-            float(element.position_offset),
-        ),
-        Variable(
-            "backlash",
-            REAL,
-            "parameter",
-            "tunable",
-            "Backlash along the transverse line of action at zero displacements",
-            "m",
-            float(backlash),
-        ),
-        Variable(
-            "tooth_thickness",
-            REAL,
-            "parameter",
-            "tunable",
-            "Tooth thickness of the driver over the pitch, on the operating pitch circle",
-            "",
-            float(thickness),
-        ),
-        Variable(
-            "coast_flank",
-            BOOLEAN,
-            "parameter",
-            "fixed",
-            "True: the coast flanks touch where the backlash is used up",
-            "",
-            coast is not None,
-        ),
-        Variable(
-            "dte_from_angles",
-            BOOLEAN,
-            "parameter",
-            "fixed",
-            "True: r_b1 driver_angle - r_b2 driven_angle + displacement; false: displacement is the dte",
-            "",
-            True,
-        ),
+        _tunable("damping", "N.s/m", "In full contact", element.damping),
+        _tunable("damping_reach", "N", "Elastic force from which the damping acts in full", element.reach),
+        _tunable("position_offset", "", "Position at zero angle in base pitches", element.position_offset),
+        _tunable("backlash", "m", along, backlash),
+        _tunable("tooth_thickness", "", share, thickness),
+        _switch("coast_flank", touching, coast is not None),
+        _switch("dte_from_angles", from_angles, True),
     ]
 
 
