@@ -29,6 +29,9 @@ nav ol { columns: 2; padding-left: 1.3rem; margin: .3rem 0; }
 figure { margin: 1.2rem 0 2.2rem; }
 figcaption { max-width: 44rem; color: var(--muted); font-size: .92rem; }
 .plot { width: 100%; }
+/* the bar of buttons stands above a legend, not on it */
+.plot:has(.legend) { margin-top: 30px; }
+.plot:has(.legend) .modebar-container { top: -30px !important; }
 .player { margin: .6rem 0; }
 .player p { color: var(--muted); font-size: .92rem; }
 .still { display: none; max-width: 100%; }

@@ -137,6 +137,27 @@ def test_the_page_does_not_scroll_sideways_on_a_phone(browser: Browser, report: 
     page.close()
 
 
+@pytest.mark.parametrize("width", [390, 700, 1280])
+def test_the_bar_of_buttons_hides_nothing(browser: Browser, report: Path, width: int) -> None:
+    """Neither a legend nor the words above a plot; it is reached from the plot without a gap."""
+    page = browser.new_page(viewport={"width": width, "height": 800})
+    page.goto(report.as_uri())
+    page.wait_for_selector("html[data-drawn=yes]", timeout=PATIENCE)
+    bars, plots, words = (
+        page.eval_on_selector_all(chosen, "nodes => nodes.map(n => n.getBoundingClientRect().toJSON())")
+        for chosen in (
+            ".plot:has(.legend) .modebar",
+            ".plot:has(.legend) .svg-container",
+            "h2, h3, p, figcaption, summary, .legendtext",
+        )
+    )
+    page.close()
+    assert len(bars) == len(plots) > 3
+    for bar, plot in zip(bars, plots, strict=True):
+        assert not any(overlap(bar, box) for box in words)
+        assert abs(bar["bottom"] - plot["top"]) < 4
+
+
 def test_the_numbers_open_by_keyboard(visit: Visit) -> None:
     summary = visit.page.locator("#ste summary")
     table = visit.page.locator("#ste table")
