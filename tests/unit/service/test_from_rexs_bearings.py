@@ -2,72 +2,20 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Mapping, Sequence
-from pathlib import Path
-from typing import Any
-
 import numpy as np
 import pytest
+from rexs_bearing_units import BALL, LEFT, LINE, RIGHT, ROLLER, ROW, Values, at, inside, on_lines
 from rexs_reference import needs_reference, reference
 
 from dynamics.rolling_bearings import LoadedBearing
 from service.convert.bearings import rolling_bearing_of
 from service.from_rexs.opened import OpenedUnit, opened
-from service.rexs import Document, read_rexs
-from service.schemas.scene_bearings import BallRowInput, RollerRowInput, RollingBearingInput
+from service.rexs import read_rexs
+from service.schemas.scene_bearings import RollingBearingInput
 from tests.fakes.deflected_unit import deflection_of_unit
 from tests.fakes.opened_unit import said
 from tests.fakes.rexs_stage import relation
-from tests.fakes.rexs_unit import CASING, INPUT, MOTOR, NORMAL_LOAD, place, two_stages
-
-LEFT, RIGHT = 31, 32  # of the input shaft, at u = 15 and 140 mm
-LINE = {
-    "bearing_type": "radial_grooved_ball_bearing",
-    "inner_diameter": 25.0,
-    "outer_diameter": 62.0,
-    "radial_static_load_rating": 11.6,
-    "radial_dynamic_load_rating": 23.4,
-    "operating_radial_bearing_clearance": 10.0,
-}
-INSIDE = {"bearing_type": "radial_tapered_roller_bearing", "radial_static_load_rating": 56.0}
-ROW = {"number_of_rolling_elements": 17, "reference_diameter_rolling_bearing": 54.0, "pressure_angle": 14.0}
-ROLLER = {"diameter_of_rolling_element": 9.0, "length_of_rolling_element": 12.5}
-BALL = {"diameter_of_rolling_element": 9.0}
-STATED = {"u_coordinate_on_shaft_inner_side", "axial_force_absorption"}
-Values = Mapping[str, Any]
-
-
-def at(number: int, kind: str, values: Values) -> dict[int, tuple[str, dict[str, Any]]]:
-    """Return a bearing of the input shaft in place of the usual one."""
-    u = 15.0 if number == LEFT else 140.0
-    stands = place(u, 0.0, 0.0) | {"u_coordinate_on_shaft_inner_side": u}
-    return {number: (f"rolling_bearing_with_{kind}_geometry", {**stands, **values})}
-
-
-def on_lines(left: Values, right: Values | None = None, torques: Sequence[float] = ()) -> Document:
-    """Return the unit with deep groove ball bearings by catalog lines on its input shaft.
-
-    `torques` of the motor about u, N m, make load cases.
-    """
-    lines = at(LEFT, "catalog", LINE | left) | at(RIGHT, "catalog", LINE | (left if right is None else right))
-    cases = [{MOTOR: ("external_load", {"torque_around_u_axis": torque})} for torque in torques]
-    return two_stages(more=lines, cases=cases)
-
-
-def inside(left: Values, right: Values, row: Values = ROW, element: Values = ROLLER) -> Document:
-    """Return the unit with bearings of a row by their internal geometry on its input shaft."""
-    more, further = {}, []
-    for number, own in ((LEFT, left), (RIGHT, right)):
-        of_row = {name: value for name, value in own.items() if name.endswith("_of_row")}
-        more |= at(number, "detailed", INSIDE | {k: v for k, v in own.items() if k not in of_row})
-        more[10 * number] = ("rolling_bearing_row", {**row, **of_row})
-        more[10 * number + 1] = ("rolling_element", dict(element))
-        further += [
-            relation(10 * number, "assembly", assembly=number, part=10 * number),
-            relation(10 * number + 1, "assembly", assembly=10 * number, part=10 * number + 1),
-        ]
-    return two_stages(more=more, further=further)
+from tests.fakes.rexs_unit import CASING, INPUT, NORMAL_LOAD, place, two_stages
 
 
 def by_name(unit: OpenedUnit) -> dict[int, RollingBearingInput]:
@@ -324,36 +272,6 @@ def test_bearings_of_a_casing_are_bushings_where_nothing_holds_it_and_say_so(hel
 
 
 ROLES = {"support_vector", "u_axis_vector", "w_axis_vector", "reference_component_for_position"}
-PAGE = Path(__file__).parents[3] / "docs" / "reference" / "rexs-bearings.md"
-
-
-def read_attributes() -> set[str]:
-    """Return the attributes of bearings, rows and elements that units of every kind are read by."""
-    stages = ("operating_", "mounted_", "")
-    clearances = [{f"{stage}radial_bearing_clearance": 10.0} for stage in stages]
-    limits = {f"{end}_radial_bearing_clearance": 10.0 for end in ("minimum", "maximum")}
-    missing = {"operating_radial_bearing_clearance": None}
-    units = [on_lines(missing | own) for own in (*clearances, limits)]
-    sides = [{f"axial_force_absorption{of}": "positive" for of in ("", "_of_row")}] * 2
-    along = [{f"{stage}axial_bearing_clearance": 10.0} for stage in stages]
-    along += [{"preload_distance": 8.0}, {"preload_force": 100.0}]
-    units += [inside(*(side | own for side in sides)) for own in along]
-    lengths, grooves = ROW | {"significant_contact_length_inner_ring": 12.0}, dict(ROW)
-    grooves |= {f"raceway_radius_of_{ring}_ring": 4.7 for ring in ("inner", "outer")}
-    ball = {"bearing_type": "angular_contact_ball_bearing"}
-    units += [inside(*sides, row=lengths), inside(*(side | ball for side in sides), grooves, BALL)]
-    lines = [line for unit in units for line in opened(unit).lines if "rolling" in line.kind]
-    stated = {line.item for line in lines if line.item and line.fate in ("taken", "derived")}
-    return stated - ROLES - {"u_coordinate_on_shaft_inner_side"}
-
-
-def test_the_page_lists_the_attributes_that_are_read() -> None:
-    rows = [row.split("|") for row in PAGE.read_text("utf-8").splitlines() if row.startswith("| ")]
-    listed = {name for row in rows[1:] for name in re.findall(r"`([a-z_]+)`", row[2])}
-    assert listed == read_attributes()
-    fields = {name for row in rows[1:] for name in re.findall(r"`([a-z_]+)`", row[3])}
-    models = (RollingBearingInput, BallRowInput, RollerRowInput)
-    assert fields <= {name for model in models for name in model.model_fields}
 
 
 @needs_reference

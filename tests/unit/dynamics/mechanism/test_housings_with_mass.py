@@ -7,36 +7,40 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from geared_scenes import gear_pair_scene, spring_table, square_wave_table, with_bushings, with_gear
+from geared_scenes import gear_pair_scene, spring_table, square_wave_table, with_bushings
+from housed_scenes import (
+    BLOCK,
+    GROUND,
+    MASS,
+    NAMES,
+    OFF,
+    ON,
+    STIFFNESS,
+    block,
+    housed,
+    matrices,
+    pair,
+    rows,
+)
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import Inertia, Shaft, TimeLaw
 from dynamics.bodies.load_course import Orders
 from dynamics.deflection import LoadCase, deflect
 from dynamics.errors import InputError
 from dynamics.forces import RollingContact
 from dynamics.integrators import static_equilibrium
-from dynamics.joints import Bushing, Coupling, Housing, RollingBearing
+from dynamics.joints import Housing, RollingBearing
 from dynamics.linearize import forced_response, linearize, natural_modes, whirl_modes
 from dynamics.loads import AppliedForce
 from dynamics.motion.observation import local_state
 from dynamics.periodic import steady_states
-from dynamics.rolling_bearings import BallBearing, RollerBearing
+from dynamics.rolling_bearings import BallBearing
 from dynamics.rolling_bearings.row_law import row_law
 from dynamics.scene import Integration
 from dynamics.settings import Outputs
 from dynamics.simulation import simulate
 
-ON = {"lateral": "on", "axial": "on", "tilt": "on", "housing_modes": "on"}
-OFF = ON | {"housing_modes": "off"}
-NAMES = ("input.left", "input.right", "output.left", "output.right")
-STIFFNESS, MASS, GROUND, BLOCK = 1e6, 2.0, 2e6, 4.0
-ROLLERS = RollerBearing(17, 9e-3, 13.6e-3, 65e-3, clearance=-5e-6)
 BALLS = BallBearing(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3, clearance=1e-5)
-
-
-def rows(matrix):
-    return tuple(tuple(float(value) for value in row) for row in np.asarray(matrix))
 
 
 FULL = {
@@ -51,61 +55,6 @@ FULL = {
     ),
     "preload": (100.0, -50.0, 20.0, 1.0, -2.0),
 }
-
-
-def definite(size, seed, scale):
-    """A well-conditioned positive definite matrix without zeros."""
-    factor = np.random.default_rng(seed).normal(size=(size, size))
-    return scale * (factor @ factor.T / size + 0.5 * np.eye(size))
-
-
-def matrices(per, modal=0):
-    """Stiffness, damping, mass of a housing under all four bearings; tilts by a lever of 0.1 m."""
-    lever = np.tile([1.0, 1.0, 1.0, 0.1, 0.1, 0.1][:per], len(NAMES))
-    unit = np.concatenate([lever, np.ones(modal)])
-    sizes = ((1, 3e8), (2, 3e3), (3, 4.0))
-    return [np.outer(unit, unit) * definite(unit.size, seed, scale) for seed, scale in sizes]
-
-
-def housed(scene, per=5, modal=0, **changes):
-    stiffness, damping, mass = matrices(per, modal)
-    fields = {"damping": rows(damping), "mass": rows(mass), "modal_coordinates": modal} | changes
-    return replace(scene, housings=(Housing("case", NAMES, rows(stiffness), **fields),))
-
-
-def pair(effects=ON, **changes):
-    """The pair with its gears off the middle of their shafts, so that these tilt."""
-    scene = gear_pair_scene(spring_table(4e8), effects=effects, **changes)
-    return with_gear(with_gear(scene, 0, position=0.06), 1, position=0.06)
-
-
-def block(contacts=(), bearings=(), *, radial=STIFFNESS, ratio=0.02, force=(), effects=ON, **changes):
-    """A disc on one bearing in a block on springs, turned through a soft coupling by the pair's driver."""
-    speed = changes.pop("speed", 10.0)
-    scene = gear_pair_scene(spring_table(4e8), speed=TimeLaw.constant(speed), effects=effects)
-    shaft = Shaft("disc", 0.2, (0.0, 0.0, 0.4), Inertia(MASS, 0.02, 0.01))
-    bushings = (
-        (*scene.bushings, Bushing("seat", "disc", 0.1, radial, radial)) if not bearings else scene.bushings
-    )
-    return replace(
-        scene,
-        shafts=(*scene.shafts, shaft),
-        bushings=bushings,
-        couplings=(Coupling("joint", "input", "disc", 100.0),),
-        housings=(
-            Housing(
-                "case",
-                ("seat",),
-                rows(GROUND * np.eye(3)),
-                mass=rows(BLOCK * np.eye(3)),
-                damping_ratio=ratio,
-            ),
-        ),
-        rolling_contacts=contacts,
-        rolling_bearings=bearings,
-        forces=force,
-        **changes,
-    )
 
 
 def freedom(system, name):
@@ -294,14 +243,6 @@ def test_a_run_on_full_bearing_matrices_in_a_housing_closes_its_balance():
     assert np.max(np.abs(result.bearing_moment[0, :2])) > 1.0
 
 
-def test_without_the_effect_it_is_the_housing_without_mass_bit_by_bit():
-    scene = housed(pair(OFF), 6)
-    bare = replace(scene, housings=(replace(scene.housings[0], mass=None),))
-    for a, b in zip(assemble(scene).arrays.sparse, assemble(bare).arrays.sparse, strict=True):
-        for x, y in zip(a, b, strict=True):
-            np.testing.assert_array_equal(x, y)
-
-
 def test_modes_with_modal_damping_are_coupled_by_their_bearings_alone():
     """These are force elements: what time steps invert has a block per shaft, and a mode each."""
     system = assemble(housed(pair(), 5, 7, damping=None))
@@ -310,44 +251,6 @@ def test_modes_with_modal_damping_are_coupled_by_their_bearings_alone():
     coupling = system.arrays.sparse.coupling
     entries = np.diff(coupling.first)[modes]
     np.testing.assert_array_equal(entries, 1)
-
-
-def test_the_ledger_calls_for_it_near_the_first_mode_and_where_bearings_are_not_linear():
-    auto = {key: value for key, value in ON.items() if key != "housing_modes"}
-    scene = block(effects=auto, ratio=0.01)
-    first = math.sqrt(GROUND / BLOCK) / (2.0 * math.pi)
-    mesh = 10.0 / (2.0 * math.pi) * 20.0
-    for orders, on in ((1, (mesh / first) ** 2 > 0.01), (10, True)):
-        ledger = assemble(replace(scene, outputs=Outputs(mesh_orders=orders))).ledger
-        assert ledger.on("housing_modes", "disc") is on
-        assert not ledger.on("housing_modes", "input")
-    slow = replace(scene, housings=(replace(scene.housings[0], stiffness=rows(1e12 * np.eye(3))),))
-    assert not assemble(slow).ledger.on("housing_modes", "disc")
-    both = {"housing_modes": "off", "bearing_clearance": "off"}
-    linear = replace(scene, rolling_contacts=(RollingContact("seat", 5e8),), effects=auto | both)
-    assert not assemble(linear).ledger.on("housing_modes", "disc")
-    assert not assemble(linear).rotors.housings
-    curved = replace(
-        slow, rolling_contacts=(RollingContact("seat", 5e8),), effects=auto | {"housing_modes": "off"}
-    )
-    entry = next(part for part in assemble(curved).ledger.of("housing_modes") if part.part == "disc")
-    assert entry.on and not entry.possible and "not linear" in entry.reason
-
-
-def test_the_ledger_calls_for_it_where_passing_elements_reach_the_first_mode():
-    """17 rollers pass 7.3 times a turn, counted to the fourth multiple: above the 20 teeth."""
-    first = 390.0
-    ground = BLOCK * (2.0 * math.pi * first) ** 2
-    scene = block(effects={"lateral": "on"}, speed=10.0, outputs=Outputs(mesh_orders=1))
-    scene = replace(scene, housings=(replace(scene.housings[0], stiffness=rows(ground * np.eye(3))),))
-    assert not assemble(scene).ledger.on("housing_modes", "disc")
-    left, *others = scene.bushings
-    roller = RollingBearing(left.name, left.shaft, ROLLERS, left.position)
-    passed = replace(scene, bushings=tuple(others), rolling_bearings=(roller,))
-    entry = next(part for part in assemble(passed).ledger.of("housing_modes") if part.part == "disc")
-    assert entry.on
-    passing = 4.0 * ROLLERS.count * ROLLERS.cage_ratio * 10.0 / (2.0 * math.pi)
-    assert f"passing elements reach {passing:.4g} Hz" in entry.reason
 
 
 def test_what_is_no_housing_with_mass_is_named():

@@ -6,62 +6,34 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from geared_scenes import gear_pair_scene, spring_table
+from rotors_on_bearings import (
+    ANGULAR,
+    CYLINDRICAL,
+    DEEP_GROOVE,
+    KINDS,
+    ON,
+    PRELOAD,
+    SEATS,
+    TAPERED,
+    mirrored,
+    pair_of,
+    rotor,
+)
 
 from dynamics.assembly.assemble import assemble
 from dynamics.assembly.bearing_rest import bearing_rows
-from dynamics.bodies import Inertia, Shaft, TimeLaw
 from dynamics.errors import InputError
 from dynamics.forces.law import OF_BEARINGS
-from dynamics.integrators import integrate, static_equilibrium
+from dynamics.integrators import static_equilibrium
 from dynamics.integrators.energy import stored_energy
-from dynamics.joints import Bushing, Coupling, RollingBearing
+from dynamics.joints import Bushing, RollingBearing
 from dynamics.linearize import natural_modes
 from dynamics.motion.observation import local_state
-from dynamics.rolling_bearings import BallBearing, LoadedBearing, RollerBearing, tangent_bushing
+from dynamics.rolling_bearings import LoadedBearing, tangent_bushing
 from dynamics.rolling_bearings.row_law import row_law
-from dynamics.scene import Integration
-from dynamics.simulation import simulate
 
-ON = {"lateral": "on", "axial": "on", "tilt": "on"}
-DEEP_GROOVE = BallBearing(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3, clearance=1e-5)
-ANGULAR = BallBearing(8, 11.5e-3, 43.5e-3, contact_angle=0.6)
-CYLINDRICAL = RollerBearing(14, 9e-3, 13.6e-3, 53.5e-3, clearance=1e-5, laminae=10)
-TAPERED = RollerBearing(17, 9e-3, 13.6e-3, 65e-3, contact_angle=-0.25, laminae=10)
-KINDS = {"deep groove": DEEP_GROOVE, "angular": ANGULAR, "cylindrical": CYLINDRICAL, "tapered": TAPERED}
-KINDS |= {"floating": DEEP_GROOVE, "cross-located": DEEP_GROOVE}
-SEATS = {"floating": ("both", "none"), "cross-located": ("negative", "positive")}
-PRELOAD = 400.0  # N
 EVERY = pytest.mark.parametrize("kind", KINDS)
 MIRROR = np.array([1.0, 1.0, -1.0, -1.0, -1.0])
-
-
-def mirrored(row):
-    return replace(row, contact_angle=-row.contact_angle)
-
-
-def rotor(rows, preload=0.0, positions=(0.02, 0.18), gravity=(0.0, 0.0, 0.0), mass=40.0, kind="", **changes):
-    """A shaft of 0.2 m on rolling bearings, turned through a torsional coupling by a gear pair's driver."""
-    scene = gear_pair_scene(spring_table(4e8), speed=TimeLaw.constant(10.0), effects=ON)
-    shaft = Shaft("rotor", 0.2, (0.0, 0.0, 0.4), Inertia(mass, 0.05, 0.1))
-    bearings = tuple(
-        RollingBearing(f"seat {i}", "rotor", row, z, np.sign(row.contact_angle) * preload, locating=seat)
-        for i, (row, z, seat) in enumerate(
-            zip(rows, positions, SEATS.get(kind, ("both", "both")), strict=True)
-        )
-    )
-    fields = {"rolling_bearings": bearings, "gravity": gravity} | changes
-    return replace(
-        scene,
-        shafts=(*scene.shafts, shaft),
-        couplings=(Coupling("joint", "input", "rotor", 100.0),),
-        **fields,
-    )
-
-
-def pair_of(row):
-    """Two rows that hold the shaft against each other."""
-    return row, mirrored(row)
 
 
 def moved(system, q, at):
@@ -241,24 +213,6 @@ def stiffness_at(system, q):
     return np.diag(total)
 
 
-@pytest.mark.parametrize("kind", ["deep groove", "cylindrical"])
-def test_a_run_says_what_its_bearings_carry_at_rest(kind):
-    """Stribeck: under no clearance the heaviest of n elements carries about 4.37 or 4.08 W/n."""
-    straight = {"profile": "straight"} if kind == "cylindrical" else {}
-    row, weight = replace(KINDS[kind], clearance=0.0, **straight), 40.0 * 9.81
-    scene = rotor((row, row), gravity=(0.0, -9.81, 0.0), duration=0.001)
-    found = simulate(scene).receipt["rolling_bearings"]
-    stribeck = {"deep groove": 4.37, "cylindrical": 4.08}[kind]
-    for name in ("seat 0", "seat 1"):
-        at = found[name]
-        np.testing.assert_allclose(at["force"][:3], [0.0, -weight / 2.0, 0.0], atol=1e-5 * weight)
-        assert at["element_load"] == pytest.approx(stribeck * weight / 2.0 / row.count, rel=0.02)
-        assert at["displacement"][1] < 0.0
-        if kind == "deep groove":
-            inner = row.contacts()[0].peak_pressure(at["element_load"])
-            assert at["peak_pressure"] == pytest.approx(inner, rel=1e-12)
-
-
 def test_the_pressure_of_a_lamina_is_that_of_a_line_contact():
     """K. L. Johnson, Contact Mechanics, 4.3: p_0 = 2 q/(pi a), a^2 = 4 q R/(pi E*)."""
     load, length = 20.0, CYLINDRICAL.length / CYLINDRICAL.laminae
@@ -301,51 +255,6 @@ def test_off_is_the_tangent_at_rest():
     np.testing.assert_allclose(there, at, rtol=1e-6, atol=1e-10)
     on_modes, off_modes = natural_modes(assemble(scene)), natural_modes(linear)
     np.testing.assert_allclose(on_modes.frequency, off_modes.frequency, rtol=1e-6, atol=1e-3)
-
-
-def thrown(method, kind, tolerance=1e-11):
-    """A rotor at rest thrown upwards and tilting: its path, and the run."""
-    preload = 0.0 if kind in SEATS else PRELOAD
-    scene = rotor(pair_of(KINDS[kind]), preload, gravity=(0.0, -9.81, 3.0), duration=0.01, kind=kind)
-    system = assemble(scene)
-    start = static_equilibrium(system)
-    velocity = np.zeros(start.displacement.size)
-    for freedom, rate in (("y", 0.02), ("z", 0.005), ("tilt_x", 0.05)):
-        velocity[system.freedoms.name.index(f"rotor.{freedom}")] = rate
-    run = integrate(system, start, Integration(method=method, tolerance=tolerance), velocity=velocity)
-    assert run.status.usable
-    return np.array([q for q, name in zip(run.q.T, system.freedoms.name, strict=True) if "rotor." in name])
-
-
-@pytest.mark.parametrize("kind", ["angular", "tapered", "floating", "cross-located"])
-def test_both_integrators_take_the_same_path(kind):
-    explicit, implicit = (thrown(method, kind) for method in ("explicit", "implicit"))
-    largest = np.max(np.abs(explicit[:3]))
-    for path, other, scale in zip(explicit, implicit, (1.0, 1.0, 1.0, 0.1, 0.1, 0.1), strict=True):
-        np.testing.assert_allclose(scale * other, scale * path, atol=1e-4 * largest)
-    assert np.max(np.abs(explicit[1])) > 1e-6
-
-
-@pytest.mark.parametrize("kind", ["angular", "floating", "cross-located"])
-def test_a_run_closes_its_energy_balance(kind):
-    scene = gear_pair_scene(effects=ON, duration=0.02)
-    seats = SEATS.get(kind, ("both", "both"))
-    bearings = tuple(
-        RollingBearing(
-            bushing.name,
-            bushing.shaft,
-            row,
-            bushing.position,
-            np.sign(row.contact_angle) * 200.0,
-            locating=seat,
-        )
-        for bushing, row, seat in zip(scene.bushings, 2 * pair_of(KINDS[kind]), 2 * seats, strict=True)
-    )
-    scene = replace(scene, bushings=(), rolling_bearings=bearings, integration=Integration(tolerance=1e-10))
-    result = simulate(scene)
-    assert result.status.usable
-    assert result.energy.relative < 1e-3
-    assert result.energy.bushings > 0.0
 
 
 def test_what_is_no_bearing_is_named():

@@ -3,36 +3,30 @@
 from __future__ import annotations
 
 import math
-import tracemalloc
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 import scipy.sparse as sp
+from compliance_gears import HELICAL, SPUR, WEBBED, coarse
 
 import fe_contact.compliance.condensed_gear as gear_module
 import fe_contact.compliance.cyclic_compliance as flow
 import fe_contact.compliance.sector_stiffness as stiffness_module
 from fe_contact.compliance import (
-    FlankCompliance3D,
     SuperLuMetis,
     flank_compliance_3d,
     flank_compliances_3d,
-    predict_cost,
 )
 from fe_contact.compliance.checks_3d import least_eigenvalue, pressure_forces
 from fe_contact.compliance.flank import ComplianceChecks, refuse_broken_laws
 from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
 from fe_contact.errors import InputError, SolveError
-from fe_contact.geometry import Gear, GearBlank, RingGear, Toothing
+from fe_contact.geometry import Gear, RingGear, Toothing
 from fe_contact.material import Material
-from fe_contact.mesh import ClampedBore, PlaneStrain, SectorRecipe, quad_sector, swept_sector
+from fe_contact.mesh import ClampedBore, SectorRecipe, quad_sector, swept_sector
 
-SPUR = Gear(teeth=9, normal_module=4e-3, face_width=20e-3, bore_diameter=12e-3, profile_shift_coefficient=0.4)
-HELICAL = replace(SPUR, helix_angle=math.radians(25.0))
-WEBBED = replace(HELICAL, blank=GearBlank(3e-3, 6e-3, 14e-3, web_offset=3e-3))
 GEARS = pytest.mark.parametrize("gear", [SPUR, HELICAL], ids=["spur", "helical"])
 RING = RingGear(
     teeth=30,
@@ -48,22 +42,6 @@ BOTH_KINDS = pytest.mark.parametrize(
     [SPUR, HELICAL, RING, HELICAL_RING],
     ids=["spur", "helical", "ring", "helical ring"],
 )
-
-
-def coarse(gear: Toothing, **fields: object) -> SectorRecipe:
-    m = gear.normal_module
-    recipe = SectorRecipe(
-        flank_size=0.5 * m,
-        tip_size=0.3 * m,
-        depth_size=0.6 * m,
-        depth_limit=0.9 * m,
-        body_size=0.5 * m,
-        body_limit=1.5 * m,
-        layers=4,
-        land_elements=1,
-        merge_rows=(-1,),
-    )
-    return replace(recipe, **fields)  # type: ignore[arg-type]
 
 
 def relative(found: np.ndarray, expected: np.ndarray) -> float:
@@ -216,82 +194,6 @@ def test_modification_plays_no_part_and_face_width_does() -> None:
     assert uniform[0] > 1.2 * uniform[1]
 
 
-def test_hands_of_one_pair_share_a_computation(monkeypatch: pytest.MonkeyPatch) -> None:
-    computed = count_runs(monkeypatch)
-    left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
-    found = flank_compliances_3d([HELICAL, left, HELICAL], [coarse(HELICAL)] * 3)
-    assert len(computed) == 1
-    assert found[0] is found[2]
-    assert found[1].base_helix_angle == -found[0].base_helix_angle
-    assert np.array_equal(found[1].mirrored().blocks, found[0].blocks)
-    backwards = flank_compliances_3d([left, HELICAL], [coarse(HELICAL)] * 2)
-    assert np.array_equal(backwards[0].blocks, found[1].blocks)
-    assert np.array_equal(backwards[1].blocks, found[0].blocks)
-
-
-def count_runs(monkeypatch: pytest.MonkeyPatch) -> list[Gear]:
-    computed: list[Gear] = []
-    genuine = flow.compute_flank_compliance_3d
-
-    def counting(gear: Gear, *arguments: object, **reports: object) -> FlankCompliance3D:
-        computed.append(gear)
-        return genuine(gear, *arguments, **reports)  # type: ignore[arg-type]
-
-    monkeypatch.setattr(flow, "compute_flank_compliance_3d", counting)
-    return computed
-
-
-def test_the_cache_returns_the_same_bits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    computed = count_runs(monkeypatch)
-    recipe = coarse(HELICAL)
-    first = flank_compliance_3d(HELICAL, recipe, cache=tmp_path)
-    second = flank_compliance_3d(HELICAL, recipe, cache=tmp_path)
-    left = flank_compliance_3d(replace(HELICAL, helix_angle=-HELICAL.helix_angle), recipe, cache=tmp_path)
-    assert len(computed) == 1
-    assert (first.from_cache, second.from_cache, left.from_cache) == (False, True, True)
-    for name in ("s", "z", "index", "blocks"):
-        assert np.array_equal(getattr(first, name), getattr(second, name))
-        assert getattr(first, name).dtype == getattr(second, name).dtype
-    plain = (
-        "s_form",
-        "s_tip",
-        "contact_modulus",
-        "base_helix_angle",
-        "teeth",
-        "checks",
-        "unknowns",
-        "seconds",
-        "solver",
-    )
-    assert all(getattr(first, name) == getattr(second, name) for name in plain)
-    assert np.array_equal(left.blocks, first.mirrored().blocks)
-    (file,) = tmp_path.iterdir()
-    content = file.read_bytes()
-    file.write_bytes(content[: len(content) // 2])
-    assert not flank_compliance_3d(HELICAL, recipe, cache=tmp_path).from_cache
-
-
-def test_all_that_decides_the_result_is_in_the_key() -> None:
-    clamped, recipe = ClampedBore(), coarse(SPUR)
-    keys = [
-        flow.compliance_key_3d(SPUR, recipe, 2, clamped),
-        flow.compliance_key_3d(SPUR, recipe, 1, clamped),
-        flow.compliance_key_3d(SPUR, recipe, 2, PlaneStrain()),
-        flow.compliance_key_3d(SPUR, replace(recipe, layers=8), 2, clamped),
-    ]
-    for change in (
-        {"face_width": 21e-3},
-        {"bore_diameter": 13e-3},
-        {"helix_angle": 0.1},
-        {"teeth": 10},
-        {"material": Material(poissons_ratio=0.29)},
-    ):
-        keys.append(flow.compliance_key_3d(replace(SPUR, **change), recipe, 2, clamped))  # type: ignore[arg-type]
-    assert len(set(keys)) == len(keys)
-    hands = [flow.compliance_key_3d(replace(SPUR, helix_angle=a), recipe, 2, clamped) for a in (0.1, -0.1)]
-    assert hands[0] == hands[1]
-
-
 def test_reach_is_bounded_by_the_ring_and_sufficient() -> None:
     for wrong in (-1, 5):
         with pytest.raises(InputError) as refusal:
@@ -359,20 +261,3 @@ def test_pressure_is_shared_consistently() -> None:
         exact = integral(0, 1, p) * integral(-1, 0, q) + 2.0 * integral(1, 3, p) * integral(0, 2, q)
         field = (grid_s**p * grid_z**q)[exists]
         assert forces @ field == pytest.approx(exact, abs=1e-14)
-
-
-@pytest.mark.parametrize(
-    "gear",
-    [replace(SPUR, teeth=20, bore_diameter=40e-3), WEBBED],
-    ids=["spur", "helical with a web"],
-)
-def test_cost_is_known_before_the_run(gear: Gear) -> None:
-    recipe = SectorRecipe.draft(gear)
-    flank_compliance_3d(gear, recipe)  # compiled code and libraries are loaded
-    predicted = predict_cost(gear, recipe)  # its seconds are held against measured ones in benchmarks/
-    tracemalloc.start()
-    flank_compliance_3d(gear, recipe)
-    peak = tracemalloc.get_traced_memory()[1]
-    tracemalloc.stop()
-    assert 0.8 < predicted.bytes / peak < 1.8
-    assert predict_cost(gear).seconds > predicted.seconds

@@ -1,0 +1,17 @@
+"""The flank of a gear in a file of REXS that carries."""
+
+from __future__ import annotations
+
+from rexs_stage import (
+    STAGE,
+)
+
+from service.from_rexs.flank_sides import LoadedFlank, loaded_flank
+from service.from_rexs.gear_unit import GearUnit
+from service.from_rexs.meshing import meshing_of
+
+
+def loaded(unit: GearUnit, gear: int, torque: float) -> LoadedFlank:
+    """Return the loaded flank of a gear under a torque on the driver."""
+    meshing = meshing_of(unit, unit.part(STAGE), torques=(torque,))
+    return loaded_flank(unit, meshing, unit.part(gear))
