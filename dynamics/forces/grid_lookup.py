@@ -197,30 +197,13 @@ def grid_force(grid: GridTables, flank: int, cell: Cell, deflection: float, hint
     step = end - start
     c2, c3 = 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step
     tangent = (rise + w * (2.0 * c2 + 3.0 * w * c3)) / span
+    ends = (low.value, high.value, stiff.value, last.value)
     return GridForce(
         start + w * (rise + w * (c2 + w * c3)),
         tangent,
-        _along(
-            w,
-            span,
-            tangent,
-            (low.value, high.value, stiff.value, last.value),
-            (low.x, high.x, stiff.x, last.x),
-        ),
-        _along(
-            w,
-            span,
-            tangent,
-            (low.value, high.value, stiff.value, last.value),
-            (low.m, high.m, stiff.m, last.m),
-        ),
-        _along(
-            w,
-            span,
-            tangent,
-            (low.value, high.value, stiff.value, last.value),
-            (low.a, high.a, stiff.a, last.a),
-        ),
+        _along(w, span, tangent, ends, (low.x, high.x, stiff.x, last.x)),
+        _along(w, span, tangent, ends, (low.m, high.m, stiff.m, last.m)),
+        _along(w, span, tangent, ends, (low.a, high.a, stiff.a, last.a)),
         k,
     )
 

@@ -64,14 +64,7 @@ def face_loads(
         Range of each slice along the face, m, within `grid.z`.
     """
     n, count = center.shape
-    width = 0
-    for p in range(n):
-        needed = 0
-        for q in range(count):
-            along = _touched(grid.s[::2], center[p, q] - half_width[p, q], center[p, q] + half_width[p, q])
-            across = _touched(grid.z, *_part(low[p], high[p], q, count))
-            needed += (2 * along + 1) * (2 * across + 1)
-        width = max(width, needed)
+    width = _most_nodes(grid, center, half_width, low, high)
     nodes = np.full((n, width), -1, dtype=np.int64)
     forces = np.zeros((n, width))
     used = np.zeros(n, dtype=np.int64)
@@ -105,6 +98,23 @@ def face_loads(
         for i in range(used[p]):
             slot[nodes[p, i]] = -1
     return FaceLoads(nodes, forces, used)
+
+
+@njit(cache=True)
+def _most_nodes(
+    grid: FaceGrid, center: FloatArray, half_width: FloatArray, low: FloatArray, high: FloatArray
+) -> int:
+    """Return the most nodes that a slice loads, those that its patches share counted for each."""
+    n, count = center.shape
+    most = 0
+    for p in range(n):
+        needed = 0
+        for q in range(count):
+            along = _touched(grid.s[::2], center[p, q] - half_width[p, q], center[p, q] + half_width[p, q])
+            across = _touched(grid.z, *_part(low[p], high[p], q, count))
+            needed += (2 * along + 1) * (2 * across + 1)
+        most = max(most, needed)
+    return most
 
 
 @njit(cache=True)
