@@ -50,7 +50,7 @@ def figures() -> list[Figure]:
 
 
 def orders() -> Iterator[tuple[str, str, dict[str, Any]]]:
-    """Yield what is run: a title, the process and its inputs."""
+    """Yield what is run: a title, the process and its inputs; those of `listen` lack the hash of its run."""
     spur = case_of(_EXAMPLES / "palermo_spur_20_20.toml").model_dump(mode="json")
     helical = case_of(_EXAMPLES / "wind_turbine_high_speed.toml").model_dump(mode="json")
     relieved = json.loads(json.dumps(helical))
@@ -85,6 +85,8 @@ def orders() -> Iterator[tuple[str, str, dict[str, Any]]]:
     boxed = boxed_scene(scene) | {"speed_rpm": _SPEEDS, "orders": 3}
     yield "vibration of a cast box, 20 speeds", "vibration", boxed
     yield "noise of the same, no bands", "noise", boxed | {"band": False}
+    place = {"microphone_mm": [40.0, 60.0, 1000.0]}
+    yield "listen, a run of 5 s at a microphone of it", "listen", boxed_scene(scene) | place
     speeds = {"path": "drives.motor.speed_rpm", "levels": _SPEEDS}
     varied = {"factors": [speeds], "responses": [{"quantity": "dte_rms"}]}
     yield "study, 20 speeds", "study", scene | varied
@@ -92,8 +94,11 @@ def orders() -> Iterator[tuple[str, str, dict[str, Any]]]:
 
 def _jobs(client: LineOfActionClient, log: Path) -> Iterator[Figure]:
     """Run one after the other; the log tells what each worker took."""
+    run = ""
     for title, process, inputs in orders():
-        result = client.obtain(process, inputs)
+        result = client.obtain(process, inputs | {"run": run} if process == "listen" else inputs)
+        if process == "simulate":
+            run = result.key
         ended = [json.loads(line) for line in log.read_text("utf-8").splitlines() if "worker ended" in line]
         took = ended[-1]
         if (took["process"], took["outcome"]) != (process, "done"):

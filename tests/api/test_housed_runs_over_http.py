@@ -23,7 +23,8 @@ from service.problems import BadInput, NotFound
 from service.store import stored_results
 
 TABLE, ABSENT = "cd" * 32, "ef" * 32
-OWN = ("cpu_seconds", "models_cpu_seconds", "hash", "sha256", "size", "written", "file")
+COSTS = ("cpu_seconds", "models_cpu_seconds", "reduction_cost", "radiation_cost", "models_predicted")
+OWN = (*COSTS, "hash", "sha256", "size", "written", "file")
 """What differs between two computations of the same."""
 
 

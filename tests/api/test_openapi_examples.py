@@ -14,11 +14,12 @@ import jsonschema
 import pytest
 from described_api import DESCRIPTION
 from fastapi.testclient import TestClient
+from named_run import put_named_run
 from small_table import small_table
 
 from service.app import create_app
 from service.schemas.answer_examples import HASH
-from service.schemas.request_examples import INPUTS, request_example
+from service.schemas.request_examples import request_example
 from service.settings import Settings
 
 BINARY = ("application/x-netcdf", "application/octet-stream", "audio/wav")
@@ -109,10 +110,8 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     """A client of the app with a table, and what is taken for a run: nothing is computed here."""
     file = tmp_path_factory.mktemp("table") / "table.nc"
     small_table().to_netcdf(file)
-    run = file.with_name("run.nc")
-    run.touch()
     _app.state.context.store.put(HASH, "database", file)
-    _app.state.context.store.put(INPUTS["listen"]["run"], "run", run)
+    put_named_run(_app.state.context.store)
     yield TestClient(_app)
 
 

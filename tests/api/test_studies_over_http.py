@@ -152,7 +152,8 @@ def test_both_processes_are_described(served: tuple[LineOfActionClient, TestClie
     listed = {process["id"] for process in http.get("/v1/processes").json()["processes"]}
     assert listed == {
         "analyze", "flank", "sensitivity", "root-stress", "ablate", "frontier", "optimize", "scatter",
-        "sweep", "simulate", "modes", "response", "vibration", "noise", "steady", "deflect", "study",
+        "sweep", "simulate", "modes", "response", "vibration", "noise", "listen", "steady", "deflect",
+        "study",
     }  # fmt: skip
     inputs = http.get("/v1/processes/flank").json()["inputs"]
     assert set(inputs) == {

@@ -9,12 +9,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from named_run import put_named_run
 from served_app import served
 from service_surroundings import FAKES
 
 from service.access import KeyFile
 from service.app import create_app
 from service.settings import Settings
+from service.store import stored_results
 from service.worker.catalogue import default_registry
 from service.worker.process import Registry
 
@@ -44,6 +46,7 @@ class Service:
 def written_service(directory: Path) -> Iterator[Service]:
     """Run the service while the context lasts."""
     offered = (replace(p, entry=f"written_work:{p.kind}") for p in default_registry().values())
+    put_named_run(stored_results(directory))
     with running_service(directory, Registry(*offered)) as service:
         yield service
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from named_run import put_named_run
 from running_service import Bench, bench
 from service_fakes import FAKE, REGISTRY
 from sqlalchemy import update
@@ -139,5 +140,6 @@ def test_normalized_inputs_are_inputs_of_the_same_work(machine: Bench, name: str
     """What is adopted is prepared again: that must change nothing where the versions agree."""
     process = default_registry()[name.partition(" ")[0]]
     sent = INPUTS[process.id] if name in INPUTS else {"scene": SCENE}
+    put_named_run(machine.store)
     inputs = process.prepare(validated(process.inputs, sent), machine.store)
     assert process.prepare(validated(process.inputs, inputs), machine.store) == inputs

@@ -19,7 +19,7 @@ from service.schemas.scene import SceneInput
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 SPUR, SCENE = EXAMPLES / "palermo_spur_20_20.toml", EXAMPLES / "palermo_scene.toml"
-TAKES_FILES = ("analyze", "geometry", "export", "plan", "simulate", "submit", *STUDIES)
+TAKES_FILES = ("analyze", "geometry", "export", "plan", "simulate", "submit", *STUDIES.keys() - {"listen"})
 
 
 def loa(*arguments: object) -> Result:

@@ -1,0 +1,19 @@
+"""The run that example inputs name: stored, and never opened."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+from service.schemas.request_examples import INPUTS
+from service.store import ResultStore
+
+RUN: str = INPUTS["listen"]["run"]
+
+
+def put_named_run(store: ResultStore) -> None:
+    """Store an empty file for it."""
+    with tempfile.TemporaryDirectory(prefix="loa-run-") as folder:
+        file = Path(folder) / "run.nc"
+        file.touch()
+        store.put(RUN, "run", file)
