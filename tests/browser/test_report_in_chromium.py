@@ -137,7 +137,7 @@ def test_the_page_does_not_scroll_sideways_on_a_phone(browser: Browser, report: 
     page.close()
 
 
-@pytest.mark.parametrize("width", [390, 700, 1280])
+@pytest.mark.parametrize("width", [390, pytest.param(700, marks=pytest.mark.nightly), 1280])
 def test_the_bar_of_buttons_hides_nothing(browser: Browser, report: Path, width: int) -> None:
     """Neither a legend nor the words above a plot; it is reached from the plot without a gap."""
     page = browser.new_page(viewport={"width": width, "height": 800})
