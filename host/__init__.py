@@ -30,6 +30,7 @@ from host.sessions import (
     require_sessions,
 )
 from host.signal_handlers import handlers_kept
+from host.threads import ONE_THREAD, keep_to_one_thread
 from host.unavailable import Unavailable
 
 if sys.platform == "win32" or find_spec("fcntl") is None or find_spec("resource") is None:
@@ -52,6 +53,7 @@ else:
     )
 
 __all__ = [
+    "ONE_THREAD",
     "ChildFailed",
     "ChildOutOfMemory",
     "Ended",
@@ -67,6 +69,7 @@ __all__ = [
     "halt",
     "handlers_kept",
     "has_exited",
+    "keep_to_one_thread",
     "kill",
     "kill_group",
     "kill_own_group",

@@ -7,6 +7,7 @@ from typing import Annotated, TextIO
 
 import typer
 
+from host import keep_to_one_thread
 from service.cli.verbs import keys, motion, new, pages, remote_jobs, serving, studies, tables, upkeep
 from service.cli.verbs.of_studies import StudyGroup
 
@@ -40,6 +41,7 @@ app.add_typer(upkeep.store, name="store")
 
 def main() -> None:
     """Run the command line."""
+    keep_to_one_thread()
     warnings.filterwarnings("ignore", message="implausible")  # each verb says it in its own fields and units
     foreign = warnings.showwarning
 

@@ -10,18 +10,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from host import Ended, has_exited, reap
+from host import ONE_THREAD, Ended, has_exited, reap
 
-_ONE_THREAD = dict.fromkeys(
-    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
-)
 _ROOT = str(Path(__file__).resolve().parents[2])
 
 
 def child_environment() -> dict[str, str]:
     """Environment of the child: one thread, and the modules found where we find them, installed or not."""
     path = os.pathsep.join(part for part in (os.environ.get("PYTHONPATH", ""), _ROOT) if part)
-    return {**os.environ, **_ONE_THREAD, "PYTHONPATH": path}
+    return {**os.environ, **ONE_THREAD, "PYTHONPATH": path}
 
 
 @dataclass(frozen=True)
