@@ -267,7 +267,7 @@ STUDIES: dict[str, Study] = {
                 ("band", 0.2),
                 ("sensitivities", 0.2),
             ),
-            version="3",
+            version="4",
             further=(".vtu",),
             housed=True,
         ),

@@ -124,14 +124,21 @@ class Hull:
     @property
     def closed(self) -> bool:
         """Whether every edge joins exactly two panels that run through it in opposite directions."""
-        return self._open_edges == 0
+        return self.open_edges.size == 0
 
     @cached_property
-    def _open_edges(self) -> int:
-        """Count the edges at which the hull is open, turned, or joined to itself."""
+    def open_edges(self) -> IntArray:
+        """Return nodes of the edges at which the hull is open, turned, or joined to itself, (E, 2)."""
         starts, ends = self.triangles, np.roll(self.triangles, -1, axis=1)
         along, against = starts * len(self.nodes) + ends, ends * len(self.nodes) + starts
-        return int(np.setdiff1d(along, against).size + along.size - np.unique(along).size)
+        once, times = np.unique(along, return_counts=True)
+        wrong = np.concatenate([np.setdiff1d(once, against), once[times > 1]])
+        return np.stack(np.divmod(wrong, len(self.nodes)), axis=1)
+
+    def longer_edges(self, length: float) -> IntArray:
+        """Return nodes of the edges longer than `length` (m), (E, 2), once for each panel."""
+        edges = np.stack([np.roll(self.triangles, 1, axis=1), self.triangles], axis=2)
+        return edges[self._edges > length]
 
     def normal_velocity(self, velocity: ComplexArray) -> ComplexArray:
         """Return the mean normal velocity of the panels, (T,) or (T, M).
@@ -163,7 +170,7 @@ class Hull:
         if not self.closed:
             suggestion = "Join nodes at the same position and close the openings of the outer hull."
             raise InputError(
-                "triangles", f"{self._open_edges} open or turned edges", "a closed hull", suggestion
+                "triangles", f"{len(self.open_edges)} open or turned edges", "a closed hull", suggestion
             )
         positive("volume", self.volume, "Turn the triangles: their normals point inwards.")
 

@@ -1,7 +1,7 @@
 """Sound of housings in a scene: outer hull, resistance, sound power by order and speed, shares, bands."""
 
 from dynamics.acoustics import OuterHull, outer_hull
-from dynamics.noise.coarse_hull import RadiatingHull, coarse_hull, radiating_hull
+from dynamics.noise.coarse_hull import RadiatingHull, radiating_hull
 from dynamics.noise.guesses import GUESSES, Guess
 from dynamics.noise.housing_radiation import HousingRadiation, housing_radiation
 from dynamics.noise.housing_recordings import pressure_recording, velocity_recording
@@ -34,7 +34,6 @@ __all__ = [
     "SoundBand",
     "SoundModel",
     "SoundOverTime",
-    "coarse_hull",
     "forced_power",
     "housing_radiation",
     "kept_radiation",

@@ -16,7 +16,7 @@ from dynamics.work_cost import announce
 from model_studies.kept_file import kept_in
 from model_studies.progress import Progress, silent
 
-RADIATION_VERSION = 2
+RADIATION_VERSION = 3
 """Raised with every change of the numbers of a resistance, or of what is kept with them."""
 STAGE = "radiation"
 LEAST_COST = 1.0

@@ -11,6 +11,9 @@ from dynamics.noise.coarse_hull import RadiatingHull
 from dynamics.noise.knots import expected_knots
 from dynamics.work_cost import Cost
 
+USUAL = 0.85
+"""Frequency of an octave whose cost is the mean, over its highest: they lie closer towards its end."""
+
 
 class Octave(NamedTuple):
     """A range of frequencies, Hz, and the panels that resolve it."""
@@ -32,5 +35,5 @@ def _cost(octave: Octave, model: RadiationModel, air: Air) -> Cost:
     """Return the cost of the resistances of an octave."""
     panels, coordinates = octave.hull.shapes.shape
     per_hertz = 2.0 * math.pi / air.sound_speed * octave.hull.hull.outer_radius
-    middle = math.sqrt(octave.first * octave.last)
-    return model.cost(panels, per_hertz * middle, coordinates).times(expected_knots(per_hertz * octave.last))
+    usual = USUAL * octave.last
+    return model.cost(panels, per_hertz * usual, coordinates).times(expected_knots(per_hertz * octave.last))

@@ -7,7 +7,7 @@ from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from dynamics.acoustics import Hull
-from dynamics.types import FloatArray, IntArray
+from dynamics.types import BoolArray, FloatArray, IntArray
 
 STEPS = 6
 """Times that seeds move to the middle of their cells; further steps change the longest edge by below 5 %."""
@@ -19,13 +19,18 @@ FARTHEST = 1.0
 
 def surface_cells(hull: Hull, count: int) -> IntArray:
     """Return the cell of every node, (N,), numbers from 0 on; at most `count` of about the same size."""
-    edges, share = _edges(hull), _node_areas(hull)
+    share = _node_areas(hull)
     most = min(count, int(np.count_nonzero(share)))
     seeds = np.random.default_rng(0).choice(len(share), most, replace=False, p=share / share.sum())
-    for _ in range(STEPS):
-        cell = _next_seed(edges, seeds)
-        seeds = nearest_nodes(hull, cell, _means(cell, share, hull.nodes))
-    return np.unique(_next_seed(edges, seeds), return_inverse=True)[1]
+    return _settled(hull, seeds, STEPS)
+
+
+def split_cells(hull: Hull, cell: IntArray, chosen: BoolArray) -> IntArray:
+    """Return the cell of every node, (N,), where each of the `chosen` (C,) cells has become two."""
+    middle = _means(cell, _node_areas(hull), hull.nodes)
+    distance = np.linalg.norm(hull.nodes - middle[cell], axis=1)
+    nearest, farthest = _first_nodes(cell, distance), _first_nodes(cell, -distance)
+    return _settled(hull, np.union1d(nearest, farthest[chosen]), 1)
 
 
 def cell_positions(hull: Hull, cell: IntArray) -> FloatArray:
@@ -47,10 +52,22 @@ def cell_positions(hull: Hull, cell: IntArray) -> FloatArray:
 
 def nearest_nodes(hull: Hull, cell: IntArray, positions: FloatArray) -> IntArray:
     """Return the node of each cell next to a position of each, (C,)."""
-    distance = np.linalg.norm(hull.nodes - positions[cell], axis=1)
-    order = np.lexsort((distance, cell))
-    first = np.unique(cell[order], return_index=True)[1]
-    return np.asarray(order[first])
+    return _first_nodes(cell, np.linalg.norm(hull.nodes - positions[cell], axis=1))
+
+
+def _first_nodes(cell: IntArray, value: FloatArray) -> IntArray:
+    """Return the node of the least value in each cell, (C,)."""
+    order = np.lexsort((value, cell))
+    return np.asarray(order[np.unique(cell[order], return_index=True)[1]])
+
+
+def _settled(hull: Hull, seeds: IntArray, steps: int) -> IntArray:
+    """Return the cells of seeds that have moved to the middle of their cells so many times."""
+    edges, share = _edges(hull), _node_areas(hull)
+    for _ in range(steps):
+        cell = _next_seed(edges, seeds)
+        seeds = nearest_nodes(hull, cell, _means(cell, share, hull.nodes))
+    return np.unique(_next_seed(edges, seeds), return_inverse=True)[1]
 
 
 def _edges(hull: Hull) -> csr_array:

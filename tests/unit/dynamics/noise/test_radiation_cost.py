@@ -16,7 +16,7 @@ from dynamics.housing_modes import ReducedHousing
 from dynamics.noise import HousingRadiation, housing_radiation
 from dynamics.noise.coarse_hull import radiating_hull
 from dynamics.noise.knots import expected_knots, octaves
-from dynamics.noise.radiation_cost import Octave, radiation_cost
+from dynamics.noise.radiation_cost import USUAL, Octave, radiation_cost
 from dynamics.work_cost import Cost
 
 AIR, MODEL = Air(), ElementalRadiators()
@@ -51,11 +51,8 @@ def test_it_grows_with_the_range_and_with_panels() -> None:
 
 def test_an_octave_costs_that_of_its_frequencies_and_octaves_add_up() -> None:
     hull = radiating_hull(outer_hull(body()), 800.0, AIR.sound_speed)
-    middle, top = (
-        2.0 * math.pi * hertz / AIR.sound_speed * hull.hull.outer_radius
-        for hertz in (math.sqrt(400.0 * 800.0), 800.0)
-    )
-    each = MODEL.cost(len(hull.shapes), middle, hull.shapes.shape[1])
+    top = 2.0 * math.pi * 800.0 / AIR.sound_speed * hull.hull.outer_radius
+    each = MODEL.cost(len(hull.shapes), USUAL * top, hull.shapes.shape[1])
     upper = predicted(400.0, 800.0)
     assert upper.seconds == pytest.approx(each.seconds * expected_knots(top))
     assert predicted(200.0, 800.0).seconds == pytest.approx(predicted(200.0, 400.0).seconds + upper.seconds)
