@@ -61,8 +61,8 @@ def level_over_speed(sound: RadiatedSound) -> Figure:
     lines = (
         Line("total", speed, _above(total, floor), palette.INK, width=2.2),
         *(
-            Line(f"order {sound.order[h]:g}", speed, _above(level[h], floor), palette.category(k), width=1.4)
-            for k, h in enumerate(shown)
+            Line(f"order {order:.4g}", speed, _above(level[h], floor), palette.category(k), width=1.4)
+            for k, (h, order) in enumerate(zip(shown, sound.order[shown], strict=True))
         ),
     )
     if (whole := total_line(sound.speed, sound.facts)) is not None:
@@ -178,7 +178,7 @@ def _levels_table(sound: RadiatedSound, level: FloatArray, total: FloatArray) ->
     for h, order in enumerate(sound.order):
         at = int(level[h].argmax())
         speed = number(float(sound.speed[at]) / RPM, 5)
-        rows.append((f"{order:g}", f"{level[h, at]:.1f}", speed, number(float(sound.frequency[at, h]), 5)))
+        rows.append((f"{order:.4g}", f"{level[h, at]:.1f}", speed, number(float(sound.frequency[at, h]), 5)))
     head = ("order", "dB(A)", "speed, rpm", "frequency, Hz")
     return Table("Largest level of each order", head, tuple(rows))
 

@@ -25,7 +25,7 @@ def model_tables(sound: RadiatedSound) -> Iterator[Table]:
 def _models(housing: str, compared: Json) -> Table:
     """List the models from coarse to fine, those that were not computed with what they would cost."""
     speed = number(compared["speed"] / RPM, 4)
-    caption = f"Radiation models of {housing} at order {compared['order']:g}, {speed} rpm"
+    caption = f"Radiation models of {housing} at order {compared['order']:.4g}, {speed} rpm"
     return Table(caption, HEAD, tuple(_model(name, compared) for name in compared["predicted"]))
 
 

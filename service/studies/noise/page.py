@@ -47,7 +47,7 @@ def loudest_table(sound: RadiatedSound) -> Table:
 def _row(point: LoudPoint) -> tuple[str, ...]:
     """Describe a point."""
     return (
-        f"{point.order:g}",
+        f"{point.order:.4g}",
         number(point.speed / RPM, 5),
         number(point.frequency, 5),
         f"{point.weighted_level:.1f}" + ("" if point.in_contact else " (flanks part)"),
@@ -72,7 +72,7 @@ def sentences(sound: RadiatedSound) -> tuple[str, ...]:
 
 def where(point: LoudPoint) -> str:
     """Say order, speed and frequency of a point."""
-    return f"order {point.order:g} at {number(point.speed / RPM, 4)} rpm, {number(point.frequency, 4)} Hz"
+    return f"order {point.order:.4g} at {number(point.speed / RPM, 4)} rpm, {number(point.frequency, 4)} Hz"
 
 
 def headlines(sound: RadiatedSound) -> tuple[Headline, ...]:

@@ -39,7 +39,7 @@ def region_table(sound: RadiatedSound) -> Table:
     """List the regions of the loudest points."""
     rows = [
         (
-            f"{point.order:g}",
+            f"{point.order:.4g}",
             number(point.speed / RPM, 5),
             place(region),
             f"{100.0 * region['share']:.1f}",

@@ -25,7 +25,7 @@ def band_table(band: Json) -> Table:
     """List the bands of the total and of the loudest orders."""
     loudest = sorted(band["orders"], key=lambda row: -row["largest"]["level_db_a"])[:SHOWN_ORDERS]
     rows = [("all orders", band["largest_total"])]
-    rows += [(f"order {row['order']:g}", row["largest"]) for row in loudest]
+    rows += [(f"order {row['order']:.4g}", row["largest"]) for row in loudest]
     return Table("Bands over the ranges of what is guessed", BAND_HEAD, tuple(_row(*row) for row in rows))
 
 

@@ -78,7 +78,7 @@ def _panel(
 ) -> Panel:
     """One quantity by order."""
     lines = tuple(
-        Line(f"order {response.order[h]:g}", speed, amplitude[:, h], palette.category(k), width=1.4)
+        Line(f"order {response.order[h]:.4g}", speed, amplitude[:, h], palette.category(k), width=1.4)
         for k, h in enumerate(shown)
     )
     return Panel(x, Axis(label), lines)
@@ -101,7 +101,7 @@ def peak_table(response: ForcedResponse) -> Table:
         rows += [
             (
                 f"{quantity.replace('_', ' ')}, {peak.name}",
-                f"{peak.order:g}",
+                f"{peak.order:.4g}",
                 number(peak.speed / RPM, 5),
                 number(peak.frequency, 5),
                 number(peak.natural_frequency, 5),
@@ -129,7 +129,7 @@ def _words(response: ForcedResponse) -> str:
     size = np.abs(response.mesh_force)
     mesh, s, h = np.unravel_index(int(np.argmax(size)), size.shape)
     text = (
-        f"Largest mesh force: {number(float(size[mesh, s, h]), 3)} N of order {response.order[h]:g} at "
+        f"Largest mesh force: {number(float(size[mesh, s, h]), 3)} N of order {response.order[h]:.4g} at "
         f"{number(float(response.speed[s]) / RPM, 4)} rpm."
     )
     parting = response.speed[~response.in_contact] / RPM
@@ -154,7 +154,7 @@ def headlines(response: ForcedResponse) -> tuple[Headline, ...]:
 def _largest(what: str, names: Sequence[str], size: FloatArray, response: ForcedResponse) -> Headline:
     """Name the part of the largest amplitude (part, speed, order) with its order and speed."""
     part, s, h = map(int, np.unravel_index(int(np.argmax(size)), size.shape))
-    at = f"order {response.order[h]:g} at {number(float(response.speed[s]) / RPM, 4)} rpm"
+    at = f"order {response.order[h]:.4g} at {number(float(response.speed[s]) / RPM, 4)} rpm"
     return Headline(f"largest {what} {names[part]}", f"{number(float(size[part, s, h]), 3)} N", at)
 
 

@@ -73,7 +73,7 @@ def _text(result: HousingVibrationResult) -> Iterator[Table | str]:
     yield contribution_table(result)
     beyond = vibration.order[~np.all(vibration.valid, axis=0)]
     if beyond.size:
-        orders = ", ".join(f"{order:g}" for order in beyond)
+        orders = ", ".join(f"{order:.4g}" for order in beyond)
         limit = number(vibration.highest_valid_frequency, 4)
         yield f"orders {orders} go beyond {limit} Hz, 0.7 of the highest mode kept: keep more modes"
     yield from (f"{what}: {words}" for what, words in force_words(found.facts))

@@ -47,7 +47,7 @@ def _velocity_panel(found: VibrationAnalysis, name: str, rms: FloatArray) -> Pan
     most = sorted(np.argsort(-rms.max(axis=0), kind="stable")[:SHOWN_ORDERS].tolist())
     lines = []
     for k, h in enumerate(most):
-        valid, color, order = vibration.valid[:, h], palette.category(k), f"order {vibration.order[h]:g}"
+        valid, color, order = vibration.valid[:, h], palette.category(k), f"order {vibration.order[h]:.4g}"
         lines.append(Line(order, speed, np.where(valid, rms[:, h], np.nan), color, width=1.4))
         if not np.all(valid):
             onward = ~valid | np.append(~valid[1:], False)
@@ -184,6 +184,6 @@ def _words(result: HousingVibrationResult) -> str:
     beyond = vibration.order[~np.all(vibration.valid, axis=0)]
     text = f"Shown in detail: {where(found)}."
     if beyond.size:
-        orders = ", ".join(f"{order:g}" for order in beyond[:SHOWN_ORDERS])
+        orders = ", ".join(f"{order:.4g}" for order in beyond[:SHOWN_ORDERS])
         text += f" Orders {orders} reach above what the modes kept carry."
     return text

@@ -18,7 +18,7 @@ def where(found: VibrationAnalysis) -> str:
     """Say the order, speed and frequency looked at."""
     vibration, s, h = found.vibration, found.at_speed, found.at_order
     speed, hertz = number(float(vibration.speed[s]) / RPM, 4), number(float(vibration.frequency[s, h]), 4)
-    return f"order {vibration.order[h]:g} at {speed} rpm, {hertz} Hz"
+    return f"order {vibration.order[h]:.4g} at {speed} rpm, {hertz} Hz"
 
 
 def largest_table(result: HousingVibrationResult) -> Table:
@@ -35,7 +35,7 @@ def largest_table(result: HousingVibrationResult) -> Table:
         rows.append(
             (
                 name,
-                f"{vibration.order[h]:g}",
+                f"{vibration.order[h]:.4g}",
                 number(float(vibration.speed[s]) / RPM, 5),
                 number(hertz, 5),
                 number(float(near), 5),
