@@ -39,7 +39,10 @@ def sound_map(sound: RadiatedSound, table: Table, words: Sequence[str]) -> Figur
 
 
 def _cells(orders: OrderPower, speed: FloatArray) -> HeatMap:
-    """Add up the orders in cells of speed and frequency, tall enough that lines of orders are not broken."""
+    """Add up the orders in cells of speed and frequency, up to the highest that is shown.
+
+    They are tall enough that lines of orders are not broken.
+    """
     top, steps = float(orders.frequency.max()), np.abs(np.diff(orders.frequency, axis=1))
     height = max(top / LINES, float(steps.max(initial=0.0)))
     edges = np.arange(0.0, top + 2.0 * height, height)
@@ -49,7 +52,9 @@ def _cells(orders: OrderPower, speed: FloatArray) -> HeatMap:
     level = sound_power_level(power)
     most = float(level.max())
     z = np.where(level < most - DEPTH, np.nan, level)
-    return HeatMap(speed, 0.5 * (edges[1:] + edges[:-1]), z, "sound power level, dB(A)", most, most - DEPTH)
+    shown = int(np.flatnonzero(np.any(level >= most - DEPTH, axis=1)).max(initial=0)) + 1
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    return HeatMap(speed, middle[:shown], z[:shown], "sound power level, dB(A)", most, most - DEPTH)
 
 
 def level_over_speed(sound: RadiatedSound) -> Figure:

@@ -1,0 +1,38 @@
+"""The map of sound power: power is kept, and it ends where its colors do."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from sounding_scene import sound
+
+from dynamics.noise import RadiatedSound
+from service.drawing.figure import HeatMap, Panel, Table
+from service.studies.noise.drawings import DEPTH, sound_map
+
+
+def quiet_above() -> RadiatedSound:
+    """The scene's sound, its highest order 120 dB quieter."""
+    power = np.array(sound().power)
+    power[-1] *= 1e-12
+    return replace(sound(), power=power, facts=sound().facts | {"leading_shaft": "input"})
+
+
+def shade() -> HeatMap:
+    (panel,) = sound_map(quiet_above(), Table("", (), ()), ()).content
+    assert isinstance(panel, Panel) and panel.shade is not None
+    return panel.shade
+
+
+def test_it_holds_the_power_of_every_speed() -> None:
+    drawn = np.nansum(10.0 ** (shade().z / 10.0), axis=0) * 1e-12
+    total = quiet_above().orders.weighted_power.sum(axis=0)
+    left_out = total.max() * 10.0 ** (-DEPTH / 10.0) * quiet_above().order.size
+    np.testing.assert_allclose(drawn, total, atol=left_out)
+
+
+def test_it_ends_with_what_is_shown() -> None:
+    map_, frequency = shade(), quiet_above().orders.frequency
+    assert np.any(np.isfinite(map_.z[-1])) and len(map_.y) == len(map_.z)
+    assert map_.y[-1] < 0.5 * (frequency[-2:].max(axis=1).sum())
