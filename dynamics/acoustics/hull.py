@@ -16,6 +16,8 @@ from dynamics.types import BoolArray, FloatArray, IntArray
 ComplexArray = NDArray[np.complex128]
 PANELS_PER_WAVELENGTH = 6.0
 """Least number of the longest edges in a wavelength, where a model resolves the waves on the hull."""
+ROUNDED_DOWN = 1.0 - 1e-12
+"""Of a limit of wavelength or frequency: no panel fails by rounding to resolve it."""
 FLAT = 1e-9
 """A triangle of less height over its longest edge has no normal."""
 

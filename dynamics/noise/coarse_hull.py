@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.acoustics import Hull, OuterHull
-from dynamics.acoustics.hull import PANELS_PER_WAVELENGTH, flat_triangles
+from dynamics.acoustics.hull import PANELS_PER_WAVELENGTH, ROUNDED_DOWN, flat_triangles
 from dynamics.identity_cache import identity_cached
 from dynamics.noise.surface_cells import cell_positions, nearest_nodes, split_cells, surface_cells
 from dynamics.noise.thin_panels import without_thin
@@ -15,8 +15,6 @@ from dynamics.types import FloatArray, IntArray
 
 LONGEST = 2.0
 """Longest edge of a coarse hull over its mean distance of nodes."""
-ROUNDED_DOWN = 1.0 - 1e-12
-"""Of the longest edge: no panel fails by rounding to resolve the frequency."""
 ATTEMPTS = 16
 """To split cells; walls of gear cases took up to six."""
 FEWER = 0.5

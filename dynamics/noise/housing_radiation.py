@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from dynamics.acoustics import Air, ModalResistance, OuterHull, RadiationModel, outer_hull, resistance
 from dynamics.acoustics.equivalent_radiated_power import EquivalentRadiatedPower
-from dynamics.acoustics.hull import ComplexArray
+from dynamics.acoustics.hull import ROUNDED_DOWN, ComplexArray
 from dynamics.checks import positive
 from dynamics.errors import InputError
 from dynamics.housing_modes.reduced_housing import ReducedHousing
@@ -28,8 +28,6 @@ BAND = 10.0**0.05
 """Half a third octave: the range grows to edges of bands."""
 WORK = "radiation resistance by {}"
 """Name of a model over a range of frequencies in the log of runs."""
-ROUNDED_DOWN = 1.0 - 1e-12
-"""Of a limit in Hz whose wavenumber must not be above that of the limit."""
 
 STORED = {
     "frequency": Stored(("frequency",), "Hz", "frequency"),
@@ -132,12 +130,17 @@ def housing_radiation(
     if high > resolved:
         first = max(low, float(np.nextafter(resolved, np.inf)))
         parts.append(constant_knots(first, high, cast(ComplexArray, air.impedance * outer.surface)))
-    facts: Json = {
-        "resolved_frequency": resolved,
+    return _joined(parts, outer, air, model, own | {"resolved_frequency": resolved})
+
+
+def _joined(
+    parts: Sequence[Knots], outer: OuterHull, air: Air, model: RadiationModel, facts: Json
+) -> HousingRadiation:
+    """Return the radiation resistance of a hull over all its ranges of frequencies, with its facts."""
+    own: Json = {
         "interpolation_error": 0.25 * max(part.error for part in parts),
         "inner_area": outer.inner_area,
         "cap_area": outer.cap_area,
-        **own,
     }
     return HousingRadiation(
         np.concatenate([part.frequency for part in parts]),
@@ -146,7 +149,7 @@ def housing_radiation(
         outer.hull.area,
         air.impedance,
         model.model_name,
-        facts,
+        facts | own,
     )
 
 

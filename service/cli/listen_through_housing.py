@@ -12,7 +12,7 @@ from service.cli.listen_sounds import RunSound
 from service.cli.output import progress_bar
 from service.cli.warned import warn
 from service.client.portable import scene_of
-from service.convert.housings import HousedScene, modes_in_files, reduced_in
+from service.convert.housings import HousedScene, housings_in
 from service.directories import cache_home
 from service.drawing.figure import number
 from service.problems import BadInput
@@ -65,7 +65,7 @@ def housing_sounds(
     _require_no_view(view, receiver)
     scene, folder = scene_of(through.scene)
     with progress_bar() as report:
-        bodies = reduced_in(scene, cache_home(), report) | modes_in_files(scene, folder)
+        bodies = housings_in(scene, cache_home(), folder, report)
     housings = SceneHousings.of(HousedScene(scene, bodies))
     sounds: list[RunSound] = []
     remarks: list[str] = []

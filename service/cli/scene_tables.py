@@ -18,7 +18,7 @@ from service.client.portable import case_of_mesh, without_modes_files
 from service.client.scene_calls import ServiceTables
 from service.client.steps import Steps, finished
 from service.convert.checks import check_case
-from service.convert.housings import modes_in_files, reduced_in
+from service.convert.housings import housings_in
 from service.convert.plausibility import case_warnings, scene_warnings, within
 from service.convert.scene import TabledScene, check_scene, dynamic_scene
 from service.convert.topology import facts_of
@@ -61,7 +61,7 @@ def _checked(scene: SceneInput, tables: _Tables, folder: Path, report: Report) -
     """Check the scene before anything is computed for it, then reduce its housings and gather its tables."""
     facts = {mesh.name: _facts(i, mesh, folder, tables) for i, mesh in scene.with_database}
     warn(scene_warnings(scene, check_scene(scene, facts)))
-    housings = reduced_in(scene, cache_home(), report) | modes_in_files(scene, folder)
+    housings = housings_in(scene, cache_home(), folder, report)
     databases = {mesh.name: tables.of(i, mesh) for i, mesh in scene.with_database}
     built = dynamic_scene(scene, databases, housings)
     warn(scene_warnings(scene, built, {name: table.metadata.warnings for name, table in databases.items()}))

@@ -62,6 +62,13 @@ def modes_in_files(scene: SceneInput, folder: Path) -> dict[str, ReducedHousing]
     return {name: ReducedHousing.from_netcdf(folder / file) for name, file in files.items()}
 
 
+def housings_in(
+    scene: SceneInput, home: Path, folder: Path, progress: Progress = silent
+) -> dict[str, ReducedHousing]:
+    """Return the housings of a scene file by name: solids reduced, modes from their files."""
+    return reduced_in(scene, home, progress) | modes_in_files(scene, folder)
+
+
 def housing_of(index: int, housing: HousingInput, reduced: ReducedHousing | None) -> Housing:
     """Return a housing, `reduced` if it is given by its solid."""
     if not housing.is_solid:

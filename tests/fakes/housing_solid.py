@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import json
 import subprocess
 import sys
 import tomllib
@@ -52,6 +53,13 @@ def housing(**fields: Any) -> dict[str, Any]:
         "points": [{"name": "cover", "position_mm": [40.0, 40.0, 100.0]}],
     }
     return {name: value for name, value in (own | fields).items() if value is not None}
+
+
+def write_housed_scene(folder: Path, **fields: Any) -> Path:
+    """Write the scene, its solid and its table into a folder, which is returned."""
+    write_block(folder / "block.step")
+    (folder / "scene.json").write_text(json.dumps(housed_scene(folder, **fields)))
+    return folder
 
 
 def housed_scene(folder: Path, **fields: Any) -> dict[str, Any]:

@@ -18,14 +18,14 @@ class Counted:
         return "result"
 
 
-def kept(file: Path | None, counted: Counted, worth: bool = True) -> str:
+def kept(file: Path | None, counted: Counted, keep: bool = True) -> str:
     return kept_in(
         file,
         Path.read_text,
         counted.make,
         lambda made, at: at.write_text(made),
         OSError,
-        lambda _made: worth,
+        lambda _made: keep,
     )
 
 
@@ -38,9 +38,9 @@ def test_a_result_is_made_once_for_its_file(tmp_path):
     assert counted.times == 2
 
 
-def test_what_is_not_worth_a_file_leaves_none(tmp_path):
+def test_what_is_not_to_be_kept_leaves_no_file(tmp_path):
     file = tmp_path / "kept"
-    assert kept(file, Counted(), worth=False) == kept(None, Counted()) == "result"
+    assert kept(file, Counted(), keep=False) == kept(None, Counted()) == "result"
     assert not list(tmp_path.iterdir())
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 from declared_figures import check_declared
-from housing_solid import housed_scene, write_block
+from housing_solid import write_housed_scene
 from typer.testing import CliRunner
 
 from dynamics.work_cost import WorkCost
@@ -27,10 +27,7 @@ COST = vars(WorkCost(24.6, 1.07e9, 25.1, None))
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with the scene of a block with two bores, and the cache."""
-    folder = tmp_path_factory.mktemp("costs")
-    write_block(folder / "block.step")
-    (folder / "scene.json").write_text(json.dumps(housed_scene(folder, modes=6)))
-    return folder
+    return write_housed_scene(tmp_path_factory.mktemp("costs"), modes=6)
 
 
 @pytest.mark.parametrize("study", list(STUDIES))

@@ -70,8 +70,8 @@ def test_a_run_ends_with_its_largest_forces():
         "mesh_force": {"a": {"peak": 3.0, "rms": 1.0}, "b": {"peak": 5.0, "rms": 2.0}},
         "bearing_force": {"left": {"peak": [3.0, 4.0, 0.0], "rms": [0.6, 0.8, 0.0]}},
     }
-    told = [(line.name, line.value, line.remark) for line in run_headlines(peaks)]
-    assert told == [
+    lines = [(line.name, line.value, line.remark) for line in run_headlines(peaks)]
+    assert lines == [
         ("largest mesh force of b", "5.000 N", "rms 2.000 N"),
         ("largest force on bearing left, y", "4.000 N", "rms 0.8000 N"),
     ]

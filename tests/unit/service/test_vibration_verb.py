@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from computed_once import computed_once
 from declared_figures import check_declared
-from housing_solid import housed_scene, write_block
+from housing_solid import housed_scene, write_housed_scene
 from scene_files import scene_file
 from shown_effects import check_effects_shown
 from typer.testing import CliRunner, Result
@@ -36,10 +36,7 @@ def loa(*arguments: object) -> Result:
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with the scene of a block with two bores."""
-    folder = tmp_path_factory.mktemp("vibration")
-    write_block(folder / "block.step")
-    (folder / "scene.json").write_text(json.dumps(housed_scene(folder, modes=6)))
-    return folder
+    return write_housed_scene(tmp_path_factory.mktemp("vibration"), modes=6)
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -1,4 +1,4 @@
-"""The watcher of jobs: all followers are told at the cost of one, and an outage is outlasted."""
+"""The watcher of jobs: all followers get every state at the cost of one, and an outage is outlasted."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def claimed(machine: Bench) -> Claim:
     return claim
 
 
-def test_every_follower_is_told_every_state_in_order(machine: Bench, watcher: Watcher[Job]) -> None:
+def test_every_follower_gets_every_state_in_order(machine: Bench, watcher: Watcher[Job]) -> None:
     job, received = machine.submit(text="a"), [list[Job | None]() for _ in range(5)]
     with ExitStack() as following:
         for each in received:
@@ -76,7 +76,7 @@ def _status(received: list[Job | None]) -> str:
     return received[-1].status if received and received[-1] is not None else ""
 
 
-def test_a_state_that_was_reached_before_anybody_followed_is_told(
+def test_a_state_that_was_reached_before_anybody_followed_is_reported(
     machine: Bench, watcher: Watcher[Job]
 ) -> None:
     job = machine.submit(text="a")
@@ -86,37 +86,37 @@ def test_a_state_that_was_reached_before_anybody_followed_is_told(
         until(lambda: _status(received) == "successful")
 
 
-def test_a_dismissal_is_told_to_those_of_that_job_alone(machine: Bench, watcher: Watcher[Job]) -> None:
+def test_a_dismissal_is_reported_to_those_of_that_job_alone(machine: Bench, watcher: Watcher[Job]) -> None:
     mine, other = machine.submit(text="same"), machine.submit(text="same")
     received: list[Job | None] = []
-    spared: list[Job | None] = []
-    with watcher.following(mine, received.append), watcher.following(other, spared.append):
+    others: list[Job | None] = []
+    with watcher.following(mine, received.append), watcher.following(other, others.append):
         machine.submissions.dismiss(mine.id)
         until(lambda: _status(received) == "dismissed")
         claimed(machine)
-        until(lambda: _status(spared) == "running")
-    assert [_status([state]) for state in spared] == ["running"]
+        until(lambda: _status(others) == "running")
+    assert [_status([state]) for state in others] == ["running"]
 
 
 def test_two_hundred_followers_cost_the_questions_of_one(machine: Bench, watcher: Watcher[Job]) -> None:
     pair, claims = [machine.submit(text=text) for text in "ab"], [claimed(machine) for _ in range(2)]
     heard = threading.Semaphore(0)
     received: list[Job | None] = []
-    asked: list[str] = []
+    statements: list[str] = []
     with ExitStack() as following:
         for number in range(200):
             following.enter_context(watcher.following(pair[number % 2], lambda _: heard.release()))
         following.enter_context(watcher.following(pair[0], received.append))
         until(lambda: _status(received) == "running")  # everything before is received by now
-        event.listen(watcher._engine, "before_cursor_execute", lambda *words: asked.append(words[2]))
+        event.listen(watcher._engine, "before_cursor_execute", lambda *words: statements.append(words[2]))
         while heard.acquire(blocking=False):
             pass
         for claim in claims:
             machine.claims.succeed(claim)
         for _ in range(200):
             assert heard.acquire(timeout=60.0)
-    assert sum("coalesce" in statement for statement in asked) <= 4
-    assert sum("computation.inputs" in statement for statement in asked) <= 2
+    assert sum("coalesce" in statement for statement in statements) <= 4
+    assert sum("computation.inputs" in statement for statement in statements) <= 2
 
 
 def test_what_is_not_heard_is_seen(

@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from compliance_gears import HELICAL, SPUR, coarse
 
 import fe_contact.compliance.cyclic_compliance as flow
 from fe_contact.compliance import FlankCompliance3D, flank_compliance_3d
@@ -15,18 +16,8 @@ from fe_contact.compliance.checks_3d import probe_loads
 from fe_contact.compliance.elastic_seat import face_mass
 from fe_contact.errors import InfeasibleGeometry, InputError
 from fe_contact.geometry import BoreSeat, Gear, seat_compliance
-from fe_contact.mesh import ClampedBore, SectorRecipe, bore_support, swept_sector
+from fe_contact.mesh import ClampedBore, bore_support, swept_sector
 from fe_contact.mesh.sector_grid import SectorGrid
-
-SPUR = Gear(teeth=9, normal_module=4e-3, face_width=20e-3, bore_diameter=12e-3, profile_shift_coefficient=0.4)
-HELICAL = replace(SPUR, helix_angle=math.radians(25.0))
-
-
-def coarse(gear: Gear) -> SectorRecipe:
-    m = gear.normal_module
-    sizes = {"flank_size": 0.5 * m, "tip_size": 0.3 * m, "depth_size": 0.6 * m, "depth_limit": 0.9 * m}
-    body = {"body_size": 0.5 * m, "body_limit": 1.5 * m}
-    return SectorRecipe(**sizes, **body, layers=4, land_elements=1, merge_rows=(-1,))  # type: ignore[arg-type]
 
 
 def solved(gear: Gear, reach: int | None = None) -> FlankCompliance3D:

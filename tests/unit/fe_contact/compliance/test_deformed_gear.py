@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from compliance_gears import HELICAL, SPUR, coarse
 
 from fe_contact.compliance import PlaneHypothesis, flank_compliance, flank_compliance_3d
 from fe_contact.compliance.deformation_2d import deformed_sections, element_stress
@@ -18,10 +19,8 @@ from fe_contact.compliance.sector_elements import SectorElements, sector_element
 from fe_contact.compliance.sector_stiffness import lame_parameters
 from fe_contact.errors import InputError
 from fe_contact.geometry import BoreSeat, Gear, GearBlank, Key, RingGear, Toothing, tooth_profile
-from fe_contact.mesh import MeshRecipe, SectorRecipe, mesh_gear, quad_sector, swept_sector
+from fe_contact.mesh import MeshRecipe, mesh_gear, quad_sector, swept_sector
 
-SPUR = Gear(teeth=9, normal_module=4e-3, face_width=20e-3, bore_diameter=12e-3, profile_shift_coefficient=0.4)
-HELICAL = replace(SPUR, helix_angle=math.radians(25.0))
 LEFT = replace(SPUR, helix_angle=math.radians(-25.0))
 RING = RingGear(
     teeth=30,
@@ -45,21 +44,6 @@ SOLIDS = pytest.mark.parametrize(
 GRADIENT = np.array([[2e-4, -1e-4, 3e-5], [5e-5, -1e-4, 2e-5], [1e-5, 4e-5, 6e-5]])
 
 
-def coarse_sector(gear: Toothing) -> SectorRecipe:
-    m = gear.normal_module
-    return SectorRecipe(
-        flank_size=0.5 * m,
-        tip_size=0.3 * m,
-        depth_size=0.6 * m,
-        depth_limit=0.9 * m,
-        body_size=0.5 * m,
-        body_limit=1.5 * m,
-        layers=4,
-        land_elements=1,
-        merge_rows=(-1,),
-    )
-
-
 def random_load(size: int, seed: int) -> np.ndarray:
     return np.random.default_rng(seed).uniform(0.0, 1.0, size)
 
@@ -67,7 +51,7 @@ def random_load(size: int, seed: int) -> np.ndarray:
 @SOLIDS
 def test_flanks_move_as_compliance_times_force(gear: Toothing) -> None:
     """Several loaded teeth at once, two sets of loads in one go; every tooth shown, loaded or not."""
-    recipe = coarse_sector(gear)
+    recipe = coarse(gear)
     flank = flank_compliance_3d(gear, recipe, reach=4)
     size = flank.blocks.shape[1]
     loads = [{0: -random_load(size, 1), 1: -random_load(size, 2)}, {-2: random_load(size, 3)}]
@@ -107,7 +91,7 @@ def test_linear_displacement_gives_its_constant_stress(gear: Toothing) -> None:
 
 def sector_of(gear: Toothing) -> SectorElements:
     right = gear.right_handed()
-    recipe = coarse_sector(gear)
+    recipe = coarse(gear)
     section = quad_sector(right, recipe)
     return sector_elements(
         right, section, swept_sector(section.grid, right.face_width, recipe, None, right.web)
@@ -150,7 +134,7 @@ def test_linear_displacement_gives_its_constant_plane_stress(
 @SOLIDS
 def test_solids_are_whole_and_right_side_out(gear: Toothing) -> None:
     """Each point is used; neighbors share their cut; volumes are positive; tips are where they belong."""
-    recipe = coarse_sector(gear)
+    recipe = coarse(gear)
     size = flank_compliance_3d(gear, recipe, reach=0).blocks.shape[1]
     load = {1: -random_load(size, 5)}
     (one,) = deformed_solids(gear, recipe, [load], beside=0)
@@ -183,7 +167,7 @@ def tip_at(found: DeformedGear, gear: Toothing, z: float) -> float:
 
 
 def test_a_whole_ring_closes() -> None:
-    recipe = coarse_sector(SPUR)
+    recipe = coarse(SPUR)
     size = flank_compliance_3d(SPUR, recipe, reach=0).blocks.shape[1]
     (found,) = deformed_solids(SPUR, recipe, [{0: -random_load(size, 5)}], beside=20)
     elements = sector_of(SPUR)
@@ -194,7 +178,7 @@ def test_a_whole_ring_closes() -> None:
 
 def test_a_gear_on_an_elastic_seat_moves_as_its_compliance_and_a_key_is_refused() -> None:
     seat = BoreSeat(5e13, 3e13, 5e13, width=12e-3)
-    gear, recipe = replace(LEFT, seat=seat), coarse_sector(LEFT)
+    gear, recipe = replace(LEFT, seat=seat), coarse(LEFT)
     flank = flank_compliance_3d(gear, recipe, reach=1)
     load = {0: -random_load(flank.blocks.shape[1], 1)}
     (found,) = deformed_solids(gear, recipe, [load])

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
+from compliance_gears import coarse
 
 import fe_contact.compliance.cyclic_compliance as flow
 from fe_contact.compliance import (
@@ -27,7 +28,7 @@ from fe_contact.compliance.unit_root_stress import unit_root_stress_3d
 from fe_contact.geometry import Gear, GearBlank
 from fe_contact.geometry.web_compliance import torsion_compliance
 from fe_contact.material import STEEL
-from fe_contact.mesh import ClampedBore, MeshRecipe, SectorRecipe, mesh_gear, quad_sector
+from fe_contact.mesh import ClampedBore, MeshRecipe, mesh_gear, quad_sector
 from fe_contact.stage_clock import StageClock
 
 SOLID = Gear(teeth=21, normal_module=4e-3, face_width=24e-3, bore_diameter=24e-3)
@@ -38,16 +39,12 @@ def with_blank(**change: float) -> Gear:
     return replace(SOLID, blank=replace(BLANK, **change))
 
 
+six_layers = partial(coarse, layers=6)
+
+
 def coarse_2d(gear: Gear) -> MeshRecipe:
     m = gear.normal_module
     return replace(MeshRecipe.standard(gear), flank_size=0.2 * m, tip_size=0.1 * m, fillet_size=0.2 * m)
-
-
-def coarse_3d(gear: Gear) -> SectorRecipe:
-    m = gear.normal_module
-    sizes = {"flank_size": 0.5 * m, "tip_size": 0.3 * m, "depth_size": 0.6 * m, "depth_limit": 0.9 * m}
-    body = {"body_size": 0.5 * m, "body_limit": 1.5 * m}
-    return SectorRecipe(**sizes, **body, layers=6, land_elements=1, merge_rows=(-1,))  # type: ignore[arg-type]
 
 
 def moved_2d(compliance: FlankCompliance, tooth: int = 0) -> float:
@@ -69,7 +66,7 @@ def plane(gear: Gear, teeth: int | None = None) -> FlankCompliance:
 
 @cache
 def solid_3d(gear: Gear, reach: int | None = None) -> FlankCompliance3D:
-    return flank_compliance_3d(gear, coarse_3d(gear), reach=reach)
+    return flank_compliance_3d(gear, six_layers(gear), reach=reach)
 
 
 def test_a_web_of_full_width_is_the_solid_gear_to_the_last_bit() -> None:
@@ -124,7 +121,7 @@ def test_torsion_of_web_and_hub_is_that_of_tubes_in_the_plane() -> None:
 def test_torsion_inside_the_web_is_that_of_a_tube_over_the_face() -> None:
     """Equal loads on all teeth twist the body; away from rim and hub the web is in pure shear."""
     gear = with_blank(rim_thickness=6e-3, hub_diameter=28e-3, web_thickness=3e-3)
-    recipe = replace(coarse_3d(gear), body_limit=0.4 * gear.normal_module)
+    recipe = replace(six_layers(gear), body_limit=0.4 * gear.normal_module)
     section = quad_sector(gear, recipe)
     solved, loads = condensed_gear(gear, section, recipe, 1, ClampedBore(), StageClock())
     cuts = np.tile(solved.ring.left.sum(axis=0), (2, 1))[:, :1]
@@ -164,20 +161,20 @@ def test_a_left_hand_gear_keeps_its_web_on_its_side() -> None:
     assert left.web is not None
     for face in (left.web.low, left.web.high):
         assert np.abs(found.z - face).min() < 1e-15
-    alone = flank_compliance_3d(left, coarse_3d(left))
-    together = flow.flank_compliances_3d([left.right_handed(), left], [coarse_3d(left)] * 2)
+    alone = flank_compliance_3d(left, six_layers(left))
+    together = flow.flank_compliances_3d([left.right_handed(), left], [six_layers(left)] * 2)
     assert np.array_equal(together[1].blocks, alone.blocks)
     assert np.array_equal(together[1].z, alone.z)
     assert np.array_equal(together[0].z, -alone.z[::-1])
-    stress = unit_root_stress_3d(left, coarse_3d(left), reach=0)
+    stress = unit_root_stress_3d(left, six_layers(left), reach=0)
     assert np.array_equal(stress.z, alone.z)
-    other = unit_root_stress_3d(left.right_handed(), coarse_3d(left), reach=0)
+    other = unit_root_stress_3d(left.right_handed(), six_layers(left), reach=0)
     assert np.array_equal(stress.station_z, -other.station_z[::-1])
     assert not np.allclose(stress.station_z, other.station_z)
 
 
 def test_the_key_knows_the_web() -> None:
-    recipe, clamped, stress = coarse_3d(SOLID), ClampedBore(), PlaneHypothesis.PLANE_STRESS
+    recipe, clamped, stress = six_layers(SOLID), ClampedBore(), PlaneHypothesis.PLANE_STRESS
     changes: tuple[dict[str, float], ...] = (
         {},
         {"web_thickness": 7e-3},

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scipy.sparse as sp
+from compliance_gears import HELICAL, SPUR, coarse
 
 from fe_contact.compliance import FlankCompliance3D, SuperLuMetis, flank_compliance_3d
 from fe_contact.compliance.checks_3d import probe_loads
@@ -20,20 +21,11 @@ from fe_contact.contact.face_assembly import KeyedFlanks
 from fe_contact.contact.face_patch import FaceGrid, add_compliance, face_loads
 from fe_contact.errors import InfeasibleGeometry, InputError
 from fe_contact.geometry import BoreSeat, Gear, Key
-from fe_contact.mesh import SectorRecipe, bore_support, quad_sector, swept_sector
+from fe_contact.mesh import bore_support, quad_sector, swept_sector
 
-SPUR = Gear(teeth=9, normal_module=4e-3, face_width=20e-3, bore_diameter=12e-3, profile_shift_coefficient=0.4)
-HELICAL = replace(SPUR, helix_angle=math.radians(25.0))
 GEARS = pytest.mark.parametrize("gear", [SPUR, HELICAL], ids=["spur", "helical"])
 MODULUS = 1e13
 SEAT = BoreSeat(5e13, MODULUS, 5e13)
-
-
-def coarse(gear: Gear) -> SectorRecipe:
-    m = gear.normal_module
-    sizes = {"flank_size": 0.5 * m, "tip_size": 0.3 * m, "depth_size": 0.6 * m, "depth_limit": 0.9 * m}
-    body = {"body_size": 0.5 * m, "body_limit": 1.5 * m}
-    return SectorRecipe(**sizes, **body, layers=4, land_elements=1, merge_rows=(-1,))  # type: ignore[arg-type]
 
 
 def keyed(gear: Gear, width: float = 4e-3, angle: float = 0.3, **change: float) -> Gear:

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scipy.sparse as sp
+from compliance_gears import HELICAL, SPUR, coarse
 from scipy.sparse.linalg import splu
 
 import fe_contact.compliance.condensed_gear as gear_module
@@ -46,8 +47,6 @@ from fe_contact.mesh import (
 )
 from fe_contact.mesh.root_surface import quad_root, triangle_root
 
-SPUR = Gear(teeth=9, normal_module=4e-3, face_width=20e-3, bore_diameter=12e-3, profile_shift_coefficient=0.4)
-HELICAL = replace(SPUR, helix_angle=math.radians(25.0))
 GEARS = pytest.mark.parametrize("gear", [SPUR, HELICAL], ids=["spur", "helical"])
 PLANE = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 RING = RingGear(
@@ -58,20 +57,7 @@ RING_NAMES = ["sectors to the bore", "hub", "plain ring"]
 STRAIN = PlaneHypothesis.PLANE_STRAIN
 
 
-def coarse_face(gear: Gear, **changes: object) -> SectorRecipe:
-    m = gear.normal_module
-    recipe = SectorRecipe(
-        flank_size=0.5 * m,
-        tip_size=0.3 * m,
-        depth_size=0.6 * m,
-        depth_limit=0.9 * m,
-        body_size=0.5 * m,
-        body_limit=1.5 * m,
-        layers=4,
-        land_elements=2,
-        merge_rows=(-1,),
-    )
-    return replace(recipe, **changes)  # type: ignore[arg-type]
+two_on_land = functools.partial(coarse, land_elements=2)
 
 
 def coarse_plane(gear: Toothing, **changes: object) -> MeshRecipe:
@@ -161,7 +147,7 @@ def whole_gear_stress(gear: Gear, recipe: SectorRecipe) -> np.ndarray:
 @GEARS
 def test_equals_the_uncondensed_solution_over_the_face(gear: Gear) -> None:
     """To 1e-6 of the stress: what the cuts cannot tell apart by more is dropped (`RANK_TOLERANCE`)."""
-    recipe = coarse_face(gear)
+    recipe = two_on_land(gear)
     found = over_face(gear, recipe, reach=4)
     direct = whole_gear_stress(gear, recipe)
     stress = (found.stress @ some_forces(found.stress.shape[-1])).swapaxes(3, 4).reshape(9, -1, 3)
@@ -172,7 +158,7 @@ def test_equals_the_uncondensed_solution_over_the_face(gear: Gear) -> None:
 
 @GEARS
 def test_checks_hold(gear: Gear) -> None:
-    face = over_face(gear, coarse_face(gear))
+    face = over_face(gear, two_on_land(gear))
     assert face.checks.residual < 1e-11
     assert face.checks.recovery < 2e-6
     plane = in_plane(SPUR, coarse_plane(SPUR))
@@ -227,7 +213,7 @@ def test_one_layer_without_axial_displacement_is_the_plane() -> None:
 
 def test_opposite_hands_are_mirror_images() -> None:
     left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
-    right, found = (over_face(gear, coarse_face(gear), reach=1) for gear in (HELICAL, left))
+    right, found = (over_face(gear, two_on_land(gear), reach=1) for gear in (HELICAL, left))
     assert np.array_equal(found.stress, right.mirrored().stress)
     assert np.array_equal(found.mirrored().stress, right.stress)
     assert relative(found.stress, right.stress) > 0.1
@@ -235,16 +221,16 @@ def test_opposite_hands_are_mirror_images() -> None:
 
 def test_a_gear_swept_the_other_way_is_the_mirror_image(monkeypatch: pytest.MonkeyPatch) -> None:
     left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
-    mirrored = over_face(left, coarse_face(left), reach=1)
+    mirrored = over_face(left, two_on_land(left), reach=1)
     for module in (stiffness_module, gear_module, face_module):
         monkeypatch.setattr(module, "twist", lambda gear: math.tan(gear.helix_angle) / gear.reference_radius)
-    swept = compute_root_stress_3d(left, coarse_face(left), 1, ClampedBore(), "")
+    swept = compute_root_stress_3d(left, two_on_land(left), 1, ClampedBore(), "")
     # single nodal forces hold what the cuts tell apart to 1e-6 only
     assert relative(swept.stress, mirrored.stress) < 2e-6
 
 
 def test_a_spur_gear_is_its_own_mirror_image() -> None:
-    found = over_face(SPUR, coarse_face(SPUR))
+    found = over_face(SPUR, two_on_land(SPUR))
     assert relative(found.mirrored().stress, found.stress) < 2e-6
     shear = found.stress[:, :, 2] @ on_flank(found)
     assert np.abs(shear + shear[..., ::-1]).max() < 1e-6 * np.abs(found.stress @ on_flank(found)).max()
@@ -254,7 +240,7 @@ def test_stress_per_force_goes_with_one_over_length_and_not_with_stiffness() -> 
     """Lengths by s and forces by s^2: the same stress; per unit of width, forces by s."""
     large = replace(SPUR, normal_module=32e-3, face_width=160e-3, bore_diameter=96e-3)
     soft = replace(SPUR, material=Material(youngs_modulus=21e9))
-    found, scaled, softer = (over_face(g, coarse_face(g)) for g in (SPUR, large, soft))
+    found, scaled, softer = (over_face(g, two_on_land(g)) for g in (SPUR, large, soft))
     assert relative(64.0 * scaled.stress, found.stress) < 2e-6
     assert relative(softer.stress, found.stress) < 2e-6
     assert scaled.tangent_angle == pytest.approx(found.tangent_angle, rel=1e-9)
@@ -306,7 +292,7 @@ def test_the_tangent_of_the_critical_section_has_30_degrees() -> None:
 
 def test_the_cache_returns_the_same_bits(tmp_path: Path) -> None:
     left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
-    recipe = coarse_face(HELICAL)
+    recipe = two_on_land(HELICAL)
     first, second = (unit_root_stress_3d(HELICAL, recipe, reach=1, cache=tmp_path) for _ in range(2))
     assert (first.from_cache, second.from_cache) == (False, True)
     for field in fields(UnitRootStress):
@@ -326,7 +312,7 @@ def test_the_cache_returns_the_same_bits(tmp_path: Path) -> None:
 
 def test_gears_alike_are_computed_once(monkeypatch: pytest.MonkeyPatch) -> None:
     left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
-    found = unit_root_stresses_3d([HELICAL, left], [coarse_face(HELICAL)] * 2)
+    found = unit_root_stresses_3d([HELICAL, left], [two_on_land(HELICAL)] * 2)
     assert np.array_equal(found[1].mirrored().stress, found[0].stress)
     assert found[1].seconds is found[0].seconds
     twins = unit_root_stresses([SPUR, SPUR], [coarse_plane(SPUR)] * 2, STRAIN, teeth=3)
@@ -351,4 +337,4 @@ def test_checks_see_a_wrong_ring(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(face_module, "left_cuts", spoiled)
     with pytest.raises(SolveError, match="recovery"):
-        unit_root_stress_3d(HELICAL, coarse_face(HELICAL), reach=1)
+        unit_root_stress_3d(HELICAL, two_on_land(HELICAL), reach=1)
