@@ -1,5 +1,7 @@
 """Studies of a model by its variants: the accuracy study over fidelities, the ablation over effects.
 
+And what both libraries share beside: what predictions of cost know of the host, progress, records in files.
+
 A library hands in what its variants compute and by which figures they are compared.
 """
 

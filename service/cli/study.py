@@ -70,7 +70,7 @@ def run_study(study: Study, options: Json) -> None:
     ):
         means = Means(cache_home(), report, workers, cancel, _runs_folder(targets), run)
         results = [
-            study.run.compute(_made(study, subject, folder, options, report), inputs, means)
+            study.run.compute(_made(subject, folder, options.get("service"), report), inputs, means)
             for subject, folder in subjects
         ]
         interrupted = cancel is not None and cancel()
@@ -156,11 +156,9 @@ def _runs_folder(targets: list[Path]) -> Path | None:
     return targets[0].with_name(f"{targets[0].stem}_runs") if targets else None
 
 
-def _made(study: Study, subject: Case | SceneInput, folder: Path, options: Json, report: Report) -> Any:
-    """Return the case, or what the study takes of the scene with its tables."""
-    if isinstance(subject, Case):
-        return subject
-    return study.run.of_scene(tabled_scene(subject, folder, options["service"], report))
+def _made(subject: Case | SceneInput, folder: Path, service: str | None, report: Report) -> Any:
+    """Return the case, or the scene with its tables."""
+    return subject if isinstance(subject, Case) else tabled_scene(subject, folder, service, report)
 
 
 def _names(study: Study, files: Sequence[InputFile]) -> list[str]:

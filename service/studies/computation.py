@@ -57,7 +57,7 @@ class Computation:
     Attributes
     ----------
     compute : callable
-        ``compute(subject, inputs, means)``: case or `dynamics.scene.Scene`, model of the inputs and `Means`
+        ``compute(subject, inputs, means)``: case, or scene as `tables` says, model of the inputs and `Means`
         to the result. Raises `BadInput`, `JobFailed`.
     facts : callable
         Figures of a result in the units of the boundary, as they are printed and served.
@@ -66,10 +66,8 @@ class Computation:
     narrowed : callable
         ``narrowed(subject, inputs)``: what of the subject the inputs choose; it is checked, hashed and
         computed. Default: all of it.
-    of_scene : callable
-        What `compute` takes of a `TabledScene`; default: the scene in SI.
     tables : bool
-        Whether it takes the tables of a scene's meshes; else `of_scene` takes a `HousedScene`.
+        Whether a scene comes with the tables of its meshes, as `TabledScene`; else as `HousedScene`.
     check : callable
         ``check(subject, inputs)`` refuses what a schema accepts, and computes nothing; raises `BadInput`.
         Here and below a scene is a `SceneInput`.
@@ -96,7 +94,6 @@ class Computation:
     facts: Callable[[Result], Json]
     file: ResultFile
     narrowed: Callable[[Any, Any], Any] = lambda subject, _inputs: subject
-    of_scene: Callable[[Any], Any] = lambda tabled: tabled.scene
     tables: bool = True
     check: Callable[[Any, Any], object] = lambda _subject, _inputs: None
     normalized: Callable[[Any, Any], Json] = lambda _subject, inputs: with_defaults(inputs)

@@ -67,8 +67,8 @@ def _run(order: WorkOrder, inputs: Any) -> RunResult | None:
 def _subject(study: Study, order: WorkOrder, progress: Progress) -> tuple[Any, tuple[Product, ...], Any]:
     """Return what is studied, the tables that were computed for it, and its warnings if they are known."""
     if not study.run.tables:
-        return study.run.of_scene(housed_scene(order, progress)), (), None
+        return housed_scene(order, progress), (), None
     if "scene" in order.inputs:
         ordered = ordered_scene(order, progress)
-        return study.run.of_scene(ordered.tabled), ordered.products, ordered.warnings
+        return ordered.tabled, ordered.products, ordered.warnings
     return Case.model_validate_json(json.dumps(order.inputs["case"])), (), None

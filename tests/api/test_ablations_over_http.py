@@ -14,7 +14,7 @@ from study_service import CASE, Served, figures_alone, prepared, scene_by_hash, 
 from fe_contact.effects import EFFECTS
 from fe_contact.ste import SteDatabase
 from service.client import JobState
-from service.convert.scene import dynamic_scene
+from service.convert.scene import TabledScene, dynamic_scene
 from service.problems import BadInput
 from service.schemas import Case, validated
 from service.schemas.scene import SceneInput
@@ -93,7 +93,9 @@ def test_the_ablation_of_a_scene_is_that_of_python(served: Served, scene: SceneI
     told = figures_alone(client.ablate.submit(scene, only=["lateral"]).figures())
     tables = {"mesh": SteDatabase.from_netcdf(tmp_path / "ste.nc")}
     means = Means(tmp_path, lambda *_: None)
-    here = ablation_of(dynamic_scene(scene, tables), Inputs(only=("lateral",)), means)
+    here = ablation_of(
+        TabledScene(scene, tables, dynamic_scene(scene, tables), {}), Inputs(only=("lateral",)), means
+    )
     assert [effect["name"] for effect in told["effects"]] == ["lateral"]
     expected = json.loads(json.dumps(facts(here))) | {"warnings": []}
     assert without(TIMES, told) == without(TIMES, expected)

@@ -17,7 +17,7 @@ from fe_contact.errors import SolveError
 from fe_contact.ste import SteDatabase
 from service.client import JobState
 from service.convert.result_figures import figures_of
-from service.convert.scene import dynamic_scene
+from service.convert.scene import TabledScene, dynamic_scene
 from service.schemas import Case, validated
 from service.schemas.scene import SceneInput
 from service.stages import PacedFraction
@@ -87,7 +87,9 @@ def test_the_ladder_of_a_scene_is_that_of_python(served: Served, scene: SceneInp
     told = figures_alone(client.frontier.submit(scene, rungs=rungs).figures())
     tables = {"mesh": SteDatabase.from_netcdf(tmp_path / "ste.nc")}
     means = Means(tmp_path, lambda *_: None)
-    here = frontier_of(dynamic_scene(scene, tables), Inputs(rungs=tuple(rungs)), means)
+    here = frontier_of(
+        TabledScene(scene, tables, dynamic_scene(scene, tables), {}), Inputs(rungs=tuple(rungs)), means
+    )
     assert told == made and told["reference"] == "10_nm"
     expected = json.loads(json.dumps(here.to_json())) | {"warnings": []}
     assert without(MEASURED, told) == without(MEASURED, expected)

@@ -8,13 +8,13 @@ from bounds.types import Json
 from dynamics.ablation import Ablation as SceneAblation
 from dynamics.ablation import ablate as ablate_scene
 from dynamics.effects import EFFECTS as SCENE_EFFECTS
-from dynamics.scene import Scene
 from fe_contact.analysis.studies.ablation import Ablation, ablate
 from fe_contact.checks import chosen
 from fe_contact.effects import EFFECTS
 from fe_contact.options import Run
 from service.convert.case import analysis_options, boundary_errors, gear_pair, table_axes
 from service.convert.checks import check_case
+from service.convert.scene import TabledScene
 from service.schemas import Case
 from service.schemas.scene import SceneInput
 from service.studies.ablate import Inputs
@@ -23,7 +23,7 @@ from service.studies.result_file import record_file
 from service.units import in_um
 
 
-def ablation_of(subject: Case | Scene, inputs: Inputs, means: Means) -> Ablation | SceneAblation:
+def ablation_of(subject: Case | TabledScene, inputs: Inputs, means: Means) -> Ablation | SceneAblation:
     """Toggle the effects of a case, at its nominal center distance, or of a scene.
 
     Raises
@@ -34,8 +34,8 @@ def ablation_of(subject: Case | Scene, inputs: Inputs, means: Means) -> Ablation
         The case itself cannot be computed.
     """
     with boundary_errors():
-        if isinstance(subject, Scene):
-            return ablate_scene(subject, inputs.only, means.report)
+        if isinstance(subject, TabledScene):
+            return ablate_scene(subject.scene, inputs.only, means.report)
         run = Run(cache=means.home / "compliance", progress=means.report)
         axes, options = table_axes(subject), analysis_options(subject)
         return ablate(gear_pair(subject), axes, options, run, only=inputs.only)

@@ -233,7 +233,6 @@ RUN = Computation(
     deflection_of,
     facts,
     record_file(("deflection", GearboxDeflection)),
-    of_scene=lambda tabled: tabled,
     check=check_cases,
     writers={".toml": write_spectrum},
     failure=failure,

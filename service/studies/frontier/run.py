@@ -8,12 +8,12 @@ from bounds.types import Json
 from dynamics.accuracy import Frontier as SceneFrontier
 from dynamics.accuracy import frontier as frontier_of_scene
 from dynamics.accuracy.registry import FIDELITIES as SCENE_FIDELITIES
-from dynamics.scene import Scene
 from fe_contact.analysis.studies.accuracy_study import FIDELITIES
 from fe_contact.analysis.studies.frontier import Frontier, frontier
 from fe_contact.checks import chosen
 from service.convert.case import boundary_errors, gear_pair, study_options, table_axes
 from service.convert.checks import check_case
+from service.convert.scene import TabledScene
 from service.problems import BadInput
 from service.schemas import Case
 from service.schemas.scene import SceneInput
@@ -24,7 +24,7 @@ from service.studies.result_file import record_file
 LEAST = 2
 
 
-def frontier_of(subject: Case | Scene, inputs: Inputs, means: Means) -> Frontier | SceneFrontier:
+def frontier_of(subject: Case | TabledScene, inputs: Inputs, means: Means) -> Frontier | SceneFrontier:
     """Study the accuracy of a case, over all pitches that differ and with the whole receipt, or of a scene.
 
     Raises
@@ -34,10 +34,10 @@ def frontier_of(subject: Case | Scene, inputs: Inputs, means: Means) -> Frontier
     JobFailed
         Fewer than two fidelities came to their end.
     """
-    names = requested(inputs, of_scene=isinstance(subject, Scene))
+    names = requested(inputs, of_scene=not isinstance(subject, Case))
     with boundary_errors():
-        if isinstance(subject, Scene):
-            return frontier_of_scene(subject, fidelities=names, progress=means.report)
+        if isinstance(subject, TabledScene):
+            return frontier_of_scene(subject.scene, fidelities=names, progress=means.report)
         axes = replace(table_axes(subject), pitches=None)
         return frontier(
             gear_pair(subject),

@@ -54,7 +54,6 @@ RUN = Computation(
     listen_to,
     facts,
     record_file(("recording", HeardRun)),
-    of_scene=lambda housed: housed,
     tables=False,
     check=check,
     warnings=lambda heard: heard.warnings,

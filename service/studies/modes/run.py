@@ -110,5 +110,4 @@ RUN = Computation(
     with_housing_costs(modes_of),
     facts,
     array_file(ModalAnalysis),
-    of_scene=lambda tabled: tabled,
 )

@@ -161,6 +161,5 @@ RUN = Computation(
     facts,
     array_file(RadiatedSound),
     check=check,
-    of_scene=lambda tabled: tabled,
     writers={".vtu": write_panels},
 )

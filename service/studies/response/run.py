@@ -96,5 +96,4 @@ RUN = Computation(
     with_housing_costs(response_of),
     facts,
     array_file(ForcedResponse),
-    of_scene=lambda tabled: tabled,
 )

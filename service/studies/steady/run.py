@@ -124,6 +124,5 @@ RUN = Computation(
     with_housing_costs(steady_of),
     facts,
     array_file(SteadyStates),
-    of_scene=lambda tabled: tabled,
     failure=not_found,
 )

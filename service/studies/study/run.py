@@ -65,7 +65,6 @@ RUN = Computation(
     study_of,
     facts,
     array_file(Study),
-    of_scene=lambda tabled: tabled,
     check=check,
     resumed=True,
     kept=kept,

@@ -189,7 +189,6 @@ RUN = Computation(
     vibration_of,
     facts,
     record_file(("housing vibration", HousingVibrationResult)),
-    of_scene=lambda tabled: tabled,
     check=check,
     writers={".vtu": write_shape},
 )
