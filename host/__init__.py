@@ -12,6 +12,8 @@ import sys
 from importlib.util import find_spec
 
 from host.cache_directory import default_cache_directory
+from host.child_environment import child_environment
+from host.confinement import READING, Limits, confine, missing_protections
 from host.ending import Ended, ending_signal
 from host.extras import MissingExtra, missing_extra, require
 from host.json_child import ChildFailed, ChildOutOfMemory, ask_child
@@ -54,14 +56,18 @@ else:
 
 __all__ = [
     "ONE_THREAD",
+    "READING",
     "ChildFailed",
     "ChildOutOfMemory",
     "Ended",
+    "Limits",
     "MissingExtra",
     "Unavailable",
     "ask_child",
+    "child_environment",
     "children_cpu_seconds",
     "children_peak_memory",
+    "confine",
     "default_cache_directory",
     "end_after",
     "ending_signal",
@@ -80,6 +86,7 @@ __all__ = [
     "lower_priority",
     "memory_figure",
     "missing_extra",
+    "missing_protections",
     "never_wait_at",
     "peak_memory",
     "physical_memory",

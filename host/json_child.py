@@ -9,6 +9,7 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
+from host.child_environment import child_environment
 from host.ending import ending_signal
 
 _NO_MEMORY = ("MemoryError", "bad_alloc")
@@ -50,7 +51,7 @@ def ask_child(request: dict[str, Any], seconds: float, command: Sequence[str]) -
 def _ask(request: str, seconds: float, command: Sequence[str]) -> dict[str, Any]:
     """Run the child on one request and return its answer."""
     # The child may find a module only where this process does, e.g. in a path added at run time.
-    environment = os.environ | {"OMP_NUM_THREADS": "1", "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    environment = child_environment(PYTHONPATH=os.pathsep.join(filter(None, sys.path)))
     try:
         child = subprocess.run(
             command,

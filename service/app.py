@@ -13,10 +13,11 @@ from prometheus_client import CollectorRegistry
 
 from service.access import open_identities
 from service.live.kept_answers import KeptAnswers
-from service.live.pool import live_pool, reading_pool
+from service.live.pool import live_pool
 from service.management.registry import process_registry
 from service.queue.machinery import job_machinery
 from service.queue.watcher import Watcher
+from service.reading.pool import ReadingPool
 from service.routes import (
     batches,
     cases,
@@ -157,7 +158,7 @@ def _lifespan(context: Context, lock: DirectoryLock | None) -> Callable[[FastAPI
 def _context(settings: Settings, registry: Registry, works: bool) -> Context:
     """Open the store and put the parts together."""
     parts = job_machinery(settings, registry, works=works)
-    pools, engine = (live_pool(settings), reading_pool(settings)), parts.engine
+    pools, engine = (live_pool(settings), ReadingPool(settings.data_directory)), parts.engine
     kept = KeptAnswers(settings.data_directory / CACHE_DIRECTORY / "figures")
     writes = WriteCheck(Deployment(engine, parts.store))
     watcher = Watcher(engine, partial(events.event_of, registry=registry))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shutil
 import subprocess
@@ -10,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fe_contact.types import Status
-from host import ending_signal
+from host import child_environment, ending_signal
 
 PROGRAM = "ccx"
 WALL_OVER_CPU = 20.0
@@ -72,7 +71,7 @@ def run_calculix(program: str, deck: str, folder: Path, cpu_limit: float) -> Run
         child = subprocess.run(
             command,
             cwd=folder,
-            env=os.environ | threads,
+            env=child_environment(**threads),
             capture_output=True,
             text=True,
             errors="replace",

@@ -26,6 +26,7 @@ import structlog
 from prometheus_client import generate_latest
 from prometheus_client.multiprocess import MultiProcessCollector, mark_process_dead
 
+from host import child_environment
 from service.cli.managed import announce_management, managed
 from service.management.registry import process_registry
 from service.management.vitals import Vitals
@@ -38,7 +39,6 @@ from service.store import DirectoryLock
 from service.store.deployment import Deployment
 from service.store.write_check import WriteCheck
 from service.worker.catalogue import default_registry
-from service.worker.child_process import child_environment
 from service.worker.remote_work import RemoteWork
 
 LEAST_LIFE_S = 5.0
@@ -79,7 +79,7 @@ def serve_in_processes(settings: Settings, works: bool, serve: Work, announce: W
     if works:
         lock.acquire()
     metrics = tempfile.mkdtemp(prefix="loa-metrics-")
-    os.environ.update({**child_environment(), _METRICS: metrics})
+    os.environ.update(child_environment(**{_METRICS: metrics}))
     try:
         machinery = job_machinery(settings, default_registry(), works=works)
         with closing(machinery), _managed(settings, machinery, metrics) as where:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import binascii
 from dataclasses import asdict
+from pathlib import Path
 from typing import Any
 
 from service.convert.case import case_json
@@ -16,7 +17,7 @@ from service.rexs import parsed
 Json = dict[str, Any]
 
 
-def unit_of_rexs(inputs: Json) -> Json:
+def unit_of_rexs(inputs: Json, _folder: Path) -> Json:
     """Return a gear unit as JSON; its scene has the cases of its meshes written out.
 
     Raises

@@ -16,13 +16,16 @@ import sys
 import threading
 import traceback
 import warnings
-from typing import BinaryIO
+from collections.abc import Callable
+from pathlib import Path
+from typing import BinaryIO, TypeAlias
 
 from host import kill_own_group, lower_priority
 from service.live.order import AnswerHead, LiveOrder, LiveWork
 from service.problems import ServiceError
 from service.worker.memory import hold_to
 
+Note: TypeAlias = Callable[[], None]
 _NICENESS = 5
 """Less than that of jobs: somebody waits for the answer."""
 
@@ -52,27 +55,42 @@ def _listen(orders: queue.SimpleQueue[bytes]) -> None:
 
 def _answer(order: LiveOrder, channel: BinaryIO) -> bool:
     """Answer one order; say whether there is memory for another."""
-    head, body = _worked(order)
+    head, body = worked(order)
     channel.write(head.line() + body)
     channel.flush()
     return head.kind != "memory"
 
 
-def _worked(order: LiveOrder) -> tuple[AnswerHead, bytes]:
-    """Do the work; the text of an exception leaves only if it was raised on purpose."""
+def worked(order: LiveOrder, *further: Path, note: Note = traceback.print_exc) -> tuple[AnswerHead, bytes]:
+    """Do the work; the text of an exception leaves only if it was raised on purpose.
+
+    Parameters
+    ----------
+    order : LiveOrder
+    *further : Path
+        What the work is called with behind its inputs.
+    note : callable
+        Writes the exception being handled, a defect, into the log.
+    """
     try:
         module, _, name = order.entry.partition(":")
         work: LiveWork = getattr(importlib.import_module(module), name)
-        kind, body = "answer", json.dumps(work(order.inputs), allow_nan=False, separators=(",", ":")).encode()
+        answer = json.dumps(work(order.inputs, *further), allow_nan=False, separators=(",", ":")).encode()
     except MemoryError:
         return AnswerHead("memory"), b""
     except Exception as error:  # noqa: BLE001 (a defect is logged by its traceback and reported by number)
         known = error if isinstance(error, ServiceError) else _translated(error)
         if known is None:
-            traceback.print_exc(file=sys.stderr)
+            note()
             return AnswerHead("defect"), b""
-        kind, body = "problem", json.dumps(known.as_json()).encode()
-    return AnswerHead(kind, len(body)), body
+        return problem(known)
+    return AnswerHead("answer", len(answer)), answer
+
+
+def problem(error: ServiceError) -> tuple[AnswerHead, bytes]:
+    """Return head and body of an answer that is an error."""
+    body = json.dumps(error.as_json()).encode()
+    return AnswerHead("problem", len(body)), body
 
 
 def _translated(error: Exception) -> ServiceError | None:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 Json = dict[str, Any]
-LiveWork = Callable[[Json], Json]
+LiveWork = Callable[..., Json]
 
 
 @dataclass(frozen=True)

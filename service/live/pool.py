@@ -18,6 +18,7 @@ import structlog
 
 from service.live.order import LiveOrder
 from service.live.worker import LiveWorker, WorkerGone
+from service.own_folder import remove_left
 from service.problems import LiveUnavailable, QueueFull, Superseded, Unexpected
 from service.settings import LEAST_MEMORY_MB, Settings
 from service.worker.memory import machine_memory_mb
@@ -61,15 +62,15 @@ class LivePool:
         data_directory: Path,
         memory_limit_mb: int,
         limits: LiveLimits | None = None,
-        name: str = "live",
     ) -> None:
-        self._name, self._log = name, data_directory / "log" / f"{name}.log"
+        self._home, self._log = data_directory / "live", data_directory / "log" / "live.log"
         self._memory_limit_mb, self._limits = memory_limit_mb, limits or LiveLimits()
         self._waiting: OrderedDict[str, _Question] = OrderedDict()
         self._changed = threading.Condition()
         self._thread: threading.Thread | None = None
         self._worker: LiveWorker | None = None
         self._stopping = False
+        remove_left(self._home)
 
     @property
     def worker_pid(self) -> int | None:
@@ -97,7 +98,7 @@ class LivePool:
             self._waiting[name] = question
             if self._thread is None:
                 self._stopping = False
-                self._thread = threading.Thread(target=self._loop, name=f"{self._name} pool", daemon=True)
+                self._thread = threading.Thread(target=self._loop, name="live pool", daemon=True)
                 self._thread.start()
             self._changed.notify()
         return question.future
@@ -136,7 +137,7 @@ class LivePool:
         try:
             question.future.set_result(self._answer(question.order))
         except WorkerGone as gone:
-            logger.warning(f"{self._name} worker gone", late=gone.late, entry=question.order.entry)
+            logger.warning("live worker gone", late=gone.late, entry=question.order.entry)
             self._end_worker()
             question.future.set_exception(LiveUnavailable(self._told(gone)))
         except Exception as error:  # noqa: BLE001 (whoever asked is told)
@@ -186,8 +187,8 @@ class LivePool:
                 self._end_worker()
             if self._worker is None:
                 self._log.parent.mkdir(parents=True, exist_ok=True)
-                self._worker = LiveWorker(self._log, self._memory_limit_mb)
-                logger.info(f"{self._name} worker started", pid=self._worker.pid)
+                self._worker = LiveWorker(self._log, self._memory_limit_mb, self._home)
+                logger.info("live worker started", pid=self._worker.pid)
             return self._worker
 
     def _end_worker(self) -> None:
@@ -207,11 +208,6 @@ def _refuse(question: _Question, error: Exception) -> None:
 def live_pool(settings: Settings) -> LivePool:
     """Return the pool of a service; its worker may have as much memory as one computation."""
     return LivePool(settings.data_directory, _share(settings))
-
-
-def reading_pool(settings: Settings) -> LivePool:
-    """Return the pool whose worker reads large texts, so that the service does not."""
-    return LivePool(settings.data_directory, _share(settings), LiveLimits(idle_s=60.0), "reading")
 
 
 def _share(settings: Settings) -> int:

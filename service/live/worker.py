@@ -8,11 +8,12 @@ import select
 import subprocess
 import sys
 import time
+from contextlib import ExitStack
 from pathlib import Path
 
-from host import kill_group
+from host import child_environment, kill_group
 from service.live.order import AnswerHead, LiveOrder
-from service.worker.child_process import child_environment
+from service.own_folder import own_folder
 
 _PIECE = 1 << 16
 
@@ -28,8 +29,10 @@ class WorkerGone(Exception):
 class LiveWorker:
     """One child process that answers one order after the other, leader of a session of its own."""
 
-    def __init__(self, log: Path, memory_limit_mb: int) -> None:
+    def __init__(self, log: Path, memory_limit_mb: int, home: Path) -> None:
         self._rest = b""
+        self._folder = ExitStack()
+        drafts = self._folder.enter_context(own_folder(home))
         self.has_answered = False
         self._channel, theirs = os.pipe()
         try:
@@ -41,10 +44,11 @@ class LiveWorker:
                     stderr=stream,
                     pass_fds=(theirs,),
                     start_new_session=True,
-                    env=child_environment(),
+                    env=child_environment(TMPDIR=str(drafts)),
                 )
         except OSError:
             os.close(self._channel)
+            self._folder.close()
             raise
         finally:
             os.close(theirs)
@@ -106,6 +110,7 @@ class LiveWorker:
         """Kill, reap, close the pipes; by the thread that asks. Idempotent."""
         self.end_group()
         self._process.wait()
+        self._folder.close()
         if self._process.stdin is not None:
             with contextlib.suppress(BrokenPipeError):
                 self._process.stdin.close()

@@ -5,17 +5,16 @@ from __future__ import annotations
 import asyncio
 from typing import Annotated, Any
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Request
 from pydantic import BaseModel, Field, Strict
-from starlette.concurrency import run_in_threadpool
 from starlette.responses import JSONResponse, Response
 
 from service.access import Scope
 from service.convert.toml import toml_text
 from service.live.order import LiveOrder
 from service.page.examples import Example, examples
-from service.problems import LiveUnavailable, QueueFull
-from service.routes.context import Context, Ctx
+from service.problems import LiveUnavailable, QueueFull, TooLarge, TooManyHeld
+from service.routes.context import Context, Ctx, key_of
 from service.routes.media_types import JSON
 from service.routes.refusals import documented
 from service.routes.scopes import ScopedRoute, needs
@@ -28,8 +27,8 @@ from service.schemas.outline import OutlineBody
 from service.schemas.reading import validated
 from service.worker.process import on_demand
 
-_LONGEST_READ_HERE = 65_536
-"""Characters; so many take 0.1 s at most."""
+READING_FAILURES = (TooLarge, TooManyHeld, QueueFull, LiveUnavailable)
+"""What a reader of foreign bytes answers beside faults of the bytes."""
 _MOST_FILES = 16
 
 router = APIRouter(tags=["cases"], route_class=ScopedRoute)
@@ -91,21 +90,21 @@ def case_outline(body: CaseRequest) -> Response:
     "/cases/from-toml",
     summary="Read a case file",
     response_model=CaseBody,
-    responses=documented(QueueFull, LiveUnavailable),
+    responses=documented(*READING_FAILURES),
 )
 @needs(Scope.READ)
-async def case_from_toml(body: CaseText, context: Ctx) -> Response:
+async def case_from_toml(body: CaseText, context: Ctx, request: Request) -> Response:
     """Read the case in a file's text and in the files that it names, with all defaults."""
-    return await read_toml("service.convert.toml_file:case_of_toml", body, context)
+    return await read_by(
+        context, LiveOrder("service.reading.texts:case_of_toml", body.model_dump(mode="json")), request
+    )
 
 
-async def read_toml(entry: str, body: CaseText, context: Context) -> Response:
-    """Read a short text in a thread, else in a process of its own: reading holds all others up."""
-    inputs = body.model_dump(mode="json")
-    if len(body.toml) <= _LONGEST_READ_HERE and not body.files:
-        return JSONResponse(await run_in_threadpool(on_demand(entry), inputs))
-    answer = await asyncio.wrap_future(context.reader.ask(LiveOrder(entry, inputs)))
-    return Response(answer, media_type=JSON)
+async def read_by(context: Context, order: LiveOrder, request: Request) -> Response:
+    """Answer what a reader of foreign bytes finds, for the caller of a request."""
+    caller = key_of(request)
+    answer = context.reader.ask(order, None if caller is None else caller.name)
+    return Response(await asyncio.wrap_future(answer), media_type=JSON)
 
 
 @router.post("/cases/to-toml", summary="Write a case file")

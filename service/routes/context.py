@@ -16,6 +16,7 @@ from service.queue.caller import ANYBODY, Caller
 from service.queue.scheduler import Scheduler
 from service.queue.submissions import Submissions
 from service.queue.watcher import Watcher
+from service.reading.pool import ReadingPool
 from service.routes.open_databases import OpenDatabases
 from service.routes.streams import JobEvent, Streams
 from service.settings import Settings
@@ -38,7 +39,7 @@ class Context:
     scheduler: Scheduler | RemoteWork
     store: ResultStore
     live: LivePool
-    reader: LivePool
+    reader: ReadingPool
     kept: KeptAnswers
     engine: Engine
     writes: WriteCheck

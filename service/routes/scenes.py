@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Request
 from pydantic import BaseModel, Field
 from starlette.responses import Response
 
 from service.access import Scope
 from service.convert.toml import toml_text
-from service.problems import LiveUnavailable, QueueFull
-from service.routes.cases import CaseText, TomlBody, explained, read_toml
+from service.live.order import LiveOrder
+from service.routes.cases import READING_FAILURES, CaseText, TomlBody, explained, read_by
 from service.routes.context import Ctx
 from service.routes.refusals import documented
 from service.routes.scopes import ScopedRoute, needs
@@ -52,12 +52,14 @@ class SceneBody(BaseModel):
     "/scenes/from-toml",
     summary="Read a scene file",
     response_model=SceneBody,
-    responses=documented(QueueFull, LiveUnavailable),
+    responses=documented(*READING_FAILURES),
 )
 @needs(Scope.READ)
-async def scene_from_toml(body: SceneText, context: Ctx) -> Response:
+async def scene_from_toml(body: SceneText, context: Ctx, request: Request) -> Response:
     """Read the scene in a file's text and in the files that it names; names of cases not given stay."""
-    return await read_toml("service.convert.toml_file:scene_of_toml", body, context)
+    return await read_by(
+        context, LiveOrder("service.reading.texts:scene_of_toml", body.model_dump(mode="json")), request
+    )
 
 
 @router.post("/scenes/to-toml", summary="Write a scene file")

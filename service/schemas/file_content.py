@@ -13,7 +13,7 @@ from pydantic import Field
 from service.schemas.model import BoundaryModel
 
 LARGEST = 64_000_000
-"""Bytes of a file, unpacked."""
+"""Bytes of a file, or of all files of a request, unpacked."""
 _LARGEST_TEXT = 24_000_000
 
 
@@ -38,13 +38,13 @@ class FileContentInput(BoundaryModel):
         packed = zlib.compress(file.read_bytes(), 9)
         return cls(name=file.name, content=base64.b64encode(packed).decode("ascii"))
 
-    def unpacked(self) -> bytes:
-        """Return what the file holds; raises ValueError if it is damaged or too large."""
+    def unpacked(self, most: int = LARGEST) -> bytes:
+        """Return what the file holds; raises ValueError if it is damaged or has more than so many bytes."""
         reader = zlib.decompressobj()
         try:
-            data = reader.decompress(base64.b64decode(self.content, validate=True), LARGEST + 1)
-        except (binascii.Error, zlib.error) as error:
-            raise ValueError(f"compressed by zlib and written in Base64 ({error})") from None
-        if len(data) > LARGEST or not reader.eof:
-            raise ValueError(f"whole, and at most {LARGEST} bytes when unpacked")
+            data = reader.decompress(base64.b64decode(self.content, validate=True), most + 1)
+        except (binascii.Error, zlib.error):
+            raise ValueError("compressed by zlib and written in Base64") from None
+        if len(data) > most or not reader.eof:
+            raise ValueError(f"whole, and with all other files at most {LARGEST} bytes when unpacked")
         return data

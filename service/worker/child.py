@@ -14,8 +14,10 @@ import json
 import logging
 import os
 import select
+import shutil
 import signal
 import sys
+import tempfile
 import threading
 import time
 import traceback
@@ -46,6 +48,7 @@ def work(descriptor: int) -> None:
     order = WorkOrder.from_line(line)
     threading.Thread(target=_watch_parent, args=(order.lease_until, renewals), daemon=True).start()
     _alone_in(order.workspace)
+    _draft_in(order.workspace / "drafts")
     lower_priority(_NICENESS)
     if order.memory_limit_mb is not None:
         hold_to(order.memory_limit_mb)
@@ -86,6 +89,13 @@ def _watch_parent(until: float | None, rest: bytes) -> None:
 def _alone_in(workspace: Path) -> None:
     """Wait until an earlier worker in the workspace, killed a moment ago, is gone."""
     lock(os.open(workspace, os.O_RDONLY), wait=True)  # open, and so locked, until we end
+
+
+def _draft_in(folder: Path) -> None:
+    """Let all temporary files be below the workspace, which the service removes however this process ends."""
+    shutil.rmtree(folder, ignore_errors=True)  # of an attempt that was killed
+    folder.mkdir()
+    os.environ["TMPDIR"] = tempfile.tempdir = str(folder)
 
 
 class _Telling(logging.Handler):

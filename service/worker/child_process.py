@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 from collections.abc import Callable
@@ -10,15 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from host import ONE_THREAD, Ended, has_exited, reap
+from host import Ended, child_environment, has_exited, reap
 
-_ROOT = str(Path(__file__).resolve().parents[2])
-
-
-def child_environment() -> dict[str, str]:
-    """Environment of the child: one thread, and the modules found where we find them, installed or not."""
-    path = os.pathsep.join(part for part in (os.environ.get("PYTHONPATH", ""), _ROOT) if part)
-    return {**os.environ, **ONE_THREAD, "PYTHONPATH": path}
+WORK = "service.worker.child"
+"""The module that works on orders."""
 
 
 @dataclass(frozen=True)
@@ -71,10 +65,10 @@ class StartedChild:
         return reap(self.pid)
 
 
-def start_child(ends: Ends) -> StartedChild:
-    """Start a child; OSError: the system does not."""
+def start_child(ends: Ends, work: str = WORK) -> StartedChild:
+    """Start a child that runs a module; OSError: the system does not."""
     process = subprocess.Popen(
-        [sys.executable, "-m", "service.worker.child", str(ends.channel)],
+        [sys.executable, "-m", work, str(ends.channel)],
         stdin=ends.orders,
         stdout=ends.log,
         stderr=ends.log,

@@ -1,9 +1,9 @@
 """The warm process: it has imported and compiled what workers need, and forks one when told.
 
-Started as ``python -m service.worker.fork_server DESCRIPTOR MODULE ...`` in a session of its own. It imports
-the modules and does what their `warm_up` does, if they have one; then it says so, and obeys one request after
-the other: fork a child on given descriptors, reap one. It has no threads, reads no order and no caller's
-data. It ends when the service closes its socket, or is gone.
+Started as ``python -m service.worker.fork_server DESCRIPTOR WORK MODULE ...`` in a session of its own. It
+imports the modules and does what their `warm_up` does, if they have one; then it says so, and obeys one
+request after the other: fork a child that does the `work` of the module WORK on given descriptors, reap one.
+It has no threads, reads no order and no caller's data. It ends when the service closes its socket or is gone.
 """
 
 from __future__ import annotations
@@ -15,10 +15,13 @@ import os
 import socket
 import sys
 import traceback
-from typing import Any, NoReturn
+from collections.abc import Callable
+from typing import Any, NoReturn, TypeAlias
 
 from host import lead_session, reap
-from service.worker import child
+
+Work: TypeAlias = Callable[[int], None]
+"""What a child does: it answers on a descriptor."""
 
 READY = b"ready"
 MESSAGE_BYTES = 1 << 16
@@ -29,7 +32,8 @@ DESCRIPTORS = 3
 def main() -> None:
     """Warm up, then obey."""
     channel = socket.socket(fileno=int(sys.argv[1]))
-    for name in sys.argv[2:]:
+    work: Work = importlib.import_module(sys.argv[2]).work
+    for name in sys.argv[3:]:
         _warm(name)
     gc.collect()
     gc.freeze()  # what is here is shared by all children: collections shall not touch it
@@ -38,7 +42,7 @@ def main() -> None:
         message, descriptors, _, _ = socket.recv_fds(channel, MESSAGE_BYTES, DESCRIPTORS)
         if not message:
             return
-        channel.send(json.dumps(_obeyed(json.loads(message), descriptors, channel)).encode())
+        channel.send(json.dumps(_obeyed(json.loads(message), descriptors, channel, work)).encode())
 
 
 def _warm(name: str) -> None:
@@ -49,7 +53,7 @@ def _warm(name: str) -> None:
         traceback.print_exc()
 
 
-def _obeyed(request: dict[str, Any], descriptors: list[int], channel: socket.socket) -> Any:
+def _obeyed(request: dict[str, Any], descriptors: list[int], channel: socket.socket, work: Work) -> Any:
     """Fork a child and return its id, or reap one and return how it ended."""
     if "reap" in request:
         return reap(request["reap"])
@@ -59,7 +63,7 @@ def _obeyed(request: dict[str, Any], descriptors: list[int], channel: socket.soc
         if (pid := os.fork()) == 0:
             channel.close()
             os.close(leads)
-            _become_worker(descriptors, request["workspace"], notes)
+            _become_worker(descriptors, request["workspace"], notes, work)
         os.close(notes)
         os.read(leads, 1)  # closed by the child once it leads a group, which can be killed
         return pid
@@ -71,7 +75,7 @@ def _obeyed(request: dict[str, Any], descriptors: list[int], channel: socket.soc
             os.close(descriptor)
 
 
-def _become_worker(descriptors: list[int], workspace: str, notes: int) -> NoReturn:
+def _become_worker(descriptors: list[int], workspace: str, notes: int, work: Work) -> NoReturn:
     """Do as a worker that was started anew, and end; close `notes` when it leads its session."""
     code = 1
     try:
@@ -83,7 +87,7 @@ def _become_worker(descriptors: list[int], workspace: str, notes: int) -> NoRetu
         os.close(orders)
         os.close(log)
         os.chdir(workspace)
-        child.work(answers)
+        work(answers)
         code = 0
     except SystemExit as end:
         sys.stderr.write(f"{end}\n")

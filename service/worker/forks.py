@@ -20,8 +20,8 @@ from typing import Any
 
 import structlog
 
-from host import Ended, ending_signal
-from service.worker.child_process import ChildProcess, Ends, child_environment, start_child
+from host import Ended, child_environment, ending_signal
+from service.worker.child_process import WORK, ChildProcess, Ends, start_child
 from service.worker.fork_server import MESSAGE_BYTES, READY
 
 logger = structlog.get_logger(__name__)
@@ -37,10 +37,20 @@ _LOST = Ended(-9, 0.0, 0)
 
 
 class Forks:
-    """Launches children, warm ones where it can. For one thread, but for `close`."""
+    """Launches children, warm ones where it can. For one thread, but for `close`.
 
-    def __init__(self, modules: Iterable[str], log: Path) -> None:
-        self._modules, self._log = sorted(set(modules)), log
+    Parameters
+    ----------
+    modules : iterable of str
+        What the warm process imports.
+    log : Path
+        What it prints.
+    work : str
+        Module whose ``work(descriptor)`` the children do.
+    """
+
+    def __init__(self, modules: Iterable[str], log: Path, work: str = WORK) -> None:
+        self._modules, self._log, self._work = sorted(set(modules)), log, work
         self._server: _Server | None = None
         self._launched = 0
 
@@ -51,7 +61,7 @@ class Forks:
             return
         self.close()
         try:
-            self._server = _Server(self._modules, self._log)
+            self._server = _Server(self._work, self._modules, self._log)
         except OSError as error:
             logger.warning("no warm process", reason=str(error))
 
@@ -66,15 +76,24 @@ class Forks:
         server = self._server
         return server is not None and server.has_warmed_up
 
-    def launch(self, ends: Ends) -> ChildProcess:
-        """Fork a child, or start one; OSError: the system does neither."""
+    def launch(self, ends: Ends, warm_within: float = 0.0) -> ChildProcess:
+        """Fork a child, or start one; OSError: the system does neither.
+
+        Parameters
+        ----------
+        ends : Ends
+        warm_within : float
+            Seconds in which a warm process may become ready; 0: what starts now serves later children.
+        """
         self._launched += 1
-        if self._launched > 1:
+        if self._launched > 1 or warm_within > 0.0:
             self.warm_up()
+        if self._server is not None and not self._server.ready:
+            self._server.await_word(warm_within)
         if self._server is not None and self.warm:
             with contextlib.suppress(ConnectionError):
                 return self._server.fork(ends)
-        return start_child(ends)
+        return start_child(ends, self._work)
 
     def close(self) -> None:
         """End the warm process; its children live on."""
@@ -86,14 +105,14 @@ class Forks:
 class _Server:
     """The process, and the socket to it."""
 
-    def __init__(self, modules: list[str], log: Path) -> None:
+    def __init__(self, work: str, modules: list[str], log: Path) -> None:
         self._channel, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._channel.settimeout(_PATIENCE_S)
         self._ready, self._forks, self.living, self._gone = False, 0, 0, False
         with theirs, log.open("wb") as stream:
             try:
                 self._process = subprocess.Popen(
-                    [*_FORK_SERVER, str(theirs.fileno()), *modules],
+                    [*_FORK_SERVER, str(theirs.fileno()), work, *modules],
                     stdin=subprocess.DEVNULL,
                     stdout=stream,
                     stderr=stream,
@@ -117,6 +136,10 @@ class _Server:
             heard, _, _ = select.select([self._channel], [], [], 0.0)
             self._ready = bool(heard) and self._channel.recv(MESSAGE_BYTES) == READY
         return self._ready and self.usable
+
+    def await_word(self, seconds: float) -> None:
+        """Wait until it says that it is ready, or has ended."""
+        select.select([self._channel], [], [], seconds)
 
     @property
     def has_warmed_up(self) -> bool:

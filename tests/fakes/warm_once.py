@@ -27,10 +27,10 @@ _ANALYSIS = "service.worker.analysis_work"
 class _Shared(_Server):
     """A warm process that several schedulers ask, each from a thread of its own."""
 
-    def __init__(self, modules: list[str], log: Path) -> None:
+    def __init__(self, work: str, modules: list[str], log: Path) -> None:
         self._asked = threading.Lock()
         first = ["condensed_once"] if _ANALYSIS in modules else []
-        super().__init__([*first, *modules], log)
+        super().__init__(work, [*first, *modules], log)
 
     def ask(self, request: dict[str, Any], descriptors: Iterable[int] = ()) -> Any:
         with self._asked:
@@ -47,11 +47,12 @@ class _WarmProcesses:
 
     def launch(self, forks: Forks, ends: Ends) -> ChildProcess:
         """Fork a child in place of `Forks.launch`."""
-        key = tuple(forks._modules)
+        key = (forks._work, *forks._modules)
         with self._starts:
             server = self._found.get(key)
             if server is None or not server.usable:
-                server = self._found[key] = _Shared(forks._modules, self._log / f"warm{len(self._found)}.log")
+                log = self._log / f"warm{len(self._found)}.log"
+                server = self._found[key] = _Shared(forks._work, forks._modules, log)
         until(lambda: server.ready)
         return server.fork(ends)
 
@@ -73,7 +74,7 @@ def warm_processes(tmp_path_factory: pytest.TempPathFactory) -> Iterator[_WarmPr
 def warm_once(warm_processes: _WarmProcesses, condensed_bodies: Path) -> Iterator[None]:
     """Let the services of a file have their workers forked."""
 
-    def launch(forks: Forks, ends: Ends) -> ChildProcess:
+    def launch(forks: Forks, ends: Ends, _warm_within: float = 0.0) -> ChildProcess:
         return warm_processes.launch(forks, ends)
 
     with pytest.MonkeyPatch.context() as patch:

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from service.convert.toml_file import case_of_toml, scene_of_toml
 from service.problems import BadInput
+from service.reading.texts import case_of_toml, scene_of_toml
 from service.schemas import Case, SceneInput, read_model
 from service.schemas.file_content import FileContentInput
 
@@ -31,29 +31,29 @@ def packed(name: str, content: bytes) -> dict[str, str]:
     return {"name": name, "content": base64.b64encode(zlib.compress(content)).decode()}
 
 
-def test_the_case_of_a_mesh_is_written_out():
+def test_the_case_of_a_mesh_is_written_out(tmp_path):
     files = [packed(CASE.name, CASE.read_bytes())]
-    scene = scene_of_toml({"toml": SCENE.read_text("utf-8"), "files": files})["scene"]
+    scene = scene_of_toml({"toml": SCENE.read_text("utf-8"), "files": files}, tmp_path)["scene"]
     assert SceneInput.model_validate(scene).meshes[0].case == read_model(Case, CASE)
     assert "case_file" not in scene["meshes"][0]
 
 
-def test_a_case_that_is_not_given_stays_a_name():
-    scene = scene_of_toml({"toml": SCENE.read_text("utf-8"), "files": []})["scene"]
+def test_a_case_that_is_not_sent_stays_a_name(tmp_path):
+    scene = scene_of_toml({"toml": SCENE.read_text("utf-8"), "files": []}, tmp_path)["scene"]
     assert scene["meshes"][0]["case_file"] == CASE.name
 
 
-def test_the_solid_of_a_housing_is_written_out_by_its_own_name():
+def test_the_solid_of_a_housing_is_written_out_by_its_own_name(tmp_path):
     content = b"ISO-10303-21;\n" * 50
     given = {"toml": SCENE.read_text("utf-8") + BOX, "files": [packed(r"C:\parts\box.step", content)]}
-    (housing,) = scene_of_toml(given)["scene"]["housings"]
+    (housing,) = scene_of_toml(given, tmp_path)["scene"]["housings"]
     assert housing["step_file"]["name"] == "box.step"
     assert FileContentInput.model_validate(housing["step_file"]).unpacked() == content
 
 
-def test_a_flank_of_a_case_is_read_from_its_file():
+def test_a_flank_of_a_case_is_read_from_its_file(tmp_path):
     text = CASE.read_text("utf-8").replace("[pair.pinion]", '[pair.pinion]\nflank_grid_csv = "flank.csv"')
-    case = case_of_toml({"toml": text, "files": [packed("flank.csv", GRID.encode())]})["case"]
+    case = case_of_toml({"toml": text, "files": [packed("flank.csv", GRID.encode())]}, tmp_path)["case"]
     assert case["pair"]["pinion"]["flank_grid"]["removed_um"] == [[0.0, 1.0], [2.0, 3.0]]
 
 
@@ -65,7 +65,7 @@ def test_nothing_is_read_but_what_is_given(tmp_path, monkeypatch, name):
     text = SCENE.read_text("utf-8") + BOX.replace("cad/box.step", name)
     for files in ([], [packed("other.step", b"solid")]):
         with pytest.raises(BadInput) as refused:
-            scene_of_toml({"toml": text, "files": files})
+            scene_of_toml({"toml": text, "files": files}, tmp_path)
         assert [fault.field for fault in refused.value.faults] == ["housings[0].step_file"]
 
 
@@ -78,7 +78,7 @@ def test_nothing_is_read_but_what_is_given(tmp_path, monkeypatch, name):
         ([{"name": "a.step", "content": "no zlib"}], "files[0].content"),
     ],
 )
-def test_files_that_are_none_are_refused_by_field(files, field):
+def test_files_that_are_none_are_refused_by_field(files, field, tmp_path):
     with pytest.raises(BadInput) as refused:
-        scene_of_toml({"toml": "", "files": files})
+        scene_of_toml({"toml": "", "files": files}, tmp_path)
     assert [fault.field for fault in refused.value.faults] == [field]

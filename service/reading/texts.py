@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from service.convert.case import case_json
+from service.reading.sent_files import sent_files
 from service.schemas import Case
 from service.schemas.file_content import FileContentInput
-from service.schemas.named_files import Find, given_files, own_name
+from service.schemas.named_files import Find, own_name
 from service.schemas.reading import read_text, validated, written_out
 from service.schemas.scene import SceneInput
 from service.schemas.toml_table import toml_table
@@ -16,12 +18,15 @@ from service.schemas.toml_table import toml_table
 Json = dict[str, Any]
 
 
-def case_of_toml(inputs: Json) -> Json:
-    """Return the case in ``{"toml": ..., "files": [...]}`` with all defaults; raises `BadInput`."""
-    return {"case": case_json(validated(Case, _table(inputs, written_out)))}
+def case_of_toml(inputs: Json, folder: Path) -> Json:
+    """Return the case in ``{"toml": ..., "files": [...]}`` with all defaults; raises `BadInput`.
+
+    The files are written into a folder.
+    """
+    return {"case": case_json(validated(Case, _table(inputs, folder, written_out)))}
 
 
-def scene_of_toml(inputs: Json) -> Json:
+def scene_of_toml(inputs: Json, folder: Path) -> Json:
     """Return the scene in ``{"toml": ..., "files": [...]}`` as it was written, without defaults.
 
     The names of case files that are not among the files stay: a scene read elsewhere may have them.
@@ -32,14 +37,15 @@ def scene_of_toml(inputs: Json) -> Json:
         With every fault of the text, or a file that it names is missing, damaged or holds something else.
     """
     names = {own_name(file["name"]) for file in inputs["files"]}
-    scene = validated(SceneInput, _table(inputs, lambda table, find: _with_cases(table, find, names)))
+    table = _table(inputs, folder, lambda table, find: _with_cases(table, find, names))
+    scene = validated(SceneInput, table)
     return {"scene": scene.model_dump(mode="json", exclude_unset=True)}
 
 
-def _table(inputs: Json, with_files: Callable[[Json, Find], Json]) -> Json:
-    """Return the table of a text with what it names as files."""
-    with given_files([validated(FileContentInput, file) for file in inputs["files"]]) as find:
-        return with_files(toml_table(inputs["toml"], "toml"), find)
+def _table(inputs: Json, folder: Path, with_files: Callable[[Json, Find], Json]) -> Json:
+    """Return the table of a text with what it names as files, which are written into a folder."""
+    find = sent_files([validated(FileContentInput, file) for file in inputs["files"]], folder)
+    return with_files(toml_table(inputs["toml"], "toml"), find)
 
 
 def _with_cases(table: Json, find: Find, names: set[str]) -> Json:

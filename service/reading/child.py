@@ -1,0 +1,62 @@
+"""The reader of foreign bytes: one order in, one answer out, then the end.
+
+Started as ``python -m service.reading.child DESCRIPTOR``, or forked, in a session of its own and in a folder
+that whoever started it removes. The order is on standard input. Before it is read the process gives up all
+other files, the network and what is beyond its limits (`host.confine`). The answer goes to DESCRIPTOR.
+Standard error is the log.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import traceback
+import warnings
+from pathlib import Path
+
+from host import READING, confine, end_after, lower_priority
+from service.live.child import problem, worked
+from service.live.order import AnswerHead, LiveOrder
+from service.problems import TooLarge
+
+LONGEST_S = 30
+"""Time after which it ends, whatever it waits for."""
+MOST_ANSWER_BYTES = 100_000_000
+_NICENESS = 5
+
+
+def work(descriptor: int) -> None:
+    """Read what the order says; the answer goes to the descriptor."""
+    warnings.filterwarnings(
+        "ignore", message="implausible"
+    )  # answers say it in the caller's fields and units
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # a Ctrl-C in the terminal is the service's to handle
+    end_after(LONGEST_S)
+    lower_priority(_NICENESS)
+    confine(Path.cwd(), READING)
+    head, body = _answer()
+    with os.fdopen(descriptor, "wb") as channel:
+        channel.write(head.line() + body)
+
+
+def _answer() -> tuple[AnswerHead, bytes]:
+    """Return head and body of the answer."""
+    try:
+        order = LiveOrder.from_line(sys.stdin.buffer.read())
+    except MemoryError:
+        return AnswerHead("memory"), b""
+    head, body = worked(order, Path.cwd(), note=_note)
+    if len(body) > MOST_ANSWER_BYTES:
+        return problem(TooLarge(f"What the files hold has more than {MOST_ANSWER_BYTES} bytes as JSON."))
+    return head, body
+
+
+def _note() -> None:
+    """Log where a defect is; its text may be the caller's bytes."""
+    kind, _, trace = sys.exc_info()
+    sys.stderr.writelines(["reading failed\n", *traceback.format_tb(trace), f"{kind}\n"])
+
+
+if __name__ == "__main__":
+    work(int(sys.argv[1]))
