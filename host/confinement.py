@@ -28,8 +28,8 @@ class Limits:
 
     Attributes
     ----------
-    memory_mb : int
-        Private memory that it may write, MB.
+    memory_mb : int or None
+        Private memory that it may write, MB; None: as much as the process that started it.
     cpu_seconds : int
         At their end the system kills it.
     file_bytes : int
@@ -37,7 +37,7 @@ class Limits:
     open_files : int
     """
 
-    memory_mb: int = 512
+    memory_mb: int | None = 512
     cpu_seconds: int = 10
     file_bytes: int = 256_000_000
     open_files: int = 64
@@ -86,7 +86,8 @@ def _limit(limits: Limits) -> None:
         raise Unavailable("Limits of processes")
     import resource  # noqa: PLC0415 (POSIX alone)
 
-    limit_memory(limits.memory_mb * _MB)
+    if limits.memory_mb is not None:
+        limit_memory(limits.memory_mb * _MB)
     most = {
         resource.RLIMIT_CPU: (
             limits.cpu_seconds,

@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 from host.child_environment import child_environment
@@ -17,14 +18,28 @@ _NO_MEMORY = ("MemoryError", "bad_alloc")
 
 
 class ChildFailed(Exception):
-    """A child failed, was killed, ran out of time or answered nonsense; the message says which."""
+    """A child failed, was killed, ran out of time or answered nonsense; the message says which.
+
+    Parameters
+    ----------
+    cause : str
+        What became of it.
+    complaint : str
+        The last line that it printed: of readers of foreign bytes that is not to be shown.
+    """
+
+    def __init__(self, cause: str, complaint: str = "") -> None:
+        self.cause = cause
+        super().__init__(f"{cause}. {complaint}".rstrip(" ."))
 
 
 class ChildOutOfMemory(ChildFailed):
     """A child could not allocate what it needed."""
 
 
-def ask_child(request: dict[str, Any], seconds: float, command: Sequence[str]) -> dict[str, Any]:
+def ask_child(
+    request: dict[str, Any], seconds: float, command: Sequence[str], folder: Path | None = None
+) -> dict[str, Any]:
     """Run a child on one request and return its answer.
 
     Parameters
@@ -35,20 +50,22 @@ def ask_child(request: dict[str, Any], seconds: float, command: Sequence[str]) -
         Time limit; the child is killed after it.
     command : sequence of str
         Program and arguments. It finds Python modules where this process does.
+    folder : Path, optional
+        Where it works; default: where this process does.
 
     Raises
     ------
     ChildOutOfMemory, ChildFailed
         Also if the answer is an ``error``: its text.
     """
-    answer = _ask(json.dumps(request | {"seconds": seconds}), seconds, command)
+    answer = _ask(json.dumps(request | {"seconds": seconds}), seconds, command, folder)
     if "error" in answer:
         _refuse_no_memory(answer["error"])
         raise ChildFailed(answer["error"])
     return answer
 
 
-def _ask(request: str, seconds: float, command: Sequence[str]) -> dict[str, Any]:
+def _ask(request: str, seconds: float, command: Sequence[str], folder: Path | None) -> dict[str, Any]:
     """Run the child on one request and return its answer."""
     # The child may find a module only where this process does, e.g. in a path added at run time.
     environment = child_environment(PYTHONPATH=os.pathsep.join(filter(None, sys.path)))
@@ -60,19 +77,20 @@ def _ask(request: str, seconds: float, command: Sequence[str]) -> dict[str, Any]
             text=True,
             timeout=seconds,
             env=environment,
+            cwd=folder,
             check=False,
         )
     except subprocess.TimeoutExpired as error:
         raise ChildFailed(f"no answer within {seconds:g} s") from error
     except OSError as error:
-        raise ChildFailed(f"cannot be started ({error})") from error
+        raise ChildFailed("cannot be started", error.strerror or "") from error
     _refuse_no_memory(_last_line(child.stderr) if child.returncode else "")
     if child.returncode != 0:
-        raise ChildFailed(f"{_cause(child.returncode)}. {_last_line(child.stderr)}".rstrip(" ."))
+        raise ChildFailed(_cause(child.returncode), _last_line(child.stderr))
     try:
         answer = json.loads(child.stdout)
     except json.JSONDecodeError as error:
-        raise ChildFailed(f"unusable answer ({error})") from error
+        raise ChildFailed("unusable answer") from error
     return answer if isinstance(answer, dict) else {}
 
 

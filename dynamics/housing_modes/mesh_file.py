@@ -1,10 +1,12 @@
-"""Volume meshes from files, by meshio."""
+"""Volume meshes from files, by meshio in a child process."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import shutil
+import sys
 from pathlib import Path
-from typing import Any
+from tempfile import TemporaryDirectory
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,11 +16,21 @@ from dynamics.housing_modes.mesh_quality import FIELD, check_quality
 from dynamics.housing_modes.tetrahedral_mesh import TetrahedralMesh, raised
 from dynamics.solid_housing import MESH_SUFFIXES
 from dynamics.types import FloatArray, IntArray
+from host import READING, ChildFailed, ask_child
 
 UNITS = {"m": 1.0, "mm": 1e-3}
-SURFACE_CELLS = ("triangle", "triangle6")
-NODES = {"tetra": 4, "tetra10": 10}
-PHYSICAL, PROPERTY = "gmsh:physical", "nastran:ref"
+WORKER = Path(__file__).with_name("mesh_worker.py")
+SECONDS = 60.0
+LINEAR_NODES = 4
+ADVICE = "Mesh with tetrahedra."
+
+
+class Content(NamedTuple):
+    """What a file holds: points, nodes of its tetrahedra, nodes of the named parts of its surface."""
+
+    points: FloatArray
+    tetrahedra: IntArray
+    groups: dict[str, IntArray]
 
 
 def read_mesh(path: str | Path, unit: str) -> TetrahedralMesh:
@@ -45,21 +57,28 @@ def read_mesh(path: str | Path, unit: str) -> TetrahedralMesh:
     return _checked(_content(Path(path)), scale)
 
 
-def _content(file: Path) -> Any:
-    """Return a file as meshio reads it."""
-    import meshio  # noqa: PLC0415 (start-up time)
-
+def _content(file: Path) -> Content:
+    """Return what a file holds, as a confined child reads it."""
     one_of(f"{FIELD}.suffix", file.suffix.lower(), MESH_SUFFIXES)
     if not file.is_file():
         raise InputError(FIELD, str(file), "a file that exists")
-    try:
-        return meshio.read(file)
-    # what its readers raise on damaged or foreign files is not one class; some end the program
-    except (Exception, SystemExit) as error:
-        raise InputError(FIELD, str(file), f"a mesh that meshio reads ({error})") from error
+    with TemporaryDirectory() as name:
+        copy = shutil.copyfile(file, Path(name) / f"housing{file.suffix.lower()}")
+        try:
+            answer = ask_child({"file": copy.name}, SECONDS, (sys.executable, "-P", str(WORKER)), copy.parent)
+        except ChildFailed as error:
+            limits = f"{READING.memory_mb} MB of memory and {READING.cpu_seconds} s of CPU time"
+            bound = f"a mesh that is read within {limits} (the reader: {error.cause})"
+            raise InputError(FIELD, str(file), bound, "Write less into the file.") from None
+        if (refused := answer.get("refused")) is not None:
+            field = ".".join(filter(None, (FIELD, refused["field"])))
+            raise InputError(field, refused["value"] or str(file), refused["bound"], ADVICE)
+        with np.load(copy.with_name("mesh.npz"), allow_pickle=False) as arrays:
+            groups = {name: arrays[f"group_{number}"] for number, name in enumerate(answer["groups"])}
+            return Content(arrays["points"], arrays["tetrahedra"], groups)
 
 
-def _checked(content: Any, scale: float) -> TetrahedralMesh:
+def _checked(content: Content, scale: float) -> TetrahedralMesh:
     """Return the mesh of a file."""
     points, tetrahedra = _quadratic(content)
     points = scale * np.asarray(points, dtype=float)
@@ -68,32 +87,20 @@ def _checked(content: Any, scale: float) -> TetrahedralMesh:
     used, tetrahedra = np.unique(tetrahedra, return_inverse=True)
     number = np.full(len(points), -1)
     number[used] = np.arange(len(used))
-    groups = {name: number[nodes] for name, nodes in _groups(content)}
+    groups = {name: number[nodes] for name, nodes in content.groups.items()}
     whole = {name: np.unique(nodes[nodes >= 0]) for name, nodes in groups.items()}
     mesh = TetrahedralMesh(points[used], tetrahedra.reshape(-1, 10), whole)
     check_quality(mesh)
     return mesh
 
 
-def _quadratic(content: Any) -> tuple[FloatArray, IntArray]:
+def _quadratic(content: Content) -> tuple[FloatArray, IntArray]:
     """Return points and tetrahedra with ten nodes, linear ones raised."""
-    from meshio import CellBlock  # noqa: PLC0415 (start-up time)
-
-    blocks: dict[str, list[IntArray]] = {}
-    for cells in content.cells:
-        assert isinstance(cells, CellBlock)
-        blocks.setdefault(cells.type, []).append(np.asarray(cells.data, dtype=np.int64))
-    solid = sorted(kind for kind, found in blocks.items() if CellBlock(kind, found[0]).dim == 3)
-    others = [kind for kind in solid if kind not in NODES]
-    if others or len(solid) != 1:
-        bound = "tetrahedra alone, all with four or all with ten nodes"
-        raise InputError(f"{FIELD}.cells", others or solid or list(blocks), bound, "Mesh with tetrahedra.")
-    cells = np.vstack(blocks[solid[0]])
-    if cells.shape[1] != NODES[solid[0]] or cells.min() < 0 or cells.max() >= len(content.points):
+    points, cells = content.points, content.tetrahedra
+    members = [cells, *content.groups.values()]
+    if any(nodes.min(initial=0) < 0 or nodes.max(initial=0) >= len(points) for nodes in members):
         raise InputError(FIELD, "with elements that lack nodes", "complete, as meshio reads it")
-    if solid[0] == "tetra":
-        return raised(_right_handed(content.points, cells), content.points)
-    return content.points, cells
+    return raised(_right_handed(points, cells), points) if cells.shape[1] == LINEAR_NODES else (points, cells)
 
 
 def _right_handed(points: FloatArray, corners: IntArray) -> IntArray:
@@ -101,30 +108,3 @@ def _right_handed(points: FloatArray, corners: IntArray) -> IntArray:
     corner = points[corners]
     turned = np.linalg.det(corner[:, 1:] - corner[:, :1]) < 0.0
     return np.where(turned[:, None], corners[:, [0, 2, 1, 3]], corners)
-
-
-def _groups(content: Any) -> Iterator[tuple[str, IntArray]]:
-    """Yield the nodes of named parts of the surface."""
-    yield from ((name, np.asarray(nodes, dtype=np.int64)) for name, nodes in content.point_sets.items())
-    for name, members in content.cell_sets.items():
-        parts = [
-            cells.data[np.asarray(member, dtype=np.int64)].ravel()
-            for cells, member in zip(content.cells, members, strict=True)
-            if cells.type in SURFACE_CELLS and member is not None and len(member)
-        ]
-        if parts and ":" not in name:
-            yield name, np.concatenate(parts)
-    names = {int(value[0]): name for name, value in content.field_data.items() if int(value[1]) == 2}
-    for key in (PHYSICAL, PROPERTY):
-        for number, nodes in _by_number(content, key).items():
-            yield names.get(number, str(number)), nodes
-
-
-def _by_number(content: Any, key: str) -> dict[int, IntArray]:
-    """Return the nodes of triangles by a number that the file has for each."""
-    numbered: dict[int, list[IntArray]] = {}
-    for cells, numbers in zip(content.cells, content.cell_data.get(key, []), strict=False):
-        if cells.type in SURFACE_CELLS:
-            for number in np.unique(numbers):
-                numbered.setdefault(int(number), []).append(cells.data[np.asarray(numbers) == number].ravel())
-    return {number: np.concatenate(nodes) for number, nodes in numbered.items()}

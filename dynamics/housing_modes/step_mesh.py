@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
 import tempfile
 from collections.abc import Sequence
@@ -53,18 +54,22 @@ def mesh_step(
     if element_size is not None:
         positive("element_size", element_size)
     with tempfile.TemporaryDirectory() as folder:
-        mesh = Path(folder) / "housing.msh"
-        request = {"step": str(file.resolve()), "mesh": str(mesh), "size": element_size}
+        copy = shutil.copyfile(file, Path(folder) / f"housing{file.suffix.lower()}")
+        mesh = copy.with_suffix(".msh")
+        request = {"step": copy.name, "mesh": mesh.name, "size": element_size}
         try:
             answer = ask_child(
                 request | {"wall_elements": WALL_ELEMENTS},
                 seconds,
                 command or (sys.executable, "-P", str(WORKER)),
+                copy.parent,
             )
         except ChildOutOfMemory as error:
             raise SolveError(f"mesher: {error}. Use a larger element_size.") from error
         except ChildFailed as error:
-            raise SolveError(f"mesher: {error}. Heal the geometry, or try another element_size.") from error
+            raise SolveError(
+                f"mesher: {error.cause}. Heal the geometry, or try another element_size."
+            ) from error
         if answer.get("solids") != 1:
             advice = "Unite the solids in the CAD program."
             raise InputError("step_file.solids", answer.get("solids"), "one solid", advice)

@@ -1,10 +1,11 @@
 """Child process that meshes a STEP file with gmsh, and does nothing else.
 
 Run as a script by `dynamics.housing_modes.step_mesh`, never imported by it: gmsh changes signal handlers, may
-crash on hard input and keeps global state, so it lives and dies here. It reads one JSON object from standard
-input and writes one to standard output::
+crash on hard input and keeps global state, so it lives and dies here, in a folder of its own, which is all
+that it can reach (`host.confine`). It reads one JSON object from standard input and writes one to standard
+output::
 
-    {"step": file, "mesh": file to write, "size": m or null, "wall_elements": 0.7, "seconds": 600}
+    {"step": "housing.step", "mesh": "housing.msh", "size": m or null, "wall_elements": 0.7, "seconds": 600}
     {"solids": 1, "size": 0.014}   or   {"error": "..."}
 """
 
@@ -13,9 +14,10 @@ from __future__ import annotations
 import json
 import os
 import sys
+from pathlib import Path
 from typing import Any
 
-from host import end_after, handlers_kept
+from host import Limits, confine, end_after, handlers_kept
 
 RESET_BY_GMSH = ("SIGTERM", "SIGHUP", "SIGPIPE", "SIGINT")
 MILLIMETER = 1e-3
@@ -49,21 +51,32 @@ def start_gmsh() -> Any:
 
 def mesh(gmsh: Any, request: dict[str, Any]) -> dict[str, Any]:
     """Mesh the one solid of a file, in mm."""
-    gmsh.model.occ.importShapes(request["step"])
-    gmsh.model.occ.synchronize()
+    try:
+        gmsh.model.occ.importShapes(request["step"])
+        gmsh.model.occ.synchronize()
+    except Exception:  # noqa: BLE001 - its text may hold what is in the file
+        return {"error": "gmsh does not read the file"}
     solids = gmsh.model.getEntities(3)
     if len(solids) != 1:
         return {"solids": len(solids)}
     size = request["size"] or MILLIMETER * wall_thickness(gmsh, solids[0][1]) / request["wall_elements"]
     gmsh.option.setNumber("Mesh.MeshSizeMax", size / MILLIMETER)
     gmsh.model.addPhysicalGroup(3, [solids[0][1]])  # only its elements are written
+    try:
+        generate(gmsh)
+    except Exception as error:  # noqa: BLE001 - gmsh says what is wrong with the geometry
+        return {"error": str(error)}
+    gmsh.write(request["mesh"])
+    return {"solids": 1, "size": size}
+
+
+def generate(gmsh: Any) -> None:
+    """Mesh the solid, a second time if elements are bad."""
     gmsh.model.mesh.generate(3)
     if worst_element(gmsh) < WORST:
         gmsh.option.setNumber("Mesh.OptimizeNetgen", 1)  # twice the time, a sixth more elements: on demand
         gmsh.model.mesh.clear()
         gmsh.model.mesh.generate(3)
-    gmsh.write(request["mesh"])
-    return {"solids": 1, "size": size}
 
 
 def worst_element(gmsh: Any) -> float:
@@ -85,10 +98,13 @@ def main() -> None:
     os.dup2(2, 1)  # whatever gmsh prints must not mix with the answer
     request = json.load(sys.stdin)
     end_after(int(request["seconds"]) + 1)  # ends this process even when its parent is gone
+    confine(Path.cwd(), Limits(memory_mb=None, cpu_seconds=int(request["seconds"]) + 1))
     try:
         answer = mesh(start_gmsh(), request)
-    except Exception as error:  # noqa: BLE001 - gmsh raises bare Exception; the parent turns the text into an error
-        answer = {"error": str(error) or type(error).__name__}
+    except MemoryError:
+        answer = {"error": "MemoryError"}
+    except Exception:  # noqa: BLE001 - bare Exception is what gmsh raises; its text may hold what is in the file
+        answer = {"error": "gmsh failed"}
     with os.fdopen(answer_to, "w") as stream:
         json.dump(answer, stream)
 

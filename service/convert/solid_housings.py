@@ -141,8 +141,7 @@ def _mesh(housing: HousingInput, cache: Path | None) -> TetrahedralMesh:
                 raise
             content = housing.step_file or housing.mesh_file
             assert content is not None
-            bound = str(error.bound).replace(folder, "").replace(f"/{file.name}", content.name)
-            raise InputError(error.field, content.name, bound, error.suggestion) from None
+            raise InputError(error.field, content.name, error.bound, error.suggestion) from None
 
 
 def _placed(housing: HousingInput, mesh: TetrahedralMesh) -> TetrahedralMesh:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import meshio
 import numpy as np
@@ -29,6 +31,7 @@ from dynamics.housing_modes import (
 from dynamics.housing_modes.elasticity import mass_and_stiffness
 from dynamics.housing_modes.mesh_quality import element_shape
 from dynamics.housing_modes.reduction import reduce_housing
+from host import missing_protections
 
 MESH = tube(0.12, 0.08, 0.1, (8, 1, 2))
 MILLIMETERS = 1000.0 * MESH.points
@@ -220,7 +223,7 @@ def test_without_a_size_elements_fit_the_wall(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("code", "complaint"),
     [
-        ("raise ValueError('no license')", "no license"),
+        ("raise ValueError('bytes of the file')", "mesher: ended with exit code 1. Heal"),
         ("""print('{"error": "Surface mesh failed"}')""", "Surface mesh failed"),
         ("import sys; sys.exit('std::bad_alloc')", "larger element_size"),
         ("import time; time.sleep(60)", "no answer within 0.5 s"),
@@ -252,3 +255,26 @@ def test_the_example_of_the_documentation_runs(tmp_path: Path, monkeypatch) -> N
     exec(block, found)
     assert found["cover"].shape == (2, 3, 10)
     assert len(list((tmp_path / "cache").glob("*.nc"))) == 1
+
+
+@pytest.mark.skipif(bool(missing_protections()), reason="this system does not confine processes")
+@pytest.mark.parametrize("command", [read_mesh, mesh_step])
+def test_a_reader_that_is_led_elsewhere_reaches_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: Callable[..., object]
+) -> None:
+    """Whatever a library makes of a file: here it reads a canary beside it and says what is in it."""
+    canary = tmp_path / "canary"
+    canary.write_text("canary")
+    libraries = tmp_path / "libraries"
+    for name in ("meshio", "gmsh"):
+        (libraries / name).mkdir(parents=True)
+        (libraries / name / "__init__.py").write_text(f"raise RuntimeError(open({str(canary)!r}).read())")
+    monkeypatch.syspath_prepend(str(libraries))
+    (tmp_path / "any.step").write_text("")
+    (tmp_path / "any.msh").write_text("")
+    arguments: tuple[Any, ...] = (
+        (tmp_path / "any.msh", "mm") if command is read_mesh else (tmp_path / "any.step",)
+    )
+    with pytest.raises((InputError, SolveError)) as refused:
+        command(*arguments)
+    assert "canary" not in str(refused.value)

@@ -1,0 +1,119 @@
+"""Child process that reads a mesh by meshio, and does nothing else.
+
+Run as a script by `dynamics.housing_modes.mesh_file`, never imported by it, in a folder of its own, which is
+all that it can reach (`host.confine`): meshio has readers of many formats, and some follow references to
+other files. It reads one JSON object from standard input and writes one to standard output, and the mesh as
+``mesh.npz`` into its folder::
+
+    {"file": "housing.msh", "seconds": 60}
+    {"groups": ["base", ...]}   or   {"refused": {"field": "cells", "value": ..., "bound": "..."}}
+
+Arrays: ``points``, ``tetrahedra`` (with four or ten nodes), ``group_0`` ... (nodes).
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from host import confine, end_after
+
+SURFACE_CELLS = ("triangle", "triangle6")
+NODES = {"tetra": 4, "tetra10": 10}
+PHYSICAL, PROPERTY = "gmsh:physical", "nastran:ref"
+Nodes = NDArray[np.int64]
+
+
+class Refused(Exception):
+    """The file holds something else than a mesh of tetrahedra: field, value, bound."""
+
+
+def read(file: Path) -> tuple[dict[str, NDArray[Any]], list[str]]:
+    """Return the arrays of a file and the names of its groups."""
+    import meshio  # noqa: PLC0415 (under the limits, too)
+
+    try:
+        content = meshio.read(file)
+    # what its readers raise on damaged or foreign files is not one class; some end the program
+    except (Exception, SystemExit) as error:
+        if isinstance(error, MemoryError):
+            raise
+        raise Refused("", None, "a mesh that meshio reads") from None
+    groups = dict(named_parts(content))
+    arrays = {f"group_{number}": nodes for number, nodes in enumerate(groups.values())}
+    return arrays | {"points": content.points, "tetrahedra": tetrahedra(content)}, list(groups)
+
+
+def tetrahedra(content: Any) -> Nodes:
+    """Return the nodes of the tetrahedra of a file."""
+    blocks: dict[str, list[Nodes]] = {}
+    dimensions = {}
+    for cells in content.cells:
+        blocks.setdefault(cells.type, []).append(np.asarray(cells.data, dtype=np.int64))
+        dimensions[cells.type] = cells.dim
+    solid = sorted(kind for kind, dimension in dimensions.items() if dimension == 3)
+    others = [kind for kind in solid if kind not in NODES]
+    if others or len(solid) != 1:
+        kinds = others or solid or list(blocks)
+        raise Refused("cells", kinds, "tetrahedra alone, all with four or all with ten nodes")
+    nodes = np.vstack(blocks[solid[0]])
+    if nodes.shape[1] != NODES[solid[0]]:
+        raise Refused("", "with elements that lack nodes", "complete, as meshio reads it")
+    return nodes
+
+
+def named_parts(content: Any) -> Iterator[tuple[str, Nodes]]:
+    """Yield the nodes of named parts of the surface."""
+    yield from ((name, np.asarray(nodes, dtype=np.int64)) for name, nodes in content.point_sets.items())
+    for name, members in content.cell_sets.items():
+        parts = [
+            cells.data[np.asarray(member, dtype=np.int64)].ravel()
+            for cells, member in zip(content.cells, members, strict=True)
+            if cells.type in SURFACE_CELLS and member is not None and len(member)
+        ]
+        if parts and ":" not in name:
+            yield name, np.concatenate(parts)
+    names = {int(value[0]): name for name, value in content.field_data.items() if int(value[1]) == 2}
+    for key in (PHYSICAL, PROPERTY):
+        for number, nodes in by_number(content, key).items():
+            yield names.get(number, str(number)), nodes
+
+
+def by_number(content: Any, key: str) -> dict[int, Nodes]:
+    """Return the nodes of triangles by a number that the file has for each."""
+    numbered: dict[int, list[Nodes]] = {}
+    for cells, numbers in zip(content.cells, content.cell_data.get(key, []), strict=False):
+        if cells.type in SURFACE_CELLS:
+            for number in np.unique(numbers):
+                numbered.setdefault(int(number), []).append(cells.data[np.asarray(numbers) == number].ravel())
+    return {number: np.concatenate(nodes) for number, nodes in numbered.items()}
+
+
+def main() -> None:
+    """Answer the one request on standard input."""
+    answer_to = os.dup(1)
+    os.dup2(2, 1)  # whatever meshio prints must not mix with the answer
+    request = json.load(sys.stdin)
+    end_after(int(request["seconds"]) + 1)
+    confine(Path.cwd())
+    try:
+        arrays, names = read(Path(request["file"]))
+        np.savez("mesh.npz", allow_pickle=False, **arrays)
+        answer: dict[str, Any] = {"groups": names}
+    except Refused as refused:
+        answer = {"refused": dict(zip(("field", "value", "bound"), refused.args, strict=True))}
+    except MemoryError:
+        answer = {"error": "MemoryError"}
+    with os.fdopen(answer_to, "w") as stream:
+        json.dump(answer, stream)
+
+
+if __name__ == "__main__":
+    main()
