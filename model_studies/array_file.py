@@ -13,14 +13,12 @@ import numpy as np
 
 from bounds.types import Json
 from model_studies.netcdf_content import NetcdfContent, Variable
+from model_studies.netcdf_input import DAMAGE, UnreadableFile, opened_netcdf
 
 SCHEMA_VERSION = 1
 PARTS = "part"  # dimension of the real and the imaginary part
 DOCUMENTS = "documents"
-
-
-class UnreadableFile(ValueError):
-    """A file is missing, no netCDF-4, of another schema, or damaged."""
+NUMBERS = "biufc"
 
 
 @dataclass(frozen=True)
@@ -71,29 +69,24 @@ def read_arrays(path: Path, schemas: tuple[str, ...]) -> tuple[str, dict[str, An
     UnreadableFile
         The file is missing, no netCDF-4, of none of the schemas, or damaged.
     """
-    import h5netcdf  # noqa: PLC0415 - needed for files only
-
-    if not path.is_file():
-        raise UnreadableFile(f"{path}: no such file")
-    try:
-        with h5netcdf.File(path, "r") as file:
-            attributes = dict(file.attrs)
-            raw = {str(name): np.asarray(variable[...]) for name, variable in file.variables.items()}
-    # what HDF5 raises on damaged bytes is not one class
-    except (OSError, ValueError, KeyError, RuntimeError, TypeError, AttributeError, IndexError) as error:
-        raise UnreadableFile(f"{path}: not a readable netCDF-4 file ({error})") from error
+    with opened_netcdf(path) as file:
+        attributes = dict(file.attrs)
+        raw = {str(name): np.asarray(variable[...]) for name, variable in file.variables.items()}
     stated = f"{attributes.get('schema')} {attributes.get('schema_version')}"
     if stated not in [f"{schema} {SCHEMA_VERSION}" for schema in schemas]:
-        raise UnreadableFile(f"{path}: schema is {stated}, expected {' or '.join(schemas)} {SCHEMA_VERSION}")
+        raise UnreadableFile(
+            f"{path.name}: schema is {stated}, expected {' or '.join(schemas)} {SCHEMA_VERSION}"
+        )
     try:
         documents = str(attributes[DOCUMENTS])
         content = json.loads(documents)
         arrays = {name: _restored(raw.get(name), kind) for name, kind in content["shapes"].items()}
-        if attributes["sha256"] != _digest(documents, arrays):
-            raise UnreadableFile(f"{path}: damaged, its contents do not match their checksum")
-        return str(attributes["schema"]), arrays, content["fields"]
-    except (KeyError, ValueError, TypeError) as error:
-        raise UnreadableFile(f"{path}: damaged, {error!r}") from error
+        intact, fields = attributes["sha256"] == _digest(documents, arrays), content["fields"]
+    except DAMAGE as error:
+        raise UnreadableFile(f"{path.name}: damaged, its arrays are not those that it states") from error
+    if not intact:
+        raise UnreadableFile(f"{path.name}: damaged, its contents do not match their checksum")
+    return str(attributes["schema"]), arrays, fields
 
 
 def _shapes(arrays: Mapping[str, Any]) -> Json:
@@ -121,12 +114,12 @@ def _dimension(sizes: dict[str, int], name: str, size: int) -> str:
 def _restored(values: Any, kind: list[Any]) -> Any:
     """Return an array as it was."""
     dtype, shape = np.dtype(kind[0]), tuple(kind[1])
+    if dtype.kind not in NUMBERS:
+        raise ValueError(dtype)
     if values is None:
-        return np.empty(shape, dtype=dtype)
+        return np.empty(0, dtype=dtype).reshape(shape)
     if dtype.kind == "c":
-        whole = np.empty(shape, dtype=dtype)
-        whole.real, whole.imag = values[..., 0], values[..., 1]
-        return whole
+        return np.ascontiguousarray(values).view(dtype).reshape(shape)
     return np.ascontiguousarray(values.astype(dtype, copy=False)).reshape(shape)
 
 

@@ -15,7 +15,8 @@ from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from model_studies.array_file import Stored, UnreadableFile, read_arrays, write_arrays
+from model_studies.array_file import Stored, read_arrays, write_arrays
+from model_studies.netcdf_input import DAMAGE, UnreadableFile
 
 IN_VARIABLE = "variable"
 """Stands in the JSON for what is in a variable."""
@@ -82,8 +83,8 @@ def read_record(path: Path, kinds: Mapping[str, type]) -> Any:
 
     try:
         return _together(kinds[schema], rest, _Place(), taken)
-    except (KeyError, TypeError, ValueError, StopIteration) as error:
-        raise UnreadableFile(f"{path}: not as this version writes it, {error!r}") from error
+    except (*DAMAGE, StopIteration) as error:
+        raise UnreadableFile(f"{path.name}: not as this version writes it") from error
 
 
 def _apart(kind: Any, value: Any, place: _Place, columns: dict[_Place, list[Any]]) -> Any:

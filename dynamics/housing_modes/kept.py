@@ -19,8 +19,8 @@ from dynamics.housing_modes.step_mesh import WALL_ELEMENTS, mesh_step
 from dynamics.housing_modes.tetrahedral_mesh import TetrahedralMesh
 from dynamics.types import FloatArray, IntArray
 from dynamics.work_cost import Cost, measured, on_this_host
-from model_studies.array_file import UnreadableFile
 from model_studies.kept_file import kept_in
+from model_studies.netcdf_input import UnreadableFile
 from model_studies.record_file import read_record, write_record
 
 REDUCTION_VERSION = 4

@@ -10,7 +10,8 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from dynamics.errors import ResultError
-from model_studies.array_file import Stored, UnreadableFile, read_arrays, write_arrays
+from model_studies.array_file import Stored, read_arrays, write_arrays
+from model_studies.netcdf_input import UnreadableFile
 
 __all__ = ["ArrayFile", "Stored"]
 
@@ -53,7 +54,7 @@ class ArrayFile:
         except UnreadableFile as error:
             raise ResultError(str(error)) from error
         except TypeError as error:
-            raise ResultError(f"{path}: damaged, {error!r}") from error
+            raise ResultError(f"{Path(path).name}: damaged, its fields are others") from error
 
 
 def _plain(value: Any) -> Any:

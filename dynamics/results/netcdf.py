@@ -16,6 +16,7 @@ from dynamics.results.run_result import RunResult
 from dynamics.results.series import LABELS, SERIES, over_time
 from dynamics.results.step_statistics import StepStatistics
 from dynamics.types import RunStatus
+from model_studies.netcdf_input import DAMAGE, UnreadableFile, read_dataset
 
 if TYPE_CHECKING:
     import xarray
@@ -61,23 +62,17 @@ def write_netcdf(result: RunResult, path: Path) -> None:
 
 def read_netcdf(path: Path) -> RunResult:
     """Read a file of `write_netcdf`."""
-    import xarray  # noqa: PLC0415 - a second, and not needed to run a scene
-
-    if not path.is_file():
-        raise ResultError(f"{path}: no such file")
     try:
-        with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as dataset:
-            dataset.load()
-    # what HDF5 raises on damaged bytes is not one class
-    except (OSError, ValueError, KeyError, RuntimeError, TypeError, AttributeError, IndexError) as error:
-        raise ResultError(f"{path}: not a readable netCDF-4 file ({error})") from error
+        dataset = read_dataset(path, decode_times=False)
+    except UnreadableFile as error:
+        raise ResultError(str(error)) from error
     if dataset.attrs.get("schema") != SCHEMA or dataset.attrs.get("schema_version") != SCHEMA_VERSION:
         stated = f"{dataset.attrs.get('schema')} {dataset.attrs.get('schema_version')}"
-        raise ResultError(f"{path}: schema is {stated}, expected {SCHEMA} {SCHEMA_VERSION}")
+        raise ResultError(f"{path.name}: schema is {stated}, expected {SCHEMA} {SCHEMA_VERSION}")
     try:
         return _from_dataset(dataset)
-    except (KeyError, ValueError, TypeError) as error:
-        raise ResultError(f"{path}: damaged, {error!r}") from error
+    except DAMAGE as error:
+        raise ResultError(f"{path.name}: damaged, its fields are not those of a run") from error
 
 
 def attributes(fields: Mapping[str, Any]) -> dict[str, Any]:

@@ -121,7 +121,7 @@ def _period(path: Path, attributes: Json) -> int:
     """Period in base pitches; files older than the attribute hold one."""
     period = attributes.get("period", 1)
     if not isinstance(period, int | np.integer):
-        raise DatabaseError(f"{path}: damaged, its period is {period!r}")
+        raise DatabaseError(f"{path.name}: damaged, its period is {period!r}")
     return int(period)
 
 
@@ -134,7 +134,7 @@ def _facts(path: Path, attributes: Json) -> PairFacts:
     """Read the pair facts of a file."""
     content = json_attribute(path, attributes, "facts")
     if not isinstance(content, dict):
-        raise DatabaseError(f"{path}: damaged, its facts are no JSON object")
+        raise DatabaseError(f"{path.name}: damaged, its facts are no JSON object")
     return PairFacts.from_json(content)
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from fe_contact.errors import DatabaseError
 from fe_contact.types import Json
+from model_studies.netcdf_input import UnreadableFile, opened
 
 
 def read_variables(path: Path) -> tuple[dict[str, Any], Json]:
@@ -24,21 +25,17 @@ def read_variables(path: Path) -> tuple[dict[str, Any], Json]:
         The file is missing or no netCDF-4.
     """
     import h5netcdf  # noqa: PLC0415 - needed for files only
-    import h5py  # noqa: PLC0415
 
-    if not path.is_file():
-        raise DatabaseError(f"{path}: no such file")
     try:
         # arrays by h5py: h5netcdf looks for unwritten ends of unlimited dimensions, at several times the cost
-        with h5py.File(path, "r") as content, h5netcdf.File(path, "r") as file:
+        with opened(path) as content, h5netcdf.File(content.id, "r") as file:
             arrays = {
                 str(name): np.asarray((variable if _is_text(content[name]) else content[name])[...])
                 for name, variable in file.variables.items()
             }
             return arrays, dict(file.attrs)
-    # what HDF5 raises on damaged bytes is not one class
-    except (OSError, ValueError, KeyError, RuntimeError, TypeError, AttributeError, IndexError) as error:
-        raise DatabaseError(f"{path}: not a readable netCDF-4 file ({error})") from error
+    except UnreadableFile as error:
+        raise DatabaseError(str(error)) from error
 
 
 def _is_text(dataset: Any) -> bool:
@@ -81,19 +78,19 @@ class FileFormat:
         """
         arrays, attributes = read_variables(path)
         if attributes.get("format") != self.name:
-            raise DatabaseError(f"{path}: a netCDF file, but no {self.content}")
+            raise DatabaseError(f"{path.name}: a netCDF file, but no {self.content}")
         version, newest = attributes.get("schema_version"), self.schema_version
         if not isinstance(version, int | np.integer) or not 1 <= version <= newest:
             known = "1" if newest == 1 else f"1 to {newest}"
             raise DatabaseError(
-                f"{path}: schema version {version}, but this release reads {known}: update it"
+                f"{path.name}: schema version {version}, but this release reads {known}: update it"
             )
         missing = sorted((set(self.arrays) - set(arrays)) | (set(self.attributes) - set(attributes)))
         if missing:
-            raise DatabaseError(f"{path}: damaged, without {', '.join(missing)}")
+            raise DatabaseError(f"{path.name}: damaged, without {', '.join(missing)}")
         content = {name: arrays[name] for name in (*self.arrays, *self.optional) if name in arrays}
         if attributes.get("data_sha256") != digest(content, before(attributes)):
-            raise DatabaseError(f"{path}: damaged, its arrays do not match their checksum")
+            raise DatabaseError(f"{path.name}: damaged, its arrays do not match their checksum")
         return content, attributes
 
 
@@ -102,7 +99,7 @@ def json_attribute(path: Path, attributes: Json, name: str) -> Any:
     try:
         return json.loads(attributes[name])
     except (KeyError, TypeError, ValueError) as error:
-        raise DatabaseError(f"{path}: damaged, its {name} is not readable JSON ({error})") from error
+        raise DatabaseError(f"{path.name}: damaged, its {name} is not readable JSON") from error
 
 
 def digest(arrays: Mapping[str, Any], before: str = "") -> str:

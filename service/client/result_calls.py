@@ -57,11 +57,11 @@ class ResultCalls(Surface):
         kind : str
             A name of `service.schemas.result_kinds.RESULT_KINDS`.
         """
-        with libraries():
-            import xarray  # noqa: PLC0415 (keeps the import of the client light)
-
         file = yield from ResultCalls.fetch_file(self, key, kind)
-        return xarray.load_dataset(file, engine="h5netcdf")
+        with libraries():
+            from model_studies.netcdf_input import read_dataset  # noqa: PLC0415 (keeps the client light)
+
+            return read_dataset(file)
 
     @operation
     def fetch_file(self, key: str, kind: str = "database") -> Steps[Path]:

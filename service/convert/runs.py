@@ -7,8 +7,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import h5netcdf
 import numpy as np
+
+from model_studies.netcdf_input import opened_netcdf
 
 
 def staged(report: Callable[[str, float], None]) -> Callable[[float, str], None]:
@@ -18,7 +19,7 @@ def staged(report: Callable[[str, float], None]) -> Callable[[float, str], None]
 
 def run_json(file: Path) -> dict[str, Any]:
     """Return attributes, dimensions and variables (with units) of a run, without its data."""
-    with h5netcdf.File(file, "r") as run:
+    with opened_netcdf(file) as run:
         return {
             "attributes": {name: _plain(value) for name, value in run.attrs.items()},
             "dimensions": {name: int(each.size) for name, each in run.dimensions.items()},

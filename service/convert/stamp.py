@@ -9,6 +9,8 @@ from typing import Any
 
 import h5netcdf
 
+from model_studies.netcdf_input import opened_netcdf
+
 Json = dict[str, Any]
 WARNINGS = "warnings"
 
@@ -25,5 +27,5 @@ def stamp(file: Path, warnings: Sequence[Json]) -> None:
 
 def stamped(file: Path) -> list[Json]:
     """Return the warnings of the netCDF file of a result; none of an older one."""
-    with h5netcdf.File(file, "r") as content:
+    with opened_netcdf(file) as content:
         return list(json.loads(content.attrs.get(WARNINGS, "[]")))

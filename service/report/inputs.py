@@ -7,12 +7,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import h5netcdf
-
 from dynamics.errors import DynamicsError
 from dynamics.results import RunResult
 from fe_contact.errors import FeContactError
 from fe_contact.ste import SteDatabase
+from model_studies.netcdf_input import UnreadableFile, opened_netcdf
 from service.convert.stamp import stamped
 from service.drawing.page import Page
 from service.problems import BadInput
@@ -131,10 +130,10 @@ def file_attributes(file: Path) -> dict[str, str]:
         advice = "JSON is for programs. Name the netCDF file: the verb writes it with -o FILE.nc."
         raise BadInput.of("file", str(file), _BOUND, advice)
     try:
-        with h5netcdf.File(file, "r") as content:
+        with opened_netcdf(file) as content:
             return {name: str(value) for name, value in content.attrs.items()}
-    except (OSError, ValueError, RuntimeError, KeyError) as error:
-        raise BadInput.of("file", str(file), _BOUND, f"It is no readable netCDF-4 file ({error}).") from None
+    except UnreadableFile as error:
+        raise BadInput.of("file", str(file), _BOUND, f"{error}.") from None
 
 
 def _read(file: Path, kind: str) -> Any:

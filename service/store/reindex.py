@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
+from model_studies.netcdf_input import opened
 from service.store.database import instant, now
 from service.store.deployment import Deployment
 from service.store.files import KeptFile
@@ -74,13 +75,12 @@ def _gone(store: ResultStore, line: IndexLine) -> bool:
 
 def _opens(path: Path) -> bool:
     """Whether a file is a whole one of its format: names of older versions say nothing of the bytes."""
-    import h5py  # noqa: PLC0415 (start-up time)
-
     try:
         if path.suffix == ".json":
             json.loads(path.read_bytes())
         else:
-            h5py.File(path, "r").close()
+            with opened(path):
+                pass
     except (OSError, ValueError):
         return False
     return True

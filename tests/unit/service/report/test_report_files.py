@@ -85,7 +85,7 @@ def test_what_is_no_result_is_refused_by_name(tmp_path: Path) -> None:
         file.attrs["format"] = "something else"
     with pytest.raises(BadInput, match="There is no such file"):
         write_report(tmp_path / "none.nc", tmp_path / "report.html")
-    with pytest.raises(BadInput, match="no readable netCDF-4"):
+    with pytest.raises(BadInput, match="not a readable netCDF-4"):
         write_report(text, tmp_path / "report.html")
     with pytest.raises(BadInput, match="another kind"):
         write_report(other, tmp_path / "report.html")
