@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -14,7 +13,7 @@ from dynamics.checks import one_of
 from dynamics.errors import InputError
 from dynamics.housing_modes.mesh_quality import FIELD, check_quality
 from dynamics.housing_modes.tetrahedral_mesh import TetrahedralMesh, raised
-from dynamics.solid_housing import MESH_SUFFIXES
+from dynamics.solid_housing import MESH_FORMATS, MESH_SUFFIXES, check_mesh_content, mesh_text
 from dynamics.types import FloatArray, IntArray
 from host import READING, ChildFailed, ask_child
 
@@ -22,7 +21,7 @@ UNITS = {"m": 1.0, "mm": 1e-3}
 WORKER = Path(__file__).with_name("mesh_worker.py")
 SECONDS = 60.0
 LINEAR_NODES = 4
-ADVICE = "Mesh with tetrahedra."
+TEXTS = ("Abaqus", "Nastran")
 
 
 class Content(NamedTuple):
@@ -58,21 +57,28 @@ def read_mesh(path: str | Path, unit: str) -> TetrahedralMesh:
 
 
 def _content(file: Path) -> Content:
-    """Return what a file holds, as a confined child reads it."""
-    one_of(f"{FIELD}.suffix", file.suffix.lower(), MESH_SUFFIXES)
+    """Return what a confined child reads from a file: its format is by the suffix, and never another."""
+    title = MESH_FORMATS[one_of(f"{FIELD}.suffix", file.suffix.lower(), MESH_SUFFIXES)]
     if not file.is_file():
-        raise InputError(FIELD, str(file), "a file that exists")
+        raise InputError(FIELD, file.name, "a file that exists")
+    content = file.read_bytes()
+    check_mesh_content(file.name, content)
     with TemporaryDirectory() as name:
-        copy = shutil.copyfile(file, Path(name) / f"housing{file.suffix.lower()}")
+        copy = Path(name) / f"housing{file.suffix.lower()}"
+        copy.write_bytes(mesh_text(content).read().encode() if title in TEXTS else content)
+        request = {"file": copy.name, "format": title.lower()}
         try:
-            answer = ask_child({"file": copy.name}, SECONDS, (sys.executable, "-P", str(WORKER)), copy.parent)
+            answer = ask_child(request, SECONDS, (sys.executable, "-P", str(WORKER)), copy.parent)
         except ChildFailed as error:
             limits = f"{READING.memory_mb} MB of memory and {READING.cpu_seconds} s of CPU time"
             bound = f"a mesh that is read within {limits} (the reader: {error.cause})"
-            raise InputError(FIELD, str(file), bound, "Write less into the file.") from None
-        if (refused := answer.get("refused")) is not None:
-            field = ".".join(filter(None, (FIELD, refused["field"])))
-            raise InputError(field, refused["value"] or str(file), refused["bound"], ADVICE)
+            raise InputError(FIELD, file.name, bound, "Write less into the file.") from None
+        if answer.get("unreadable"):
+            bound, advice = f"a mesh as {title} writes it", "Export it again, or as gmsh (.msh)."
+            raise InputError(FIELD, file.name, bound, advice)
+        if (cells := answer.get("cells")) is not None:
+            bound = "tetrahedra alone, all with four or all with ten nodes"
+            raise InputError(f"{FIELD}.cells", cells, bound, "Mesh with tetrahedra.")
         with np.load(copy.with_name("mesh.npz"), allow_pickle=False) as arrays:
             groups = {name: arrays[f"group_{number}"] for number, name in enumerate(answer["groups"])}
             return Content(arrays["points"], arrays["tetrahedra"], groups)

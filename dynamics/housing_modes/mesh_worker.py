@@ -5,8 +5,8 @@ all that it can reach (`host.confine`): meshio has readers of many formats, and 
 other files. It reads one JSON object from standard input and writes one to standard output, and the mesh as
 ``mesh.npz`` into its folder::
 
-    {"file": "housing.msh", "seconds": 60}
-    {"groups": ["base", ...]}   or   {"refused": {"field": "cells", "value": ..., "bound": "..."}}
+    {"file": "housing.msh", "format": "gmsh", "seconds": 60}
+    {"groups": ["base", ...]}   or   {"unreadable": true}   or   {"cells": ["hexahedron"]}
 
 Arrays: ``points``, ``tetrahedra`` (with four or ten nodes), ``group_0`` ... (nodes).
 """
@@ -17,6 +17,7 @@ import json
 import os
 import sys
 from collections.abc import Iterator
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -31,21 +32,24 @@ PHYSICAL, PROPERTY = "gmsh:physical", "nastran:ref"
 Nodes = NDArray[np.int64]
 
 
-class Refused(Exception):
-    """The file holds something else than a mesh of tetrahedra: field, value, bound."""
+class Unreadable(Exception):
+    """The file is not what its format says."""
 
 
-def read(file: Path) -> tuple[dict[str, NDArray[Any]], list[str]]:
+class OtherCells(Exception):
+    """The solid is not of one kind of tetrahedra."""
+
+
+def read(file: Path, title: str) -> tuple[dict[str, NDArray[Any]], list[str]]:
     """Return the arrays of a file and the names of its groups."""
-    import meshio  # noqa: PLC0415 (under the limits, too)
-
+    reader = import_module(f"meshio.{title}")
     try:
-        content = meshio.read(file)
+        content = reader.read(file)
     # what its readers raise on damaged or foreign files is not one class; some end the program
     except (Exception, SystemExit) as error:
         if isinstance(error, MemoryError):
             raise
-        raise Refused("", None, "a mesh that meshio reads") from None
+        raise Unreadable from None
     groups = dict(named_parts(content))
     arrays = {f"group_{number}": nodes for number, nodes in enumerate(groups.values())}
     return arrays | {"points": content.points, "tetrahedra": tetrahedra(content)}, list(groups)
@@ -61,11 +65,10 @@ def tetrahedra(content: Any) -> Nodes:
     solid = sorted(kind for kind, dimension in dimensions.items() if dimension == 3)
     others = [kind for kind in solid if kind not in NODES]
     if others or len(solid) != 1:
-        kinds = others or solid or list(blocks)
-        raise Refused("cells", kinds, "tetrahedra alone, all with four or all with ten nodes")
+        raise OtherCells(others or solid or list(blocks))
     nodes = np.vstack(blocks[solid[0]])
     if nodes.shape[1] != NODES[solid[0]]:
-        raise Refused("", "with elements that lack nodes", "complete, as meshio reads it")
+        raise Unreadable
     return nodes
 
 
@@ -104,11 +107,13 @@ def main() -> None:
     end_after(int(request["seconds"]) + 1)
     confine(Path.cwd())
     try:
-        arrays, names = read(Path(request["file"]))
+        arrays, names = read(Path(request["file"]), request["format"])
         np.savez("mesh.npz", allow_pickle=False, **arrays)
         answer: dict[str, Any] = {"groups": names}
-    except Refused as refused:
-        answer = {"refused": dict(zip(("field", "value", "bound"), refused.args, strict=True))}
+    except Unreadable:
+        answer = {"unreadable": True}
+    except OtherCells as error:
+        answer = {"cells": error.args[0]}
     except MemoryError:
         answer = {"error": "MemoryError"}
     with os.fdopen(answer_to, "w") as stream:

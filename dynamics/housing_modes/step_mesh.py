@@ -50,7 +50,7 @@ def mesh_step(
     file = Path(path)
     one_of("step_file.suffix", file.suffix.lower(), STEP_SUFFIXES)
     if not file.is_file():
-        raise InputError("step_file", str(path), "a file that exists")
+        raise InputError("step_file", file.name, "a file that exists")
     if element_size is not None:
         positive("element_size", element_size)
     with tempfile.TemporaryDirectory() as folder:

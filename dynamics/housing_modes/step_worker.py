@@ -36,6 +36,7 @@ def start_gmsh() -> Any:
     options = {
         "General.Terminal": 0,
         "General.NumThreads": 1,
+        "Geometry.OCCImportLabels": 0,  # with labels, other files that a STEP file names are read
         "Mesh.Algorithm": FRONTAL_DELAUNAY,
         "Mesh.ElementOrder": 2,
         "Mesh.HighOrderOptimize": 1,

@@ -3,7 +3,7 @@
 `dynamics.housing_modes` meshes and reduces it.
 """
 
-from dynamics.solid_housing.file_suffixes import MESH_SUFFIXES, STEP_SUFFIXES
+from dynamics.solid_housing.file_suffixes import MESH_FORMATS, MESH_SUFFIXES, STEP_SUFFIXES
 from dynamics.solid_housing.material import (
     CAST_ALUMINUM,
     GRAY_CAST_IRON,
@@ -11,6 +11,7 @@ from dynamics.solid_housing.material import (
     SPHEROIDAL_CAST_IRON,
     Material,
 )
+from dynamics.solid_housing.mesh_content import check_mesh_content, mesh_text
 from dynamics.solid_housing.reduction_settings import ELEMENT_SIZE, LOSS_FACTOR, MODES, ReductionSettings
 from dynamics.solid_housing.seat_wall import BORE_DIAMETER, BORE_LENGTH, Ring, SeatWall
 
@@ -22,6 +23,7 @@ __all__ = [
     "GRAY_CAST_IRON",
     "LOSS_FACTOR",
     "MATERIALS",
+    "MESH_FORMATS",
     "MESH_SUFFIXES",
     "MODES",
     "SPHEROIDAL_CAST_IRON",
@@ -30,4 +32,6 @@ __all__ = [
     "ReductionSettings",
     "Ring",
     "SeatWall",
+    "check_mesh_content",
+    "mesh_text",
 ]

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
-from dynamics.solid_housing import MESH_SUFFIXES, STEP_SUFFIXES
+from dynamics.errors import InputError
+from dynamics.solid_housing import MESH_SUFFIXES, STEP_SUFFIXES, check_mesh_content
 from service.problems import BadInput
 from service.schemas.scene_housings import HousingInput
 
 STEP_BEGINS = b"ISO-10303-21"
-_INCLUDE = re.compile(rb"^\*\s*include\b", re.IGNORECASE | re.MULTILINE)
 
 
 def solid_file(housing: HousingInput) -> tuple[str, str, bytes]:
@@ -35,7 +34,9 @@ def solid_file(housing: HousingInput) -> tuple[str, str, bytes]:
     if field == "step_file" and not data.lstrip().startswith(STEP_BEGINS):
         bound = f"a STEP file, which begins with {STEP_BEGINS.decode()}"
         raise BadInput.of(field, content.name, bound, "Export the solid as STEP (AP 214, AP 242).")
-    if _INCLUDE.search(data):
-        advice = "Write all nodes and elements into one file."
-        raise BadInput.of(field, content.name, "without *INCLUDE: other files are not read", advice)
+    if field == "mesh_file":
+        try:
+            check_mesh_content(content.name, data)
+        except InputError as error:
+            raise BadInput.of(field, content.name, str(error.bound), str(error.suggestion)) from None
     return field, suffix, data

@@ -137,7 +137,7 @@ def _mesh(housing: HousingInput, cache: Path | None) -> TetrahedralMesh:
                 return _placed(housing, meshed_step(file, None if size is None else size * MM, cache))
             return _placed(housing, read_mesh(file, str(housing.mesh_unit)))
         except InputError as error:
-            if error.value != str(file):
+            if error.value != file.name:
                 raise
             content = housing.step_file or housing.mesh_file
             assert content is not None
