@@ -10,6 +10,7 @@ from service.convert.case import case_json
 from service.reading.sent_files import sent_files
 from service.schemas import Case
 from service.schemas.file_content import FileContentInput
+from service.schemas.housing_file import SENT
 from service.schemas.named_files import Find, own_name
 from service.schemas.reading import read_text, validated, written_out
 from service.schemas.scene import SceneInput
@@ -23,7 +24,7 @@ def case_of_toml(inputs: Json, folder: Path) -> Json:
 
     The files are written into a folder.
     """
-    return {"case": case_json(validated(Case, _table(inputs, folder, written_out)))}
+    return {"case": case_json(validated(Case, _table(inputs, folder, _written_out)))}
 
 
 def scene_of_toml(inputs: Json, folder: Path) -> Json:
@@ -48,21 +49,28 @@ def _table(inputs: Json, folder: Path, with_files: Callable[[Json, Find], Json])
     return with_files(toml_table(inputs["toml"], "toml"), find)
 
 
+def _written_out(table: Json, find: Find) -> Json:
+    """Return a table with what its sender gives of what it names."""
+    return written_out(table, find, SENT)
+
+
 def _with_cases(table: Json, find: Find, names: set[str]) -> Json:
     """Return the table of a scene with all that it names written out, of cases those among `names`."""
-    table, meshes = written_out(table, find), table.get("meshes")
+    table, meshes = _written_out(table, find), table.get("meshes")
     if not isinstance(meshes, list):
         return table
+    cases: dict[str, Json] = {}
     return table | {
-        "meshes": [_with_case(mesh, find, names, f"meshes[{i}]") for i, mesh in enumerate(meshes)]
+        "meshes": [_with_case(mesh, find, names, cases, f"meshes[{i}]") for i, mesh in enumerate(meshes)]
     }
 
 
-def _with_case(mesh: object, find: Find, names: set[str], field: str) -> object:
-    """Return the table of a mesh with its case in place of the name of its file."""
+def _with_case(mesh: object, find: Find, names: set[str], cases: dict[str, Json], field: str) -> object:
+    """Return the table of a mesh with its case in place of the name of its file; each is read once."""
     name = mesh.get("case_file") if isinstance(mesh, dict) else None
     if not isinstance(mesh, dict) or not isinstance(name, str) or own_name(name) not in names:
         return mesh
     field = f"{field}.case_file"
-    case = written_out(toml_table(read_text(find(name, field)), field), find)
-    return {key: value for key, value in mesh.items() if key != "case_file"} | {"case": case}
+    if name not in cases:
+        cases[name] = _written_out(toml_table(read_text(find(name, field)), field), find)
+    return {key: value for key, value in mesh.items() if key != "case_file"} | {"case": cases[name]}

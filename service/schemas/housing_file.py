@@ -5,10 +5,10 @@ What is sent to be computed holds their content itself.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 from dynamics.solid_housing import MESH_SUFFIXES, STEP_SUFFIXES
 from host import MissingExtra
@@ -20,11 +20,22 @@ from service.units import MM, as_typed
 ROWS = "stiffness_matrix"
 MATRIX_FILE, MODES_FILE = "stiffness_file", "modes_file"
 STEP_FILE, MESH_FILE = "step_file", "mesh_file"
+_BY_CLIENT = "Run the scene by loa or the Python client: they read the file and send its matrices."
 Table = dict[str, Any]
+Content: TypeAlias = tuple[Table, Table]
+"""Fields of a file that those of its housing replace, and fields that replace those of the housing."""
+Contents: TypeAlias = dict[tuple[str, Path], Content]
 
 
-def with_housing_files(table: Table, find: Find) -> Table:
+def with_housing_files(table: Table, find: Find, read: Collection[str]) -> Table:
     """Return the table of a scene with the content of the housings' files in place of their names.
+
+    Parameters
+    ----------
+    table : dict
+    find : callable
+    read : collection of str
+        The fields whose files are read: `READERS`, or `SENT` of files that came over HTTP.
 
     Raises
     ------
@@ -34,11 +45,15 @@ def with_housing_files(table: Table, find: Find) -> Table:
     housings = table.get("housings")
     if not isinstance(housings, list):
         return table
-    return table | {"housings": [_written_out(housing, find, i) for i, housing in enumerate(housings)]}
+    contents: Contents = {}
+    written = [_written_out(housing, find, read, contents, i) for i, housing in enumerate(housings)]
+    return table | {"housings": written}
 
 
-def _written_out(housing: object, find: Find, index: int) -> object:
-    """One housing with the content of its file."""
+def _written_out(
+    housing: object, find: Find, read: Collection[str], contents: Contents, index: int
+) -> object:
+    """One housing with the content of its file, which is read once however often it is named."""
     named = [field for field in READERS if isinstance(housing, dict) and not _is_content(housing.get(field))]
     if not isinstance(housing, dict) or not named:
         return housing
@@ -48,8 +63,14 @@ def _written_out(housing: object, find: Find, index: int) -> object:
     if ROWS in housing or len(named) > 1:
         others = " and ".join((ROWS, *(other for other in READERS if other != named[0])))
         raise BadInput.of(field, name, f"left out when {others} is given", "Keep one of them.")
+    if named[0] not in read:
+        raise BadInput.of(field, name, "left out: a service opens no netCDF files of its callers", _BY_CLIENT)
     own = {key: value for key, value in housing.items() if key != named[0] or key == MODES_FILE}
-    return READERS[named[0]](own, find(name, field), field)
+    file = find(name, field)
+    if (named[0], file) not in contents:
+        contents[named[0], file] = READERS[named[0]](file, field)
+    below, above = contents[named[0], file]
+    return below | own | above
 
 
 def _is_content(value: object) -> bool:
@@ -57,8 +78,8 @@ def _is_content(value: object) -> bool:
     return value is None or isinstance(value, dict)
 
 
-def _with_matrices(housing: Table, file: Path, field: str) -> Table:
-    """Return a housing with the matrices of a CSV or NPZ file."""
+def _matrices(file: Path, field: str) -> Content:
+    """Return the matrices of a CSV or NPZ file."""
     from dynamics.errors import InputError  # noqa: PLC0415 - the client reads scenes too, and stays light
     from dynamics.joints.housing import read_housing_matrices  # noqa: PLC0415
 
@@ -67,11 +88,11 @@ def _with_matrices(housing: Table, file: Path, field: str) -> Table:
     except InputError as error:
         advice = str(error.suggestion) or "See docs/case-file.md."
         raise BadInput.of(field, file.name, str(error.bound), advice) from None
-    return housing | {f"{part}_matrix": matrix.tolist() for part, matrix in matrices.items()}
+    return {}, {f"{part}_matrix": matrix.tolist() for part, matrix in matrices.items()}
 
 
-def _with_modes(housing: Table, file: Path, field: str) -> Table:
-    """Return a housing with the matrices and the seats of a reduced housing."""
+def _modes(file: Path, field: str) -> Content:
+    """Return the matrices and the seats of a reduced housing."""
     try:
         modes: Any = import_module("dynamics.housing_modes")  # an extra, which the client does without
     except MissingExtra as error:
@@ -79,7 +100,7 @@ def _with_modes(housing: Table, file: Path, field: str) -> Table:
     from dynamics.errors import InputError, ResultError  # noqa: PLC0415
 
     try:
-        part = modes.scene_housing(modes.ReducedHousing.from_netcdf(file), str(housing.get("name", "")))
+        part = modes.scene_housing(modes.ReducedHousing.from_netcdf(file), "")
     except ResultError as error:
         raise BadInput.of(field, file.name, "a reduced housing (NetCDF)", f"{error}") from None
     except InputError as error:
@@ -89,11 +110,11 @@ def _with_modes(housing: Table, file: Path, field: str) -> Table:
     places = [[as_typed(value, MM) for value in point] for point in part.seat_positions or ()]
     derived = {"bushings": list(part.bushings), "modal_coordinates": part.modal_coordinates}
     given = {name: rows for name, rows in matrices.items() if rows is not None}
-    return derived | {"seat_positions_mm": places} | housing | given
+    return derived | {"seat_positions_mm": places}, given
 
 
-def _with_solid(housing: Table, file: Path, field: str) -> Table:
-    """Return a housing with the content of a STEP file or a mesh."""
+def _solid(file: Path, field: str) -> Content:
+    """Return the content of a STEP file or a mesh."""
     name = field.rpartition(".")[2]
     suffixes = STEP_SUFFIXES if name == STEP_FILE else MESH_SUFFIXES
     if file.suffix.lower() not in suffixes:
@@ -101,15 +122,19 @@ def _with_solid(housing: Table, file: Path, field: str) -> Table:
     if not file.is_file():
         raise BadInput.of(field, str(file), "a file that exists", "It is relative to the scene file.")
     try:
-        return housing | {name: FileContentInput.of(file).model_dump(mode="json")}
-    except (OSError, ValueError) as error:
-        raise BadInput.of(field, file.name, f"readable ({error})") from None
+        return {}, {name: FileContentInput.of(file).model_dump(mode="json")}
+    except OSError:
+        raise BadInput.of(field, file.name, "a readable file", "Check its permissions.") from None
+    except ValueError as error:
+        raise BadInput.of(field, file.name, str(error)) from None
 
 
-READERS: dict[str, Callable[[Table, Path, str], Table]] = {
-    MATRIX_FILE: _with_matrices,
-    MODES_FILE: _with_modes,
-    STEP_FILE: _with_solid,
-    MESH_FILE: _with_solid,
+READERS: dict[str, Callable[[Path, str], Content]] = {
+    MATRIX_FILE: _matrices,
+    MODES_FILE: _modes,
+    STEP_FILE: _solid,
+    MESH_FILE: _solid,
 }
 """What reads the files that a housing names, by the field that names them."""
+SENT = READERS.keys() - {MODES_FILE}
+"""Fields whose files are read of whoever sends them: HDF5 opens more than it is given."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -12,7 +13,7 @@ from service.input_file import InputFile
 from service.problems import BadInput
 from service.schemas.faults import faults_of
 from service.schemas.flank_grid_csv import with_flank_grids
-from service.schemas.housing_file import with_housing_files
+from service.schemas.housing_file import READERS, with_housing_files
 from service.schemas.lines import located
 from service.schemas.named_files import Find, beside
 from service.schemas.toml_table import toml_table
@@ -104,15 +105,22 @@ def read_model(model: type[M], source: Path | InputFile) -> M:
     table = read_table(file)
     _check_kind(model, table, file.path)
     with located(file):
-        return validated(model, written_out(table, beside(file.folder)))
+        return validated(model, written_out(table, beside(file.folder), READERS))
 
 
-def written_out(table: dict[str, Any], find: Find) -> dict[str, Any]:
+def written_out(table: dict[str, Any], find: Find, housings: Collection[str]) -> dict[str, Any]:
     """Return a table with the content of the flank grids and housings that it names as files.
+
+    Parameters
+    ----------
+    table : dict
+    find : callable
+    housings : collection of str
+        The fields of housings whose files are read, see `with_housing_files`.
 
     Raises
     ------
     BadInput
         A file is missing, or holds something else.
     """
-    return with_housing_files(with_flank_grids(table, find, read_text), find)
+    return with_housing_files(with_flank_grids(table, find, read_text), find, housings)

@@ -6,12 +6,14 @@ import base64
 import zlib
 from pathlib import Path
 
+import h5py
 import pytest
+from reduced_housings import random_housing
 
 from service.problems import BadInput
 from service.reading.texts import case_of_toml, scene_of_toml
 from service.schemas import Case, SceneInput, read_model
-from service.schemas.file_content import FileContentInput
+from service.schemas.file_content import LARGEST, FileContentInput
 
 ROOT = Path(__file__).parents[3]
 SCENE = ROOT / "examples" / "palermo_scene.toml"
@@ -69,6 +71,19 @@ def test_nothing_is_read_but_what_is_given(tmp_path, monkeypatch, name):
         assert [fault.field for fault in refused.value.faults] == ["housings[0].step_file"]
 
 
+@pytest.mark.parametrize("files", [[], ["case.nc"]])
+def test_a_file_of_modes_is_not_opened(tmp_path, monkeypatch, files):
+    """HDF5 opens more than it is given: one error says who reads the file, given or not."""
+    random_housing().to_netcdf(tmp_path / "case.nc")
+    monkeypatch.setattr(h5py, "File", lambda *_, **__: pytest.fail("opened"))
+    given = [packed(name, (tmp_path / name).read_bytes()) for name in files]
+    (tmp_path / "own").mkdir()
+    text = f'{SCENE.read_text("utf-8")}\n[[housings]]\nname = "box"\nmodes_file = "case.nc"\n'
+    with pytest.raises(BadInput, match=r"no netCDF files of its callers\. Run the scene by loa") as refused:
+        scene_of_toml({"toml": text, "files": given}, tmp_path / "own")
+    assert [fault.field for fault in refused.value.faults] == ["housings[0].modes_file"]
+
+
 @pytest.mark.parametrize(
     ("files", "field"),
     [
@@ -82,3 +97,22 @@ def test_files_that_are_none_are_refused_by_field(files, field, tmp_path):
     with pytest.raises(BadInput) as refused:
         scene_of_toml({"toml": "", "files": files}, tmp_path)
     assert [fault.field for fault in refused.value.faults] == [field]
+
+
+def test_a_file_is_read_once_however_often_it_is_named(tmp_path, monkeypatch):
+    reads: list[Path] = []
+    read = FileContentInput.of
+    monkeypatch.setattr(FileContentInput, "of", lambda file: (reads.append(file), read(file))[1])
+    text = SCENE.read_text("utf-8") + "".join(BOX.replace('"box"', f'"box {k}"') for k in range(20))
+    sent = {"toml": text, "files": [packed("box.step", b"ISO-10303-21;")]}
+    assert len(scene_of_toml(sent, tmp_path)["scene"]["housings"]) == 20
+    assert len(reads) == 1
+
+
+def test_files_are_bounded_together(tmp_path):
+    """Each of them may be as large as all."""
+    half = b"0" * (LARGEST // 2 + 1)
+    sent = {"toml": "", "files": [packed("a.csv", half), packed("b.csv", half)]}
+    with pytest.raises(BadInput, match="with all other files at most 64000000 bytes") as refused:
+        scene_of_toml(sent, tmp_path)
+    assert [fault.field for fault in refused.value.faults] == ["files[1].content"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import json
 import math
 import tomllib
 from collections.abc import Callable
@@ -19,6 +20,7 @@ from dynamics.integrators import static_equilibrium
 from dynamics.mechanism.modal_housing import modal_housing
 from dynamics.rolling_bearings import BallBearing, RollerBearing, from_catalog
 from dynamics.scene import Scene
+from service.client.portable import scene_inputs
 from service.convert.bearings import planet_bearing_of, rolling_contacts_of, spring_curves_of
 from service.convert.scene import dynamic_scene
 from service.problems import BadInput
@@ -176,6 +178,23 @@ def test_a_reduced_housing_is_written_out_in_the_scene(tmp_path: Path) -> None:
         np.testing.assert_array_equal(getattr(found, name), over @ getattr(housing, name) @ over)
     square = modal_housing(found).stiffness
     np.testing.assert_allclose(np.sqrt(square), housing.modes[0], rtol=1e-9)
+
+
+def test_a_client_sends_the_matrices_of_a_reduced_housing(tmp_path: Path) -> None:
+    """Not the name of its file, which no service opens."""
+    reduced(tmp_path / "case.nc")
+    text = (
+        (ROOT / "examples" / "palermo_scene.toml")
+        .read_text()
+        .replace('"palermo', f'"{ROOT}/examples/palermo')
+    )
+    (tmp_path / "scene.toml").write_text(text + '\n[[housings]]\nname = "case"\nmodes_file = "case.nc"\n')
+    sent = json.loads(json.dumps(scene_inputs(tmp_path / "scene.toml")))
+    assert "case.nc" not in json.dumps(sent)
+    expected = dynamic_scene(
+        read_model(SceneInput, tmp_path / "scene.toml"), {"mesh": small_table()}
+    ).housings
+    assert dynamic_scene(validated(SceneInput, sent["scene"]), {"mesh": small_table()}).housings == expected
 
 
 @pytest.mark.parametrize(
