@@ -68,7 +68,7 @@ class Scheduler:
             (self._settings.data_directory / name).mkdir(parents=True, exist_ok=True)
         for claim in self._claims.left():
             self._settlement.again_or_fail(claim, "The service ended while it ran.")
-        self._clear(self._claims.waiting())
+        self._clear()
         self._selector = selectors.DefaultSelector()
         self._wake_out, self._wake_in = os.pipe()
         for end in (self._wake_out, self._wake_in):
@@ -160,6 +160,7 @@ class Scheduler:
         self._enforce_dismissals()
         self._enforce_costs()
         self._take_up()
+        self._clear()
         self._claims.advance_batches()
         while len(self._running) < self._settings.workers and (claim := self._claims.claim()) is not None:
             self._take(claim)
@@ -245,9 +246,12 @@ class Scheduler:
             self._unsettled.pop(0)
             self._leases.drop(ended.claim)
 
-    def _clear(self, waiting: set[str]) -> None:
-        """Remove the workspaces of all but those that wait: they may go on from what is there."""
-        for workspace in (self._settings.data_directory / "work").iterdir():
+    def _clear(self) -> None:
+        """Remove the workspaces of computations that neither run nor wait for their next attempt."""
+        used = {run.workspace for run in self._running.values()} | {end.workspace for end in self._unsettled}
+        left = set((self._settings.data_directory / "work").iterdir()) - used
+        waiting = self._claims.waiting() if left else ()
+        for workspace in left:
             if workspace.name not in waiting:
                 shutil.rmtree(workspace, ignore_errors=True)
 
