@@ -15,6 +15,7 @@ from dynamics.housing_modes.damping import USUAL_DAMPING, Damping
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.housing_modes.seats import SeatFrame
 from dynamics.joints.matrix import check_matrix
+from dynamics.joints.matrix_file import read_archive
 from dynamics.types import FloatArray
 from host import MissingExtra
 
@@ -124,19 +125,20 @@ def housing_of_matrices(
 def _read(file: Path, reader: Any) -> Any:
     """Return what a reader makes of a file."""
     if not file.is_file():
-        raise InputError(FIELD, str(file), "a file that exists")
+        raise InputError(FIELD, file.name, "a file that exists")
     try:
         return reader(file)
     except ModuleNotFoundError as error:
         raise MissingExtra("pyyeti", "nastran") from error
+    except InputError:
+        raise
     # what the readers raise on damaged or foreign files is not one class
     except Exception as error:
-        raise InputError(FIELD, str(file), f"readable matrices ({error})") from error
+        raise InputError(FIELD, file.name, f"matrices as a {file.suffix} file has them") from error
 
 
 def _archive(file: Path) -> dict[str, FloatArray]:
-    with np.load(file, allow_pickle=False) as archive:
-        return {name: np.asarray(archive[name], dtype=float) for name in archive.files}
+    return read_archive(file, FIELD)
 
 
 def _market(file: Path) -> FloatArray:
@@ -167,7 +169,8 @@ def _named(file: Path, matrices: Mapping[str, FloatArray]) -> ReducedMatrices:
     }
     if chosen["stiffness"] is None:
         bound = f"a file with a matrix named {' or '.join(NAMES['stiffness'])}"
-        raise InputError(FIELD, str(file), bound, f"It has {list(matrices)}.")
+        advice = f"It has {', '.join(sorted(matrices)[:5]) or 'none'}."
+        raise InputError(FIELD, file.name, bound, advice)
     return ReducedMatrices(chosen["stiffness"], chosen["mass"], chosen["damping"])
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,6 +11,7 @@ from bounds import Declared, Kind, between, declared, described, integers
 from dynamics.checks import declared_fields, distinct, finite
 from dynamics.errors import InputError
 from dynamics.joints.matrix import Matrix, check_matrix, least_share
+from dynamics.joints.matrix_file import read_archive, read_csv
 from dynamics.joints.seat import SEAT
 from dynamics.types import FloatArray
 
@@ -168,19 +168,14 @@ def read_housing_matrices(path: str | Path) -> dict[str, FloatArray]:
     """Return the matrices of a file as `read_housing` takes it by field, unchecked; raises as it does."""
     file, field = Path(path), "stiffness_file"
     if file.suffix.lower() not in (".csv", ".npz"):
-        raise InputError(field, str(path), "a .csv or .npz file")
+        raise InputError(field, file.name, "a .csv or .npz file")
     if not file.is_file():
-        raise InputError(field, str(path), "a file that exists")
-    try:
-        if file.suffix.lower() == ".csv":
-            arrays = {"stiffness": np.loadtxt(file, delimiter=",", comments="#", ndmin=2)}
-        else:
-            with np.load(file, allow_pickle=False) as archive:
-                arrays = {key: np.asarray(archive[key], dtype=float) for key in archive.files}
-    except (ValueError, OSError, TypeError, AttributeError, zipfile.BadZipFile) as error:
-        raise InputError(field, str(path), f"a readable matrix ({error})") from error
+        raise InputError(field, file.name, "a file that exists")
+    is_text = file.suffix.lower() == ".csv"
+    arrays = {"stiffness": read_csv(file, field)} if is_text else read_archive(file, field)
     if "stiffness" not in arrays:
-        raise InputError(field, str(path), 'an archive with the array "stiffness"', f"It has {list(arrays)}.")
+        advice = f"It has {', '.join(sorted(arrays)[:5]) or 'none'}."
+        raise InputError(field, file.name, 'an archive with the array "stiffness"', advice)
     return {part: arrays[part] for part in MATRICES if part in arrays}
 
 
