@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bounds import SiNote
+from bounds import SiNote, engineering
 from fe_contact.checks import within
 from fe_contact.types import FloatArray
 
@@ -61,6 +61,10 @@ class AllowedError:
     def least_scale(self) -> float:
         """The size in m below which the floor counts."""
         return self.floor / self.relative
+
+    def part_words(self, change: float) -> str:
+        """Say which part of what is allowed a change takes, in parts of `scale`."""
+        return f"{engineering(100.0 * change / self.relative, 2)} % of the tolerance ({self.words})"
 
     @property
     def words(self) -> str:

@@ -139,7 +139,7 @@ def _neglected(run: SolvedTable) -> Iterator[Assumption]:
         influence = estimate_influence(*run.checked.assessing(name), name)
         if influence is not None:
             change = _relative(influence, run)
-            reason = f"estimated at {engineering(100 * change, 2)} % of the computed mean or peak-to-peak"
+            reason = f"estimated at {allowed(run).part_words(change)} of what was computed"
             holds = change <= allowed(run).relative
             yield Assumption(name, "neglected effects are negligible", holds, change, reason)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from bounds import engineering
 from fe_contact.allowed_error import AllowedError
 from fe_contact.effects import ContactScene, LedgerEntry
 from fe_contact.effects.influence import EstimatedInfluence, estimate_influences
@@ -50,6 +49,6 @@ def neglected_effects(
 
 
 def _reason(influence: EstimatedInfluence, tolerance: AllowedError) -> str:
-    """Say why an effect is neglected."""
-    change = f"at most {engineering(100 * influence.largest, 2)} % of mean or peak-to-peak at any load"
-    return f"neglected: {change}; the tolerance is {tolerance.words}"
+    """Say why an effect is neglected: an estimate of another size than the tolerance bounds nothing."""
+    part = tolerance.part_words(influence.largest)
+    return f"neglected: estimated, within a factor of two in most cases, at {part} where it is largest"

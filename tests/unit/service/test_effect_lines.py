@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
 from fe_contact import FlankModification, Gear, GearPair, analyze
+from fe_contact.allowed_error import AllowedError
+from fe_contact.analysis import plan_run
+from fe_contact.options import AnalysisOptions, TableAxes
 from service.convert.effect_lines import assumption_lines, ledger_lines, run_lines
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
@@ -19,7 +28,7 @@ def test_decisions_influence_price_and_what_does_not_hold_are_told() -> None:
     )  # fmt: skip
     lines = "\n".join(ledger_lines(table.metadata.effect_ledger))
     assert "effect tooth_coupling: on  (auto); contact ratio 1.557" in lines
-    assert "neglected: at most" in lines
+    assert "neglected: estimated" in lines
     assert "without it mean +0.13 um (+2.1 %), peak-to-peak +0.051 um (+1.8 %)" in lines
     told = list(assumption_lines(table.metadata.receipt))
     assert told == [line for line in told if line.startswith("VIOLATED: tip edges stay clear")]
@@ -27,6 +36,24 @@ def test_decisions_influence_price_and_what_does_not_hold_are_told() -> None:
     again = {"turned_on": {"misalignment": "neglected effects are negligible: 3 %"}, "cpu_seconds": 0.5}
     (line,) = assumption_lines({"repeated": [again], "assumptions": []})
     assert line == "repeated with misalignment: neglected effects are negligible: 3 % (0.5 CPU s)"
+
+
+def test_what_a_neglected_effect_takes_of_the_tolerance_is_its_influence() -> None:
+    # the floor is what is allowed: of the mean itself the change is a larger part than of what counts
+    trace = FlankModification(tip_relief=1e-6, tip_relief_length=1e-3)
+    pinion, allowed = replace(GEAR, modification=trace), AllowedError(0.05, 1e-6)
+    options = AnalysisOptions(tolerance=allowed)
+    entries = plan_run(GearPair(pinion, GEAR, 80e-3), TableAxes(torques=[100.0]), options).to_json()
+    (entry,) = (e for e in entries["effect_ledger"] if e["name"] == "profile_modification")
+    influence = entry["influence"]
+    parts = [
+        abs(influence[f"{name}_m"]) / allowed.of(np.array(influence[f"whole_{name}_m"]))
+        for name in ("mean", "peak_to_peak")
+    ]
+    stated = re.search(r"neglected: .* ([0-9.]+) % of the tolerance \(5 % or 1e\+03 nm\)", entry["decision"])
+    assert stated is not None, entry["decision"]
+    assert float(stated[1]) == pytest.approx(100.0 * max(parts), rel=0.06)  # two digits
+    assert abs(influence["relative_mean"]) > 2.0 * max(parts) * allowed.relative
 
 
 def test_a_run_says_what_it_was_repeated_for_and_what_does_not_hold() -> None:
