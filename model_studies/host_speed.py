@@ -1,17 +1,18 @@
-"""Speed of this host relative to the one that set the constants of cost models; measured once and cached.
+"""Speeds of this host that predictions of cost go by; measured once and kept, so that they agree.
 
 A short factorisation of a sparse matrix stands for all work but dense algebra, which has a measurement of its
-own (`fe_contact.compliance.cost_3d.dense_rate`).
+own (`fe_contact.compliance.cost_3d.dense_rate`). Processors are shared: measured again, either differs by
+tens of per cent.
 """
 
 from __future__ import annotations
 
 import json
-import math
 import os
 import platform
 import tempfile
 import time
+from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 
@@ -33,17 +34,36 @@ def host_slowness(cache: Path | None) -> float:
     Parameters
     ----------
     cache : Path, optional
-        Directory in which the measurement is kept; a missing, damaged or foreign file is made anew. None:
-        measured once per process.
+        As of `kept_speed`.
+    """
+    return kept_speed(cache, "slowness", measured_slowness, (1.0 / _SLOWEST, _SLOWEST))
+
+
+def kept_speed(
+    cache: Path | None, name: str, measure: Callable[[], float], bounds: tuple[float, float]
+) -> float:
+    """Return a speed of this host, measured once.
+
+    Parameters
+    ----------
+    cache : Path, optional
+        Directory in which it is kept; a missing, damaged or foreign file is made anew. None: whoever measures
+        remembers, for this process.
+    name : str
+    measure : callable
+    bounds : (float, float)
+        A kept value outside of them is measured anew.
     """
     if cache is None:
-        return measured_slowness()
-    kept = _read(cache / FILE)
-    if kept is not None:
+        return measure()
+    file = cache / FILE
+    known = _read(file)
+    kept = known.get(name)
+    if isinstance(kept, float) and bounds[0] <= kept <= bounds[1]:
         return kept
-    slowness = measured_slowness()
-    _write(cache / FILE, slowness)
-    return slowness
+    value = measure()
+    _write(file, {**known, "identity": _identity(), name: value})
+    return value
 
 
 @lru_cache(maxsize=1)
@@ -71,19 +91,17 @@ def _identity() -> dict[str, object]:
     }
 
 
-def _read(file: Path) -> float | None:
-    """Return the kept measurement of this host, None if there is none that can be trusted."""
+def _read(file: Path) -> dict[str, object]:
+    """Return what is kept of this host; nothing where it cannot be trusted."""
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
-        slowness = float(content["slowness"])
-        trusted = content["identity"] == _identity() and math.isfinite(slowness)
-        return slowness if trusted and 1.0 / _SLOWEST <= slowness <= _SLOWEST else None
+        return dict(content) if content["identity"] == _identity() else {}
     except (OSError, ValueError, KeyError, TypeError):
-        return None
+        return {}
 
 
-def _write(file: Path, slowness: float) -> None:
-    """Keep a measurement; a directory that cannot be written is left as it is."""
+def _write(file: Path, content: dict[str, object]) -> None:
+    """Keep measurements; a directory that cannot be written is left as it is."""
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         handle, draft = tempfile.mkstemp(dir=file.parent, suffix=".partial")
@@ -91,7 +109,7 @@ def _write(file: Path, slowness: float) -> None:
         return
     try:
         with os.fdopen(handle, "w", encoding="utf-8") as stream:
-            json.dump({"identity": _identity(), "slowness": slowness}, stream)
+            json.dump(content, stream)
         Path(draft).replace(file)
     except OSError:
         Path(draft).unlink(missing_ok=True)

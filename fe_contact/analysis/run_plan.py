@@ -32,6 +32,7 @@ from fe_contact.types import Json
 class PlannedLevel:
     """One mesh level with its slices: what it is predicted to cost, and its expected error."""
 
+    model: str
     level: str
     slices: int
     cost: Prediction
@@ -40,6 +41,7 @@ class PlannedLevel:
     def to_json(self) -> Json:
         """Return plain JSON."""
         return {
+            "model": self.model,
             "level": self.level,
             "slices": self.slices,
             "cost": self.cost.to_json(),
@@ -58,8 +60,11 @@ class RunPlan:
     choice : MeshChoice
         The mesh that would be taken.
     plan : Plan
+    chosen : PlannedLevel
+        The prediction for the mesh that would be taken.
     levels : tuple of PlannedLevel
-        All mesh levels of the same model.
+        That and the other mesh levels of the same model; and what the tolerance needs, where the time does
+        not allow it.
     conflict : str
         Why tolerance and time cannot both be had; empty if they can, or if not both were given.
     cache : Path, optional
@@ -69,14 +74,10 @@ class RunPlan:
     checked: Checked
     choice: MeshChoice
     plan: Plan
+    chosen: PlannedLevel
     levels: tuple[PlannedLevel, ...]
     conflict: str
     cache: Path | None = None
-
-    @property
-    def chosen(self) -> PlannedLevel:
-        """The prediction for the mesh that would be taken."""
-        return next(entry for entry in self.levels if entry.level == self.choice.level)
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -125,29 +126,32 @@ def plan_run(
     decided = decide(checked, cache, tried=True)
     checked, choice = decided.checked, decided.mesh
     curves = expected_curves(checked)
-    levels = tuple(
-        _planned(checked, name, choice.slices if name == choice.level else None, curves, cache)
-        for name in LEVELS
-    )
+    chosen = _decided(decided, curves, cache)
+    others = [_planned(checked, name, curves, cache) for name in LEVELS if name != choice.level]
+    needed = [] if decided.wished is None else [_decided(decided.wished, curves, cache)]
+    rows = {(row.model, row.level, row.slices): row for row in (chosen, *others, *needed)}
+    levels = sorted(rows.values(), key=lambda row: LEVELS.index(row.level))
     conflict = ""
     if budget is not None and (options.tolerance is not None or options.level is not None):
         conflict = _conflict(decided, positive("time_budget", budget, "Seconds."), cache)
-    return RunPlan(checked, choice, decided.plan, levels, conflict, cache)
+    return RunPlan(checked, choice, decided.plan, chosen, tuple(levels), conflict, cache)
 
 
-def _planned(
-    checked: Checked, level: str, slices: int | None, curves: ExpectedCurves | None, cache: Path | None
-) -> PlannedLevel:
-    """Predict one mesh level of the request's model, in so many slices or in the usual ones.
+def _decided(decided: Decided, curves: ExpectedCurves | None, cache: Path | None) -> PlannedLevel:
+    """Predict what was decided; its error is the one by which it was, where it was by an error."""
+    request, option = decided.checked.request, decided.mesh.option
+    error = option.error if option.error.mean else expected_error(request.pair, decided.plan, curves)
+    cost = decided.predicted(cache)
+    return PlannedLevel(model_name(decided.checked), option.level, option.slices, cost, error)
 
-    With the case's own curves, as its mesh is chosen by: both must tell the same error.
-    """
+
+def _planned(checked: Checked, level: str, curves: ExpectedCurves | None, cache: Path | None) -> PlannedLevel:
+    """Predict another mesh level of the request's model, in the usual slices."""
     request = checked.request
-    options = request.options.at_level(level)
-    plan = make_plan(request.pair, request.load, options, checked.model, slices=slices)
+    plan = make_plan(request.pair, request.load, replace(request.options, level=None), checked.model, level)
     cost = predict_run(request.pair, plan, checked.model, request.alignments, cache)
     error = expected_error(request.pair, plan, curves)
-    return PlannedLevel(level, plan.discretization.slices, cost, error)
+    return PlannedLevel(model_name(checked), level, plan.discretization.slices, cost, error)
 
 
 def _conflict(decided: Decided, time_budget: float, cache: Path | None) -> str:

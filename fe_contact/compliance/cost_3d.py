@@ -1,7 +1,7 @@
 """Prediction of the cost of a three-dimensional flank compliance.
 
 Operations and numbers held follow exactly from the elimination tree, which needs no mesh; the speed of dense
-algebra is measured on the spot, so that the prediction moves with the machine.
+algebra is measured on the host, so that the prediction moves with the machine.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from functools import lru_cache
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -22,6 +23,7 @@ from fe_contact.mesh.bore_support import bore_support
 from fe_contact.mesh.sector_outline import sector_outline
 from fe_contact.mesh.sector_recipe import SectorRecipe
 from fe_contact.mesh.swept_sector import SweptSector, swept_sector
+from model_studies.host_speed import kept_speed
 
 RANK_SHARE = 0.3  # of the flank freedoms that the cuts can tell apart; measured 0.28 to 0.38
 MESH_SECONDS = 0.15  # gmsh's child process
@@ -30,6 +32,8 @@ GATHERING = 100.0  # gathering one number of a front costs as much as so many mu
 ELEMENT = 1e6  # one element matrix, likewise
 RING_LOSS = 1.3  # time of the ring's steps over that of their operations at the dense rate
 NUMBER = 8  # bytes
+_RATES = (1e6, 1e15)
+"""Multiplications with addition per second that a host may have."""
 
 
 class PredictedCost(NamedTuple):
@@ -66,7 +70,10 @@ class SectorSizes(NamedTuple):
 
 @lru_cache(maxsize=64)
 def predict_cost(
-    gear: Toothing, recipe: SectorRecipe | None = None, reach: int | None = None
+    gear: Toothing,
+    recipe: SectorRecipe | None = None,
+    reach: int | None = None,
+    cache: Path | None = None,
 ) -> PredictedCost:
     """Predict what `flank_compliance_3d` costs for a gear that is not in the cache.
 
@@ -78,6 +85,8 @@ def predict_cost(
         Default `SectorRecipe.standard(gear)`.
     reach : int, optional
         Default `usual_reach(gear)`.
+    cache : Path, optional
+        Directory of what is known of the host.
     """
     recipe = recipe or SectorRecipe.standard(gear)
     grid = sector_outline(tooth_profile(gear), recipe).grid
@@ -94,7 +103,8 @@ def predict_cost(
         "key": 2.0 * answers * sizes.flank,
     }
     keyed = int(NUMBER * (5.0 * answers + gear.teeth * sizes.flank * key))
-    seconds = {part: count / dense_rate() for part, count in operations.items()}
+    rate = kept_speed(cache, "dense_rate", dense_rate, _RATES)
+    seconds = {part: count / rate for part, count in operations.items()}
     return PredictedCost({"mesh": MESH_SECONDS} | seconds, working_bytes(tree, sizes) + keyed)
 
 
@@ -131,7 +141,7 @@ def working_bytes(tree: EliminationTree, sizes: SectorSizes) -> int:
 
 @lru_cache(maxsize=1)
 def dense_rate() -> float:
-    """Return multiplications with addition per CPU second of a symmetric update, measured once."""
+    """Return multiplications with addition per CPU second of a symmetric update."""
     count, depth = 600, 300
     panel = np.asfortranarray(np.sin(np.arange(count * depth, dtype=float)).reshape(count, depth))
     times = []

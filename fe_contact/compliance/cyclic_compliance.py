@@ -116,7 +116,7 @@ def _costs(
 ) -> dict[str, float]:
     """Predict the CPU seconds of each key; what is kept costs nothing."""
     return {
-        key: 0.0 if kept_size(cache, key) else predict_cost(gear.right_handed(), recipe).seconds
+        key: 0.0 if kept_size(cache, key) else predict_cost(gear.right_handed(), recipe, cache=cache).seconds
         for key, gear, recipe in zip(keys, gears, recipes, strict=True)
     }
 

@@ -18,7 +18,7 @@ class FaceLoadDistribution(Effect):
     brings: ClassVar[str] = "across_face"
     needs: ClassVar[tuple[str, ...]] = ("face position", "load")
     adds: ClassVar[tuple[str, ...]] = ("compliance", "candidates")
-    cost: ClassVar[str] = "1 to 5 CPU s of finite elements instead of about 0.5; 90 candidates a pair"
+    cost: ClassVar[str] = "finite elements of whole sectors instead of sections; 90 candidates a pair"
     sources: ClassVar[tuple[str, ...]] = ("docs/effects/face_load_distribution.md",)
     valid_for: ClassVar[str] = "every pair"
     of_bodies: ClassVar[bool] = True

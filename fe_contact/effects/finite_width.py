@@ -18,7 +18,7 @@ class FiniteWidth(Effect):
     brings: ClassVar[str] = "finite_width"
     needs: ClassVar[tuple[str, ...]] = ("position",)
     adds: ClassVar[tuple[str, ...]] = ("compliance",)
-    cost: ClassVar[str] = "0.2 to 0.5 CPU s of finite elements for two gears; no more candidates"
+    cost: ClassVar[str] = "finite elements of both faces' ends; no more candidates"
     sources: ClassVar[tuple[str, ...]] = ("docs/effects/finite_width.md",)
     valid_for: ClassVar[str] = "spur pairs with nothing acting across the face"
     of_bodies: ClassVar[bool] = True

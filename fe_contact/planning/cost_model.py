@@ -184,7 +184,7 @@ def _solid(gear: Toothing, recipe: SectorRecipe, cache: Path | None) -> Cost:
     """One gear over the face."""
     if kept := solid_kept(gear, recipe, cache):
         return Cost(_READ_SOLID[gear.helix_angle != 0.0], 0.0, kept)
-    predicted = predict_cost(gear, recipe)
+    predicted = predict_cost(gear, recipe, cache=cache)
     return Cost(predicted.seconds, _WORKING * predicted.bytes, 0.0)
 
 
@@ -202,7 +202,7 @@ def _free_ends(
         if kept := free_ends_kept(gear, recipe, teeth, cache):
             yield Cost(_READ_PLANE, 0.0, kept)
         else:
-            predicted = predict_cost(gear, recipe)
+            predicted = predict_cost(gear, recipe, cache=cache)
             yield Cost(2.0 * predicted.seconds, _WORKING * predicted.bytes, 0.0)
 
 

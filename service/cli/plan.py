@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bounds import engineering
-from fe_contact.analysis.run_plan import RunPlan
+from fe_contact.analysis.run_plan import PlannedLevel, RunPlan
 from fe_contact.planning.cost_model import STAGES
 from service.cli.assessed_case import assessed_case
 from service.cli.output import console, print_json, table
@@ -31,7 +31,7 @@ def _show(plan: RunPlan) -> None:
     head = ["mesh", "CPU s", *STAGES, "memory MiB", "error %", "of which model %", "mean um", "p-p um", ""]
     rows = [
         [
-            entry.level if entry.slices == 1 else f"{entry.level}, {entry.slices} slices",
+            _mesh(entry, plan.chosen),
             engineering(entry.cost.cpu_seconds, 2),
             *(engineering(entry.cost.stages[stage], 2) for stage in STAGES),
             f"{entry.cost.memory_bytes / 2**20:.0f}",
@@ -51,6 +51,13 @@ def _show(plan: RunPlan) -> None:
     )
     if plan.conflict or not plan.choice.met:
         out.print(plan.conflict or f"cannot be had: {plan.choice.reason}", highlight=False)
+
+
+def _mesh(entry: PlannedLevel, chosen: PlannedLevel) -> str:
+    """Name a mesh, and its model where that is not the chosen one."""
+    model = [] if entry.model == chosen.model else [entry.model]
+    slices = [] if entry.slices == 1 else [f"{entry.slices} slices"]
+    return ", ".join([*model, entry.level, *slices])
 
 
 def _micrometers(error: float | None) -> str:

@@ -149,7 +149,7 @@ _PLAN: Json = {
     },
     "prediction": _COST,
     "error": _ERROR,
-    "levels": [{"level": "standard", "slices": 1, "cost": _COST, "error": _ERROR}],
+    "levels": [{"model": "plane strain", "level": "standard", "slices": 1, "cost": _COST, "error": _ERROR}],
     "conflict": "",
     "plan": {
         "model": "plane_strain",

@@ -47,8 +47,9 @@ class PlannedMesh(BaseModel):
 
 
 class PlannedLevel(BaseModel):
-    """A mesh level of the same model: cost and error."""
+    """A mesh level of the model, or what the tolerance needs beyond the time: cost and error."""
 
+    model: str
     level: str
     slices: int
     cost: PlannedCost

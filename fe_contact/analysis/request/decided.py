@@ -32,11 +32,14 @@ class Decided:
         With the chosen model, and a ledger that says why.
     mesh : MeshChoice
     plan : Plan
+    wished : Decided, optional
+        What the tolerance needs, where the time does not allow it.
     """
 
     checked: Checked
     mesh: MeshChoice
     plan: Plan
+    wished: Decided | None = None
 
     def in_slices(self, count: int) -> Decided:
         """Return the same model and mesh in another number of slices; itself in the plane."""

@@ -18,14 +18,16 @@ export function showPlan(found) {
   const levels = {
     caption: "What each mesh is predicted to take",
     head: ["mesh", "CPU s", ...stages.map((name) => `${name}, s`), "memory, MiB", "error, %"],
-    rows: found.levels.map(({ level, slices, cost, error: expected }) => [
-      slices > 1 ? `${level}, ${slices} slices` : level, number(cost.cpu_seconds, 2),
+    rows: found.levels.map(({ model, level, slices, cost, error: expected }) => [
+      [model === choice.model ? "" : model, level, slices > 1 ? `${slices} slices` : ""].filter(Boolean).join(", "),
+      number(cost.cpu_seconds, 2),
       ...stages.map((name) => number(cost.stages[name], 2)), String(Math.round(cost.memory_bytes / 2 ** 20)),
       percent(expected.total),
     ]),
   };
   const said = [choice.reason, found.conflict].filter(Boolean).join("; ");
-  const chosen = found.levels.findIndex((entry) => entry.level === choice.level);
+  const same = (entry) => ["model", "level", "slices"].every((key) => entry[key] === choice[key]);
+  const chosen = found.levels.findIndex(same);
   byId("plan").replaceChildren(
     ...found.warnings.map(({ message }) => make("p", { class: "alarm", role: "alert" }, `Implausible: ${message}`)),
     head,

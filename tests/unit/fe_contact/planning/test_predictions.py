@@ -2,11 +2,13 @@
 
 import json
 import math
+import re
 from dataclasses import replace
 
 import pytest
 from analysis_requests import table_request
 
+from bounds import engineering
 from fe_contact import AllowedError, FlankModification, Gear, GearPair, analyze
 from fe_contact.analysis import check_request
 from fe_contact.analysis.request.model_choice import decide
@@ -145,6 +147,20 @@ def test_tolerance_and_time_that_cannot_both_be_had_are_said():
     assert plan_run(pair(), *table_request(**level), time_budget=1e4).conflict == ""
     with pytest.raises(InputError, match="time_budget"):
         plan_run(pair(), *table_request(**wish), time_budget=-1.0)
+
+
+@pytest.mark.parametrize("budget", [1.0, 6.0, 14.0])
+@pytest.mark.parametrize("tolerance", [AllowedError(0.002), AllowedError(0.05, 1e-7)])
+def test_time_and_error_are_the_same_in_the_reason_and_in_the_levels(tolerance, budget):
+    """Of the mesh that is taken and of the one that the tolerance needs, in whatever slices."""
+    options = AnalysisOptions(tolerance=tolerance, time_budget=budget)
+    plan = plan_run(pair(0.3), TableAxes(torques=[40.0]), options)
+    seconds = {engineering(row.cost.cpu_seconds, 2) for row in plan.levels}
+    errors = {engineering(100.0 * row.error.total, 2) for row in plan.levels}
+    reason = plan.choice.reason
+    assert set(re.findall(r"(?:take|predicted) ([0-9.]+) CPU s", reason)) <= seconds, (reason, seconds)
+    assert set(re.findall(r"expected error ([0-9.]+) %", reason)) <= errors, (reason, errors)
+    assert plan.chosen in plan.levels
 
 
 def test_a_run_keeps_what_was_predicted_beside_what_happened(tmp_path):
