@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
 from bounds import engineering
-from host import memory_figure, peak_memory
+from host import cpu_seconds, memory_figure, peak_memory
 from model_studies.progress import Progress
 
 Result = TypeVar("Result")
@@ -92,9 +91,9 @@ def measured(
     from model_studies.run_log import record  # noqa: PLC0415
 
     predicted = on_this_host(kind, cost, cache)
-    held, peak, began = memory_figure("VmRSS"), peak_memory(), time.process_time()
+    held, peak, began = memory_figure("VmRSS"), peak_memory(), cpu_seconds()
     result = work()
-    seconds, highest = time.process_time() - began, peak_memory()
+    seconds, highest = cpu_seconds() - began, peak_memory()
     record(cache, {kind: cost.seconds * host_slowness(cache)}, {kind: seconds})
     grown = float(highest - held) if held is not None and highest > peak else None
     return result, WorkCost(predicted.seconds, predicted.bytes, seconds, grown)

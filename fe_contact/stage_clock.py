@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from fe_contact.types import Json
 from fe_contact.workers.run_cost import RunCost
-from host import children_cpu_seconds, children_peak_memory, peak_memory
+from host import children_peak_memory, cpu_seconds, peak_memory
 from model_studies.progress import Progress, silent
 
 
@@ -81,5 +81,5 @@ class StageClock:
 
     def _reading(self) -> tuple[float, float]:
         """CPU seconds of this process, its finished children and others' tasks, and wall seconds."""
-        own = time.process_time() + children_cpu_seconds()
+        own = cpu_seconds()
         return own + self._remote.cpu_seconds, time.perf_counter()

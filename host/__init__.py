@@ -39,6 +39,7 @@ if sys.platform == "win32" or find_spec("fcntl") is None or find_spec("resource"
     from host.windows import (
         children_cpu_seconds,
         children_peak_memory,
+        cpu_seconds,
         end_after,
         lock,
         peak_memory,
@@ -48,6 +49,7 @@ else:
     from host.posix import (
         children_cpu_seconds,
         children_peak_memory,
+        cpu_seconds,
         end_after,
         lock,
         peak_memory,
@@ -68,6 +70,7 @@ __all__ = [
     "children_cpu_seconds",
     "children_peak_memory",
     "confine",
+    "cpu_seconds",
     "default_cache_directory",
     "end_after",
     "ending_signal",

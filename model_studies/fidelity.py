@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 
+from host import cpu_seconds
 from model_studies.progress import Progress
 from model_studies.variants import run_variants
 
@@ -78,9 +78,9 @@ def run_fidelities(
     warm_up(valid)
 
     def timed(fidelity: F) -> Outcome[F, R]:
-        began = time.process_time()
+        began = cpu_seconds()
         result = compute(fidelity)
-        return Outcome(fidelity, result, time.process_time() - began)
+        return Outcome(fidelity, result, cpu_seconds() - began)
 
     by_name = {fidelity.name: fidelity for fidelity in valid}
     outcomes, failed = run_variants("ladder", by_name, timed, failures, progress)

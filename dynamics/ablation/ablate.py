@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
@@ -19,6 +18,7 @@ from dynamics.results import RunResult
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
 from dynamics.types import FloatArray, Json
+from host import cpu_seconds
 from model_studies import LeftOut, Progress, called, run_variants, silent
 
 WARM_UP = 0.01
@@ -128,6 +128,6 @@ def _toggled(
 def _timed(scene: Scene) -> tuple[RunResult, float]:
     """Run a scene; the CPU time is that of a second run, the first loads what is compiled for its laws."""
     simulate(replace(scene, duration=WARM_UP * scene.duration))
-    began = time.process_time()
+    began = cpu_seconds()
     result = simulate(scene)
-    return result, time.process_time() - began
+    return result, cpu_seconds() - began

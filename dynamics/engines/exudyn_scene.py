@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time as clock
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -18,6 +17,7 @@ from dynamics.integrators import static_equilibrium
 from dynamics.joints import Bushing
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
+from host import cpu_seconds
 
 PLANAR = ("x", "y", "rotation")
 REBUILT = (
@@ -97,11 +97,11 @@ def run_in_exudyn(scene: Scene, *, solver: str = "GeneralizedAlpha", step: float
         for node in nodes
     ]
     mbs.Assemble()
-    began = clock.process_time()
+    began = cpu_seconds()
     solved = mbs.SolveDynamic(
         _settings(package, system, step), solverType=getattr(package.DynamicSolverType, solver)
     )
-    seconds = clock.process_time() - began
+    seconds = cpu_seconds() - began
     if not solved:
         raise SolveError(f"Exudyn's {solver} did not finish with steps of {step:g} s")
     return _observed(mesh, drive_speed, [mbs.GetSensorStoredData(sensor) for sensor in sensors], seconds)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import time as clock
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from dynamics.effects import EFFECTS
 from dynamics.influence.estimate import Influence, estimate_influences
 from dynamics.scene import Scene
+from host import cpu_seconds
 
 SHARE = 0.1
 """Of the tolerance, for all neglected effects together: estimates may be wrong by a factor of two and
@@ -52,7 +52,7 @@ def decide_effects(scene: Scene) -> Decided:
     """
     if scene.tolerance is None:
         return Decided(scene)
-    began = clock.process_time()
+    began = cpu_seconds()
     influences = estimate_influences(scene)
     allowed = SHARE * scene.tolerance
     free = {
@@ -74,4 +74,4 @@ def decide_effects(scene: Scene) -> Decided:
                 f"neglected for the tolerance of {scene.tolerance:g}: influence {influence.words}"
             )
     chosen = replace(scene, effects={**scene.effects, **choices})
-    return Decided(chosen, automatic, influences, clock.process_time() - began)
+    return Decided(chosen, automatic, influences, cpu_seconds() - began)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time as clock
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields
 
@@ -18,6 +17,7 @@ from dynamics.linearize.steady_vibration import EXCITATIONS, steady_vibration
 from dynamics.results.array_file import ArrayFile, Stored
 from dynamics.results.force_check import checked_ledger
 from dynamics.types import FloatArray, Json
+from host import cpu_seconds
 
 STORED = {
     "speed": Stored(("speed",), "rad s-1", "speed of the leading shaft"),
@@ -112,20 +112,20 @@ def forced_response(
     if not speeds.size:
         raise InputError("speed", [], "at least one speed")
     share = _halves(progress)
-    began = clock.process_time()
+    began = cpu_seconds()
     at, harmonics = excited_harmonics(system, orders, time)
     system, start = at.system, at.linear.equilibrium
     ledger = checked_ledger(system, start.mesh_force)
     frequency = natural_modes(at.linear).frequency
-    seconds = {"equilibrium_and_modes": clock.process_time() - began}
-    began = clock.process_time()
+    seconds = {"equilibrium_and_modes": cpu_seconds() - began}
+    began = cpu_seconds()
     steady, blocked = (
         steady_vibration(at, speeds, harmonics, excitation, share(part))
         for excitation, part in zip(EXCITATIONS, (0.0, 0.5), strict=True)
     )
     response, other = (response_of(at, speeds, each) for each in (steady, blocked))
     power = power_balance(at, speeds, steady)
-    seconds["response"] = clock.process_time() - began
+    seconds["response"] = cpu_seconds() - began
     facts: Json = {
         "leading_shaft": system.scene.references[leading_law(system)].shaft,
         "time": time,

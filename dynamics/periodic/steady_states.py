@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time as clock
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
@@ -19,6 +18,7 @@ from dynamics.periodic.sweep import SETTLING, sweep
 from dynamics.results.array_file import ArrayFile, Stored
 from dynamics.results.force_check import checked_ledger
 from dynamics.types import FloatArray, IntArray, Json
+from host import cpu_seconds
 
 UP, DOWN, BRANCH = 0, 1, 2
 CURVES = ("up", "down", "branch")
@@ -140,22 +140,22 @@ def steady_states(
     def stage(name: str) -> Callable[[float], None]:
         return lambda fraction: None if progress is None else progress(name, fraction)
 
-    began = clock.process_time()
+    began = cpu_seconds()
     problem = periodic_problem(system, sense * speeds[0], repeat, time)
     up = sweep(problem, sense * speeds, periods, stage(CURVES[UP]))
     down = sweep(problem, sense * speeds[::-1], periods, stage(CURVES[DOWN])) if speeds.size > 1 else ()
-    seconds["sweeps"] = clock.process_time() - began
-    began = clock.process_time()
+    seconds["sweeps"] = cpu_seconds() - began
+    began = cpu_seconds()
     followed = None
     if branch and speeds.size > 1:
         start = up[0].state if up[0].status.usable else None
         ends = sense * speeds[0], sense * speeds[-1]
         followed = follow_branch(problem, *ends, guess=start, progress=stage(CURVES[BRANCH]))
-    seconds["branch"] = clock.process_time() - began
-    began = clock.process_time()
+    seconds["branch"] = cpu_seconds() - began
+    began = cpu_seconds()
     curves = (up, down, followed.orbits if followed is not None else ())
     figures = figures_of(problem, [orbit for orbits in curves for orbit in orbits])
-    seconds["figures"] = clock.process_time() - began
+    seconds["figures"] = cpu_seconds() - began
     return _study(problem, curves, followed, figures, seconds)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time as clock
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
@@ -28,6 +27,7 @@ from dynamics.simulation.bearings_at_rest import bearings_at_rest
 from dynamics.simulation.run_modes import modes_of_run
 from dynamics.simulation.violations import FIRST, EarlierRun
 from dynamics.types import FloatArray, Json
+from host import cpu_seconds
 
 ERROR_CHECK_FACTOR = 0.1
 IMPLICIT_STAGES_PER_STEP = 5
@@ -50,11 +50,11 @@ def documents(
     `before` is the run that this one repeats, `choice` that of its method; None: it never started.
     """
     automatic = {**decided.automatic, **before.reasons}
-    began = clock.process_time()
+    began = cpu_seconds()
     influences = {
         name: influence.to_json() for name, influence in known_influences(decided, system, end).items()
     }
-    seconds = {**seconds, "worth_estimates": clock.process_time() - began + decided.seconds}
+    seconds = {**seconds, "worth_estimates": cpu_seconds() - began + decided.seconds}
     audit = None
     if system.scene.outputs.energy_audit:
         audit = EnergyAudit.from_arrays(end.work, end.stored, end.fallen)

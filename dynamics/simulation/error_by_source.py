@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time as clock
 from collections.abc import Sequence
 
 import numpy as np
@@ -18,6 +17,7 @@ from dynamics.simulation.error_windows import (
     windows,
 )
 from dynamics.types import Json
+from host import cpu_seconds
 
 TIME_STEP_REST = 1.0 / (1.0 - ERROR_CHECK_FACTOR**0.75)
 """Error over the difference to a run at a tenth of the tolerance: it falls as the tolerance^(3/4)."""
@@ -32,7 +32,7 @@ def error_by_source(system: System, states_of: StatesOf, samples: int) -> Json:
     """
     requested, integration = requested_error(system.scene.integration), system.scene.integration
     left_out = left_out_effects(system)
-    began = clock.process_time()
+    began = cpu_seconds()
     full = system.scene.outputs.receipt == "full"
     looked = windows(system, states_of, samples) if full else []
     if not looked:
@@ -40,7 +40,7 @@ def error_by_source(system: System, states_of: StatesOf, samples: int) -> Json:
     steps = [run_again(window, window.system, finer(integration)) for window in looked]
     coarse = with_decimated_tables(system)
     tables = [run_again(window, window.on_laws_of(coarse), integration) for window in looked]
-    seconds = clock.process_time() - began
+    seconds = cpu_seconds() - began
     return {
         "time_step": _estimate(steps, TIME_STEP_REST, "runs of windows at a tenth of the tolerance")
         or requested["time_step"],

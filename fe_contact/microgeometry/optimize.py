@@ -47,7 +47,7 @@ def optimize(
     MeshError, SolveError
         No acceptable mesh, or the contact of one of both designs cannot be solved.
     """
-    clock = StageClock()
+    clock = StageClock(run.workers.cost)
     request.check()
     study = design_study(request.space, request.torques, request.further_torques, clock, run)
     with clock.stage("search"):

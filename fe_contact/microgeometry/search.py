@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
@@ -14,6 +13,7 @@ from fe_contact.microgeometry.counted_merit import Budget, BudgetUsed, Cancelled
 from fe_contact.microgeometry.design_problem import Assessed, DesignProblem
 from fe_contact.microgeometry.search_method import Method, SequentialLinearProgramming
 from fe_contact.types import FloatArray, Json
+from host import cpu_seconds
 
 EXPLORED = 0.65
 """Part of the designs that exploration may use: the simplex behind it needs some hundred to converge."""
@@ -143,7 +143,7 @@ def search_from(
     ending : tuple of exception types
         By which it is cancelled.
     """
-    begun = time.process_time()
+    begun = cpu_seconds()
     budget = Budget(search.evaluations, cancel or never, report or _silent)
     merit = CountedMerit(problem, budget, search.evaluations)
     rough = CountedMerit(problem.rough(search.exploration), budget, int(EXPLORED * search.evaluations))
@@ -155,7 +155,7 @@ def search_from(
     except ending:
         ended = Ended.CANCELLED
     assessed, point = _best(problem, merit, rough, start)
-    seconds = time.process_time() - begun
+    seconds = cpu_seconds() - begun
     spread = max(0.0, merit.largest - merit.least)
     return SearchRun(point, assessed, budget.used, ended, seconds, rough.count, spread)
 

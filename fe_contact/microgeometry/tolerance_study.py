@@ -146,7 +146,7 @@ def _sampled(
     space: DesignSpace, torques: Levels, tolerances: Tolerances, sampling: Sampling, run: Run
 ) -> ToleranceStudy:
     """Sample a space of designs within tolerances; see `scatter`."""
-    clock = StageClock()
+    clock = StageClock(run.workers.cost)
     study = design_study(space, torques, [], clock, run)
     deviation = tolerances.sample(sampling.samples, sampling.seed)
     names, nominal = tuple(tolerances.widths), replace(study.evaluator, nodes=ONE_NODE)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from dynamics.scene import Scene
 from fe_contact.ste import PairFacts, SteDatabase
+from host import cpu_seconds
 from service.cli.analyze import analyzed
 from service.cli.output import Report
 from service.cli.remote import watching
@@ -59,13 +60,14 @@ class _Tables:
 
 def _checked(scene: SceneInput, tables: _Tables, folder: Path, report: Report) -> TabledScene:
     """Check the scene before anything is computed for it, then reduce its housings and gather its tables."""
+    began = cpu_seconds()
     facts = {mesh.name: _facts(i, mesh, folder, tables) for i, mesh in scene.with_database}
     warn(scene_warnings(scene, check_scene(scene, facts)))
     housings = housings_in(scene, cache_home(), folder, report)
     databases = {mesh.name: tables.of(i, mesh) for i, mesh in scene.with_database}
     built = dynamic_scene(scene, databases, housings)
     warn(scene_warnings(scene, built, {name: table.metadata.warnings for name, table in databases.items()}))
-    return TabledScene(_written_out(scene, folder), databases, built, housings)
+    return TabledScene(_written_out(scene, folder), databases, built, housings, cpu_seconds() - began)
 
 
 def _written_out(scene: SceneInput, folder: Path) -> SceneInput:

@@ -9,7 +9,9 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
+from bounds import engineering
 from dynamics.results import RunResult
+from host import cpu_seconds
 from service.cli.interrupt import until_interrupted
 from service.cli.output import (
     Report,
@@ -74,18 +76,21 @@ def run_study(study: Study, options: Json) -> None:
             for subject, folder in subjects
         ]
         interrupted = cancel is not None and cancel()
+    remote_seconds = 0.0 if executor.dask is None else others.cost.cpu_seconds  # else they are our children
     result = results[0]
     if study.several:
         result = study.run.joined(dict(zip(_names(study, files), results, strict=True)))
     warn(study.run.warnings(result) or ())
-    _tell(study, subjects[0][0], result, targets, options)
+    _tell(study, subjects[0][0], result, targets, options, remote_seconds)
     if interrupted:
         raise KeyboardInterrupt("interrupted. The result above is the best so far.")
     if failure := study.run.failure(result):
         raise JobFailed(failure)
 
 
-def _tell(study: Study, subject: Any, result: Any, targets: list[Path], options: Json) -> None:
+def _tell(
+    study: Study, subject: Any, result: Any, targets: list[Path], options: Json, remote_seconds: float
+) -> None:
     """Write the files, and print the result in the form that was requested."""
     for target in targets:
         target.parent.mkdir(exist_ok=True)
@@ -96,7 +101,7 @@ def _tell(study: Study, subject: Any, result: Any, targets: list[Path], options:
     elif options.get("csv"):
         sys.stdout.write(_csv(study, result))
     else:
-        _show(study, result, targets)
+        _show(study, result, targets, remote_seconds)
 
 
 def _run(options: Json) -> RunResult | None:
@@ -210,12 +215,13 @@ def _written(study: Study, targets: list[Path]) -> Json:
     return {"written": names[0], "file": names[0]} if names else {}
 
 
-def _show(study: Study, result: Any, targets: list[Path]) -> None:
-    """Print tables and lines for people."""
+def _show(study: Study, result: Any, targets: list[Path], remote_seconds: float) -> None:
+    """Print tables and lines for people, and what all of it cost: tables, workers and other children too."""
     out = console()
     for part in study.page.text(result):
         if isinstance(part, str):
             out.print(part, highlight=False, soft_wrap=True)
         else:
             out.print(table(part.head, part.rows, part.caption))
+    out.print(f"cost {engineering(cpu_seconds() + remote_seconds, 3)} CPU s", highlight=False)
     print_result(study.page.page(result).headlines, targets)

@@ -64,12 +64,15 @@ class TabledScene:
         What they make, in SI.
     housings : mapping of str to ReducedHousing
         By name of the housing: of those that have a solid, or a file of modes on the caller's disk.
+    seconds : float
+        CPU seconds of tables and housings that were made for it.
     """
 
     inputs: SceneInput
     databases: Mapping[str, SteDatabase]
     scene: Scene
     housings: Mapping[str, ReducedHousing] = field(default_factory=dict)
+    seconds: float = 0.0
 
 
 def dynamic_scene(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 from typing import Any
 
@@ -12,6 +11,7 @@ from bounds.types import FloatArray
 from dynamics.orders import BearingOrders, bearing_orders
 from dynamics.scene import Scene
 from dynamics.vibration import ReportedHarmonics
+from host import cpu_seconds
 from service.convert.case import boundary_errors
 from service.drawing.figure import Axis, number
 from service.runs.through_housing import other_housings
@@ -34,10 +34,10 @@ def forces_of(scene: Scene, inputs: OverOrders, means: Means) -> ReportedHarmoni
     if means.run is None:
         response = response_of(scene, inputs, means)
         return replace(response, facts=response.facts | {"forces": LINEAR})
-    began = time.process_time()
+    began = cpu_seconds()
     with boundary_errors():
         orders = bearing_orders(means.run, inputs.orders)
-    seconds = {"orders": time.process_time() - began}
+    seconds = {"orders": cpu_seconds() - began}
     forces = _run_forces(orders) | {"other_housings": list(other_housings(scene.housings, means.run))}
     return replace(orders, facts=orders.facts | {"forces": forces, "seconds": seconds})
 

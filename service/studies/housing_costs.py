@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from bounds import engineering
 from service.drawing.figure import Table, number
 
 if TYPE_CHECKING:
@@ -50,12 +49,6 @@ def cost_figures(cost: Json | None) -> Json | None:
         "cpu_seconds": cost["seconds"],
         "bytes": cost["bytes"],
     }
-
-
-def cost_parts(facts: Mapping[str, Any]) -> Iterator[Table | str]:
-    """Yield what the housings cost and what the rest did, for the terminal; `facts` hold `seconds`."""
-    yield from cost_tables(facts)
-    yield f"cost {engineering(sum(facts['seconds'].values()), 3)} CPU s"
 
 
 def cost_tables(facts: Mapping[str, Any]) -> tuple[Table, ...]:

@@ -27,7 +27,7 @@ from pathlib import Path
 from typing import Any, TextIO
 
 from fe_contact.cache_reads import COMPLIANCE_READS
-from host import children_cpu_seconds, kill_own_group, lock, lower_priority
+from host import cpu_seconds, kill_own_group, lock, lower_priority
 from service.problems import ServiceError
 from service.worker.disk import no_space
 from service.worker.memory import hold_to, machine_memory_mb, out_of_memory
@@ -124,7 +124,7 @@ class _Reporter:
             return
         self._stage, self._sent = stage, instant
         fraction = min(max(float(fraction), 0.0), 1.0)
-        clock = {"at": time.time(), "cpu_s": time.process_time() + children_cpu_seconds()}
+        clock = {"at": time.time(), "cpu_s": cpu_seconds()}
         _send(self._channel, {"stage": stage, "fraction": fraction, "whole": whole, **clock})
 
 

@@ -117,7 +117,7 @@ def deformed_pairs(
     """
     checked = check_point(pair, point, options)
     integer("beside", beside, 0, 100)
-    solved = solve_operating_point(checked, checked_positions(at), StageClock(), run)
+    solved = solve_operating_point(checked, checked_positions(at), StageClock(run.workers.cost), run)
     gears = deformed_gears(solved, beside)
     run.progress("deformation", 1.0)
     position, deflection = solved.problem.candidates.position, solved.solution.deflection[:, 0]

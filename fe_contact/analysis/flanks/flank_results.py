@@ -55,7 +55,7 @@ def flank_results(
     MeshError, SolveError No acceptable mesh, positions without a solution, or a violated assumption if
     `on_violation` is "fail".
     """
-    solved, receipt = solved_point(pair, point, options, at, StageClock(), run)
+    solved, receipt = solved_point(pair, point, options, at, StageClock(run.workers.cost), run)
     checked, request = solved.checked, solved.checked.request
     results = load_distribution(
         solved.contact.pair,

@@ -64,7 +64,7 @@ def root_stress(
 
     Parameters and errors are those of `flank_results`.
     """
-    clock = StageClock()
+    clock = StageClock(run.workers.cost)
     solved, receipt = solved_point(pair, point, options, at, clock, run)
     with clock.stage("root stress"):
         pinion, wheel = _histories(solved, root_meshes(solved.contact.plan.discretization), run.cache)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Literal
 
+from pydantic import Field
+
 from service.schemas.figures import Figures, Part
 
 RatingLife = Literal["limited", "unlimited", "none: no capacity"]
@@ -121,7 +123,7 @@ class DeflectionFigures(Figures):
     load_cases: list[LoadCase]
     meshes: list[MeshOverCases]
     bearings: list[BearingOverCases]
-    cpu_seconds: float
+    cpu_seconds: float = Field(description="With the tables and housings that were made for it")
 
 
 ANSWER = DeflectionFigures

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from bounds import engineering, leftover
+from bounds import leftover
 from dynamics.deflection import CAUSES
 from service.drawing.figure import Figure, Table, number
 from service.drawing.page import Headline, Page, Section
@@ -100,7 +100,6 @@ def text(result: GearboxDeflection) -> Iterator[Table | str]:
     yield bearing_table(result)
     yield ""
     yield life_table(result)
-    yield f"cost {engineering(result.seconds, 3)} CPU s"
 
 
 def figure(result: GearboxDeflection) -> Figure:

@@ -111,7 +111,7 @@ class GearboxDeflection(Record):
     cases : dict
         The cases of the meshes as they were written, by mesh.
     seconds : float
-        CPU time.
+        CPU time, with that of the tables and housings that were made for it.
     scene : dict
         The scene as it was written, without the cases; empty in files of versions that did not keep it.
     """

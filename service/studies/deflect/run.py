@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -17,6 +16,7 @@ from dynamics.settings.load_case import LoadCase, check_forces
 from fe_contact.analysis import pressure_map
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.types import FloatArray
+from host import cpu_seconds
 from service.convert.case import boundary_errors
 from service.convert.declared import in_si
 from service.convert.errors import named
@@ -48,7 +48,7 @@ def deflection_of(tabled: TabledScene, inputs: Inputs, means: Means) -> GearboxD
     JobFailed
         The contact of a mesh was not solved.
     """
-    began, scene = time.process_time(), tabled.scene
+    began, scene = cpu_seconds() - tabled.seconds, tabled.scene
     with boundary_errors():
         cases = load_cases(inputs)
         first = deflect(scene, cases, inputs.positions, lambda done: means.report("deflection", done))
@@ -65,7 +65,7 @@ def deflection_of(tabled: TabledScene, inputs: Inputs, means: Means) -> GearboxD
         agreed.reached,
         outline_of(scene),
         written,
-        time.process_time() - began,
+        cpu_seconds() - began,
         scene_of(tabled.inputs),
     )
 

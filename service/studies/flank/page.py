@@ -109,7 +109,6 @@ def text(flanks: LoadDistribution) -> Iterator[str]:
             f"load centroid {engineering(low, 3)} to {engineering(high, 3)} mm from mid-face"
         )
     yield from assumption_lines(receipt)
-    yield f"cost {engineering(receipt['cpu_seconds'], 3)} CPU s"
 
 
 PAGE = Presentation(contact_pattern_figure, page, text, beside=page)

@@ -13,7 +13,7 @@ from service.drawing import palette
 from service.drawing.figure import Axis, Dash, Figure, FloatArray, Line, Note, Panel, Table, number
 from service.drawing.mode_bars import mode_bars
 from service.drawing.page import Headline
-from service.studies.housing_costs import cost_parts
+from service.studies.housing_costs import cost_tables
 from service.studies.presentation import Presentation, dynamics_page
 
 RPM = np.pi / 30.0
@@ -261,7 +261,7 @@ def _text(modes: ModalAnalysis) -> Iterator[Table | str]:
     if modes.speed.size:
         yield ""
         yield critical_table(modes)
-    yield from cost_parts(modes.facts)
+    yield from cost_tables(modes.facts)
     yield from model_lines(modes.facts)
 
 

@@ -10,7 +10,7 @@ from service.convert.run_effects import model_lines
 from service.drawing.figure import Figure, Table, number
 from service.drawing.page import Headline, Page, Part, Section
 from service.studies.bearing_forces import force_words, of_run
-from service.studies.housing_costs import cost_parts
+from service.studies.housing_costs import cost_tables
 from service.studies.noise.drawings import (
     RPM,
     bearing_levels,
@@ -152,7 +152,7 @@ def _text(sound: RadiatedSound) -> Iterator[Table | str]:
     yield from model_tables(sound)
     yield from uncertainty_tables(sound.facts)
     yield from (f"no sensitivity to {name}: {why}" for name, why in _missing(sound))
-    yield from cost_parts(sound.facts)
+    yield from cost_tables(sound.facts)
     yield from model_lines(sound.facts)
 
 

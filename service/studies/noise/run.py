@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -28,6 +27,7 @@ from dynamics.noise import (
 )
 from dynamics.noise.housing_radiation import resolved_frequency
 from dynamics.vibration import BearingHarmonics
+from host import cpu_seconds
 from service.convert.case import boundary_errors
 from service.convert.housings import FOLDER
 from service.convert.scene import TabledScene
@@ -61,7 +61,7 @@ def noise_of(subject: TabledScene, inputs: Inputs, means: Means) -> RadiatedSoun
         inputs = inputs.model_copy(update={"band": False})
     response = forces_of(subject.scene, inputs, means)
     with boundary_errors():
-        began = time.process_time()
+        began = cpu_seconds()
         housings = [
             SoundingHousing(part.name, body, part.bushings, _radiation(response, body, inputs, means))
             for part in subject.scene.housings
@@ -78,7 +78,7 @@ def noise_of(subject: TabledScene, inputs: Inputs, means: Means) -> RadiatedSoun
         radiation = {housing.name: housing.radiation for housing in housings}
         heard = None if means.run is None else over_time(subject, means.run, radiation)
     about = response.facts
-    seconds = {**about["seconds"], "sound": time.process_time() - began}
+    seconds = {**about["seconds"], "sound": cpu_seconds() - began}
     own = {name: about.get(name) for name in ("leading_shaft", "equilibrium", "effect_ledger", "forces")}
     own["over_time"] = over_time_json(heard)
     own["reduction_cost"] = reduction_costs(subject)

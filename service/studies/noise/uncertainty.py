@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
@@ -26,6 +25,7 @@ from dynamics.noise import (
     sound_band,
 )
 from dynamics.types import FloatArray
+from host import cpu_seconds
 from model_studies.variants import run_variants
 from service.convert.case import boundary_errors
 from service.convert.scene import TabledScene
@@ -52,7 +52,7 @@ def uncertainty(
     housings = {name: subject.housings[name] for name in radiation}
     model = SoundModel(subject.scene, housings, radiation)
     told: Json = {"band": None, "sensitivities": [], "sensitivities_left_out": {}}
-    began = time.process_time()
+    began = cpu_seconds()
     with boundary_errors():
         if inputs.band:
             band = band_of(model, sound.speed, inputs.orders, inputs, means)
@@ -63,7 +63,7 @@ def uncertainty(
             told["sensitivities"] = [sensitivity_json(row) for row in rows]
             told["sensitivities_left_out"] = left_out
     if inputs.band or inputs.sensitivities:
-        told["seconds"] = {**sound.facts["seconds"], "uncertainty": time.process_time() - began}
+        told["seconds"] = {**sound.facts["seconds"], "uncertainty": cpu_seconds() - began}
     return told
 
 

@@ -12,7 +12,7 @@ from service.convert.run_effects import model_lines
 from service.drawing import palette
 from service.drawing.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Table, number
 from service.drawing.page import Headline
-from service.studies.housing_costs import cost_parts
+from service.studies.housing_costs import cost_tables
 from service.studies.presentation import Presentation, dynamics_page
 from service.studies.response.power_figure import loses_power, power_figure, power_table
 
@@ -180,7 +180,7 @@ def _text(response: ForcedResponse) -> Iterator[Table | str]:
         yield power_table(response)
     left = response.power.residual
     yield f"residual of the solves {leftover(response.residual)}, of the power balance {leftover(left)}"
-    yield from cost_parts(response.facts)
+    yield from cost_tables(response.facts)
     yield from model_lines(response.facts)
 
 

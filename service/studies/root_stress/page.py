@@ -119,7 +119,6 @@ def text(stresses: Json) -> Iterator[Table | str]:
     yield peak_table(stresses)
     yield f"\n{_point(stresses)}"
     yield from assumption_lines(stresses["receipt"])
-    yield f"cost {engineering(stresses['receipt']['cpu_seconds'], 3)} CPU s"
 
 
 def _of_figures(shown: Callable[[Json], Any]) -> Callable[[Roots], Any]:

@@ -13,7 +13,7 @@ from service.convert.run_effects import model_lines
 from service.drawing import palette
 from service.drawing.figure import Axis, Dash, Figure, FloatArray, Line, Panel, Reference, Table, number
 from service.drawing.page import Headline
-from service.studies.housing_costs import cost_parts
+from service.studies.housing_costs import cost_tables
 from service.studies.presentation import Presentation, dynamics_page
 from service.studies.steady.run import KINDS, facts, status_name
 
@@ -229,7 +229,7 @@ def _text(states: SteadyStates) -> Iterator[Table | str]:
         branch, points = answer["branch"], answer["bifurcations"]
         turns = ", ".join(f"{point['kind']} at {point['speed_rpm']:.6g} rpm" for point in points)
         yield f"branch {branch['status']}, {len(branch['points'])} motions; {turns or 'no bifurcation'}"
-    yield from cost_parts(states.facts)
+    yield from cost_tables(states.facts)
     yield from model_lines(states.facts)
 
 

@@ -121,11 +121,10 @@ def page(result: SweepResult) -> Page:
 
 
 def _text(result: SweepResult) -> Iterator[Table | str]:
-    """Yield the table of the first quantity and the cost."""
+    """Yield the table of the first quantity."""
     yield table(result, result.quantities[0])
-    seconds = engineering(result.sweep.cost["cpu_seconds"], 3)
     points, usable = len(result.sweep.reason), result.sweep.usable
-    yield f"{points} points, {points - usable} without figures; cost {seconds} CPU s"
+    yield f"{points} points, {points - usable} without figures"
 
 
 PAGE = Presentation(figure, page, _text, series=series)

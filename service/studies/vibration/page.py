@@ -11,7 +11,7 @@ from service.convert.run_effects import model_lines
 from service.drawing.figure import Figure, Table, number
 from service.drawing.page import Headline, Page, Part, Section
 from service.studies.bearing_forces import force_words
-from service.studies.housing_costs import cost_parts
+from service.studies.housing_costs import cost_tables
 from service.studies.presentation import Presentation, dynamics_page
 from service.studies.vibration.plots import (
     contribution_figure,
@@ -77,7 +77,7 @@ def _text(result: HousingVibrationResult) -> Iterator[Table | str]:
         limit = number(vibration.highest_valid_frequency, 4)
         yield f"orders {orders} go beyond {limit} Hz, 0.7 of the highest mode kept: keep more modes"
     yield from (f"{what}: {words}" for what, words in force_words(found.facts))
-    yield from cost_parts(found.facts)
+    yield from cost_tables(found.facts)
     yield from model_lines(found.facts)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -21,6 +20,7 @@ from dynamics.vibration import (
 )
 from dynamics.vibration.seat_forces import ComplexArray
 from dynamics.vibration.vibration_analysis import Shares
+from host import cpu_seconds
 from service.convert.case import boundary_errors
 from service.convert.scene import TabledScene
 from service.problems import BadInput
@@ -72,7 +72,7 @@ def vibration_of(tabled: TabledScene, inputs: Inputs, means: Means) -> HousingVi
     name, housing = chosen(tabled, inputs.housing)
     with boundary_errors():
         response = forces_of(tabled.scene, inputs, means)
-        began = time.process_time()
+        began = cpu_seconds()
         found = analyze_vibration(
             response,
             housing,
@@ -82,7 +82,7 @@ def vibration_of(tabled: TabledScene, inputs: Inputs, means: Means) -> HousingVi
             order=inputs.at_order,
         )
         mode = None if inputs.mode is None else _mode(housing, inputs.mode)
-    seconds = {**found.facts["seconds"], "vibration": time.process_time() - began}
+    seconds = {**found.facts["seconds"], "vibration": cpu_seconds() - began}
     costs = {"seconds": seconds, "reduction_cost": reduction_costs(tabled)}
     found = replace(found, facts={**found.facts, **costs})
     return HousingVibrationResult(found, housing.frequency, inputs.mode or 0, mode)

@@ -30,10 +30,11 @@ def test_the_peak_follows_what_is_held_in_bytes() -> None:
 
 
 def test_children_count_once_they_have_ended() -> None:
-    before = host.children_cpu_seconds()
+    before, whole = host.children_cpu_seconds(), host.cpu_seconds()
     code = "import time\nwhile time.process_time() < 0.2: pass"
     subprocess.run([*PYTHON, code], check=True)
     assert 0.2 <= host.children_cpu_seconds() - before < 1.0
+    assert host.cpu_seconds() - whole >= 0.2
     assert host.children_peak_memory() > 2**20
 
 

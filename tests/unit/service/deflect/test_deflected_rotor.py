@@ -9,11 +9,13 @@ import pytest
 from typer.testing import CliRunner
 
 from service.cli.commands import app
+from service.convert.scene import TabledScene, dynamic_scene
 from service.problems import BadInput
 from service.schemas import read_model
 from service.schemas.scene import SceneInput
+from service.studies.computation import Means
 from service.studies.deflect import Inputs
-from service.studies.deflect.run import RUN
+from service.studies.deflect.run import RUN, deflection_of
 
 ROTOR = Path(__file__).parents[4] / "examples" / "jeffcott_scene.toml"
 WEIGHT = 10.0 * 9.81
@@ -30,6 +32,19 @@ def test_a_rotor_under_its_weight_hangs_in_its_bearings(tmp_path: Path) -> None:
     html = files[2].read_text("utf-8")
     assert "The axes move by up to 49.1 µm." in html  # half of the weight on 1e6 N/m
     assert '"y, mm"' in html and '"x, mm"' not in html  # seen as it bends
+
+
+def test_the_cost_of_a_verb_is_that_of_its_process_and_children(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("service.cli.study.cpu_seconds", lambda: 117.0)
+    result = CliRunner().invoke(app, ["deflect", str(ROTOR)])
+    assert [line for line in result.stdout.splitlines() if "CPU" in line] == ["cost 117 CPU s"]
+
+
+def test_what_was_made_for_a_deflection_is_in_its_cost(tmp_path: Path) -> None:
+    scene = read_model(SceneInput, ROTOR)
+    tabled = TabledScene(scene, {}, dynamic_scene(scene, {}), {}, seconds=57.5)
+    inputs = Inputs.model_validate({"load_cases": [{"name": "own"}]})
+    assert deflection_of(tabled, inputs, Means(tmp_path, lambda *_: None)).seconds >= 57.5
 
 
 def test_a_torque_in_a_scene_without_loads_is_refused_by_its_field() -> None:
