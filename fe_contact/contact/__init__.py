@@ -15,7 +15,7 @@ from fe_contact.contact.face_assembly import face_contact_problem
 from fe_contact.contact.flank_forces import face_flank_forces, plane_flank_forces
 from fe_contact.contact.model import Break, ComplianceTerm, ContactModel, GapTerm, ToothGap
 from fe_contact.contact.pitches import in_pitches
-from fe_contact.contact.pressure import contact_pressure
+from fe_contact.contact.pressure import at_edges, contact_pressure
 from fe_contact.contact.problem import Candidates, ContactProblem, LoadedSlices
 from fe_contact.contact.slices import Slices
 from fe_contact.contact.solution import ContactSolution
@@ -39,6 +39,7 @@ __all__ = [
     "Start",
     "ToothGap",
     "adjoint",
+    "at_edges",
     "contact_candidates",
     "contact_pressure",
     "contact_problem",

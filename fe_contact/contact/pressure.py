@@ -9,7 +9,7 @@ from numba import njit
 
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.contact.strip import Gap, gap_at, half_strip
-from fe_contact.types import FloatArray
+from fe_contact.types import BoolArray, FloatArray
 
 _EDGE = 0.08
 """Slope against the flank from which on a break is an edge: less than any chamfer's, more than a relief's."""
@@ -37,6 +37,24 @@ def contact_pressure(problem: ContactProblem, force: FloatArray) -> FloatArray:
     endless = endless._replace(slope=np.where(at_edge, 0.0, endless.slope))
     _fill(endless, np.ascontiguousarray(force) / candidates.width[:, None], problem.modulus, pressure)
     return pressure
+
+
+def at_edges(problem: ContactProblem, force: FloatArray, pressure: FloatArray) -> BoolArray:
+    """Return which loaded contacts (P, L, n) reach an edge with their strip: there the pressure is singular.
+
+    `contact_pressure` states Hertz's there, which only indicates how hard the edge presses.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    force, pressure : ndarray, shape (P, L, n)
+        Normal forces, N, and their `contact_pressure`, Pa.
+    """
+    here = problem.candidates.gap_about
+    chamfer = np.where(here.jump >= _EDGE, np.abs(here.place), np.inf).min(axis=-1, initial=np.inf)
+    reach = np.minimum(np.minimum(-here.low, here.high), chamfer)[:, None, :]
+    strip = 2.0 * force / (math.pi * problem.candidates.width[:, None])  # half of it, times the pressure
+    return np.asarray((force > 0.0) & (strip > reach * pressure))
 
 
 def _unchamfered(about: Gap) -> Gap:

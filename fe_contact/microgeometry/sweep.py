@@ -12,7 +12,7 @@ import numpy as np
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.live.condensed_request import condense
 from fe_contact.analysis.live.condensed_solution import CondensedSolution
-from fe_contact.contact import contact_pressure
+from fe_contact.contact import at_edges, contact_pressure
 from fe_contact.microgeometry.evaluator import over_face
 from fe_contact.microgeometry.sweep_request import TORQUE, SweepRequest
 from fe_contact.options import Run
@@ -189,9 +189,10 @@ def _of_curves(table: SteDatabase, solved: BoolArray) -> Iterator[FloatArray]:
 def _on_flanks(solved: CondensedSolution, every: int = 1) -> FloatArray:
     """Return largest pressure in Pa and face load factor of the cycle (L, 2), of each `every`-th position."""
     problem, force = solved.problem, solved.solution.force
-    pressure = contact_pressure(problem, force)[::every].max(axis=(0, 2))
+    pressure = contact_pressure(problem, force)
+    clear = np.where(at_edges(problem, force, pressure), 0.0, pressure)[::every].max(axis=(0, 2))
     load = over_face(problem, force[::every])
-    return np.stack([pressure, load.max(axis=1) / load.mean(axis=1)], axis=1)
+    return np.stack([clear, load.max(axis=1) / load.mean(axis=1)], axis=1)
 
 
 def _points(request: SweepRequest) -> FloatArray:

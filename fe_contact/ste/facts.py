@@ -10,8 +10,8 @@ from typing import Any
 from fe_contact.errors import DatabaseError
 from fe_contact.types import Json
 
-SCHEMA_VERSION = 2
-"""Version 1 states no errors of the model."""
+SCHEMA_VERSION = 3
+"""Version 1 states no errors of the model; up to 2 the largest pressure is that of edges, too."""
 
 
 @dataclass(frozen=True)

@@ -41,7 +41,9 @@ DIMENSIONS: dict[str, tuple[str, ...]] = {
     "support_pairs_in_contact": SUPPORT,
 }
 CURVE_ERROR = ("source", "quantity", "force", "misalignment", "center_distance_change")
-"""Dimensions of the errors of mean, peak-to-peak and harmonics, which older tables do not have."""
+"""Dimensions of the errors of mean, peak-to-peak and harmonics."""
+OPTIONAL: dict[str, tuple[str, ...]] = {"edge_pressure": GRID, "curve_error": CURVE_ERROR}
+"""Dimensions of the arrays that older tables do not have: they are empty there."""
 INTEGER_TYPES: dict[str, type[np.signedinteger[Any]]] = {
     "pair": np.int64,
     "pairs_in_contact": np.int16,
@@ -80,7 +82,8 @@ class SteFields:
     face_centroid : (P, F, M, D) array
         Offset of the load's centroid from mid-face, m.
     max_pressure : (P, F, M, D) array
-        Largest contact pressure, Pa.
+        Largest contact pressure, Pa, away from edges, 0 where these alone carry; of tables without
+        `edge_pressure` that of edges, too.
     pairs_in_contact, status : (P, F, M, D) integer arrays
         Number of pairs that carry load; `fe_contact.types.Status` of the solve.
     error_estimate : (P, F, M, D) array
@@ -99,6 +102,9 @@ class SteFields:
     curve_error : (9, 22, F, M, D) array
         Errors of mean, peak-to-peak and 20 harmonics in m, >= 0, by source (`ste.curve_errors.SOURCES`); NaN:
         not estimated. Empty for tables without, whose errors follow from the bands.
+    edge_pressure : (P, F, M, D) array
+        Largest pressure of the contacts that reach an edge of a flank, Pa: Hertz's as if the flank went on,
+        where the true one is singular; 0 where none does. Empty for tables without.
 
     Raises
     ------
@@ -130,11 +136,11 @@ class SteFields:
     support_pairs_in_contact: NDArray[np.int16] = field(default_factory=lambda: np.empty(0, np.int16))
     period: int = 1
     curve_error: FloatArray = field(default_factory=lambda: np.empty((0,) * len(CURVE_ERROR)))
+    edge_pressure: FloatArray = field(default_factory=lambda: np.empty((0,) * len(GRID)))
 
     def __post_init__(self) -> None:
         self._default_support()
-        object.__setattr__(self, "curve_error", _frozen_copy("curve_error", self.curve_error))
-        for name in DIMENSIONS:
+        for name in (*DIMENSIONS, *OPTIONAL):
             object.__setattr__(self, name, _frozen_copy(name, getattr(self, name)))
         _check_shapes(self)
         _check_axes(self)
@@ -156,6 +162,11 @@ class SteFields:
     def warnings(self) -> tuple[str, ...]:
         """Warnings about an implausible case or result, in words; empty where there are none."""
         return tuple(finding["message"] for finding in self.metadata.warnings)
+
+    @property
+    def stored(self) -> dict[str, tuple[str, ...]]:
+        """Dimensions of the arrays that the table has, by name and in the order of its file."""
+        return DIMENSIONS | {name: axes for name, axes in OPTIONAL.items() if getattr(self, name).size}
 
     @property
     def n_failed(self) -> int:
@@ -200,7 +211,7 @@ class SteFields:
             and self.metadata == other.metadata
             and self.period == other.period
             and all(
-                _same_bits(getattr(self, name), getattr(other, name)) for name in (*DIMENSIONS, "curve_error")
+                _same_bits(getattr(self, name), getattr(other, name)) for name in (*DIMENSIONS, *OPTIONAL)
             )
         )
 
@@ -225,6 +236,11 @@ def _check_shapes(table: SteFields) -> None:
         actual = getattr(table, name).shape
         if actual != expected:
             raise DatabaseError(f"{name} has shape {actual}; ({', '.join(dimensions)}) needs {expected}")
+    _refuse(
+        table.edge_pressure.size > 0 and table.edge_pressure.shape != table.max_pressure.shape,
+        "edge_pressure",
+        "have the dimensions of max_pressure",
+    )
     _refuse(
         table.curve_error.size > 0
         and table.curve_error.shape[2:] != table.static_transmission_error.shape[1:],

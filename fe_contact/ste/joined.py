@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from fe_contact.ste.database import SteDatabase
-from fe_contact.ste.fields import CURVE_ERROR, DIMENSIONS
 
 AXIS = "misalignment"
 
@@ -29,8 +28,9 @@ def joined_over_misalignment(tables: Sequence[SteDatabase]) -> SteDatabase:
     DatabaseError
         If their other axes have different sizes or the misalignments do not increase.
     """
-    along = {name: dimensions.index(AXIS) for name, dimensions in DIMENSIONS.items() if AXIS in dimensions}
-    along["curve_error"] = CURVE_ERROR.index(AXIS)
+    along = {
+        name: dimensions.index(AXIS) for name, dimensions in tables[0].stored.items() if AXIS in dimensions
+    }
     joined: dict[str, Any] = {
         name: np.concatenate([getattr(table, name) for table in tables], axis=axis)
         for name, axis in along.items()

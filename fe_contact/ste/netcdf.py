@@ -12,7 +12,7 @@ import numpy as np
 from fe_contact.errors import DatabaseError
 from fe_contact.ste.curve_errors import AT_NODES, SOURCES
 from fe_contact.ste.facts import SCHEMA_VERSION, Metadata, PairFacts
-from fe_contact.ste.fields import CURVE_ERROR, DIMENSIONS, RESIDUALS, SteFields
+from fe_contact.ste.fields import DIMENSIONS, OPTIONAL, RESIDUALS, SteFields
 from fe_contact.ste.netcdf_file import FileFormat, digest, json_attribute
 from fe_contact.types import Json, Status
 from model_studies.netcdf_content import NetcdfContent, Variable
@@ -20,7 +20,7 @@ from model_studies.netcdf_content import NetcdfContent, Variable
 FORMAT = "lineofaction STE database"
 WARNINGS = "warnings"
 _JSON_ATTRIBUTES = ("case", "effect_ledger", "receipt", "software_versions")
-FILES = FileFormat(FORMAT, "STE database", SCHEMA_VERSION, tuple(DIMENSIONS), optional=("curve_error",))
+FILES = FileFormat(FORMAT, "STE database", SCHEMA_VERSION, tuple(DIMENSIONS), optional=tuple(OPTIONAL))
 
 # units and long names; "1" is CF's dimensionless
 ATTRIBUTES: dict[str, tuple[str, str]] = {
@@ -41,7 +41,8 @@ ATTRIBUTES: dict[str, tuple[str, str]] = {
     "no_load_transmission_error": ("m", "transmission error at first contact"),
     "load_share": ("1", "part of the load carried by the tooth pair"),
     "face_centroid": ("m", "offset of the centroid of the load from mid-face"),
-    "max_pressure": ("Pa", "largest contact pressure"),
+    "max_pressure": ("Pa", "largest contact pressure where no edge is reached"),
+    "edge_pressure": ("Pa", "largest contact pressure at edges of flanks, as if they went on: indicative"),
     "pairs_in_contact": ("1", "number of tooth pairs that carry load"),
     "status": ("1", "outcome of the contact solve"),
     "error_estimate": ("m", "half-width of the error band of the static transmission error"),
@@ -60,7 +61,7 @@ ATTRIBUTES: dict[str, tuple[str, str]] = {
 def content(database: SteFields) -> NetcdfContent:
     """Return the content of the database's file: CF-style names, units and coordinates."""
     variables = {
-        name: Variable(CURVE_ERROR if name == "curve_error" else DIMENSIONS[name], values, _described(name))
+        name: Variable(database.stored[name], values, _described(name))
         for name, values in _stored(database).items()
     }
     return NetcdfContent(variables, _global_attributes(database), coordinates=("torque",))
@@ -113,8 +114,7 @@ def _global_attributes(database: SteFields) -> Json:
 
 def _stored(database: SteFields) -> dict[str, Any]:
     """Arrays that are written, by name."""
-    names = (*DIMENSIONS, "curve_error") if database.curve_error.size else tuple(DIMENSIONS)
-    return {name: getattr(database, name) for name in names}
+    return {name: getattr(database, name) for name in database.stored}
 
 
 def _period(path: Path, attributes: Json) -> int:

@@ -10,7 +10,7 @@ from scipy.optimize import isotonic_regression
 
 from fe_contact.errors import SolveError
 from fe_contact.ste.extraction import deflection_levels
-from fe_contact.ste.fields import CURVE_ERROR, DIMENSIONS, GRID, SteFields
+from fe_contact.ste.fields import GRID, SteFields
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
 Table = TypeVar("Table", bound=SteFields)
@@ -57,8 +57,7 @@ def without_failed(table: Table) -> Table:
     if any(rows.size == 0 for rows in keep.values()):
         raise SolveError(f"{table.failure_message()}. No complete row remains.", table)
     arrays = {}
-    stored = DIMENSIONS | ({"curve_error": CURVE_ERROR} if table.curve_error.size else {})
-    for name, dimensions in stored.items():
+    for name, dimensions in table.stored.items():
         array = getattr(table, name)
         for i, dimension in enumerate(dimensions):
             array = np.take(array, keep[dimension], axis=i) if dimension in keep else array

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from fe_contact.analysis import LoadDistribution, pressure_map
 from fe_contact.types import FloatArray
 from service.units import MM
@@ -20,13 +18,12 @@ _DIGITS = 5
 def flanks_json(flanks: LoadDistribution) -> Json:
     """Return the results on the flanks; K_Hbeta is null in the plane, whose load is even by assumption."""
     roll, pressure = pressure_map(flanks, flanks.roll_length_1)
-    at = np.unravel_index(int(flanks.pressure.argmax()), flanks.pressure.shape)
     load = flanks.face_load
     worst = int(load.max(axis=-1).argmax())
     over_face = flanks.face_position.size > 1
     return {
-        "largest_pressure_mpa": float(flanks.pressure[at] / _MPA),
-        "at_tip_edge": not bool(flanks.on_path[at]),
+        "largest_pressure_mpa": float(flanks.clear_pressure.max() / _MPA),
+        "edge_pressure_mpa": flanks.edge_pressure / _MPA,
         "k_h_beta": flanks.mean_face_load_factor if over_face else None,
         "roll_length_mm": _short(roll / MM),
         "face_position_mm": _short(flanks.face_position / MM),

@@ -72,9 +72,12 @@ class CurveDerivatives(BoundaryModel):
 class LiveFlanks(BoundaryModel):
     """Results on the flanks over one period at one load; no error is stated for them."""
 
-    largest_pressure_mpa: float = Field(description="Largest Hertz pressure in MPa", examples=[1093.0])
-    at_tip_edge: bool = Field(
-        description="Whether it is at a tip edge, where the true pressure is singular", examples=[False]
+    largest_pressure_mpa: float = Field(
+        description="Largest Hertz pressure in MPa away from edges", examples=[1093.0]
+    )
+    edge_pressure_mpa: float = Field(
+        description="At edges, as if the flank went on; the true one is singular. 0: no contact reaches one",
+        examples=[0.0],
     )
     k_h_beta: float | None = Field(
         description="Face load factor: largest over mean load per face width, averaged over the positions; "

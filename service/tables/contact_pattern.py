@@ -125,13 +125,11 @@ def _extent(flanks: LoadDistribution, gear: Gear, roll: FloatArray) -> tuple[flo
 
 
 def _words(flanks: LoadDistribution) -> str:
-    """Say where the pressure is largest."""
-    at = np.unravel_index(int(flanks.pressure.argmax()), flanks.pressure.shape)
+    """Say where the pressure is largest, edges aside."""
+    at = np.unravel_index(int(flanks.clear_pressure.argmax()), flanks.pressure.shape)
     roll, face = (1e3 * float(v) for v in (flanks.roll_length_1[at], flanks.face_position[at[2]]))
     largest = number(1e-6 * float(flanks.pressure[at]), 4)
     where = f"at roll length {number(roll, 3)} mm of the pinion"
-    if not flanks.on_path[at]:
-        where += ", where a tip edge touches"
     if flanks.face_position.size == 1:
         return f"The largest pressure is {largest} MPa, {where}."
     return f"The largest pressure is {largest} MPa, {where}, {number(face, 3)} mm from its mid-face."

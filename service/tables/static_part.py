@@ -39,22 +39,34 @@ _DECISIONS = {
 }
 
 
-_UNBOUNDED = "error not estimated: meshes and slices are compared by STE alone"
+_UNBOUNDED = "no error is stated for it"
 """Why the largest pressure has no error: where it is largest differs between meshes and between slices."""
 
 
 def static_headlines(database: SteDatabase, force: float | None = None) -> tuple[Headline, ...]:
     """Mean and peak-to-peak STE and the largest pressure at the stored load nearest to `force` (N)."""
     load = headline_load(database, force)
-    pressure = float(np.nanmax(database.max_pressure[(slice(None), load, *aligned_index(database))]))
+    at = (slice(None), load, *aligned_index(database))
+    pressure = float(np.nanmax(database.max_pressure[at]))
+    edge = float(np.nanmax(database.edge_pressure[at])) if database.edge_pressure.size else 0.0
+    remark = f"{_UNBOUNDED}{edge_words(edge)}"
     curve, label = load_curve(database, load), load_labels(database)[load]
     return (
         Headline(f"mean STE at {label}", f"{_um(curve.mean.value)} µm", _band(curve.mean)),
         Headline(
             f"peak-to-peak STE at {label}", f"{_um(curve.peak_to_peak.value)} µm", _band(curve.peak_to_peak)
         ),
-        Headline(f"largest pressure at {label}", f"{number(1e-6 * pressure, 4)} MPa", _UNBOUNDED),
+        Headline(
+            f"largest pressure at {label}",
+            f"{number(1e-6 * pressure, 4)} MPa",
+            remark,
+        ),
     )
+
+
+def edge_words(pressure: float) -> str:
+    """Name the pressure (Pa) of contacts that reach an edge apart from that of the flank; nothing for 0."""
+    return f"; up to {number(1e-6 * pressure, 4)} MPa at edges, indicative" if pressure > 0.0 else ""
 
 
 def static_alarms(database: SteDatabase) -> tuple[str, ...]:

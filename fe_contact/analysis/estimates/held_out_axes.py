@@ -15,7 +15,6 @@ from fe_contact.errors import DatabaseError
 from fe_contact.sampled import LOADS, WIDE_INTERVALS, WIDE_PROBES, sample_of, some_positions, spread
 from fe_contact.ste import SteDatabase
 from fe_contact.ste.curve_quantities import QUANTITIES, quantity_changes
-from fe_contact.ste.fields import DIMENSIONS
 from fe_contact.types import FloatArray, IntArray, Json
 
 LOAD_PROBES, MIDDLE = np.arange(1, WIDE_PROBES + 1) / (WIDE_PROBES + 1), np.array([0.5])
@@ -113,7 +112,7 @@ def _first_pitch(table: SteDatabase) -> SteDatabase:
     rows = int(np.searchsorted(table.position, 1.0))
     arrays = {
         name: getattr(table, name)[:rows]
-        for name, dimensions in DIMENSIONS.items()
+        for name, dimensions in table.stored.items()
         if dimensions[0] == "position"
     }
     return replace(table, **arrays, period=1)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 
 FORMAT = "lineofaction flank results"
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 _GRID = ("position", "pair", "face_position")
 _GEARS: tuple[Literal["pinion"], Literal["wheel"]] = ("pinion", "wheel")
 _SCALARS, _DOCUMENTS = ("slice_width", "base_helix_angle"), ("scene", "metadata")
@@ -39,7 +39,13 @@ STORED: dict[str, tuple[tuple[str, ...], str, str]] = {
     "pressure": (_GRID, "Pa", "peak Hertz pressure"),
     "gap": (_GRID, "m", "gap between the loaded flanks, infinite where they cannot touch"),
 }
-FILES = FileFormat(FORMAT, "flank results", SCHEMA_VERSION, tuple(STORED), (*_SCALARS, *_DOCUMENTS))
+_EDGE: dict[str, tuple[tuple[str, ...], str, str]] = {
+    "at_edge": (_GRID, "1", "1 where the strip reaches an edge of either flank")
+}
+"""Absent from older files."""
+FILES = FileFormat(
+    FORMAT, "flank results", SCHEMA_VERSION, tuple(STORED), (*_SCALARS, *_DOCUMENTS), tuple(_EDGE)
+)
 
 
 def content(results: LoadDistribution) -> NetcdfContent:
@@ -47,7 +53,7 @@ def content(results: LoadDistribution) -> NetcdfContent:
     arrays = _arrays(results)
     variables = {
         name: Variable(dimensions, arrays[name], {"units": units, "long_name": text})
-        for name, (dimensions, units, text) in STORED.items()
+        for name, (dimensions, units, text) in (STORED | _EDGE).items()
     }
     for gear in _GEARS:
         pattern = contact_pattern(results, gear)
@@ -71,6 +77,7 @@ def read(path: Path) -> dict[str, Any]:
     scene, metadata = (json_attribute(path, attributes, name) for name in _DOCUMENTS)
     return content | {
         "on_path": content["on_path"].astype(bool),
+        "at_edge": content["at_edge"].astype(bool) if "at_edge" in content else False,
         "scene": FlankScene.from_json(scene),
         "metadata": Metadata(**metadata),
         **{name: float(attributes[name]) for name in _SCALARS},
@@ -80,7 +87,8 @@ def read(path: Path) -> dict[str, Any]:
 def _arrays(results: LoadDistribution) -> dict[str, Any]:
     """Return what is read back, in its order; netCDF has no booleans."""
     arrays = {name: getattr(results, name) for name in STORED}
-    return arrays | {"on_path": results.on_path.astype(np.int8)}
+    edge = np.broadcast_to(results.at_edge, results.force.shape)
+    return arrays | {"on_path": results.on_path.astype(np.int8), "at_edge": edge.astype(np.int8)}
 
 
 def _derived(results: LoadDistribution) -> dict[str, Variable]:

@@ -71,7 +71,7 @@ def flank_results(
 
 def _findings(results: LoadDistribution) -> tuple[Finding, ...]:
     """Return what is implausible about the pressures."""
-    return flank_findings(float(np.max(results.pressure, initial=0.0)))
+    return flank_findings(float(np.max(results.clear_pressure, initial=0.0)))
 
 
 def _metadata(checked: Checked, results: LoadDistribution, case: Json | None) -> Metadata:

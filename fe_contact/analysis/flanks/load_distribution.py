@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fe_contact.analysis.flanks.flank_scene import FlankScene, flank_scene
-from fe_contact.contact import ContactProblem, ContactSolution, contact_pressure
+from fe_contact.contact import ContactProblem, ContactSolution, at_edges, contact_pressure
 from fe_contact.contact.touch import rolls_at
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import Metadata
@@ -53,6 +53,8 @@ class LoadDistribution:
         beta_b of gear 1, rad.
     scene : FlankScene
         The load, the alignment, and the marks on both flanks.
+    at_edge : ndarray of bool, shape (P, N, K)
+        Whether the strip reaches an edge of either flank; nowhere in files older than it.
     metadata : Metadata
         Case, effects, cost and versions.
     """
@@ -72,6 +74,17 @@ class LoadDistribution:
     base_helix_angle: float
     scene: FlankScene
     metadata: Metadata = field(default_factory=Metadata)
+    at_edge: BoolArray | bool = False
+
+    @property
+    def clear_pressure(self) -> FloatArray:
+        """Pressure (P, N, K) where no edge is reached, Pa; 0 elsewhere."""
+        return np.where(self.at_edge, 0.0, self.pressure)
+
+    @property
+    def edge_pressure(self) -> float:
+        """Largest pressure at an edge, Pa, as if the flank went on: the true one is singular; 0 for none."""
+        return float(np.max(np.where(self.at_edge, self.pressure, 0.0), initial=0.0))
 
     @property
     def line_load(self) -> FloatArray:
@@ -175,7 +188,8 @@ def load_distribution(
     face = candidates.face_position[candidates.pair == candidates.pair[0]]
     shape = (candidates.position.size, -1, face.size)
     force = solution.force[:, load]
-    pressure = contact_pressure(problem, force[:, None])[:, 0]
+    pressure = contact_pressure(problem, force[:, None])
+    edge = at_edges(problem, force[:, None], pressure)
     gap = _loaded_gap(problem, force, solution.deflection[:, load])
     phase = candidates.position - np.floor(candidates.position)
     nominal, _ = pair.roll_lengths(phase[:, None], candidates.pair)
@@ -194,6 +208,7 @@ def load_distribution(
         force=force.reshape(shape),
         lever=candidates.torque_share.reshape(shape),
         pressure=pressure.reshape(shape),
+        at_edge=edge.reshape(shape),
         gap=gap.reshape(shape),
         slice_width=candidates.point_width,
         base_helix_angle=candidates.base_helix_angle,

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fe_contact.analysis.pairs.operating_points import OperatingPoints
-from fe_contact.contact import ContactProblem, ContactSolution, contact_pressure
+from fe_contact.contact import ContactProblem, ContactSolution, at_edges, contact_pressure
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import PairFacts
 from fe_contact.types import BoolArray, FloatArray, IntArray, Status
@@ -70,13 +70,15 @@ def contact_fields(
     loaded = solution.force * candidates.torque_share[:, None, :]
     total = np.where(good, loaded.sum(axis=2), 1.0)
     pressure = contact_pressure(problem, solution.force)
+    edge = at_edges(problem, solution.force, pressure)
     of_pair = candidates.pair[:, None] == pairs
     return {
         "static_transmission_error": solution.deflection,
         "tangent_compliance": solution.tangent,
         "load_share": (loaded @ of_pair) / total[..., None],
         "face_centroid": (loaded @ candidates.face_position) / total,
-        "max_pressure": np.where(good, pressure.max(axis=2), np.nan),
+        "max_pressure": np.where(good, np.where(edge, 0.0, pressure).max(axis=2), np.nan),
+        "edge_pressure": np.where(good, np.where(edge, pressure, 0.0).max(axis=2), np.nan),
         "pairs_in_contact": _pairs_in_contact(solution.force, of_pair),
         "status": solution.status,
         "residuals": solution.residuals,

@@ -2,6 +2,7 @@
 
 import { number } from "./elements.js";
 import { layout } from "./live_figures.js";
+import { edgeWords } from "./live_numbers.js";
 import { figureBlock, plot } from "./plots.js";
 
 const FACE = "face position, mm (0 = mid-face of the pinion)";
@@ -63,9 +64,9 @@ export class LiveFlanks {
     const now = shown.at(-1).curve.flanks;
     const facing = shown.filter(({ curve }) => overFace(curve.flanks));
     this.load.block.hidden = !overFace(now);
-    const place = now.at_tip_edge ? ", at a tip edge" : "";
+    const edges = edgeWords(now);
     const factor = now.k_h_beta === null ? "" : `K_Hbeta ${number(now.k_h_beta, 4)}, `;
-    this.pressure.node.setAttribute("aria-label", `Pressure over the driving gear's flank: at most ${number(now.largest_pressure_mpa, 4)} MPa${place}.`);
+    this.pressure.node.setAttribute("aria-label", `Pressure over the driving gear's flank: at most ${number(now.largest_pressure_mpa, 4)} MPa${edges && `; ${edges}`}.`);
     const load = now.worst_load_n_per_mm;
     this.load.node.setAttribute("aria-label", `Load over the face: ${factor}at most ${number(Math.max(...load), 3)} N/mm.`);
     await plot(this.pressure.node, pressureFigure(now));

@@ -10,16 +10,21 @@ function change(value, from) {
   return `${value >= from ? "+" : "−"}${number(Math.abs(100 * (value / from - 1)), 3)} %`;
 }
 
+/** Pressure at edges, apart from that of the flank; nothing where no contact reaches one. */
+export function edgeWords({ edge_pressure_mpa: edge }) {
+  return edge ? `up to ${number(edge, 4)} MPa at edges, indicative` : "";
+}
+
 /** Main figures of a curve, each with its error and its change from another. */
 export function mainFigures(now, from) {
   const remarks = (...words) => words.filter(Boolean).join("; ");
   const entry = (name, value, error, other) => [name, `${number(value, 3)} µm`, remarks(plusMinus(error), change(value, other))];
-  const { k_h_beta: factor, largest_pressure_mpa: pressure, at_tip_edge: edge } = now.flanks;
+  const { k_h_beta: factor, largest_pressure_mpa: pressure } = now.flanks;
   const entries = [
     entry("peak to peak", now.peak_to_peak_um, now.peak_to_peak_error_um, from.peak_to_peak_um),
     entry("mean", now.mean_um, now.mean_error_um, from.mean_um),
     entry("first harmonic", now.harmonics_um[0], now.harmonics_error_um?.[0], from.harmonics_um[0]),
-    ["largest pressure", `${number(pressure, 4)} MPa`, remarks(edge && "at a tip edge", change(pressure, from.flanks.largest_pressure_mpa))],
+    ["largest pressure", `${number(pressure, 4)} MPa`, remarks(edgeWords(now.flanks), change(pressure, from.flanks.largest_pressure_mpa))],
   ];
   return factor === null ? entries : [...entries, ["K_Hbeta", number(factor, 4), change(factor, from.flanks.k_h_beta)]];
 }

@@ -186,7 +186,7 @@ def _on_flanks(case: str, mesh: MeshAlignment, contact: MeshContact) -> MeshFlan
         np.array([harmonic.error for harmonic in harmonics]),
         flanks.mean_face_load_factor if across else float("nan"),
         centroid - mesh.face_centroid if across else float("nan"),
-        float(flanks.pressure.max()),
+        float(flanks.clear_pressure.max()),
         *_along_face(flanks),
         *_pattern(flanks, roll, pressure),
     )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pydantic import Field
+
 from service.schemas.figures import Figures, Json
 
 
@@ -19,7 +21,8 @@ class FlankFigures(Figures):
     largest_face_load_factor: float
     load_centroid_mm: tuple[float, float]
     largest_line_load_n_per_mm: float
-    largest_pressure_mpa: float
+    largest_pressure_mpa: float = Field(description="Where no strip reaches an edge of a flank")
+    edge_pressure_mpa: float = Field(description="At edges as if the flank went on; the true one is singular")
     effect_ledger: list[Json] | Json
     receipt: Json
 

@@ -16,7 +16,7 @@ from service.tables.contact_lines import contact_lines
 from service.tables.contact_pattern import contact_pattern_figure
 from service.tables.face_distribution import line_load_figure, load_centroid_figure
 from service.tables.pair import pair_lead, pair_title
-from service.tables.static_part import case_tables, contact_effects
+from service.tables.static_part import case_tables, contact_effects, edge_words
 from service.units import UM
 
 
@@ -30,7 +30,8 @@ def page(flanks: LoadDistribution, database: SteDatabase | None = None) -> Page:
 def _headlines(flanks: LoadDistribution) -> tuple[Headline, ...]:
     """Largest pressure and K_Hbeta."""
     at = operating_point(flanks)
-    headlines = [Headline("largest flank pressure", f"{number(1e-6 * float(flanks.pressure.max()))} MPa", at)]
+    largest = f"{number(1e-6 * float(flanks.clear_pressure.max()))} MPa"
+    headlines = [Headline("largest flank pressure", largest, f"{at}{edge_words(flanks.edge_pressure)}")]
     if flanks.face_position.size > 1:
         factor = flanks.mean_face_load_factor
         headlines.append(Headline("K_Hbeta over the cycle", number(factor, 3), at))
@@ -98,7 +99,7 @@ def text(flanks: LoadDistribution) -> Iterator[str]:
         f"misalignment {scene.misalignment / UM:.4g} um"
     )
     yield (
-        f"largest pressure {1e-6 * flanks.pressure.max():.4g} MPa, "
+        f"largest pressure {1e-6 * flanks.clear_pressure.max():.4g} MPa{edge_words(flanks.edge_pressure)}, "
         f"largest line load {1e-3 * flanks.line_load.max():.4g} N/mm"
     )
     if flanks.face_position.size > 1:

@@ -64,7 +64,8 @@ def flank_json(flanks: LoadDistribution) -> Json:
         "largest_face_load_factor": float(flanks.face_load_factor.max()),
         "load_centroid_mm": [float(centroid.min() / MM), float(centroid.max() / MM)],
         "largest_line_load_n_per_mm": float(flanks.line_load.max() * MM),
-        "largest_pressure_mpa": float(flanks.pressure.max() * 1e-6),
+        "largest_pressure_mpa": float(flanks.clear_pressure.max() * 1e-6),
+        "edge_pressure_mpa": flanks.edge_pressure * 1e-6,
         "effect_ledger": flanks.metadata.effect_ledger,
         "receipt": flanks.metadata.receipt,
     }

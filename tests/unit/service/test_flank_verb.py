@@ -48,7 +48,8 @@ def test_the_highest_load_of_the_case_is_the_default(small: Path, tmp_path: Path
     check_declared("flanks", answer)
     found = LoadDistribution.from_netcdf(tmp_path / "f.nc")
     assert answer["torque_n_m"] == pytest.approx(200.0) == found.scene.torque
-    assert answer["largest_pressure_mpa"] == pytest.approx(1e-6 * found.pressure.max())
+    assert answer["largest_pressure_mpa"] == pytest.approx(1e-6 * found.clear_pressure.max())
+    assert answer["edge_pressure_mpa"] == pytest.approx(1e-6 * found.edge_pressure)
     assert answer["largest_line_load_n_per_mm"] == pytest.approx(1e-3 * found.line_load.max())
     assert (answer["positions"], answer["slices"]) == (64, 1)
     assert found.metadata.case["load"] == {"torque_n_m": [200.0], "normal_force_n": None}
@@ -67,7 +68,7 @@ def test_the_report_takes_its_own_load_and_both_ways_agree(small: Path, tmp_path
     assert loa("flank", small, "--torque", 100, "-o", tmp_path / "f.nc").exit_code == 0
     both = loa("report", tmp_path / "ste.nc", tmp_path / "f.nc", "-o", tmp_path / "b.html")
     assert both.exit_code == 0
-    pressure = LoadDistribution.from_netcdf(tmp_path / "f.nc").pressure.max()
+    pressure = LoadDistribution.from_netcdf(tmp_path / "f.nc").clear_pressure.max()
     assert f"{1e-6 * pressure:.1f} MPa" in page
 
 
@@ -162,3 +163,12 @@ def test_a_submission_names_its_process_and_inputs(small: Path, monkeypatch: pyt
     ((process, inputs),) = asked
     assert (process, inputs["torque_n_m"]) == ("flank", 70.0)
     assert validated(Case, inputs["case"]).load.torque_n_m == (50.0, 100.0, 200.0)
+
+
+def test_the_largest_pressure_is_that_of_the_flank_and_an_edge_is_named_apart(small: Path) -> None:
+    told = loa("flank", small, "--set", "effects.corner_contact=on")
+    answer = json.loads(loa("flank", small, "--set", "effects.corner_contact=on", "--json").stdout)
+    flank, edge = answer["largest_pressure_mpa"], answer["edge_pressure_mpa"]
+    assert min(edge, flank) > 0.0
+    (line,) = (line for line in told.stdout.splitlines() if line.startswith("largest flank pressure"))
+    assert f"{flank:.4g}"[:3] in line and line.index("MPa") < line.index("at edges")

@@ -63,7 +63,8 @@ def test_the_errors_cover_a_finer_mesh(swept: Sweep, long_reliefs: GearPair, com
     fine = sweep(request(long_reliefs, level="standard"), Run(cache=compliances))
     for name in ("peak_to_peak", "harmonic_1", "max_pressure"):
         here, there = by_name(swept, name), by_name(fine, name)
-        assert np.all(np.abs(here.value - there.value) <= here.error + there.error), name
+        rounding = 8.0 * np.spacing(np.abs(here.value))  # where one pair carries all, meshes agree but for it
+        assert np.all(np.abs(here.value - there.value) <= here.error + there.error + rounding), name
         assert np.all(here.error < 0.5 * here.value.max()), "an error that says something"
 
 

@@ -1,5 +1,8 @@
 """Tables say what the metadata says, in full digits."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 from fe_contact.ste import SteDatabase
@@ -58,6 +61,15 @@ def test_a_ledger_without_estimates_says_so() -> None:
     section = contact_effects([{"name": "misalignment", "on": False, "reason": "aligned"}])
     assert section.text == ""
     assert section.tables[0].rows == (("misalignment", "contact", "no", "not estimated", "aligned"),)
+
+
+def test_an_edge_is_named_apart_from_the_largest_pressure(database: SteDatabase) -> None:
+    edges = np.zeros(database.max_pressure.shape)
+    assert "edge" not in static_headlines(replace(database, edge_pressure=edges))[2].remark
+    edges[3] = 1.072e9
+    pressed = static_headlines(replace(database, edge_pressure=edges))[2]
+    assert pressed.value == static_headlines(database)[2].value == "700.0 MPa"
+    assert pressed.remark.endswith("up to 1072 MPa at edges, indicative")
 
 
 def test_headlines_are_those_of_the_load_asked_for(database: SteDatabase) -> None:
