@@ -1,20 +1,25 @@
-"""The directories of a machine (XDG base directory specification)."""
+"""The directories of a machine (XDG base directory specification, which has relative ones ignored)."""
 
 from __future__ import annotations
 
 import contextlib
 import os
+from functools import lru_cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from host import default_cache_directory
 
 
 def data_home() -> Path:
     """Return the directory for results and jobs."""
-    return _base("XDG_DATA_HOME", ".local/share") / "lineofaction"
+    stated = Path(os.environ.get("XDG_DATA_HOME", ""))
+    return (stated if stated.is_absolute() else Path.home() / ".local" / "share") / "lineofaction"
 
 
 def cache_home() -> Path:
-    """Return the directory for what can be computed or fetched again."""
-    return _base("XDG_CACHE_HOME", ".cache") / "lineofaction"
+    """Return the directory for what can be computed or fetched again; our own alone where caches are off."""
+    return default_cache_directory() or Path(_own_folder().name)
 
 
 def absolute(path: Path) -> Path:
@@ -35,7 +40,7 @@ def keep_private() -> None:
     os.umask(0o077)
 
 
-def _base(variable: str, default: str) -> Path:
-    """Return a base directory; the specification has relative ones ignored."""
-    path = Path(os.environ.get(variable, ""))
-    return path if path.is_absolute() else Path.home() / default
+@lru_cache(maxsize=1)
+def _own_folder() -> TemporaryDirectory[str]:
+    """Make a folder that is removed with this process."""
+    return TemporaryDirectory(prefix="lineofaction-", ignore_cleanup_errors=True)

@@ -78,6 +78,8 @@ def test_base_directories_that_are_relative_are_ignored(
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "elsewhere"))
     assert data_home() == tmp_path / ".local" / "share" / "lineofaction"
     assert cache_home() == tmp_path / "elsewhere" / "lineofaction"
+    monkeypatch.setenv("XDG_CACHE_HOME", "cache")
+    assert cache_home() == tmp_path / ".cache" / "lineofaction"
 
 
 def test_workers_are_nice_and_keep_to_one_thread(machine: Bench) -> None:

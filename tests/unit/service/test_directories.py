@@ -1,0 +1,53 @@
+"""Where verbs keep what can be computed again: one place, which the environment names."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from spur_case import SPUR
+from typer.testing import CliRunner
+
+from service.cli.commands import app
+from service.directories import cache_home
+
+CASE = f"""{SPUR}
+[load]
+torque_n_m = [100]
+[accuracy]
+level = "draft"
+model = "plane_strain"
+positions = 16
+"""
+
+
+@pytest.mark.parametrize("verb", [["analyze", "-o", "ste.nc"], ["flank"], ["plan"]], ids=lambda verb: verb[0])
+def test_verbs_keep_where_the_environment_says(
+    verb: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("LINEOFACTION_CACHE", "kept")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "other"))
+    Path("case.toml").write_text(CASE)
+    result = CliRunner().invoke(app, [verb[0], "case.toml", *verb[1:]])
+    assert result.exit_code == 0, result.output
+    assert list((tmp_path / "kept" / "compliance").iterdir())
+    assert not (tmp_path / "other").exists()
+
+
+def test_nothing_outlives_a_process_whose_cache_is_off(tmp_path: Path) -> None:
+    code = "from service.directories import cache_home as c; (c() / 'x').write_text('x'); print(c())"
+    told = {"LINEOFACTION_CACHE": "off", "TMPDIR": str(tmp_path), "PYTHONPATH": ":".join(sys.path)}
+    done = subprocess.run([sys.executable, "-c", code], env=told, capture_output=True, text=True, check=True)
+    assert Path(done.stdout.strip()).parent == tmp_path
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_cache_of_the_environment_means_the_same_in_any_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("LINEOFACTION_CACHE", "kept")
+    assert cache_home() == tmp_path / "kept"
