@@ -61,6 +61,7 @@ ENV PATH=/opt/lineofaction/bin:$PATH \
     PYTHONUNBUFFERED=1 \
     LOA_HOST=127.0.0.1 \
     LOA_PORT=8321 \
+    LOA_MANAGEMENT_PORT=8322 \
     LOA_DATA_DIRECTORY=/data/service \
     NUMBA_CACHE_DIR=/data/cache/numba \
     XDG_CACHE_HOME=/data/cache \
@@ -74,7 +75,7 @@ VOLUME /data
 EXPOSE 8321 8322
 STOPSIGNAL SIGTERM
 HEALTHCHECK --interval=15s --timeout=4s --start-period=30s --retries=3 \
-    CMD ["python", "-c", "import os, urllib.request; urllib.request.urlopen(f\"http://{os.environ['LOA_HOST']}:{os.environ['LOA_PORT']}/health\", timeout=3)"]
+    CMD ["python", "-c", "import os, urllib.request; urllib.request.urlopen(f\"http://127.0.0.1:{os.environ['LOA_MANAGEMENT_PORT']}/health\", timeout=3)"]
 ENTRYPOINT ["tini", "--"]
 CMD ["loa", "serve"]
 

@@ -45,6 +45,8 @@ class Settings(BaseSettings):
         Database of jobs and of the index of results; None: a SQLite file in the data directory.
     results_url : str or None
         Place of the files of results: ``s3://bucket/prefix`` or ``file:///folder``; None: the data directory.
+    results_access_key_id, results_secret_access_key : str or None
+        Credentials of that bucket, both or none; None: those of the AWS_ variables.
     results_cache_mb : int
         What the cache of files from elsewhere may hold, MB.
     retention_days : float or None
@@ -86,6 +88,8 @@ class Settings(BaseSettings):
     data_directory: Annotated[Path, AfterValidator(absolute)] = Field(default_factory=data_home)
     database_url: SecretStr | None = None
     results_url: str | None = None
+    results_access_key_id: SecretStr | None = None
+    results_secret_access_key: SecretStr | None = Field(None, validate_default=True)
     results_cache_mb: int = Field(10_000, ge=1, le=1_000_000_000)
     retention_days: float | None = Field(None, ge=1.0, le=100_000.0)
     quarantine_days: float = Field(7.0, ge=0.0, le=100_000.0)
@@ -101,6 +105,14 @@ class Settings(BaseSettings):
     keys_file: Annotated[Path, AfterValidator(absolute)] | None = None
     webhook_origins: str = ""
     webhook_secret: SecretStr | None = Field(None, validate_default=True)
+
+    @field_validator("results_secret_access_key")
+    @classmethod
+    def _with_its_id(cls, secret: SecretStr | None, info: ValidationInfo) -> SecretStr | None:
+        """Refuse one half of the credentials."""
+        if (secret is None) != (info.data.get("results_access_key_id") is None):
+            raise ValueError("set together with results_access_key_id")
+        return secret
 
     @field_validator("webhook_origins")
     @classmethod
@@ -165,6 +177,12 @@ class Settings(BaseSettings):
     def database_address(self) -> str | None:
         """The database's URL, with its password."""
         return None if self.database_url is None else self.database_url.get_secret_value()
+
+    @property
+    def results_keys(self) -> tuple[str, str] | None:
+        """The credentials of the bucket of results."""
+        key, secret = self.results_access_key_id, self.results_secret_access_key
+        return None if key is None or secret is None else (key.get_secret_value(), secret.get_secret_value())
 
     @property
     def loopback(self) -> bool:

@@ -62,7 +62,8 @@ def run_reindex(*, as_json: bool, quarantined: bool, **options: object) -> None:
     settings = load_settings(**options)
     keep_private()
     engine = open_database(settings.database_address or settings.data_directory / DATABASE_FILE)
-    store = ResultStore(engine, result_files(settings.data_directory, settings.results_url))
+    files = result_files(settings.data_directory, settings.results_url, keys=settings.results_keys)
+    store = ResultStore(engine, files)
     deployment = Deployment(engine, store)
     try:
         if quarantined:

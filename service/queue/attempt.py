@@ -102,6 +102,7 @@ def _order(settings: Settings, entry: str, claim: Claim) -> WorkOrder:
         memory_limit_mb=_memory_mb(settings),
         database_url=settings.database_address,
         results_url=settings.results_url,
+        results_keys=settings.results_keys,
         lease_until=claim.asked + USABLE * settings.lease_s,
         dask_scheduler=settings.dask_scheduler,
     )

@@ -60,7 +60,7 @@ def job_machinery(settings: Settings, registry: Registry, *, works: bool = True)
     engine = open_database(settings.database_address or settings.data_directory / DATABASE_FILE)
     try:
         Schema(engine).check()
-        target = (settings.results_url, settings.results_cache_mb)
+        target = (settings.results_url, settings.results_cache_mb, settings.results_keys)
         store = result_store(engine, settings.data_directory, *target)
     except BaseException:
         engine.dispose()

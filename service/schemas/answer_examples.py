@@ -6,6 +6,7 @@ from typing import Any
 
 from service.schemas.request_examples import BODIES, CASE
 from service.schemas.result_kinds import RESULTS
+from service.version import solver_version
 
 Json = dict[str, Any]
 
@@ -180,7 +181,7 @@ ANSWERS: dict[str, Any] = {
     "/v1": {
         "title": "lineofaction",
         "description": "STE databases of gear pairs.",
-        "version": "0.2.0",
+        "version": solver_version(),
         "links": [_LINK],
     },
     "/v1/conformance": {"conformsTo": ["http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/core"]},

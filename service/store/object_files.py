@@ -162,8 +162,14 @@ def _answering() -> Iterator[None]:
         raise StoreUnavailable("The store of results cannot be reached. Try again later.") from error
 
 
-def object_files(url: str, cache: Path, cache_bytes: int) -> ObjectFiles:
-    """Return the place ``s3://bucket/prefix``; endpoint, region and keys are read from the AWS_ variables.
+Keys = tuple[str, str]
+"""Access key and secret of a bucket."""
+
+
+def object_files(url: str, cache: Path, cache_bytes: int, keys: Keys | None = None) -> ObjectFiles:
+    """Return the place ``s3://bucket/prefix``; endpoint and region are read from the AWS_ variables.
+
+    So are keys, where none are passed.
 
     Raises
     ------
@@ -178,8 +184,9 @@ def object_files(url: str, cache: Path, cache_bytes: int) -> ObjectFiles:
         raise BadInput.of("results_url", url, "one whose library is installed", tip) from None
     plain = any(os.environ.get(name, "").startswith("http://") for name in _ENDPOINTS)
     client: ClientConfig = {"allow_http": plain, "timeout": "60s"}
+    own = {} if keys is None else dict(zip(("access_key_id", "secret_access_key"), keys, strict=True))
     try:
-        store = S3Store.from_url(url, client_options=client, retry_config=RETRIES)
+        store = S3Store.from_url(url, client_options=client, retry_config=RETRIES, **own)  # type: ignore[arg-type]
     except (BaseError, ValueError) as error:
         raise BadInput.of("results_url", url, f"of a bucket we can use ({error})") from None
     return ObjectFiles(store, url, cache, cache_bytes)

@@ -11,7 +11,7 @@ from service.problems import BadInput
 from service.store.database import open_database
 from service.store.deployment import Deployment
 from service.store.files import DirectoryFiles, ResultFiles
-from service.store.object_files import object_files
+from service.store.object_files import Keys, object_files
 from service.store.results import ResultStore
 
 DATABASE_FILE = "service.sqlite3"
@@ -21,9 +21,14 @@ DEFAULT_CACHE_MB = 10_000
 
 
 def result_files(
-    data_directory: Path, results_url: str | None = None, cache_mb: int = DEFAULT_CACHE_MB
+    data_directory: Path,
+    results_url: str | None = None,
+    cache_mb: int = DEFAULT_CACHE_MB,
+    keys: Keys | None = None,
 ) -> ResultFiles:
     """Return the place of result files: in the data directory, ``file:///FOLDER``, or ``s3://BUCKET/PREFIX``.
+
+    `keys` are the credentials of the bucket; None: those of the AWS_ variables.
 
     Raises
     ------
@@ -34,20 +39,24 @@ def result_files(
         return DirectoryFiles(data_directory / RESULTS_DIRECTORY)
     parts = urlsplit(results_url)
     if "@" in parts.netloc:
-        advice = "Credentials come from AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY."
+        advice = "Credentials come from results_access_key_id and results_secret_access_key."
         raise BadInput.of("results_url", "(not shown)", "an address without credentials", advice)
     if parts.scheme == "file" and parts.netloc in ("", "localhost") and parts.path.startswith("/"):
         return DirectoryFiles(Path(unquote(parts.path)))
     if parts.scheme == "s3" and parts.netloc:
         cache = data_directory / CACHE_DIRECTORY / RESULTS_DIRECTORY
-        return object_files(results_url, cache, cache_mb * 1_000_000)
+        return object_files(results_url, cache, cache_mb * 1_000_000, keys)
     raise BadInput.of("results_url", results_url, "s3://bucket/prefix or file:///folder")
 
 
 def result_store(
-    engine: Engine, data_directory: Path, results_url: str | None = None, cache_mb: int = DEFAULT_CACHE_MB
+    engine: Engine,
+    data_directory: Path,
+    results_url: str | None = None,
+    cache_mb: int = DEFAULT_CACHE_MB,
+    keys: Keys | None = None,
 ) -> ResultStore:
-    """Return the store whose index is in a database.
+    """Return the store whose index is in a database; parameters of `result_files`.
 
     Raises
     ------
@@ -56,14 +65,17 @@ def result_store(
     StoreUnavailable, DatabaseUnavailable
         The place, or the database, does not answer.
     """
-    store = ResultStore(engine, result_files(data_directory, results_url, cache_mb))
+    store = ResultStore(engine, result_files(data_directory, results_url, cache_mb, keys))
     Deployment(engine, store).open_place()
     return store
 
 
 def stored_results(
-    data_directory: Path, database_url: str | None = None, results_url: str | None = None
+    data_directory: Path,
+    database_url: str | None = None,
+    results_url: str | None = None,
+    keys: Keys | None = None,
 ) -> ResultStore:
     """Return the store of a data directory, or of what the URLs name, for one who reads now and then."""
     engine = open_database(database_url or data_directory / DATABASE_FILE, pooled=False)
-    return result_store(engine, data_directory, results_url)
+    return result_store(engine, data_directory, results_url, keys=keys)

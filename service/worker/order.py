@@ -44,6 +44,8 @@ class WorkOrder:
         Where the index of results is, if not in the data directory.
     results_url : str, optional
         Where the files of results are, if not in the data directory.
+    results_keys : tuple of str, optional
+        Access key and secret of that place; they come here, as workers inherit none.
     dask_scheduler : str, optional
         Address of the scheduler whose workers do the tasks, if the service has one.
     project : str, optional
@@ -64,6 +66,7 @@ class WorkOrder:
     lease_until: float | None = None
     dask_scheduler: str | None = None
     project: str = COMMON
+    results_keys: tuple[str, str] | None = None
 
     def line(self) -> bytes:
         """Return the order as one line of JSON."""

@@ -68,7 +68,8 @@ def housed_scene(order: WorkOrder, progress: Progress) -> HousedScene:
 
 def store_of(order: WorkOrder) -> ResultStore:
     """Return the store of an order."""
-    return stored_results(order.data_directory, order.database_url, order.results_url).within(order.project)
+    place = order.database_url, order.results_url, order.results_keys
+    return stored_results(order.data_directory, *place).within(order.project)
 
 
 def _stored_key(order: WorkOrder, mesh: MeshInput) -> str | None:

@@ -107,6 +107,7 @@ def test_pods_hold_no_secret_and_mount_those_they_name() -> None:
         assert not any(
             is_secret(field) and f"LOA_{name}" in variables_of(part) for name, field in FIELDS.items()
         )
+        assert [list(source) for source in container(part)["envFrom"]] == [["configMapRef"]]
         mounted = [Path(mount["mountPath"]) for mount in container(part)["volumeMounts"]]
         for name, value in variables_of(part).items():
             if name.endswith("_FILE"):
@@ -135,6 +136,9 @@ def test_ports_and_paths_agree() -> None:
     management = int(variables_of("work")["LOA_MANAGEMENT_PORT"])
     assert http == Settings.model_fields["port"].default
     assert exposed == {http, management}
+    assert re.search(r"LOA_MANAGEMENT_PORT=(\d+)", dockerfile())[1] == str(management)
+    check = dockerfile().partition("HEALTHCHECK")[2].partition("ENTRYPOINT")[0]
+    assert "LOA_MANAGEMENT_PORT" in check and "LOA_PORT" not in check  # also where only `loa work` runs
     for part, named in (
         ("serve", {"http": http, "management": management}),
         ("work", {"management": management}),
@@ -233,6 +237,7 @@ def test_the_image_has_every_package() -> None:
 
 
 def test_the_tag_is_the_version() -> None:
+    """An older image may lack what the manifests set: 0.2.0 has no management port."""
     image = yaml.safe_load((MANIFESTS / "image" / "kustomization.yaml").read_text())["images"][0]
     assert image["newTag"] == tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
     assert {container(part)["image"] for part in PARTS} == {f"lineofaction:{image['newTag']}"}

@@ -13,11 +13,13 @@ from s3_server import Objects
 from sqlalchemy import event
 
 from service.problems import BadInput, DamagedFile, NotFound, StoreUnavailable
+from service.settings import Settings, load_settings
 from service.store import DirectoryLock, ResultStore, open_database, reading, stored_results, writing
 from service.store.deployment import NOTE
 from service.store.files import DirectoryFiles
-from service.store.object_files import object_files
+from service.store.object_files import ObjectFiles, object_files
 from service.store.places import result_files, result_store
+from service.worker.order import WorkOrder
 
 KEY = hashlib.sha256(b"input").hexdigest()
 OTHER = hashlib.sha256(b"other").hexdigest()
@@ -195,6 +197,27 @@ def test_a_store_that_does_not_answer_is_said(
     s3_objects.down = False
     store.put(OTHER, "database", tmp_path / "made")
     assert store.verified(OTHER, "database").path.read_bytes() == b"other"
+
+
+def test_credentials_of_a_bucket_come_from_files_and_reach_workers_in_their_orders(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("ACCESS_KEY_ID", "SECRET_ACCESS_KEY"):
+        monkeypatch.delenv(f"AWS_{name}", raising=False)
+        (tmp_path / name).write_text(f"of {name}\n")
+        monkeypatch.setenv(f"LOA_RESULTS_{name}_FILE", str(tmp_path / name))
+    keys = Settings().results_keys
+    assert keys == ("of ACCESS_KEY_ID", "of SECRET_ACCESS_KEY")
+    order = WorkOrder("module:function", {}, KEY, tmp_path, tmp_path, results_keys=keys)
+    told = WorkOrder.from_line(order.line()).results_keys
+    files = result_files(tmp_path, "s3://bucket/prefix", keys=told)
+    assert isinstance(files, ObjectFiles)
+    config = files._store.config
+    assert (config["access_key_id"], config["secret_access_key"]) == keys
+    monkeypatch.delenv("LOA_RESULTS_ACCESS_KEY_ID_FILE")
+    with pytest.raises(BadInput) as caught:
+        load_settings()
+    assert [fault.field for fault in caught.value.faults] == ["results_secret_access_key"]
 
 
 @pytest.mark.parametrize("url", ["s3://", "ftp://host/folder", "file://host/folder", "results"])
