@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Request
 from starlette.responses import RedirectResponse
 
 from service.access import Scope
 from service.problems import NotFound
 from service.routes.context import Ctx
+from service.routes.moved import moved
 from service.routes.results import Key
 from service.routes.scopes import ScopedRoute, needs
 from service.schemas.result_kinds import RESULT_KINDS, RESULTS, ResultKind
@@ -19,10 +20,10 @@ def _redirect(kind: ResultKind, further: str) -> None:
     """Redirect from results of a kind, or their figures; a hash of another kind is not found."""
 
     @needs(Scope.READ)
-    def result(key: Key, context: Ctx) -> RedirectResponse:
+    def result(key: Key, request: Request, context: Ctx) -> RedirectResponse:
         if context.store.find(key, kind.name) is None:
             raise NotFound(f"There is no {kind.name} {key!r}. Submit its case again to compute it.")
-        return RedirectResponse(f"{RESULTS}/{key}{further}", status_code=308)
+        return moved(request, f"{RESULTS}/{key}{further}")
 
     router.add_api_route(f"/{kind.collection}/{{key}}{further}", result)
 

@@ -8,7 +8,7 @@ from functools import cache
 from typing import Annotated, Any, cast
 
 import structlog
-from fastapi import APIRouter, Header, Query, Response
+from fastapi import APIRouter, Header, Query, Request, Response
 from pydantic import BaseModel, create_model
 
 from service.access import Scope
@@ -26,6 +26,7 @@ from service.registry import NETCDF
 from service.routes.context import Context, Ctx, From
 from service.routes.cursor import Limit
 from service.routes.jobs import status_info
+from service.routes.moved import moved
 from service.routes.refusals import documented
 from service.routes.response_headers import described_headers
 from service.routes.scopes import ScopedRoute, needs
@@ -86,10 +87,9 @@ def processes_router(registry: Registry) -> APIRouter:
         _add_execution(router, offered)
     router.add_api_route(
         "/{process_id}/execution",
-        _unknown(registry),
+        _other_name(registry),
         methods=["POST"],
         include_in_schema=False,
-        status_code=201,
     )
     return router
 
@@ -99,14 +99,14 @@ def _place(registry: Registry, after: str) -> int:
     return list(registry).index(registry[after].id) + 1 if after else 0
 
 
-def _unknown(registry: Registry) -> Any:
-    """Return the handler of executions of processes that do not exist."""
+def _other_name(registry: Registry) -> Any:
+    """Return the handler of executions by names without a route: former ones, and those of no process."""
 
     @needs(Scope.SUBMIT)
-    def execute_unknown(process_id: str) -> None:
-        registry[process_id]
+    def execute_other(process_id: str, request: Request) -> Response:
+        return moved(request, f"/v1/processes/{registry[process_id].id}/execution")
 
-    return execute_unknown
+    return execute_other
 
 
 def _add_execution(router: APIRouter, process: Process) -> None:

@@ -51,8 +51,9 @@ def test_former_paths_redirect_for_good(client: TestClient, tmp_path: Path, kind
     assert isinstance(client.app, FastAPI)
     client.app.state.context.store.put(key, kind.name, tmp_path / "file")
     for further in ("", "/figures"):
-        answer = client.get(f"/v1/{kind.collection}/{key}{further}", follow_redirects=False)
-        assert (answer.status_code, answer.headers["location"]) == (308, f"/v1/results/{key}{further}")
+        whole = f"{key}{further}?against={key}"
+        answer = client.get(f"/v1/{kind.collection}/{whole}", follow_redirects=False)
+        assert (answer.status_code, answer.headers["location"]) == (308, f"/v1/results/{whole}")
     assert client.get(f"/v1/{kind.collection}/{key}", headers=NETCDF).text == "{}"
     assert client.get(f"/v1/{kind.collection}/{'0' * 64}").status_code == 404
     assert client.get(f"/v1/{kind.collection}/nonsense").status_code == 422

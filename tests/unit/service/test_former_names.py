@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 import typer
+from fastapi.testclient import TestClient
 
+from service.app import create_app
 from service.cli.commands import app
 from service.client.processes import Processes
 from service.registry import FORMER, STUDIES
+from service.schemas.request_examples import request_example
+from service.settings import Settings
 from service.worker.catalogue import default_registry
 
 
@@ -28,3 +34,17 @@ def test_it_is_listed_nowhere(former: str) -> None:
     assert former not in STUDIES
     assert former not in list(default_registry())
     assert former not in verbs.list_commands(typer.Context(verbs))
+
+
+@pytest.mark.parametrize(("former", "name"), FORMER.items())
+def test_an_execution_under_a_former_name_is_one(former: str, name: str, tmp_path: Path) -> None:
+    """It was 201 with the body null, and no job."""
+    execution = f"/v1/processes/{name}/execution"
+    former_execution = f"/v1/processes/{former}/execution"
+    with TestClient(create_app(Settings(data_directory=tmp_path), works=False)) as client:
+        answer = client.post(former_execution, json={}, follow_redirects=False)
+        assert (answer.status_code, answer.headers["location"]) == (308, execution)
+        followed = client.post(former_execution, json=request_example(execution))
+        assert followed.status_code == 201
+        assert client.get(followed.headers["location"]).json()["processID"] == name
+        assert client.post("/v1/processes/nothing/execution", json={}).status_code == 404
