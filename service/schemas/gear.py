@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from typing import Annotated, Self
 
-from pydantic import ConfigDict, Field, Strict, model_validator
+from pydantic import Field, Strict, model_validator
 
-from bounds import Kind
 from fe_contact.flank.modification import FlankModification
 from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.toothing import MATING, Toothing
 from service.schemas.declared import Figure, as_fields, declared_in, figures, parts_in, parts_of, with_fields
 from service.schemas.gear_body import GearShaftInput, MaterialInput
 from service.schemas.model import BoundaryModel, refuse
-from service.schemas.rules import Json, stated
 
 GridAxis = Annotated[
     tuple[Annotated[float, Field(ge=-10_000.0, le=10_000.0)], ...],
@@ -64,25 +62,9 @@ class _ToothingFigures(BoundaryModel):
     face_width_mm: float
 
 
-def _over_a_length(length: Figure) -> Json:
-    """Return the rule that an amount that is not zero has a length to act over."""
-    amount = length.name.removesuffix("_length")
-    (field,) = (figure.field for figure in figures(FlankModification) if figure.name == amount)
-    return {
-        "if": {"required": [field], "properties": {field: {"not": {"const": 0.0}}}},
-        "then": {"required": [length.field], "properties": {length.field: {"exclusiveMinimum": 0.0}}},
-    }
-
-
-OVER_LENGTHS = tuple(_over_a_length(length) for length in figures(FlankModification, Kind.LENGTH))
-"""Rules of the modifications that act over a length of their own."""
-
-
 @with_fields({**declared_in(FlankModification), **parts_in(parts_of(Gear))})
 class ToothingInput(_ToothingFigures):
     """Fields of all gears. Modifications: > 0 is material removed, normal to the involute, transverse."""
-
-    model_config = ConfigDict(json_schema_extra=stated(*OVER_LENGTHS))
 
     flank_grid: FlankGridInput | None = Field(
         default=None,

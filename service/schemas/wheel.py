@@ -11,7 +11,7 @@ from bounds import declarations
 from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.ring_gear import RingGear
 from service.schemas.declared import as_fields, figures, with_fields
-from service.schemas.gear import OVER_LENGTHS, ToothingInput
+from service.schemas.gear import ToothingInput
 from service.schemas.model import refuse
 from service.schemas.rules import both, given, left_out, stated
 
@@ -32,7 +32,7 @@ class WheelInput(ToothingInput):
     """The driven gear. What only one kind has is left out by the other."""
 
     model_config = ConfigDict(
-        json_schema_extra=stated(*OVER_LENGTHS, {"if": _IS_RING, "then": _RING_HAS, "else": _GEAR_HAS})
+        json_schema_extra=stated({"if": _IS_RING, "then": _RING_HAS, "else": _GEAR_HAS})
     )
 
     internal: bool = Field(

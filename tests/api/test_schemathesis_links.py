@@ -13,7 +13,6 @@ from typing import Any
 import pytest
 import schemathesis
 from feasible_bodies import FeasibleBodies
-from generators_description import generators_description
 from hypothesis import HealthCheck, Phase, settings
 from running_service import until
 from written_service import Service, written_service
@@ -34,7 +33,7 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
 
 
 def test_every_link_leads_to_what_it_says(service: Service) -> None:
-    schema = schemathesis.openapi.from_dict(generators_description(service.description))
+    schema = schemathesis.openapi.from_dict(service.description)
     schema.config.update(base_url=service.url)
     feasible = FeasibleBodies(service.description, {})
     walked: Counter[tuple[str, int]] = Counter()
