@@ -42,6 +42,7 @@ if sys.platform == "win32" or find_spec("fcntl") is None or find_spec("resource"
         cpu_seconds,
         end_after,
         lock,
+        most_open_files,
         peak_memory,
         physical_memory,
     )
@@ -52,6 +53,7 @@ else:
         cpu_seconds,
         end_after,
         lock,
+        most_open_files,
         peak_memory,
         physical_memory,
     )
@@ -90,6 +92,7 @@ __all__ = [
     "memory_figure",
     "missing_extra",
     "missing_protections",
+    "most_open_files",
     "never_wait_at",
     "peak_memory",
     "physical_memory",

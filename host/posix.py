@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import fcntl
+import math
 import os
 import resource
 import signal
@@ -43,6 +44,12 @@ def children_peak_memory() -> int:
 def physical_memory() -> int:
     """Return the memory of the machine, bytes."""
     return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+
+
+def most_open_files() -> float:
+    """Return how many files, sockets among them, this process may have open at once; infinite: no limit."""
+    soft, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
+    return math.inf if soft == resource.RLIM_INFINITY else soft
 
 
 def lock(file: int, *, wait: bool = False) -> None:

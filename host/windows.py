@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import sys
 import threading
@@ -37,6 +38,11 @@ def children_peak_memory() -> int:
 def physical_memory() -> int:
     """Return the memory of the machine, bytes."""
     return int(_psutil().virtual_memory().total)
+
+
+def most_open_files() -> float:
+    """Return infinity: the system has no limit that a process can ask for."""
+    return math.inf
 
 
 def _psutil() -> Any:

@@ -12,6 +12,7 @@ from fastapi import FastAPI
 from prometheus_client import CollectorRegistry
 
 from service.access import open_identities
+from service.access.capacity import capacity
 from service.live.kept_answers import KeptAnswers
 from service.live.pool import live_pool
 from service.management.registry import process_registry
@@ -39,6 +40,7 @@ from service.routes import (
     units,
 )
 from service.routes.access import Access
+from service.routes.admission import Admission
 from service.routes.context import Context
 from service.routes.direct import DirectRoutes
 from service.routes.errors import install_error_handlers
@@ -74,10 +76,10 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
     BadInput
         Another service works in the data directory, or it cannot be written; the files of results are those
         of another database; the address is not loopback and there are no access keys, or their file cannot
-        be used.
+        be used; the process may open too few files.
     """
     warnings.filterwarnings("ignore", message="implausible")  # said in the fields of the caller
-    identities = open_identities(settings)
+    identities, bearable = open_identities(settings), capacity(settings.workers if works else 0)
     lock = DirectoryLock(settings.data_directory) if works else None
     if lock is not None:
         lock.acquire()
@@ -99,12 +101,13 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
         **ABOUT,
         **tracer().options,
     )
-    app.state.context = context
+    app.state.context, app.state.capacity = context, bearable
     app.state.metrics = Metrics(_registry(context))
     install_error_handlers(app)
     install_description(app)
     app.add_middleware(DirectRoutes, router=queries.router, prefix=API_PREFIX)
-    app.add_middleware(Access, identities=identities, always=not settings.loopback or bool(identities))
+    always = not settings.loopback or bool(identities)
+    app.add_middleware(Access, identities=identities, always=always, admission=Admission(app.state.capacity))
     app.add_middleware(Guard, body_limit=settings.body_limit, metrics=app.state.metrics)
     _route(app, offered)
     return app

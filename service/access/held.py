@@ -1,4 +1,4 @@
-"""What callers hold at the same time: connections, event streams."""
+"""What callers hold at the same time: requests, bodies under way, event streams."""
 
 from __future__ import annotations
 
@@ -6,9 +6,11 @@ from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from service.problems import TooManyHeld
+from service.problems import TooManyHeld, TooManyRequests
 
 _AGAIN_S = 1
+NOBODY = ""
+"""Holder of what callers without a key hold."""
 
 
 class Held:
@@ -18,17 +20,25 @@ class Held:
     ----------
     what : str
         The kind, plural.
+    in_all : int, optional
+        Most of all holders together.
     """
 
-    def __init__(self, what: str) -> None:
-        self._what, self._held = what, Counter[str]()
+    def __init__(self, what: str, in_all: int | None = None) -> None:
+        self._what, self._in_all, self._held = what, in_all, Counter[str]()
+
+    def refuse_beyond(self, name: str, most: int | None) -> None:
+        """Raise `TooManyHeld` if a holder has `most`, `TooManyRequests` if all together have theirs."""
+        if most is not None and self._held[name] >= most:
+            who = "Callers without a key hold" if name == NOBODY else f"Key {name!r} holds"
+            text = f"{who} {most} {self._what}, the limit. End one of them, or try again."
+            raise TooManyHeld.after(_AGAIN_S, text)
+        if self._in_all is not None and self._held.total() >= self._in_all:
+            raise TooManyRequests(f"There are {self._in_all} {self._what} in all. Try again soon.")
 
     @contextmanager
-    def one(self, name: str, most: int | None) -> Iterator[None]:
-        """Hold one more while the context lasts; raises `TooManyHeld` beyond `most`."""
-        if most is not None and self._held[name] >= most:
-            text = f"Key {name!r} holds {most} {self._what}, its limit. End one of them, or try again."
-            raise TooManyHeld.after(_AGAIN_S, text)
+    def one(self, name: str) -> Iterator[None]:
+        """Hold one more while the context lasts."""
         self._held[name] += 1
         try:
             yield

@@ -50,7 +50,7 @@ class Holder:
     max_cost_s : int or None
         CPU seconds that each job may take; None: no limit.
     connections : int or None
-        Connections on which requests are answered at the same time; None: no limit but the server's.
+        Requests answered at the same time, and bodies under way; None: a share of the server's.
     streams : int or None
         Event streams open at the same time; None: no limit but the server's.
     """

@@ -14,10 +14,6 @@ from service.routes.errors import problem_of
 
 MOST_HEAD_BYTES = 65_536
 HEAD_WITHIN_S = 20.0
-MOST_CONNECTIONS = 500
-"""Beyond it the connection that has been idle for longest makes room."""
-MOST_BUSY_CONNECTIONS = 800
-"""Where none is idle; below the 1024 open files that a process usually may have."""
 
 logger = structlog.get_logger(__name__)
 
@@ -43,9 +39,10 @@ class BoundedHttp(AutoHTTPProtocol):  # type: ignore[misc, valid-type]  # one of
         """Make room if there are too many, and wait for the first head."""
         super().connection_made(transport)
         self.config.app.state.metrics.connected(1)
-        if len(self.connections) > MOST_CONNECTIONS and self._idle:
+        capacity = self.config.app.state.capacity
+        if len(self.connections) > capacity.comfortable_connections and self._idle:
             self._close_longest_idle()
-        elif len(self.connections) > MOST_BUSY_CONNECTIONS:
+        elif len(self.connections) > capacity.connections:
             self._refuse(TooManyRequests("All connections are busy. Try again soon."))
             return
         self._idle[self] = None

@@ -13,6 +13,7 @@ import uvicorn
 from fastapi import FastAPI
 
 from service.access import open_identities
+from service.access.capacity import capacity
 from service.app import create_app
 from service.cli.bounded_http import BoundedHttp
 from service.cli.interrupt import leave
@@ -39,6 +40,7 @@ def run_serve(*, works: bool = True, **options: object) -> None:
     open_identities(settings)  # refused before a socket is opened
     with _listener(settings) as listener:
         if settings.processes > 1:
+            capacity(settings.workers if works else 0)  # refused before a process is started
             serve_in_processes(
                 settings, works, partial(_serve, settings, listener), partial(_announce, listener)
             )

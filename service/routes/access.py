@@ -7,8 +7,9 @@ from contextlib import ExitStack
 from starlette.types import ASGIApp, Receive, Scope, Send
 from structlog.contextvars import bind_contextvars
 
-from service.access import Held, Identities, RateLimits
+from service.access import NOBODY, Held, Identities, RateLimits
 from service.problems import KeyExpired, NotForUs, RateExceeded, ServiceError
+from service.routes.admission import Admission
 from service.routes.audit import Visit
 from service.routes.caching import for_one_caller
 from service.routes.host import meant_for_us
@@ -17,6 +18,8 @@ OPEN_PATHS = ("/health", "/ready", "/", "/docs")
 OPEN_FOLDER = "/page/"
 """Answered to everybody: they tell nothing about anybody's work. Supervisors and load balancers ask without a
 key; the page asks its reader for one."""
+VITAL_PATHS = ("/health", "/ready")
+"""Answered however many requests are under way."""
 
 _SCHEME = "bearer "
 
@@ -31,15 +34,12 @@ class Access:
     always : bool
         Ask for a key even while there is none, so that taking back the last key opens nothing. Otherwise
         keys are requested as soon as there is one.
+    admission : Admission
     """
 
-    def __init__(self, app: ASGIApp, identities: Identities, *, always: bool) -> None:
+    def __init__(self, app: ASGIApp, identities: Identities, *, always: bool, admission: Admission) -> None:
         self._app, self._identities, self._always = app, identities, always
-        self._rates, self._connections, self._streams = (
-            RateLimits(),
-            Held("connections"),
-            Held("event streams"),
-        )
+        self._admission, self._rates, self._streams = admission, RateLimits(), Held("event streams")
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve one request of a known caller."""
@@ -50,8 +50,13 @@ class Access:
         if not closed and not meant_for_us(scope):
             raise NotForUs("A service without access keys answers to localhost and its own address only.")
         scope.setdefault("state", {})["closed"] = closed
-        if not closed or _open(scope["path"]):
+        if scope["path"] in VITAL_PATHS:
             await self._app(scope, receive, send)
+            return
+        if not closed or _open(scope["path"]):
+            most = self._admission.share if closed else None
+            with self._admission.admitted(scope, receive, NOBODY, most) as received:
+                await self._app(scope, received, send)
             return
         visit = Visit(scope, send)
         try:
@@ -72,10 +77,11 @@ class Access:
         if wait_s:
             text = f"Key {key.name!r} has {key.requests_per_minute} requests per minute."
             raise RateExceeded.after(wait_s, text)
+        most = key.connections or self._admission.share
         with ExitStack() as held:
-            held.enter_context(self._connections.one(key.name, key.connections))
+            received = held.enter_context(self._admission.admitted(scope, receive, key.name, most))
             scope["state"] |= {"caller": key, "held": held, "streams": self._streams}
-            await self._app(scope, receive, for_one_caller(visit.send))
+            await self._app(scope, received, for_one_caller(visit.send))
 
 
 def _open(path: str) -> bool:

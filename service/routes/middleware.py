@@ -16,7 +16,6 @@ from structlog.contextvars import bind_contextvars, clear_contextvars
 from service.problems import (
     ServiceError,
     TooLarge,
-    TooManyRequests,
     TooSlow,
     Unexpected,
     UnsupportedMediaType,
@@ -34,10 +33,6 @@ logger = structlog.get_logger(__name__)
 PATIENCE_S, LEAST_BYTES_PER_S = 30.0, 10_000.0
 """A body is to be there after so long, and longer by what has come at this rate."""
 
-MOST_REQUESTS = 400
-"""Answered at once by one server process; asked for its health it answers also then."""
-_VITAL = ("/health", "/ready")
-
 _IDENTIFIER = re.compile(rb"[A-Za-z0-9._-]{1,64}")
 _AS_SAID = (b"x-content-type-options", b"nosniff")  # a browser takes no answer for what it is not
 
@@ -47,7 +42,6 @@ class Guard:
 
     def __init__(self, app: ASGIApp, body_limit: int, metrics: Metrics) -> None:
         self._app, self._body_limit, self._metrics = app, body_limit, metrics
-        self._open = 0
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve one request."""
@@ -61,9 +55,7 @@ class Guard:
         # both stand in every line that this request logs
         bind_contextvars(request_id=exchange.identifier, **trace_facts(exchange.traceparent))
         begin = time.perf_counter()
-        self._open += 1
         try:
-            self._refuse_beyond(scope["path"])
             exchange.refuse_announced()
             await self._app(scope, exchange.receive, exchange.send)
         except ServiceError as error:
@@ -72,14 +64,8 @@ class Guard:
             logger.exception("unexpected failure", reference=exchange.identifier, path=scope["path"])
             await self._answer(Unexpected(exchange.identifier), exchange, scope)
         finally:
-            self._open -= 1
             stream.end()
             self._note(scope, exchange, time.perf_counter() - begin)
-
-    def _refuse_beyond(self, path: str) -> None:
-        """Refuse what is too much at once."""
-        if self._open > MOST_REQUESTS and path not in _VITAL:
-            raise TooManyRequests(f"{MOST_REQUESTS} requests are being answered. Try again soon.")
 
     @staticmethod
     async def _answer(error: ServiceError, exchange: _Exchange, scope: Scope) -> None:

@@ -75,4 +75,5 @@ def hold_stream(request: Request) -> None:
     """Count a stream of the caller until its last byte is sent; raises `TooManyHeld`."""
     key = key_of(request)
     if key is not None:
-        request.state.held.enter_context(request.state.streams.one(key.name, key.streams))
+        request.state.streams.refuse_beyond(key.name, key.streams)
+        request.state.held.enter_context(request.state.streams.one(key.name))

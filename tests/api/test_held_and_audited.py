@@ -18,7 +18,7 @@ from service_fakes import REGISTRY
 
 from service.access import Held, KeyFile
 from service.app import create_app
-from service.problems import TooManyHeld
+from service.problems import TooManyHeld, TooManyRequests
 from service.settings import Settings
 
 EXECUTION = "/v1/processes/fake/execution"
@@ -35,14 +35,15 @@ def bearing(key: str) -> dict[str, str]:
 
 
 def test_what_is_held_is_counted_by_name_and_given_back() -> None:
-    held = Held("streams")
-    with held.one("a", 2), held.one("a", 2), held.one("b", 1):
-        with pytest.raises(TooManyHeld, match="'a' holds 2 streams, its limit"), held.one("a", 2):
-            pass
-        with held.one("c", None), held.one("c", None):
-            pass
-    with held.one("a", 1):
-        pass
+    held = Held("streams", in_all=4)
+    with held.one("a"), held.one("a"), held.one("b"):
+        with pytest.raises(TooManyHeld, match="'a' holds 2 streams, the limit"):
+            held.refuse_beyond("a", 2)
+        held.refuse_beyond("a", 3)
+        held.refuse_beyond("a", None)
+        with held.one("c"), pytest.raises(TooManyRequests, match="4 streams in all"):
+            held.refuse_beyond("b", None)
+    held.refuse_beyond("a", 1)
     assert not held._held, "nothing is kept of who holds nothing"
 
 
@@ -95,7 +96,7 @@ def test_a_key_holds_as_many_connections_as_it_may(at: str, settings: Settings) 
             assert next(lines)
             refused = http.get("/v1/jobs", headers=one)
             assert (refused.status_code, refused.json()["type"]) == (429, TooManyHeld.type)
-            assert "'one' holds 1 connections" in refused.json()["detail"]
+            assert "'one' holds 1 requests" in refused.json()["detail"]
             assert http.get("/v1/jobs", headers=other).status_code == 200
         until(lambda: http.get("/v1/jobs", headers=one).status_code == 200)
 

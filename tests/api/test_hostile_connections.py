@@ -11,6 +11,7 @@ import uvicorn
 from running_service import PATIENCE_S, until
 from service_fakes import REGISTRY
 
+from service.access.capacity import Capacity
 from service.app import create_app
 from service.cli import bounded_http
 from service.cli.bounded_http import BoundedHttp
@@ -104,10 +105,9 @@ def test_a_caller_in_time_is_answered_again_and_again_on_a_connection(port: int)
 
 
 def test_where_every_connection_is_busy_one_more_is_told_so(
-    port: int, monkeypatch: pytest.MonkeyPatch
+    port: int, server: uvicorn.Server, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(bounded_http, "MOST_CONNECTIONS", 1)
-    monkeypatch.setattr(bounded_http, "MOST_BUSY_CONNECTIONS", 1)
+    monkeypatch.setitem(server.config.app.state._state, "capacity", Capacity(1))
     with socket.create_connection(("127.0.0.1", port), timeout=PATIENCE_S) as busy:
         busy.sendall(POST + b"Expect: 100-continue\r\nContent-Length: 1000\r\n\r\n")
         assert busy.recv(65536).startswith(b"HTTP/1.1 100 ")  # the request is under way
@@ -116,8 +116,10 @@ def test_where_every_connection_is_busy_one_more_is_told_so(
     assert b"urn:lineofaction:problem:too-many-requests" in answer
 
 
-def test_an_idle_connection_makes_room_for_another(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(bounded_http, "MOST_CONNECTIONS", 1)
+def test_an_idle_connection_makes_room_for_another(
+    port: int, server: uvicorn.Server, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(server.config.app.state._state, "capacity", Capacity(1))
     closing = WHOLE[:-2] + b"Connection: close\r\n\r\n"
     with socket.create_connection(("127.0.0.1", port), timeout=PATIENCE_S) as idle:
         assert b'{"status":"ok"}' in answered(port, closing)

@@ -16,9 +16,9 @@ from httpx2 import Response
 from small_table import small_table
 
 from service.access import KeyFile
+from service.access.capacity import Capacity
 from service.app import create_app
 from service.problems import BadInput, DatabaseUnavailable
-from service.routes import middleware
 from service.schemas.request_examples import CASE, SCENE
 from service.schemas.toml_table import toml_table
 from service.settings import Settings, load_settings
@@ -67,13 +67,15 @@ def test_toml_that_costs_much_is_refused(http: TestClient, kind: str) -> None:
 
 
 def test_beyond_so_many_requests_at_once_the_service_answers_for_its_health_alone(
-    http: TestClient, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(middleware, "MOST_REQUESTS", 0)
-    problem = refused(http.get("/v1/jobs"), 503)
-    assert problem["type"] == "urn:lineofaction:problem:too-many-requests"
-    assert http.get("/health").status_code == 200
-    assert 'loa_problems_total{problem="too-many-requests"}' in http.app.state.metrics.text().decode()  # type: ignore[attr-defined]
+    monkeypatch.setattr("service.app.capacity", lambda _workers: Capacity(1))
+    app = create_app(Settings(data_directory=tmp_path), works=False)
+    with TestClient(app) as http:
+        problem = refused(http.get("/v1/jobs"), 503)
+        assert problem["type"] == "urn:lineofaction:problem:too-many-requests"
+        assert http.get("/health").status_code == 200
+    assert 'loa_problems_total{problem="too-many-requests"}' in app.state.metrics.text().decode()
 
 
 def test_keys_as_long_as_they_may_be_and_rows_of_numbers_are_read() -> None:

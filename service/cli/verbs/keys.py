@@ -37,7 +37,7 @@ class KeyLimits:
         int | None, typer.Option("--max-cost", help="CPU seconds of a job; default: no limit.")
     ] = None
     connections: Annotated[
-        int | None, typer.Option(help="Limit on requests answered at the same time; default: no limit.")
+        int | None, typer.Option(help="Limit on requests answered at the same time; default: a quarter.")
     ] = None
     streams: Annotated[int | None, typer.Option(help="Limit on open event streams; default: no limit.")] = (
         None

@@ -1,0 +1,83 @@
+"""How many requests are answered at once, and how many bodies are awaited: of one caller and in all."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+
+from starlette.types import Message, Receive, Scope
+
+from service.access import Held
+from service.access.capacity import Capacity
+
+
+class Admission:
+    """The requests of all callers of one server process.
+
+    A body that is under way holds none of the places of requests that are answered: whoever sends bodies
+    slowly takes room from slow bodies alone, and from those of others no more than a share.
+
+    Parameters
+    ----------
+    capacity : Capacity
+
+    Attributes
+    ----------
+    share : int
+        Requests of one caller, and bodies, where nothing else is said.
+    """
+
+    def __init__(self, capacity: Capacity) -> None:
+        self.share = capacity.share
+        self._answered = Held("requests under way", capacity.requests)
+        self._awaited = Held("bodies under way", capacity.requests)
+
+    @contextmanager
+    def admitted(self, scope: Scope, receive: Receive, name: str, most: int | None) -> Iterator[Receive]:
+        """Hold a place among bodies until there is no more of it to come, then one among requests.
+
+        Parameters
+        ----------
+        scope, receive : Scope, Receive
+            Of the request.
+        name : str
+            Whose it is.
+        most : int or None
+            Requests of this caller, and bodies; None: as many as of all.
+
+        Yields
+        ------
+        Receive
+            What the request is to be read with.
+
+        Raises
+        ------
+        TooManyHeld, TooManyRequests
+            The caller has as many as it may, or all together have; nothing was read then.
+        """
+        self._answered.refuse_beyond(name, most)
+        with ExitStack() as place:
+            if not _announces_body(scope):
+                place.enter_context(self._answered.one(name))
+                yield receive
+                return
+            self._awaited.refuse_beyond(name, most)
+            place.enter_context(self._awaited.one(name))
+            whole = False
+
+            async def received() -> Message:
+                nonlocal whole
+                message = await receive()
+                if not whole and not message.get("more_body", False):
+                    whole = True
+                    place.close()
+                    place.enter_context(self._answered.one(name))
+                return message
+
+            yield received
+
+
+def _announces_body(scope: Scope) -> bool:
+    """Whether a body follows the head (RFC 9112, section 6.3)."""
+    headers = dict(scope["headers"])
+    return b"transfer-encoding" in headers or headers.get(b"content-length", b"0") != b"0"
