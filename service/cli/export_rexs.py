@@ -8,12 +8,14 @@ from typing import Any
 
 from service.cli.output import check_writable, console, print_json
 from service.cli.ste import open_ste
+from service.cli.warned import warn
 from service.from_rexs.opened import opened
 from service.problems import BadInput
 from service.registry import Study
 from service.report.inputs import file_attributes
 from service.report.stored_study import read_stored, stored_study
 from service.rexs import Attribute, Document, read_rexs, serialized
+from service.schemas.warning import left_out_warnings
 from service.to_rexs.calculated import CALCULATED
 from service.to_rexs.deflected import deflected, left_out
 from service.to_rexs.exported import exported
@@ -28,6 +30,7 @@ def run_export_rexs(
     check_writable(output)
     document = read_rexs(rexs)
     unit = opened(document)
+    warn(left_out_warnings(unit.left_out))
     facts: dict[str, Any] = {"file": str(output)}
     study = _study(file)
     if study is not None and study.name == "deflect":

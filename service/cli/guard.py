@@ -20,7 +20,7 @@ from service.problems import EXIT_INTERRUPTED, EXIT_WARNINGS, ServiceError, Unex
 
 P = ParamSpec("P")
 R = TypeVar("R")
-_STRICT = "Exit with code 3 if a value is implausible or a tolerance is not met."
+_STRICT = "Exit with code 3 if a value is implausible, a part left out, or a tolerance not met."
 Strict = Annotated[bool, typer.Option("--strict", help=_STRICT)]
 
 

@@ -8,10 +8,10 @@ from pathlib import Path
 
 from bounds import engineering
 from dynamics.results import RunResult
+from service.cli.assessed_case import assessed_scene
 from service.cli.listen_sounds import RunSound
 from service.cli.output import progress_bar
 from service.cli.warned import warn
-from service.client.portable import scene_of
 from service.convert.housings import HousedScene, housings_in
 from service.directories import cache_home
 from service.drawing.figure import number
@@ -63,7 +63,7 @@ def housing_sounds(
     """Return runs through the housings of a scene, and what to say of all."""
     receiver = replace(through.receiver, direction=view.direction)
     _require_no_view(view, receiver)
-    scene, folder = scene_of(through.scene)
+    scene, folder = assessed_scene(through.scene)
     with progress_bar() as report:
         bodies = housings_in(scene, cache_home(), folder, report)
     housings = SceneHousings.of(HousedScene(scene, bodies))

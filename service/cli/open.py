@@ -3,27 +3,35 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 
 from service.cli.output import console, print_json
 from service.cli.warned import warn
+from service.from_rexs.account import FATES
+from service.from_rexs.assumption import Assumption
 from service.from_rexs.files import report_lines, unit_files
+from service.from_rexs.left_out import headline
 from service.from_rexs.load_case import LoadCase
 from service.from_rexs.opened import OpenedUnit, opened
 from service.problems import BadInput
 from service.rexs import read_rexs
+from service.schemas.warning import left_out_warnings
 
-FATES = ("taken", "derived", "defaulted", "ignored", "refused")
 
+def run_open(file: Path, out: Path | None, assume: Sequence[str] = (), *, as_json: bool) -> None:
+    """Open a REXS file: write cases, scene, load cases and account, and print what is not taken as it is.
 
-def run_open(file: Path, out: Path | None, *, as_json: bool) -> None:
-    """Open a REXS file: write cases, scene, load cases and account, and print what is not taken as it is."""
-    unit = opened(read_rexs(file))
+    What is left out of the scene comes first and last.
+    """
+    unit = opened(read_rexs(file), [Assumption.of(text) for text in assume])
     folder = out or Path(file.name).with_suffix("")
     written = _write(unit, folder)
     counts = Counter[str](line.fate for line in unit.lines)
-    if unit.scene is None:
-        warn([{"check": "scene", "message": "no scene was made: see the refused lines"}])
+    left_out = headline(unit.lines)
+    if left_out and not as_json:
+        console().print(left_out, highlight=False, soft_wrap=True, markup=False)
+    warn(left_out_warnings(unit.left_out))
     if as_json:
         print_json(
             {
@@ -37,6 +45,8 @@ def run_open(file: Path, out: Path | None, *, as_json: bool) -> None:
         )
         return
     _show(unit, counts, written)
+    if left_out:
+        console().print(left_out, highlight=False, soft_wrap=True, markup=False)
 
 
 def _others(load: LoadCase) -> str:
@@ -66,7 +76,7 @@ def _show(unit: OpenedUnit, counts: Counter[str], written: list[Path]) -> None:
     out = console()
     values = ", ".join(f"{counts[fate]} {fate}" for fate in FATES if counts[fate])
     out.print(f"{len(unit.lines)} components and values: {values}", highlight=False, soft_wrap=True)
-    for line in report_lines(unit.lines):
+    for line in report_lines(unit.lines, ("assumed", "defaulted", "derived")):
         out.print(line, highlight=False, soft_wrap=True, markup=False)
     for case in unit.cases:
         others = f" (and {len(case.equal)} equal)" if case.equal else ""

@@ -8,12 +8,12 @@ from typing import Any
 from dynamics.scene import Scene
 from dynamics.simulation import interrupted_run, simulate_to_file
 from dynamics.types import RunStatus
+from service.cli.assessed_case import assessed_scene
 from service.cli.interrupt import until_interrupted
 from service.cli.output import Report, check_netcdf_output, console, print_json, print_result, progress_bar
 from service.cli.run_headlines import run_headlines
 from service.cli.scene_tables import scene_with_tables
 from service.cli.warned import warnings_so_far
-from service.client.portable import scene_of
 from service.convert.run_effects import model_lines
 from service.convert.runs import run_json, staged
 from service.convert.stamp import stamp
@@ -23,7 +23,7 @@ from service.problems import BadInput, JobFailed
 
 def run_simulate(file: InputFile, output: Path, service: str | None, *, resume: bool, as_json: bool) -> None:
     """Gather the tables, integrate here into the file, print."""
-    scene, folder = scene_of(file)
+    scene, folder = assessed_scene(file)
     check_netcdf_output(output)
     if resume and not interrupted_run(output).is_dir():
         advice = "There is none. Omit --resume to start a run."

@@ -12,6 +12,7 @@ from typing import Any
 from bounds import engineering
 from dynamics.results import RunResult
 from host import cpu_seconds
+from service.cli.assessed_case import assessed_scene
 from service.cli.interrupt import until_interrupted
 from service.cli.output import (
     Report,
@@ -27,7 +28,6 @@ from service.cli.output import (
 from service.cli.resumed import resumed_workers
 from service.cli.scene_tables import tabled_scene
 from service.cli.warned import messages, warn, warnings_so_far
-from service.client.portable import scene_of
 from service.convert.plausibility import case_warnings
 from service.convert.stamp import stamp
 from service.convert.task_workers import ExecutorChoice, open_executor
@@ -145,7 +145,7 @@ def _digest(file: Path) -> str:
 def _read(study: Study, file: InputFile) -> tuple[Case | SceneInput, Path]:
     """Return the case or the scene in a file, and its folder."""
     if study.subject == "scene" or (study.subject != "case" and "shafts" in read_table(file)):
-        return scene_of(file)
+        return assessed_scene(file)
     return read_model(Case, file), file.folder
 
 

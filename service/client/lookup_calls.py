@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -74,19 +74,27 @@ class LookupCalls(Surface):
         return (yield from self._answer("/v1/scenes/to-toml", body, _text))
 
     @operation
-    def open_unit(self, file: Path) -> Steps[UnitBody]:
+    def open_unit(self, file: Path, assume: Sequence[str] = ()) -> Steps[UnitBody]:
         """Return the gear unit in a REXS file (.rexs, .rexsj, .rexsz) as cases, scene and account.
+
+        Its `left_out` says what the file has and the scene has not.
+
+        Parameters
+        ----------
+        file : Path
+        assume : sequence of str
+            Values over the file's, ``"14.helix_angle_reference_diameter=-12"``.
 
         Raises
         ------
         BadInput
-            The file cannot be read, or is no sound REXS file; the message names the place.
+            The file cannot be read, is no sound REXS file, or has no such component; the message names it.
         """
         try:
             data = Path(file).read_bytes()
         except OSError as error:
             raise BadInput.of("file", str(file), f"a file that can be read ({error.strerror})") from None
-        body = {"rexs_base64": base64.b64encode(data).decode()}
+        body = {"rexs_base64": base64.b64encode(data).decode(), "assume": list(assume)}
         return (yield from self._answer("/v1/units/open", body, UnitBody.model_validate))
 
     def _answer(self, path: str, body: dict[str, Any], reader: Callable[[Any], T]) -> Steps[T]:

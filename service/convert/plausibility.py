@@ -18,6 +18,7 @@ from service.convert.errors import named
 from service.convert.vocabulary import case_field, scene_field
 from service.schemas import Case
 from service.schemas.scene import SceneInput
+from service.schemas.warning import left_out_warnings
 from service.units import DEGREE, GPA, MM, UM, factor, unit_name
 
 Json = dict[str, Any]
@@ -59,7 +60,9 @@ def scene_warnings(
     """
     with named(""):
         findings = [finding.to_json() for finding in scene_findings(scene)]
-    warnings = phrased([each for each in findings if _in_file(inputs, each["field"])], scene_field)
+    warnings = left_out_warnings(inputs.left_out) + phrased(
+        [each for each in findings if _in_file(inputs, each["field"])], scene_field
+    )
     for index, mesh in enumerate(inputs.meshes):
         warnings += [within(warning, f"meshes[{index}]") for warning in tables.get(mesh.name, ())]
     return unique(warnings)

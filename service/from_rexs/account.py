@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
-from service.rexs import Component, Model
+from service.from_rexs.assumption import ASSUMED, FORMER, shown
+from service.rexs import Attribute, Component, Model
 
-Fate = Literal["taken", "derived", "defaulted", "ignored", "refused"]
-"""Taken as it is; derived from other values; defaulted for want of a usable one; ignored, since nothing here
-uses it; refused with a reason, since it cannot be used."""
+Fate = Literal["taken", "assumed", "derived", "defaulted", "ignored", "refused"]
+"""Taken as it is; assumed by the caller over the file; derived from other values; defaulted for want of a
+usable one; ignored, since nothing here uses it; refused with a reason: the unit has it, the scene has not."""
+FATES: tuple[Fate, ...] = get_args(Fate)
 
 UNUSED = "no analysis uses it"
 
@@ -32,6 +34,8 @@ class Line:
     fate : Fate
     words : str
         Its name here, the formula it follows from, or the reason.
+    line : int or None
+        Of the component in an XML file, from 1.
     """
 
     place: str
@@ -41,6 +45,7 @@ class Line:
     item: str
     fate: Fate
     words: str
+    line: int | None = None
 
 
 class Account:
@@ -65,6 +70,10 @@ class Account:
         """State what becomes of an attribute that a component has or lacks; `item` "" is the component."""
         self._said[id(component), item] = (fate, words)
 
+    def is_stated(self, component: Component) -> bool:
+        """Return whether something was said of the component itself."""
+        return (id(component), "") in self._said
+
     def lines(self) -> tuple[Line, ...]:
         """Return a line for each component, each attribute, and each value stated that the file lacks.
 
@@ -78,8 +87,10 @@ class Account:
         said = {item: what for (owner, item), what in self._said.items() if owner == id(part)}
         own = said.pop("", None)
         for attribute in part.attributes:
-            said.setdefault(attribute.id, ("ignored", UNUSED))
-        used = any(fate in ("taken", "derived") for fate, _ in said.values())
+            fate, words = said.setdefault(attribute.id, ("ignored", UNUSED))
+            if attribute.origin == ASSUMED and fate in ("taken", "ignored"):
+                said[attribute.id] = _assumed(attribute, fate, words)
+        used = any(fate in ("taken", "derived", "assumed") for fate, _ in said.values())
         fate, words = own or (("taken", "") if used else ("ignored", UNUSED))
         yield self._line(part, "", fate, words)
         for item, (fate, words) in said.items():
@@ -87,4 +98,12 @@ class Account:
 
     def _line(self, part: Component, item: str, fate: Fate, words: str) -> Line:
         """Return a line of a component."""
-        return Line(self.place(part), part.id, part.type, part.name or "", item, fate, words)
+        return Line(self.place(part), part.id, part.type, part.name or "", item, fate, words, part.line)
+
+
+def _assumed(attribute: Attribute, fate: Fate, words: str) -> tuple[Fate, str]:
+    """Return what became of an assumed value: one that nothing reads is refused."""
+    if fate == "ignored":
+        return "refused", f"assumed to be {shown(attribute)}, and {words}"
+    former = dict(attribute.extra)[FORMER]
+    return "assumed", f"{shown(attribute)} instead of {former}: {words}"

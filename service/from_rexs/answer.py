@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from service.convert.case import case_json
+from service.from_rexs.assumption import Assumption
 from service.from_rexs.files import report_lines
 from service.from_rexs.opened import OpenedUnit, opened
 from service.problems import BadInput
@@ -23,19 +24,20 @@ def unit_of_rexs(inputs: Json, _folder: Path) -> Json:
     Raises
     ------
     BadInput
-        No base64, no REXS, or as `opened`.
+        No base64, no REXS, no assumption, or as `opened`.
     """
     try:
         data = base64.b64decode(inputs["rexs_base64"], validate=True)
     except (binascii.Error, ValueError):
         raise BadInput.of("rexs_base64", inputs["rexs_base64"][:20], "base64 of the file's bytes") from None
-    return unit_json(opened(parsed(data)))
+    return unit_json(opened(parsed(data), [Assumption.of(text) for text in inputs.get("assume", ())]))
 
 
 def unit_json(unit: OpenedUnit) -> Json:
     """Return an opened unit as JSON."""
     cases = {f"{case.name}.toml": case_json(case.case) for case in unit.cases}
     return {
+        "left_out": list(unit.left_out),
         "cases": [
             {
                 "name": case.name,

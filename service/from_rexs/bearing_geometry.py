@@ -9,6 +9,7 @@ from dynamics.errors import InputError
 from service.from_rexs.bearing_clearance import axial_clearance, radial_clearance
 from service.from_rexs.gear_unit import GearUnit
 from service.from_rexs.part import Part
+from service.rexs.vocabulary import words
 
 Row = BallBearing | RollerBearing
 
@@ -48,8 +49,11 @@ def bearing_geometry(unit: GearUnit, part: Part) -> BearingGeometry | str:
 
 
 def bearing_type(part: Part) -> str:
-    """Return the type of a rolling bearing."""
-    return part.text("bearing_type", "type of the bearing") or ""
+    """Return the type of a rolling bearing; the account refuses one that REXS does not have."""
+    kind = part.text("bearing_type", "type of the bearing") or ""
+    if kind and kind not in words("bearing_types"):
+        part.say("bearing_type", "refused", f"{kind} is no type of REXS: the bearing has no geometry")
+    return kind
 
 
 def _catalog_bearing(part: Part) -> BearingGeometry | str:

@@ -10,7 +10,7 @@ import numpy as np
 from bounds.types import FloatArray
 from dynamics.bearing_rows import RollerBearing
 from dynamics.errors import DynamicsError
-from service.from_rexs.bearing_geometry import Row, bearing_geometry, bearing_type
+from service.from_rexs.bearing_geometry import Row, bearing_geometry
 from service.from_rexs.gear_unit import GearUnit
 from service.from_rexs.part import Part
 
@@ -85,7 +85,8 @@ def _radial(part: Part, tangent: FloatArray | None) -> float:
     value = _stated(part, item, derived)
     if value:
         return value
-    kind = "roller" if "roller" in bearing_type(part) else "ball"
+    word = part.attribute("bearing_type")
+    kind = "roller" if word is not None and "roller" in str(word.value) else "ball"
     reason = "neither stiffness nor geometry is stated"
     part.say(item, "defaulted", f"{USUAL[kind]:g} N/m, as of {kind} bearings of about 50 mm bore: {reason}")
     return USUAL[kind]

@@ -28,6 +28,7 @@ Table = dict[str, Any]
 LOAD_INTENSITIES = (5e6, 15e6, 30e6)
 """F_t / (b m_n) in Pa of the load levels of a stage without torques."""
 _SAME_ANGLE = 1e-6  # rad
+_HELIX = "helix_angle_reference_diameter"
 
 
 @dataclass(frozen=True)
@@ -116,20 +117,44 @@ def _refuse_strangers(pair: PairData) -> None:
 
     The sign of a ring gear's helix angle depends on the writer's sign of its teeth; its size must fit.
     """
-    pinion, wheel = pair.toothed.pinion, pair.toothed.wheel
-    angle = pinion.helix_angle + wheel.helix_angle if wheel.sign > 0 else 0.0
-    same = (
-        math.isclose(pinion.normal_module, wheel.normal_module, rel_tol=1e-9)
-        and abs(pinion.pressure_angle - wheel.pressure_angle) < _SAME_ANGLE
-        and abs(abs(pinion.helix_angle) - abs(wheel.helix_angle)) < _SAME_ANGLE
-        and abs(angle) < _SAME_ANGLE
-    )
-    if not same:
-        names = (pinion.part.name, wheel.part.name)
-        bound = "of one module and pressure angle, and of opposite helix angles"
-        raise BadInput.of(f"{pair.meshing.stage.place}, gears", list(names), bound)
+    gears = pinion, wheel = pair.toothed.pinion, pair.toothed.wheel
+    if not math.isclose(pinion.normal_module, wheel.normal_module, rel_tol=1e-9):
+        modules = [f"module {gear.normal_module / MM:.9g} mm" for gear in gears]
+        raise _strangers(pair, modules, "of one normal module", "normal_module")
+    if abs(pinion.pressure_angle - wheel.pressure_angle) >= _SAME_ANGLE:
+        angles = [f"pressure angle {gear.pressure_angle / DEGREE:.9g} deg" for gear in gears]
+        raise _strangers(pair, angles, "of one normal pressure angle")
+    _refuse_hands(pair)
     if wheel.sign < 0 and wheel.helix_angle:
-        wheel.part.say("helix_angle_reference_diameter", "derived", "the hand is that of its mate")
+        wheel.part.say(_HELIX, "derived", "the hand is that of its mate")
+
+
+def _refuse_hands(pair: PairData) -> None:
+    """Refuse helix angles of different size, or of one hand where they must be opposite."""
+    gears = pair.toothed.pinion, pair.toothed.wheel
+    hands = [
+        f"{'right' if gear.helix_angle > 0.0 else 'left'} hand, {abs(gear.helix_angle) / DEGREE:.9g} deg"
+        for gear in gears
+    ]
+    first, second = (gear.helix_angle for gear in gears)
+    if gears[1].sign > 0 and abs(first + second) >= _SAME_ANGLE:
+        raise _strangers(pair, hands, "of helix angles of one size and of opposite hands", _HELIX, -1)
+    if abs(abs(first) - abs(second)) >= _SAME_ANGLE:
+        raise _strangers(pair, hands, "of helix angles of one size", _HELIX)
+
+
+def _strangers(pair: PairData, facts: Sequence[str], bound: str, item: str = "", factor: int = 1) -> BadInput:
+    """Return the error of gears that do not mate: what each is, and its mate's value as an assumption."""
+    parts = pair.toothed.pinion.part, pair.toothed.wheel.part
+    named = [f"{part.id} {part.name}: {fact}" for part, fact in zip(parts, facts, strict=True)]
+    stated = [None if (entry := part.attribute(item)) is None else entry.value for part in parts]
+    mends = [
+        f"--assume {part.id}.{item}={factor * mate:.9g}"
+        for part, mate in zip(parts, stated[::-1], strict=True)
+        if isinstance(mate, (int, float))
+    ]
+    advice = f"Open it with {' or '.join(mends)}." if mends else ""
+    return BadInput.of(f"{pair.meshing.stage.place}, gears", named, bound, advice)
 
 
 def _depth(

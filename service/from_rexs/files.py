@@ -63,7 +63,7 @@ def _rounded(value: Any) -> Any:
 
 
 def report_lines(
-    lines: Iterable[Line], fates: tuple[str, ...] = ("refused", "defaulted", "derived")
+    lines: Iterable[Line], fates: tuple[str, ...] = ("refused", "assumed", "defaulted", "derived")
 ) -> Iterator[str]:
     """Yield the lines of the account that an engineer reads, in order of the fates.
 

@@ -9,6 +9,7 @@ from service.from_rexs.gear_unit import GearUnit
 from service.from_rexs.part import Part
 
 _GEARS = ("gear_1", "gear_2")
+NO_STAGE = "relation `stage` needs two gears with teeth, on two shafts that carry them and turn by themselves"
 
 
 @dataclass(frozen=True)
@@ -56,8 +57,7 @@ def _stages(unit: GearUnit) -> Iterator[GearStage]:
         shafts = [owner for gear in gears if (owner := unit.owner(gear, "shaft")) is not None]
         signed = [teeth for gear in gears if (teeth := teeth_of(gear)) is not None]
         if len(gears) != 2 or len(shafts) != 2 or len(signed) != 2 or shafts[0].id == shafts[1].id:
-            reason = "relation `stage` needs two gears with teeth, on two shafts that carry them"
-            stage.say("", "refused", reason)
+            stage.say("", "refused", NO_STAGE)
             continue
         internal = any(gear.type == "ring_gear" for gear in gears)
         first, second = (abs(teeth) for teeth in signed)

@@ -81,7 +81,7 @@ def _compare(part: Part, item: str, stated: float | None, u: float, off_axis: fl
         part.say(item, "ignored", words)
     if off_axis > 1e2 * SAME_PLACE:
         words = f"{off_axis * 1e3:.4g} mm off the axis of its shaft; taken along the axis alone"
-        part.say("support_vector", "derived", words)
+        part.say("support_vector", "refused", words)
 
 
 def layout_of(unit: GearUnit) -> Layout:

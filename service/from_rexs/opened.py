@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from service.from_rexs.account import Line
+from service.from_rexs.assumption import Assumption, assumed
 from service.from_rexs.gear_unit import GearUnit
 from service.from_rexs.layout import Layout, layout_of
+from service.from_rexs.left_out import say_left_out, statements
 from service.from_rexs.load_case import LoadCase, load_case
 from service.from_rexs.operating_points import operating_points
-from service.from_rexs.power_flow import PowerFlow, power_flow
+from service.from_rexs.power_flow import REPLACED, PowerFlow, power_flow
 from service.from_rexs.scene import SceneTable, scene_table
 from service.from_rexs.scene_loads import AppliedTorque
 from service.from_rexs.scene_parts import SceneParts
@@ -54,8 +56,13 @@ class OpenedUnit:
     changes: tuple[Change, ...]
     parts: SceneParts = field(default_factory=SceneParts)
 
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """What the file has and the scene has not, a sentence for each reason; as the scene states it."""
+        return statements(self.lines)
 
-def opened(document: Document) -> OpenedUnit:
+
+def opened(document: Document, assumptions: Iterable[Assumption] = ()) -> OpenedUnit:
     """Return the cases and the scene of a gear unit.
 
     The scene runs at the load case of the largest share of the time.
@@ -64,19 +71,23 @@ def opened(document: Document) -> OpenedUnit:
     ----------
     document : Document
         Of any version of REXS.
+    assumptions : iterable of Assumption
+        Values over those of the file.
 
     Raises
     ------
     BadInput
-        A value has the wrong type or unit, or a place, a section or the version is none.
+        A value has the wrong type or unit, or a place, a section, the version or an assumption is none.
     """
     model, changes = upgrade(document.model)
-    unit = GearUnit(model)
+    unit = GearUnit(assumed(model, assumptions))
     layout = layout_of(unit)
     flows = _flows(layout)
     cases = stage_cases(unit, _torques(layout, flows), _drivers(layout, flows))
     table = scene_table(layout, flows, cases) if flows and cases else None
     _say_missing(layout, flows, cases)
+    if table is not None:
+        say_left_out(unit)
     scene = None if table is None else _scene(layout, table)
     loads = _load_cases(flows, table)
     parts = SceneParts() if table is None or scene is None else table.parts
@@ -95,6 +106,8 @@ def _flows(layout: Layout) -> list[PowerFlow]:
             continue
         for remark in flow.remarks:
             _say(layout, "torque", "derived", remark)
+        for load in flow.replaced:
+            layout.unit.part(load).say("torque_around_u_axis", "refused", REPLACED)
         flows.append(flow)
     first = max(range(len(flows)), key=lambda index: flows[index].point.share, default=0)
     return [*flows[first : first + 1], *flows[:first], *flows[first + 1 :]]
@@ -125,9 +138,10 @@ def _torques(layout: Layout, flows: Sequence[PowerFlow]) -> Mapping[int, tuple[f
 
 
 def _scene(layout: Layout, table: SceneTable) -> SceneInput | None:
-    """Return the validated scene, None if the account says what it lacks."""
+    """Return the validated scene, marked by what is left out; None if the account says what it lacks."""
+    left_out = statements(layout.unit.account.lines())
     try:
-        return validated(SceneInput, table.table)
+        return validated(SceneInput, table.table | ({"left_out": list(left_out)} if left_out else {}))
     except BadInput as error:
         _say(layout, "scene", "refused", str(error))
         return None

@@ -63,7 +63,7 @@ def operating_points(unit: GearUnit) -> tuple[OperatingPoint, ...]:
     cases = unit.load_cases()
     for number, spectrum in enumerate(unit.model.spectra[1:], 2):
         for part in (part for case in spectrum.cases for part in case.components):
-            unit.account.say(part, "", "ignored", f"load spectrum {number}; the first is taken")
+            unit.account.say(part, "", "refused", f"load spectrum {number}; the first is taken")
     if not cases:
         return (_point("nominal", (1, 1.0), own, ()),)
     shares = [_share(case) for case in cases]

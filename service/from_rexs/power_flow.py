@@ -18,6 +18,7 @@ DEFAULT_SPEED = 1000.0 * math.pi / 30.0
 """rad/s, where the file states none."""
 NO_SPEED = "no speed is stated: the first loaded shaft turns at 1000/min"
 UNBALANCED = "the torques stated do not balance: the first is taken, the others follow from it"
+REPLACED = "it does not balance the first torque stated, from which the scene's follows"
 SHARED = "statics leaves open how parallel stages share the load: equally among equal planets (least squares)"
 
 
@@ -42,6 +43,10 @@ class PowerFlow:
         Torques of the stages on the rotors.
     remarks : tuple of str
         What was assumed.
+    joined : frozenset of int
+        The rotors that the train joins to a speed that is known.
+    replaced : tuple of int
+        The loads whose stated torques do not balance the first; theirs follow from it.
     """
 
     point: OperatingPoint
@@ -51,6 +56,12 @@ class PowerFlow:
     loads: Mapping[int, float]
     flow: Flow
     remarks: tuple[str, ...]
+    joined: frozenset[int]
+    replaced: tuple[int, ...] = ()
+
+    def moves(self, stage: GearStage) -> bool:
+        """Return whether the train joins a stage to a speed that is known."""
+        return all(self.layout.rotor(shaft.id) in self.joined for shaft in stage.shafts)
 
     def speed(self, rotor: int) -> float:
         """Return the speed of a rotor, rad/s."""
@@ -88,7 +99,10 @@ def power_flow(point: OperatingPoint, layout: Layout, train: Train) -> PowerFlow
         return "neither a speed nor a torque is stated"
     speeds = train.speeds(problem.speeds_stated or problem.default_speed)
     if speeds is None:
-        return "the speeds stated contradict the ratios of the stages, or leave some open"
+        stated = ", ".join(map(str, point.speeds)) or "none"
+        return (
+            f"the speeds stated (of shafts {stated}) contradict the ratios of the stages, or leave some open"
+        )
     known = problem.known(speeds)
     for loads, remark in problem.attempts(known):
         opened = [load for load in problem.owner if load not in loads]
@@ -97,7 +111,9 @@ def power_flow(point: OperatingPoint, layout: Layout, train: Train) -> PowerFlow
             torques = loads | {load: flow.outside[problem.rotor(load)] for load in opened}
             torques |= problem.at_open_ends(flow, opened)
             remarks = (*problem.remarks, *([remark] if remark else ()), *([SHARED] if flow.is_shared else ()))
-            return PowerFlow(point, layout, train, speeds, torques, flow, remarks)
+            replaced = tuple(load for load in known if load not in loads)
+            joined = frozenset(problem.joined)
+            return PowerFlow(point, layout, train, speeds, torques, flow, remarks, joined, replaced)
     return "the torques stated do not balance, or leave some open"
 
 
@@ -112,6 +128,8 @@ class _Problem:
             layout.rotor(shaft): speed * layout.sense(shaft) for shaft, speed in point.speeds.items()
         }
         self.remarks = () if self.speeds_stated else (NO_SPEED,)
+        self.joined = train.joined_to(self.speeds_stated or (self.default_speed if self.owner else ()))
+        self.owner = {load: shaft for load, shaft in self.owner.items() if layout.rotor(shaft) in self.joined}
 
     @property
     def default_speed(self) -> dict[int, float]:

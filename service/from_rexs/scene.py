@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from service.from_rexs.gear_stages import NO_STAGE, GearStage
 from service.from_rexs.layout import Layout
 from service.from_rexs.names import Names
 from service.from_rexs.placement import FIXED, placement
@@ -26,7 +27,7 @@ from service.from_rexs.scene_loads import (
     trains_of,
 )
 from service.from_rexs.scene_parts import SceneParts, scene_parts
-from service.from_rexs.scene_shafts import scene_shafts
+from service.from_rexs.scene_shafts import SceneShafts, scene_shafts
 from service.from_rexs.stage_case import StageCase
 
 STANDARD_GRAVITY = 9.80665
@@ -70,9 +71,12 @@ def scene_table(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[Stag
     """
     flow = flows[0]
     by_stage, names = cases_by_stage(cases), Names()
-    computed = [s for s in layout.stages if s.stage.id in by_stage and layout.is_computed(s)]
+    computed = [
+        s for s in layout.stages if s.stage.id in by_stage and layout.is_computed(s) and flow.moves(s)
+    ]
     cut = [stage for stage in layout.stages if stage not in computed]
     shafts = scene_shafts(layout, computed, names)
+    _say_without_mesh(layout, cases, computed, shafts)
     bearings = scene_bearings(layout, shafts)
     gears, meshes = scene_gears(layout, shafts, by_stage, Names())
     torques = applied_torques(layout, flow, shafts, cut)
@@ -103,6 +107,19 @@ def scene_table(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[Stag
         forces,
         scene_parts(layout, flow, shafts, bearings.seats, named),
     )
+
+
+def _say_without_mesh(
+    layout: Layout, cases: Sequence[StageCase], computed: Sequence[GearStage], shafts: SceneShafts
+) -> None:
+    """State which stages have a case but no mesh in the scene, but for those of equal planets."""
+    meshed = {stage.stage.id for stage in shafts.stages}
+    meshed |= {s.stage.id for s in computed} & {equal for case in cases for equal in case.equal}
+    on_shafts = {stage.stage.id for stage in layout.stages}
+    for number in cases_by_stage(cases).keys() - meshed:
+        words = "it has a case and no mesh: its shafts are not parallel to those of the first stage, nothing "
+        words += "places them or joins them to a speed, or they carry a planet unlike the first"
+        layout.unit.part(number).say("", "refused", words if number in on_shafts else NO_STAGE)
 
 
 def _duration(layout: Layout, rate: float) -> float:
@@ -143,6 +160,7 @@ def _planets(layout: Layout, names: dict[int, str]) -> list[dict[str, Any]]:
     for planets in layout.rotors.sets:
         first = planets.planets[0]
         if first.id not in names:
+            planets.stage.say("", "refused", "no stage of the scene has its planets")
             continue
         places = [layout.shafts[p.id].origin[:2] for p in planets.planets if p.id in layout.shafts]
         central = next((layout.shafts[c.id] for c in planets.central if c.id in layout.shafts), None)
@@ -155,6 +173,8 @@ def _planets(layout: Layout, names: dict[int, str]) -> list[dict[str, Any]]:
         if not np.allclose(turned, equal, atol=1e-6):
             table["angles_deg"] = turned
         for planet in planets.planets[1:]:
-            planet.say("", "derived", f"copy of planet {names[first.id]}")
+            gears = layout.unit.children(planet, "cylindrical_gear")
+            for part in (planet, *gears):
+                part.say("", "derived", f"copy of planet {names[first.id]}")
         tables.append(table)
     return tables

@@ -79,7 +79,10 @@ def _enter(
         _say_clearances(entry.part)
         tables.couplings.append(_between(layout, shafts, names, entry))
     else:
-        entry.part.say("", "ignored", "what it holds is not in the scene, or is that of an equal planet")
+        copies = {copy.id for planets in layout.rotors.sets for copy in planets.planets[1:]}
+        is_copy = bool(copies & {entry.inner.id, entry.outer.id})
+        words = "that of an equal planet" if is_copy else "what it holds is not in the scene"
+        entry.part.say("", "derived" if is_copy else "refused", words)
 
 
 def _enter_on_ground(

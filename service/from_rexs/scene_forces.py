@@ -86,6 +86,7 @@ def _forces(layout: Layout, loads: Sequence[Part], shafts: SceneShafts) -> Itera
         position = shaft.position_mm(z)
         lever = z - shaft.begin - position * MM
         turn = layout.axes.turn(placed.place)
+        part.say("", "taken", f"acts on shaft {shaft.name}")
         if part.number("width_of_external_load", "width of a line load, mm"):
             words = "a line load is not spread: its force acts at u_coordinate_on_shaft"
             part.say("width_of_external_load", "ignored", words)

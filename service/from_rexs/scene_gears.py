@@ -15,6 +15,8 @@ from service.from_rexs.scene_shafts import SceneShaft, SceneShafts, inertia_tabl
 from service.from_rexs.stage_case import StageCase
 from service.units import MM
 
+SAME = 1e-6
+"""Relative; axes of a scene that differ more from the center distance of their mesh are refused."""
 RIM = 3.5
 """Modules; thinner rims weaken the tooth root (ISO 6336-3, rim thickness factor)."""
 INTEGRAL = 0.95
@@ -42,6 +44,7 @@ def scene_gears(
         for gear, shaft in zip(stage.gears, stage.shafts, strict=True):
             if gear.id not in gears:
                 gears[gear.id] = _gear(layout, shafts, gear, shaft, names)
+        _say_apart(layout, stage, case)
         driver, driven = driving_gears(stage, case)
         mesh: dict[str, Any] = {
             "name": mesh_names.of(stage.stage),
@@ -53,6 +56,17 @@ def scene_gears(
             mesh["wheel_drives"] = True
         meshes.append(mesh | _offset(layout, stage))
     return list(gears.values()), meshes
+
+
+def _say_apart(layout: Layout, stage: GearStage, case: StageCase) -> None:
+    """State a center distance that contradicts the places of the shafts: no verb takes such a scene."""
+    first, second = (layout.shafts[shaft.id].origin for shaft in stage.shafts)
+    apart = math.hypot(*(second - first)[:2])
+    if not math.isclose(apart, case.center_distance, rel_tol=SAME):
+        words = f"{case.center_distance / MM:.7g} mm, and its shafts are {apart / MM:.7g} mm apart, "
+        mend = f"--assume {stage.stage.id}.center_distance={apart / MM:.7g}"
+        words += f"where no verb takes them: open it with {mend}, or move a shaft"
+        stage.stage.say("center_distance", "refused", words)
 
 
 def driving_gears(stage: GearStage, case: StageCase) -> tuple[Part, Part]:
@@ -87,6 +101,8 @@ def _gear(layout: Layout, shafts: SceneShafts, gear: Part, shaft: Part, names: N
     u = layout.u_on(placed, gear)
     on = shafts.stubs.get(gear.id) or shafts.by_rotor[layout.rotor(shaft.id)]
     z = float(placed.start[2]) + placed.sense * u
+    if gear.id not in shafts.stubs:
+        gear.say("", "taken", f"gear on shaft {on.name}")
     return {
         "name": names.of(gear),
         "shaft": on.name,
@@ -153,6 +169,7 @@ def _disc(part: Part, on: SceneShaft, z: float, names: Names) -> dict[str, Any] 
     if moments[1] != moments[2]:
         part.say("moment_of_inertia_w_axis", "derived", "mean of v and w: a disc is a body of revolution")
     inertia = Inertia(mass, moments[0], 0.5 * (moments[1] + moments[2]))
+    part.say("", "taken", f"disc on shaft {on.name}")
     return {
         "name": names.of(part),
         "shaft": on.name,

@@ -79,6 +79,7 @@ def _housing(layout: Layout, group: Part, seats: dict[int, str], names: Names) -
     turn = np.kron(np.eye(2 * len(points)), layout.axes.turn(place))
     turned = turn @ matrix @ turn.T
     kept = [index for index, name in enumerate(bearings) if name]
+    group.say("", "taken", "elastic housing")
     group.say(_MATRIX, "taken", f"stiffness under {len(kept)} bearings; u, v, w turned to x, y, z, mm to m")
     return {
         "name": names.of(group),

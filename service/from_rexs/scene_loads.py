@@ -56,29 +56,39 @@ def _external(layout: Layout, flow: PowerFlow, shafts: SceneShafts) -> Iterator[
         part = layout.unit.part(load)
         shaft = part if part.type == "shaft" else layout.unit.owner(part, "shaft")
         if shaft is None or layout.rotor(shaft.id) not in shafts.by_rotor or shaft.id not in layout.shafts:
-            part.say("", "ignored", "acts on a shaft that the scene has not; its torque enters by the ratios")
+            part.say("", "refused", "acts on a shaft that the scene has not; its torque enters by the ratios")
             continue
         placed = layout.shafts[shaft.id]
         z = layout.z_on(placed, part)
-        item = "torque_around_u_axis"
+        if part is not shaft:
+            part.say("", "taken", f"torque on shaft {shafts.by_rotor[layout.rotor(shaft.id)].name}")
         if flow.point.torques.get(load) is None:
-            part.say(
-                item, "derived", f"{placed.sense * torque:.6g} N m in {flow.point.name}: statics of the train"
-            )
+            _say_open(part, f"{placed.sense * torque:.6g} N m in {flow.point.name}: statics of the train")
         yield AppliedTorque(part, layout.rotor(shaft.id), z, torque)
+
+
+def _say_open(part: Part, words: str) -> None:
+    """State a torque that follows from statics, at a load, or at a shaft for which the file has none."""
+    if part.type == "shaft":
+        words = f"the file has none at this end of the train; the scene has {words}"
+        part.say("external_load", "refused", words)
+    else:
+        part.say("torque_around_u_axis", "derived", words)
 
 
 def _of_stages(
     layout: Layout, flow: PowerFlow, shafts: SceneShafts, cut: Sequence[GearStage]
 ) -> Iterator[AppliedTorque]:
     """Yield what stages that are not computed do to shafts of the scene."""
+    meshed = {gear.id for stage in shafts.stages for gear in stage.gears}
     for stage in cut:
         for number, (gear, shaft) in enumerate(zip(stage.gears, stage.shafts, strict=True)):
             if layout.rotor(shaft.id) in shafts.by_rotor and shaft.id in layout.shafts:
                 placed = layout.shafts[shaft.id]
                 torque = flow.on_gear(stage, number)
                 words = f"cut off: its torque of {placed.sense * torque:.6g} N m by the ratio is a load; "
-                gear.say("", "derived", words + "its forces across and along the axis are left out")
+                words += "its forces across and along the axis are left out"
+                gear.say(f"stage {stage.stage.id}" if gear.id in meshed else "", "refused", words)
                 yield AppliedTorque(gear, layout.rotor(shaft.id), layout.z_on(placed, gear), torque)
 
 

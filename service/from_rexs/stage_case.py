@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import TypeVar
 
+from service.from_rexs.assumption import mend
 from service.from_rexs.case_table import PairData, case_of
 from service.from_rexs.center_distance import axial_offset_of, center_distance_of
 from service.from_rexs.flank_sides import loaded_flank
@@ -101,7 +102,7 @@ def _attempt(stage: Part, make: Callable[[], T]) -> T | None:
     try:
         return make()
     except BadInput as error:
-        stage.say("", "refused", f"no case: {error}")
+        stage.say("", "refused", f"no case: {error}{mend(error)}")
         return None
 
 

@@ -7,7 +7,7 @@ rotors: the work of a stage is zero in every motion that its ratio permits.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -47,12 +47,14 @@ class Train:
     def speeds(self, known: Mapping[int, float]) -> FloatArray | None:
         """Return the speeds of all rotors, rad/s, None where the known ones do not fit or leave some open.
 
+        Rotors that nothing joins to the known ones are at rest.
+
         Parameters
         ----------
         known : mapping of int to float
             Speeds by rotor.
         """
-        free = self._free()
+        free = self._free(set(self.rotors) - self.joined_to(known))
         columns = [self.rotors.index(rotor) for rotor in known]
         values = np.array(list(known.values()))
         if free.shape[1] == 0 or np.linalg.matrix_rank(free[columns], tol=EQUAL) < free.shape[1]:
@@ -63,10 +65,19 @@ class Train:
             return None
         return np.asarray(free @ shares)
 
-    def _free(self) -> FloatArray:
-        """Return an orthonormal base of the speeds that ratios and held rotors permit, (rotors, freedoms)."""
-        held = np.zeros((len(self.held), len(self.rotors)))
-        held[range(len(self.held)), self.held] = 1.0
+    def joined_to(self, rotors: Iterable[int]) -> set[int]:
+        """Return these rotors and all that stages and couplings join to them."""
+        joined = np.isin(self.rotors, list(rotors))
+        count = -1
+        while count < (count := int(joined.sum())):
+            joined |= np.any(self.rows[np.any(self.rows[:, joined], axis=1)], axis=0)
+        return {rotor for rotor, is_joined in zip(self.rotors, joined, strict=True) if is_joined}
+
+    def _free(self, resting: set[int]) -> FloatArray:
+        """Return an orthonormal base (rotors, freedoms) of the speeds that ratios and resting ones permit."""
+        columns = [*self.held, *map(self.rotors.index, resting)]
+        held = np.zeros((len(columns), len(self.rotors)))
+        held[range(len(columns)), columns] = 1.0
         scale = np.linalg.norm(self.rows, axis=1, keepdims=True)
         return _null_space(np.vstack([self.rows / scale, held]))
 

@@ -14,7 +14,7 @@ from service.rexs.model import (
     Reference,
     Relation,
 )
-from service.rexs.quantities import quantities, quantity
+from service.rexs.quantities import listed_unit, quantities, quantity
 from service.rexs.units import si_value
 from service.rexs.upgrade import NEWEST, VERSIONS, Change, upgrade
 
@@ -32,6 +32,7 @@ __all__ = [
     "Relation",
     "external_file",
     "external_files",
+    "listed_unit",
     "parsed",
     "quantities",
     "quantity",

@@ -47,13 +47,18 @@ class Attribute:
 
 @dataclass(frozen=True)
 class Component:
-    """A part of the gear unit, or what a load case sets of it."""
+    """A part of the gear unit, or what a load case sets of it.
+
+    `line` is that of its element in an XML file, from 1; None in other forms. Components that differ in it
+    alone are equal.
+    """
 
     id: int
     type: str
     attributes: tuple[Attribute, ...] = ()
     name: str | None = None
     extra: Extra = ()
+    line: int | None = field(default=None, compare=False)
 
     def attribute(self, name: str) -> Attribute | None:
         """Return the first attribute of a name, None if there is none."""

@@ -50,6 +50,11 @@ def quantities(component: Component, name: str, place: str) -> tuple[float, ...]
     return tuple(_number(entry, attribute, f"{place}, {name}") for entry in attribute.value)
 
 
+def listed_unit(name: str) -> str | None:
+    """Return the unit that REXS gives an attribute, None of one that is not in `quantities.toml`."""
+    return _units().get(name)
+
+
 def _only(component: Component, name: str, place: str) -> Attribute | None:
     """Return the attribute of a name, None if there is none."""
     named = [attribute for attribute in component.attributes if attribute.id == name]

@@ -76,6 +76,7 @@ def _component(element: Element) -> Component:
         attributes=tuple(map(_attribute, _only(element, "attribute"))),
         name=element.fields.get("name"),
         extra=_extra(element, "id", "type", "name"),
+        line=element.line,
     )
 
 

@@ -30,8 +30,7 @@ async def open_unit(body: UnitFile, context: Ctx, request: Request) -> Response:
 
     A process of its own reads the file; nothing outside of it is opened.
     """
-    order = LiveOrder(ENTRY, {"rexs_base64": body.rexs_base64})
-    return await read_by(context, order, request)
+    return await read_by(context, LiveOrder(ENTRY, body.model_dump()), request)
 
 
 explained(open_unit, UnitFile)

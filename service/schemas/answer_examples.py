@@ -231,6 +231,7 @@ ANSWERS: dict[str, Any] = {
     "/v1/scenes/from-toml": BODIES["/v1/scenes/to-toml"]["inputs"],
     "/v1/scenes/to-toml": BODIES["/v1/scenes/from-toml"],
     "/v1/units/open": {
+        "left_out": ["gear_unit 1, scene: no load case fits the train"],
         "cases": [],
         "scene": None,
         "load_cases": [],
@@ -242,10 +243,11 @@ ANSWERS: dict[str, Any] = {
                 "name": "",
                 "item": "scene",
                 "fate": "refused",
-                "words": "no scene: no load case fits the train",
+                "words": "no load case fits the train",
+                "line": None,
             }
         ],
-        "summary": ["refused   gear_unit 1, scene: no scene: no load case fits the train"],
+        "summary": ["refused   gear_unit 1, scene: no load case fits the train"],
     },
     "/v1/effects": [
         {

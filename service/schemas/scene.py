@@ -112,6 +112,12 @@ class SceneInput(BoundaryModel):
     integration: IntegrationInput = Field(
         default=IntegrationInput(), description="Time integration", examples=[{}]
     )
+    left_out: Annotated[tuple[Annotated[str, Field(max_length=4000)], ...], Strict(False)] = Field(
+        default=(),
+        max_length=1000,
+        exclude_if=lambda texts: not texts,
+        description="What the file that the scene was made from has and the scene has not; verbs repeat it",
+    )
     effects: dict[EffectName, Switch] = Field(
         default={}, description="Switches of optional physics; left out = auto"
     )

@@ -19,6 +19,11 @@ class UnitFile(BoundaryModel):
         description="The bytes of the file in base64: XML, JSON or ZIP",
         examples=["PG1vZGVsIHZlcnNpb249IjEuNyI+"],
     )
+    assume: Annotated[list[Annotated[str, Field(max_length=10_000)]], Field(max_length=1000)] = Field(
+        default=[],
+        description="Values over the file's before it is opened, in its units: COMPONENT.ATTRIBUTE=VALUE",
+        examples=[["14.helix_angle_reference_diameter=-12"]],
+    )
 
 
 class StageBody(BaseModel):
@@ -57,17 +62,23 @@ class UnitLine(BaseModel):
     kind: str
     name: str
     item: str = Field(description="The attribute; empty for the component itself")
-    fate: str = Field(description="taken, derived, defaulted, ignored or refused")
+    fate: str = Field(description="taken, assumed, derived, defaulted, ignored or refused")
     words: str
+    line: int | None = Field(description="Of the component in an XML file, from 1; null in other forms")
 
 
 class UnitBody(BaseModel):
     """Cases, scene and load cases of a gear unit, and the account of the import."""
 
+    left_out: list[str] = Field(
+        description="What the file has and the scene has not, a sentence a reason; the scene repeats it"
+    )
     cases: list[StageBody]
     scene: Annotated[dict[str, Any], Named("SceneInput")] | None = Field(
         description="The whole unit, the cases of its meshes written out; null: the account says why"
     )
     load_cases: list[LoadCaseBody]
     lines: list[UnitLine]
-    summary: list[str] = Field(description="What was refused, defaulted and derived, a sentence each")
+    summary: list[str] = Field(
+        description="What was refused, assumed, defaulted and derived, a sentence each"
+    )

@@ -19,8 +19,8 @@ RELATIVE, ABSOLUTE = 1e-9, 1e-12
 """Of numbers that are equal: files of scenes have twelve digits."""
 LOAD = 1e-6
 """Relative, of the torques and speeds of load cases: those of a result come from its search."""
-SETTINGS = ("run", "accuracy", "outputs", "integration", "effects")
-"""Of a scene: how it is computed, which a REXS file does not say."""
+SETTINGS = ("run", "accuracy", "outputs", "integration", "effects", "left_out")
+"""Of a scene: how it is computed, which a REXS file does not say, and what its import left out."""
 _ADVICE = "Deflect the scene and the load cases that `loa open` writes of this unit, as they are."
 
 

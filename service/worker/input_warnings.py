@@ -9,12 +9,13 @@ from typing import Any
 from pydantic import ValidationError
 
 from service.convert.case import gear_pair
-from service.convert.plausibility import case_warnings, scene_warnings, within
+from service.convert.plausibility import case_warnings, scene_warnings, unique, within
 from service.convert.scene import check_scene
 from service.convert.topology import facts_of
 from service.problems import BadInput
 from service.schemas import Case
 from service.schemas.scene import SceneInput
+from service.schemas.warning import left_out_warnings
 
 Json = dict[str, Any]
 
@@ -48,7 +49,7 @@ def warnings_of_case(case: Json) -> list[Json]:
 def _of_scene(scene: SceneInput) -> list[Json]:
     """Assess the cases of all meshes, and the scene itself where no mesh takes a stored table."""
     cases = {mesh.name: mesh.case for mesh in scene.meshes if mesh.case is not None}
-    warnings = [
+    warnings = left_out_warnings(scene.left_out) + [
         within(warning, f"meshes[{index}]")
         for index, mesh in enumerate(scene.meshes)
         if mesh.case is not None
@@ -57,4 +58,4 @@ def _of_scene(scene: SceneInput) -> list[Json]:
     if len(cases) < len(scene.with_database):
         return warnings
     moving = check_scene(scene, {name: facts_of(gear_pair(case)) for name, case in cases.items()})
-    return [*warnings, *scene_warnings(scene, moving)]
+    return unique([*warnings, *scene_warnings(scene, moving)])

@@ -8,9 +8,11 @@ from functools import partial
 from typing import Any
 
 from dynamics.results import RunResult
+from service.convert.housings import HousedScene
 from service.registry import STUDIES, Study
 from service.schemas import Case
 from service.schemas.result_kinds import SUFFIX
+from service.schemas.warning import left_out_warnings
 from service.store import ResultStore
 from service.studies.computation import Means
 from service.worker.cluster import cluster_of, table_workers
@@ -54,6 +56,8 @@ def _work(study: Study, order: WorkOrder, progress: Progress) -> tuple[Product, 
     file = order.workspace / f"{study.kind}{SUFFIX}"
     study.run.file.write(found, file)
     own = study.run.warnings(found) if warnings is None else warnings
+    if isinstance(subject, HousedScene):
+        own = [*left_out_warnings(subject.inputs.left_out), *(own or ())]
     runs = (Product(key, "run", run) for key, run in study.run.kept(found, means).items())
     return (*products, *runs, Product(order.key, study.kind, file, own))
 

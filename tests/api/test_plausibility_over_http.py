@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from fastapi.testclient import TestClient
 from study_service import empty_service
 
 from service.client import LineOfActionClient
+from service.schemas.warning import InputWarning
 
 GEAR = {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0}
 RELIEVED = GEAR | {"tip_relief_um": 0.02, "tip_relief_length_mm": 1.5}
@@ -22,6 +24,7 @@ CASE: dict[str, Any] = {
     "load": {"torque_n_m": [100.0]},
     "accuracy": {"level": "draft", "positions": 8, "model": "plane_strain", "receipt": "minimal"},
 }
+ROTOR = tomllib.loads((Path(__file__).parents[2] / "examples" / "jeffcott_scene.toml").read_text("utf-8"))
 
 
 @pytest.fixture(scope="module")
@@ -67,6 +70,22 @@ def test_studies_in_json_and_netcdf_carry_it(
         result = client.wait(status["jobID"])
         assert result.kind == kind
         assert messages(http.get(result.href).json()) == ["pair.pinion.tip_relief_um = 0.02 um"]
+
+
+def test_what_an_import_left_out_goes_with_every_answer(
+    served: tuple[LineOfActionClient, TestClient],
+) -> None:
+    client, http = served
+    said = "left out of the scene"
+    scene = ROTOR | {"left_out": ["shaft 5 (line 143): nothing joins it to the train"]}
+    status = http.post("/v1/processes/modes/execution", json={"inputs": {"scene": scene}}).json()
+    assert messages(status) == [said]
+    (warning,) = status["warnings"]
+    assert warning["check"] == "left_out" and InputWarning.model_validate(warning).value is None
+    assert client.status(status["jobID"]).warnings == (warning,)
+    result = client.wait(status["jobID"])
+    assert messages(http.get(result.href).json()) == [said]
+    assert http.get(f"{result.href}/figures").json()["alarms"][0].startswith(f"Implausible: {said}")
 
 
 def test_a_plausible_case_has_an_empty_list(served: tuple[LineOfActionClient, TestClient]) -> None:

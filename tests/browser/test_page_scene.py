@@ -17,6 +17,7 @@ from running_service import until
 
 from service.convert.toml import toml_text
 from service.registry import studies_of
+from tests.fakes.faulty_units import LEFT_OUT, TWO_STAGE
 
 UNIT = Path(__file__).parents[2] / "examples" / "two_stage_gearbox.rexs"
 STIFFNESS = {
@@ -145,6 +146,17 @@ def test_files_chosen_with_a_scene_go_with_it(visit: Visit) -> None:
     (mesh,) = sent[0]["meshes"]
     assert mesh["case"]["pair"]["pinion"]["teeth"] == 20
     assert mesh.get("case_file") is None
+
+
+def test_the_card_of_a_gear_unit_begins_with_what_is_left_out(visit: Visit) -> None:
+    page = visit.page
+    _, edit, _ = LEFT_OUT["hand of a wheel"]
+    file = {"name": "hand.rexs", "mimeType": "application/xml", "buffer": edit(TWO_STAGE).encode()}
+    page.locator("#import-file").set_input_files(file)  # type: ignore[arg-type]
+    first = page.locator("#unit > :first-child")
+    expect(first).to_contain_text('Left out of the scene: cylindrical_stage 22 "second stage" (line 326)')
+    expect(page.locator("#unit > [role=alert]")).to_have_count(6)
+    assert visit.complaints == []
 
 
 def test_a_gear_unit_is_deflected_under_the_load_cases_of_its_file(visit: Visit) -> None:

@@ -14,6 +14,11 @@ from service.cli.verbs.options import AsJson
 
 verbs = typer.Typer()
 
+_ASSUME = (
+    "Set a value over the file's before it is opened, in its unit: 14.helix_angle_reference_diameter=-12; "
+    "repeatable."
+)
+
 NewFile = Annotated[
     Path | None, typer.Option("-o", "--output", help="New file to write (TOML); default: print it.")
 ]
@@ -47,9 +52,13 @@ def open_unit(
         Path | None,
         typer.Option("--out", help="Folder for the files; default: that of the file's name, here."),
     ] = None,
+    assume: Annotated[
+        list[str] | None,
+        typer.Option("--assume", metavar="COMPONENT.ATTRIBUTE=VALUE", help=_ASSUME),
+    ] = None,
     json: AsJson = False,
 ) -> None:
     """Open a gear unit of another tool (REXS): write its cases, its scene and the report of the import."""
     from service.cli.open import run_open  # noqa: PLC0415 (start-up time)
 
-    run_open(file, out, as_json=json)
+    run_open(file, out, assume or (), as_json=json)

@@ -4,7 +4,7 @@
 import { post } from "./api.js";
 import { byId, dataTable, folded, make, number, save } from "./elements.js";
 
-const FATES = ["taken", "derived", "defaulted", "ignored", "refused"];
+const FATES = ["taken", "assumed", "derived", "defaulted", "ignored", "refused"];
 const ENDINGS = /\.(rexs|rexsj|rexsz|zip)$/i;
 
 /** @param {string} name of a file */
@@ -40,11 +40,14 @@ export class OpenedUnit {
       type: "button", onclick: () => save(`${JSON.stringify(unit.lines, null, 1)}\n`, "import.json", "application/json"),
     }, "Save report");
     this.place.replaceChildren(
+      ...unit.left_out.map((text) => make(
+        "p", { class: "alarm", role: "alert" }, `Left out of the scene: ${text}`,
+      )),
       make("p", { role: "status" }, summary(name, unit)),
       make("p", { class: "buttons" }, ...stages, ...scene, account),
       ...(unit.scene ? [shafts(unit.scene)] : []),
       ...(unit.load_cases.length ? [loads(unit.load_cases)] : []),
-      folded("What was refused, defaulted and derived", make(
+      folded("What was refused, assumed, defaulted and derived", make(
         "ul", {}, ...unit.summary.map((line) => make("li", {}, line)),
       )),
     );

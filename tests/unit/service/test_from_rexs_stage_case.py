@@ -141,7 +141,8 @@ def test_external_gears_of_one_hand_do_not_mate() -> None:
     helix = {"helix_angle_reference_diameter": 15.0}
     unit = stage_unit({PINION: helix, WHEEL: helix})
     assert stage_cases(unit, {}) == ()
-    assert "opposite helix angles" in said(unit, STAGE, "")[1]
+    words = said(unit, STAGE, "")[1]
+    assert "of opposite hands" in words and "right hand, 15 deg" in words
 
 
 def ring_unit(sign: int = 1) -> GearUnit:

@@ -44,6 +44,7 @@ from service.from_rexs.stage_case import stage_cases
 from service.rexs import Document, parsed, read_rexs, serialized, upgrade
 from service.rexs.kinds import KINDS, kind_of
 from service.rexs.units import UNITS
+from service.rexs.vocabulary import words
 from service.to_rexs.bearing_results import bearing_results
 from service.to_rexs.deflected import deflected
 from service.to_rexs.exported import exported
@@ -102,6 +103,16 @@ def test_the_kinds_are_those_of_the_schemas() -> None:
     stored = tomllib.loads((PACKAGE / "kinds.toml").read_text("utf-8"))
     assert {kind: set(names) for kind, names in stored.items()} == kinds_to_list()
     assert set(stored) <= set(KINDS)
+
+
+def test_the_words_are_those_of_the_schemas() -> None:
+    types = {
+        str(part.get("componentId"))
+        for version in SCHEMAS
+        for part in parsed_schema(version).iterfind("components/component")
+    }
+    assert words("descriptive_components") < types
+    assert words("bearing_types") == set(attributes_of("2.0.0")["bearing_type"][2])
 
 
 def test_the_units_are_those_of_the_schemas() -> None:

@@ -1,0 +1,161 @@
+"""What ``loa open`` leaves out of a scene is named first and last, in JSON, in the scene, by exit code 3."""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+from base64 import b64encode
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from click.testing import Result
+from typer.testing import CliRunner
+
+from service.cli.commands import app as loa
+from service.convert.stamp import stamped
+from service.convert.toml import toml_text
+from service.from_rexs.answer import unit_of_rexs
+from service.input_file import InputFile, Override
+from service.schemas import read_model, validated
+from service.schemas.scene import SceneInput
+from service.schemas.unit import UnitBody
+from tests.fakes.faulty_units import LEFT_OUT, REFUSED, TWO_STAGE
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+HAND = LEFT_OUT["hand of a wheel"][1](TWO_STAGE)
+
+
+def opened(text: str, folder: Path, *options: str) -> Result:
+    """Return what the verb answers under --strict."""
+    file = folder / "unit.rexs"
+    file.write_text(text, encoding="utf-8")
+    return CliRunner().invoke(loa, ["open", str(file), "--out", str(folder / "out"), "--strict", *options])
+
+
+@pytest.mark.parametrize("fault", LEFT_OUT)
+def test_a_unit_with_one_fault_names_what_is_left_out_first_and_last(fault: str, tmp_path: Path) -> None:
+    file, edit, parts = LEFT_OUT[fault]
+    answer = opened(edit(file), tmp_path)
+    assert answer.exit_code == 3, answer.output
+    lines = answer.stdout.splitlines()
+    assert lines[0] == lines[-1]
+    for part in parts:
+        assert part in lines[0], lines[0]
+    scene = tmp_path / "out" / "scene.toml"
+    if scene.is_file():
+        marks = tomllib.loads(scene.read_text("utf-8"))["left_out"]
+        warned = [line for line in lines if line.startswith("warning (left_out)")]
+        assert warned == [f"warning (left_out): left out of the scene: {mark}" for mark in marks]
+        assert all("(line " in mark for mark in marks)
+
+
+@pytest.mark.parametrize("fault", REFUSED)
+def test_a_file_that_is_no_model_is_refused_with_one_error(fault: str, tmp_path: Path) -> None:
+    file, edit, word = REFUSED[fault]
+    answer = opened(edit(file), tmp_path)
+    assert answer.exit_code == 2
+    assert answer.stdout == "" and not (tmp_path / "out").exists()
+    lines = answer.stderr.splitlines()
+    assert lines and all(line.startswith("error: ") and word in line for line in lines)
+
+
+def test_as_json_each_reason_is_a_warning(tmp_path: Path) -> None:
+    answer = opened(HAND, tmp_path, "--json")
+    assert answer.exit_code == 3
+    warnings = json.loads(answer.stdout)["warnings"]
+    assert [warning["check"] for warning in warnings] == ["left_out"] * len(warnings)
+    stage = warnings[0]["message"]
+    assert 'cylindrical_stage 22 "second stage" (line 326)' in stage
+    assert "13 pinion 2: left hand, 16 deg" in stage and "14 wheel 2: left hand, 16 deg" in stage
+
+
+def test_an_assumption_that_the_message_names_mends_the_unit(tmp_path: Path) -> None:
+    mends = re.findall(r"--assume (\S+=\d+)", opened(HAND, tmp_path).stdout)
+    assert sorted(set(mends)) == [f"{gear}.helix_angle_reference_diameter=16" for gear in (13, 14)]
+    answer = opened(HAND, tmp_path, "--assume", mends[-1])
+    assert answer.exit_code == 0, answer.output
+    assert (
+        "assumed   cylindrical_gear 14" in answer.stdout and "16.0 deg instead of -16.0 deg" in answer.stdout
+    )
+    whole = tmp_path / "whole"
+    whole.mkdir()
+    assert opened(TWO_STAGE, whole).exit_code == 0
+    assert (tmp_path / "out" / "scene.toml").read_text() == (whole / "out" / "scene.toml").read_text()
+    rows = (tmp_path / "out" / "import.csv").read_text("utf-8")
+    assert "component 14,14,cylindrical_gear,wheel 2,helix_angle_reference_diameter,assumed" in rows
+
+
+def test_an_assumption_counts_in_load_cases_that_state_the_value(tmp_path: Path) -> None:
+    assert opened(TWO_STAGE, tmp_path, "--assume", "41.torque_around_u_axis=33").exit_code == 0
+    cases = tomllib.loads((tmp_path / "out" / "load_cases.toml").read_text("utf-8"))["load_cases"]
+    assert [case["torque_n_m"] for case in cases] == [33.0] * 4
+
+
+def test_an_assumed_place_is_an_array(tmp_path: Path) -> None:
+    file, edit, _ = LEFT_OUT["shafts too far apart"]
+    assert opened(edit(file), tmp_path, "--assume", "5.support_vector=0,95.5,149").exit_code == 0
+
+
+@pytest.mark.parametrize(
+    ("text", "word"),
+    [
+        ("13.face_width", "of the form"),
+        ("99.face_width=3", "the id of a component"),
+        ("13.face_width=wide", "a finite number"),
+    ],
+)
+def test_an_assumption_that_is_none_is_refused(text: str, word: str, tmp_path: Path) -> None:
+    answer = opened(TWO_STAGE, tmp_path, "--assume", text)
+    assert answer.exit_code == 2 and word in answer.stderr
+
+
+def test_an_assumption_that_nothing_reads_is_left_out(tmp_path: Path) -> None:
+    answer = opened(TWO_STAGE, tmp_path, "--assume", "13.helix=3")
+    assert answer.exit_code == 3
+    assert answer.stdout.splitlines()[0].endswith('cylindrical_gear 13 "pinion 2" (helix)')
+
+
+def test_a_mark_outlives_the_text_of_the_scene_and_overrides(tmp_path: Path) -> None:
+    opened(HAND, tmp_path)
+    file = InputFile(tmp_path / "out" / "scene.toml", (Override.of("run.duration_s=0.1"),))
+    scene = read_model(SceneInput, file)
+    assert len(scene.left_out) == 6
+    text = toml_text(scene.model_dump(mode="json", exclude_unset=True))
+    assert validated(SceneInput, tomllib.loads(text)).left_out == scene.left_out
+    acknowledged = read_model(SceneInput, replace(file, overrides=(Override.of("left_out="),)))
+    assert acknowledged.left_out == () and "left_out" not in acknowledged.model_dump(mode="json")
+
+
+@pytest.mark.parametrize(
+    ("verb", "code"), [(("simulate", "-o", "nowhere/run.nc"), 2), (("modes", "-o", "modes.nc"), 3)]
+)
+def test_later_verbs_repeat_the_mark_before_all_else(
+    verb: tuple[str, ...], code: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    scene = (EXAMPLES / "jeffcott_scene.toml").read_text("utf-8")
+    Path("scene.toml").write_text(f'left_out = ["shaft 5 (line 7): alone"]\n{scene}', encoding="utf-8")
+    answer = CliRunner().invoke(loa, [verb[0], "scene.toml", *verb[1:], "--strict"])
+    assert answer.exit_code == code, answer.output
+    assert (
+        answer.stdout.splitlines()[0] == "warning (left_out): left out of the scene: shaft 5 (line 7): alone"
+    )
+    if code == 3:
+        (warning,) = stamped(Path("modes.nc"))
+        assert warning["check"] == "left_out"
+
+
+def test_a_scene_without_a_mark_has_the_address_it_had() -> None:
+    scene = read_model(SceneInput, EXAMPLES / "jeffcott_scene.toml")
+    assert "left_out" not in scene.model_dump(mode="json")
+
+
+def test_over_http_and_in_python_the_statement_comes_first(tmp_path: Path) -> None:
+    file = tmp_path / "unit.rexs"
+    file.write_text(HAND, encoding="utf-8")
+    unit = unit_of_rexs({"rexs_base64": b64encode(file.read_bytes()).decode(), "assume": []})
+    assert next(iter(unit)) == "left_out" == next(iter(UnitBody.model_fields))
+    assert unit["left_out"] == unit["scene"]["left_out"] and "line 326" in unit["left_out"][0]
+    assert validated(SceneInput, unit["scene"]).left_out == tuple(unit["left_out"])
