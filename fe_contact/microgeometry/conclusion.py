@@ -7,6 +7,7 @@ import numpy as np
 from bounds import engineering
 from fe_contact.microgeometry.choice import SLACK, Choice
 from fe_contact.microgeometry.design_study import DesignStudy
+from fe_contact.microgeometry.harris_map import rising
 from fe_contact.microgeometry.optimization import Outcome
 from fe_contact.microgeometry.request import OptimizationRequest
 from fe_contact.microgeometry.scatter import MISALIGNMENT
@@ -24,10 +25,14 @@ def conclusion(choice: Choice, request: OptimizationRequest) -> tuple[Outcome, s
     error = start.objective.error + optimum.objective.error
     if optimum.violation > SLACK:
         over = f"{engineering(100.0 * optimum.violation, 2)} % of them, or of the load on tip edges"
-        return Outcome.LIMITS_EXCEEDED, f"the best design exceeds the limits by {over}; {ended}"
+        return (
+            Outcome.LIMITS_EXCEEDED,
+            f"the best design exceeds the limits by {over}{_worse(choice)}; {ended}",
+        )
     moved = "falls" if gain >= 0.0 else "rises"
     change = (
         f"expected peak-to-peak {moved} by {1e6 * abs(gain):.3g} um, errors {engineering(1e6 * error, 2)} um"
+        f"{_worse(choice)}"
     )
     if gain > error:
         return Outcome.IMPROVED, f"{change}; {ended}"
@@ -35,6 +40,18 @@ def conclusion(choice: Choice, request: OptimizationRequest) -> tuple[Outcome, s
         return Outcome.LIMITS_KEPT, f"the limits are kept, which the start exceeds; {change}; {ended}"
     outcome = Outcome.WITHIN_ERROR if gain > 0.0 else Outcome.NOT_IMPROVED
     return outcome, f"{change}; {_why_not(choice, request, error)}{ended}"
+
+
+def _worse(choice: Choice) -> str:
+    """Name the torques at which the best design ripples more than the start, whether they count or not."""
+    before, after = choice.start.harris_map, choice.optimum.harris_map
+    worse = rising(before, after)
+    if not worse.size:
+        return ""
+    torques = ", ".join(f"{torque:.6g}" for torque in before.torque[worse])
+    most = worse[np.argmax((after.expected - before.expected)[worse])]
+    change = f"{1e6 * before.expected[most]:.3g} to {1e6 * after.expected[most]:.3g} um"
+    return f"; it rises at {torques} N m, most at {before.torque[most]:.6g} N m from {change}"
 
 
 def _ended(choice: Choice, request: OptimizationRequest) -> str:

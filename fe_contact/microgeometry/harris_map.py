@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from fe_contact.types import FloatArray, Json
+from fe_contact.types import FloatArray, IntArray, Json
 from model_studies import in_unit
 
 
@@ -67,3 +67,9 @@ class HarrisMap:
             "peak_to_peak_m": self.peak_to_peak.tolist(),
             "error_m": self.error.tolist(),
         }
+
+
+def rising(before: HarrisMap, after: HarrisMap) -> IntArray:
+    """Return the indices of torques at which the expected ripple rises by more than the errors of both."""
+    change = after.expected - before.expected
+    return np.flatnonzero(change > before.expected_error + after.expected_error)

@@ -9,10 +9,11 @@ import numpy as np
 
 from fe_contact.microgeometry.confirmation import ConfirmedDesign
 from fe_contact.microgeometry.design_loads import DesignLoads
+from fe_contact.microgeometry.harris_map import rising
 from fe_contact.microgeometry.scatter import ScatterNodes
 from fe_contact.microgeometry.search import SearchRun
 from fe_contact.microgeometry.variables import DesignVariable
-from fe_contact.types import Estimate, FloatArray, Json
+from fe_contact.types import Estimate, FloatArray, IntArray, Json
 from model_studies import Record, in_unit
 
 
@@ -100,6 +101,11 @@ class Optimization:
         """Reduction of the objective, m; the errors are added, although both designs have one mesh."""
         start, optimum = self.start.objective, self.optimum.objective
         return Estimate(start.value - optimum.value, start.error + optimum.error, "m")
+
+    @property
+    def rising(self) -> IntArray:
+        """Indices of the torques of the Harris maps at which the optimum ripples more, beyond both errors."""
+        return rising(self.start.harris_map, self.optimum.harris_map)
 
     @property
     def map_misalignment(self) -> FloatArray:

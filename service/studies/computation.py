@@ -75,7 +75,7 @@ class Computation:
         ``normalized(subject, inputs)``: the inputs of a job as JSON, alike for equal questions; may raise
         `BadInput`. Default: with all defaults.
     warnings : callable
-        What is implausible about a result and its case; None where the case alone is assessed, by others.
+        What a result warns of beside its case, which others assess; None for nothing.
     joined : callable, optional
         Results of several cases, by the names of their files, to one; for a verb that takes several.
     interruptible : bool

@@ -13,8 +13,9 @@ case_warnings = on_demand("service.worker.input_warnings:warnings_of_case")
 
 def stamp_products(order: WorkOrder, products: Sequence[Product]) -> None:
     """Write into each file what is implausible about what it was made from; a database says so itself."""
+    case = list(case_warnings(order.inputs["case"])) if "case" in order.inputs else None
     for product in products:
-        if product.warnings is not None:
-            stamp(product.file, product.warnings)
-        elif product.kind != "database" and "case" in order.inputs:
-            stamp(product.file, list(case_warnings(order.inputs["case"])))
+        of_case = None if product.kind == "database" else case
+        if product.warnings is not None or of_case is not None:
+            warnings = (*(of_case or ()), *(product.warnings or ()))
+            stamp(product.file, list({warning["message"]: warning for warning in warnings}.values()))

@@ -49,10 +49,11 @@ def harris_figure(result: Optimization) -> Figure:
 
 
 def _chosen(result: Optimization) -> list[int]:
-    """Torques whose curves are drawn: those of the map nearest to evenly spaced ones."""
+    """Torques whose curves are drawn: those that count, those that get worse, and some between them."""
     torque = result.start.harris_map.torque
-    even = np.linspace(torque[0], torque[-1], min(torque.size, MOST_CURVES))
-    return sorted({int(np.abs(torque - value).argmin()) for value in even})
+    drawn = {*np.flatnonzero(np.isin(torque, result.torque)).tolist(), *result.rising.tolist()}
+    even = np.linspace(torque[0], torque[-1], max(2, MOST_CURVES - len(drawn)))
+    return sorted(drawn | {int(np.abs(torque - value).argmin()) for value in even})
 
 
 def _shown(result: Optimization, design: ConfirmedDesign) -> FloatArray:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from bounds import engineering
 from fe_contact.microgeometry import (
     DesignVariable,
     DifferentialEvolution,
@@ -26,6 +27,7 @@ from fe_contact.microgeometry import (
     optimize,
 )
 from fe_contact.microgeometry.confirmation import ConfirmedDesign
+from fe_contact.microgeometry.harris_map import HarrisMap
 from fe_contact.microgeometry.search import never
 from fe_contact.options import Run
 from service.convert.case import analysis_options, boundary_errors, gear_pair
@@ -224,6 +226,35 @@ def _typed(name: str, value: float) -> float:
     return float(f"{value / factor(boundary_name(name)):.12g}")
 
 
+def worse_loads(result: Optimization) -> list[Json]:
+    """Return the torques at which the best design ripples more than the start, as warnings."""
+    before, after = result.start.harris_map, result.optimum.harris_map
+    return [_worse(before, after, int(index)) for index in result.rising]
+
+
+def _worse(before: HarrisMap, after: HarrisMap, index: int) -> Json:
+    """Return the warning of one torque."""
+    first, second = (float(design.expected[index]) / UM for design in (before, after))
+    error = float(before.expected_error[index] + after.expected_error[index]) / UM
+    torque, reason = (
+        float(before.torque[index]),
+        "the search makes another load better at the cost of this one",
+    )
+    words = f"from {first:.3g} to {second:.3g} um, errors {engineering(error, 2)} um: {reason}"
+    return {
+        "check": "worse_load",
+        "field": f"torque_n_m = {torque:.6g}",
+        "value": second,
+        "unit": "um",
+        "low": None,
+        "high": first + error,
+        "reason": reason,
+        "source": "the design from which the search starts",
+        "whole": "",
+        "message": f"expected peak-to-peak rises at {torque:.6g} N m {words}",
+    }
+
+
 def write_case(result: Optimization, case: Case, target: Path) -> None:
     """Write the case with the best design as a case file: what was given of the case, and the best flanks."""
     content = case.model_dump(mode="json", exclude_unset=True)
@@ -238,6 +269,7 @@ RUN = Computation(
     record_file(("optimization", Optimization)),
     check=check,
     normalized=lambda case, study: with_defaults(with_variables(case, study)),
+    warnings=worse_loads,
     interruptible=True,
     writers={".toml": write_case},
 )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import field, fields, make_dataclass
+from dataclasses import field, fields, make_dataclass, replace
 from pathlib import Path
 from typing import Any, get_type_hints
 
@@ -29,16 +29,20 @@ from fe_contact.microgeometry import (
     optimize,
     scatter,
 )
+from fe_contact.microgeometry.harris_map import HarrisMap
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.ste import SteDatabase
+from fe_contact.types import FloatArray
 from model_studies.record_file import write_record
 from service.problems import BadInput
 from service.registry import STUDIES, Study
 from service.report.as_json import page_json, stored_figures
 from service.report.content import page_of
 from service.report.inputs import read_inputs
+from service.schemas.warning import InputWarning
 from service.studies.ablate.page import ablation_page
 from service.studies.optimize.page import ripple_table
+from service.tables.harris_map import MOST_CURVES
 
 RELIEF = FlankModification(tip_relief=15e-6, tip_relief_length=1.2e-3)
 GEAR = Gear(20, 4e-3, 0.025, 0.04, modification=RELIEF)
@@ -165,6 +169,38 @@ def test_both_harris_maps_are_drawn_to_one_scale(
             assert line.label == line.name
         levels = [float(line.y[:-1].mean()) for line in panel.lines]
         assert np.ptp(np.diff(levels)) < 1e-9 * levels[-1]
+
+
+def test_torques_that_count_and_those_that_get_worse_are_drawn(
+    studies: dict[str, tuple[Study, Any]],
+) -> None:
+    study, result = studies["optimization"]
+    torque = np.sort([*np.arange(31.0, 132.0, 2.0), *result.torque])
+    start, optimum = (at_torques(design.harris_map, torque) for design in [result.start] * 2)
+    optimum.peak_to_peak[:, 3] = start.peak_to_peak[:, 3] + 1e-6
+    wide = replace(
+        result,
+        start=replace(result.start, harris_map=start),
+        optimum=replace(result.optimum, harris_map=optimum),
+    )
+    (figure,) = (f for s in study.page.page(wide).sections for f in s.figures if f.key == "harris_map")
+    expected = {37.0, *result.torque.tolist()}
+    for panel in figure.content[:2]:  # type: ignore[index]
+        drawn = {float(line.name.removesuffix(" N m")) for line in panel.lines}
+        assert expected <= drawn and len(panel.lines) <= MOST_CURVES
+    (warning,) = study.run.warnings(wide) or ()
+    assert warning["check"] == "worse_load" and "rises at 37 N m" in warning["message"]
+    assert InputWarning.model_validate(warning).value == pytest.approx(optimum.expected[3] * 1e6)
+
+
+def at_torques(harris: HarrisMap, torque: FloatArray) -> HarrisMap:
+    """Return a map at other torques, all of the ripple of the first; known exactly."""
+    many, first = torque.size, np.zeros(torque.size, dtype=int)
+    ripple = harris.peak_to_peak[:, first].copy()
+    return HarrisMap(
+        torque, harris.position, harris.ste[:, first], harris.nominal[first], np.zeros(many), ripple,
+        np.zeros_like(ripple), harris.weight,
+    )  # fmt: skip
 
 
 def test_a_report_takes_a_study_beside_a_table(
