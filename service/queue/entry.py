@@ -66,9 +66,22 @@ def ended_since(key: str, looked: str, stored: bool) -> ColumnElement[bool]:
 
 def shared_computation(connection: Connection, key: str, ended: ColumnElement[bool]) -> str | None:
     """Return the computation of `key` that waits, runs or has `ended` with a result."""
-    live = (computations.c.key == key) & computations.c.state.in_(LIVE)
-    statement = select(computations.c.id).where(live | ended)
+    statement = select(computations.c.id).where(_live(key) | ended)
     return connection.execute(statement.order_by(computations.c.created.desc()).limit(1)).scalar()
+
+
+def equal_job(
+    connection: Connection, key: str, ended: ColumnElement[bool], caller: Caller, stated: str
+) -> str | None:
+    """Return the caller's newest job of the `stated` inputs that waits, runs or has `ended` with a result."""
+    theirs = (jobs.c.caller == caller.name, jobs.c.dismissed.is_(None), jobs.c.stated == stated)
+    statement = select(jobs.c.id).join(computations).where(_live(key) | ended, *theirs)
+    return connection.execute(statement.order_by(jobs.c.created.desc()).limit(1)).scalar()
+
+
+def _live(key: str) -> ColumnElement[bool]:
+    """Condition of the computation of `key` that waits or runs."""
+    return (computations.c.key == key) & computations.c.state.in_(LIVE)
 
 
 def enter_computation(

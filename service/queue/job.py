@@ -22,9 +22,10 @@ _PACE_KNOWN = 0.02
 
 @dataclass(frozen=True)
 class Job:
-    """A job with the state of its computation; times are RFC 3339 in UTC, normalized inputs JSON.
+    """A job with the state of its computation; times are RFC 3339 in UTC, inputs JSON.
 
-    A batch has so many `children`; each of these has it as `parent` and a `place` in it, from 0.
+    `inputs` are normalized, as they are computed, `stated` are the caller's, where they were kept. A batch
+    has so many `children`; each of these has it as `parent` and a `place` in it, from 0.
     """
 
     id: str
@@ -45,6 +46,7 @@ class Job:
     reference: str
     delivery: Delivery
     inputs: str
+    stated: str
     label: Label
     differences: Differences
     priority: int
@@ -95,6 +97,7 @@ def jobs_of_all_projects() -> Any:
         jobs.c.title,
         jobs.c.tags,
         jobs.c.differences,
+        jobs.c.stated,
         jobs.c.caller,
         jobs.c.parent,
         jobs.c.place,
@@ -125,6 +128,7 @@ def job_of(row: Any) -> Job:
         reference=row.reference,
         delivery=Delivery.of(row.delivery),
         inputs=row.inputs,
+        stated=row.stated or row.inputs,
         label=Label.from_row(row),
         differences=Differences.of(row.differences),
         priority=row.priority,

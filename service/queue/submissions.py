@@ -20,6 +20,7 @@ from service.queue.entry import (
     LIVE,
     ended_since,
     enter_computation,
+    equal_job,
     identifier_of,
     refuse_if_busy,
     refuse_if_full,
@@ -102,8 +103,7 @@ class Submissions:
         )
         address = address_of(self._project, key)
         ended = ended_since(address, looked or now(), stored)
-        self._submit(identifier, process, address, inputs, stored, ended, caller, terms)
-        return self.find(identifier)
+        return self.find(self._submit(identifier, process, address, inputs, stored, ended, caller, terms))
 
     @retried
     def _submit(
@@ -116,15 +116,18 @@ class Submissions:
         ended: ColumnElement[bool],
         caller: Caller,
         terms: Terms,
-    ) -> None:
-        """Enter a job of this identifier, unless it is in already."""
+    ) -> str:
+        """Enter a job of this identifier, unless it is in already or an equal one answers; return which."""
         with writing(self._engine, in_turn=True) as connection:
             known = select(computations.c.key, computations.c.program).join(jobs)
             entered = connection.execute(known.where(jobs.c.id == identifier)).one_or_none()
             if entered is not None:
                 if entered.program == solver_version():  # another program names the same work differently
                     refuse_unless_same(entered.key, key)
-                return
+                return identifier
+            equal = equal_job(connection, key, ended, caller, terms.stated) if terms.reuse else None
+            if equal is not None:
+                return equal
             if not stored:
                 refuse_if_busy(connection, caller)
             computation = shared_computation(connection, key, ended)
@@ -135,10 +138,9 @@ class Submissions:
             else:
                 connection.execute(raised(computation, terms.priority))
                 connection.execute(extended(computation, terms.max_cost_s))
-            row = {"id": identifier, "computation_id": computation, "created": now(), "dismissed": None}
-            row |= {"caller": caller.name, "project": self._project, "delivery": str(terms.delivery)}
-            row |= {"differences": str(terms.differences), **terms.label.columns()}
-            connection.execute(insert(jobs).values(**row))
+            row = {"id": identifier, "computation_id": computation, "created": now(), "caller": caller.name}
+            connection.execute(insert(jobs).values(**row, project=self._project, **terms.columns()))
+        return identifier
 
     def batches(self, caller: Caller = ANYBODY, terms: Terms = USUAL) -> BatchEntry:
         """Return what enters batches of a caller, whose label is that of `terms`."""

@@ -97,6 +97,7 @@ jobs = Table(
     Column("title_folded", String, nullable=False, server_default=""),
     Column("tags", Text, nullable=False, server_default=""),
     Column("differences", Text, nullable=False, server_default=""),
+    Column("stated", Text, nullable=False, server_default=""),
     Column("project", String, nullable=False, default=""),
     Column("parent", String),
     Column("place", Integer, nullable=False, server_default="0"),

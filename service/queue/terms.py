@@ -24,6 +24,10 @@ class Terms:
         Of its computation: the highest of the jobs that share it.
     max_cost_s : float or None
         CPU seconds that it may take; None: no limit.
+    stated : str
+        Its inputs as the caller stated them, JSON; empty: they are not kept.
+    reuse : bool
+        Whether an equal job of the caller's that is under way or done answers in its place.
     """
 
     delivery: Delivery = AS_IT_IS
@@ -31,6 +35,13 @@ class Terms:
     differences: Differences = NOT_COMPARED
     priority: int = 0
     max_cost_s: float | None = None
+    stated: str = ""
+    reuse: bool = False
+
+    def columns(self) -> dict[str, str]:
+        """Return the columns of a job that hold them; the others are its computation's."""
+        said = {"delivery": str(self.delivery), "differences": str(self.differences), "stated": self.stated}
+        return {**said, **self.label.columns()}
 
 
 USUAL = Terms()

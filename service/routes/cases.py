@@ -25,6 +25,7 @@ from service.schemas.named import Named
 from service.schemas.offers import ExampleBody
 from service.schemas.outline import OutlineBody
 from service.schemas.reading import validated
+from service.worker.catalogue import ANALYZE
 from service.worker.process import on_demand
 
 READING_FAILURES = (TooLarge, TooManyHeld, QueueFull, LiveUnavailable)
@@ -117,7 +118,8 @@ def case_to_toml(body: CaseRequest) -> TomlBody:
 def _example(example: Example) -> ExampleBody:
     """Return an example with all defaults."""
     case = case_json(validated(Case, example.content))
-    return ExampleBody(name=example.name, title=example.title, note=example.note, case=case)
+    facts = {"name": example.name, "title": example.title, "note": example.note}
+    return ExampleBody(**facts, case=case, hash=ANALYZE.key({"case": case}))
 
 
 def explained(handler: Any, model: type[BaseModel]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import asdict
 from datetime import UTC, datetime
 
@@ -19,7 +20,7 @@ from service.routes.refusals import documented
 from service.routes.scopes import ScopedRoute, needs, require
 from service.schemas.label import LabelChange
 from service.schemas.ogc import Differences as ShownDifferences
-from service.schemas.ogc import JobList, JobStatus, Link, StatusInfo
+from service.schemas.ogc import JobInputs, JobList, JobStatus, Link, StatusInfo
 from service.schemas.subscriber import WebhookState
 from service.store import Mark
 from service.webhooks.calls import Calls
@@ -48,6 +49,14 @@ def job_status(job_id: str, context: Ctx) -> StatusInfo:
     status = status_info(context.submissions.find(job_id), context.registry)
     calls = [WebhookState(**asdict(call)) for call in Calls(context.engine).of(job_id)]
     return status.model_copy(update={"webhooks": calls or None})
+
+
+@router.get("/{job_id}/inputs", summary="Inputs of a job", responses=documented(NoSuchJob))
+@needs(Scope.READ)
+def job_inputs(job_id: str, context: Ctx) -> JobInputs:
+    """Return the inputs as the caller stated them, those of a batch's job and long ones with all defaults."""
+    job = context.submissions.find(job_id)
+    return JobInputs(processID=job.process, inputs=json.loads(job.stated))
 
 
 @router.patch("/{job_id}", summary="Rename a job", responses=documented(NoSuchJob))

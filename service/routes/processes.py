@@ -50,6 +50,8 @@ logger = structlog.get_logger(__name__)
 
 After = Annotated[str, Query(max_length=64, description="Last process of the previous page")]
 _SUBJECTS = ("case", "scene")
+_LONGEST_STATED = 65_536
+"""Characters of a caller's inputs that are kept with each of its jobs, beside those of the computation."""
 IdempotencyKey = Annotated[
     str | None,
     Header(
@@ -131,7 +133,8 @@ def _add_execution(router: APIRouter, process: Process) -> None:
         since = _differences(context, process, caller, inputs, request.inputs)
         check_priority(request.priority, caller)
         limit = cost_limit(request.max_cost_s, caller)
-        terms = Terms(form, Label.of(request.title, request.tags), since, request.priority, limit)
+        label, stated = Label.of(request.title, request.tags), _stated(request.inputs)
+        terms = Terms(form, label, since, request.priority, limit, stated, request.reuse)
         status = _submit(context, process, inputs, caller, terms, idempotency_key)
         enter_calls(context, status.jobID, uris)
         response.headers["Location"] = f"/v1/jobs/{status.jobID}"
@@ -152,6 +155,12 @@ def _add_execution(router: APIRouter, process: Process) -> None:
         responses=documented(QueueFull, LiveUnavailable)
         | {201: {"description": "The job", "headers": described_headers("Location", "Preference-Applied")}},
     )
+
+
+def _stated(inputs: BoundaryModel) -> str:
+    """Return inputs as JSON without what the caller left out; empty if they are long."""
+    text = json.dumps(inputs.model_dump(mode="json", exclude_unset=True))
+    return text if len(text) <= _LONGEST_STATED else ""
 
 
 def _differences(

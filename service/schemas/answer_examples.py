@@ -195,6 +195,7 @@ ANSWERS: dict[str, Any] = {
     | {"message": "1 of 2 jobs have ended.", "stage": "jobs", "stage_progress": 50, "children": 2},
     "/v1/jobs": {"jobs": [STATUS], "links": [_LINK]},
     "/v1/jobs/{job_id}": STATUS,
+    "/v1/jobs/{job_id}/inputs": {"processID": "analyze", "inputs": {"case": CASE}},
     "/v1/jobs/{job_id}/results": {
         "database": {"href": f"{RESULTS}/{HASH}", "type": "application/x-netcdf", "hash": HASH}
     },
@@ -218,7 +219,7 @@ ANSWERS: dict[str, Any] = {
     },
     "/v1/databases/{key}/ste": _LIVE,
     "/v1/plans": _PLAN,
-    "/v1/examples": [{"name": "spur", "title": "Spur 20/20", "note": "Seconds.", "case": CASE}],
+    "/v1/examples": [{"name": "spur", "title": "Spur 20/20", "note": "Seconds.", "case": CASE, "hash": HASH}],
     "/v1/cases/outline": {
         "pinion": _outline(0.0, -1.0),
         "wheel": _outline(80.0, 1.0),

@@ -94,4 +94,8 @@ def execute_model(process: str, inputs: type[BoundaryModel], output: str) -> typ
         Cost | None,
         Field(None, description="CPU seconds that the job may take; default: no limit", examples=[600.0]),
     )
+    fields["reuse"] = (
+        bool,
+        Field(False, description="Answer with the caller's equal job, if one is under way or done"),
+    )
     return create_model(f"Execute{title}", __base__=ExecuteBody, **fields)

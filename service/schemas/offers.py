@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import BaseModel
+from pydantic import BaseModel, Field
 
 from service.schemas.named import Named
 
@@ -27,3 +27,4 @@ class ExampleBody(BaseModel):
     title: str
     note: str
     case: Annotated[dict[str, Any], Named("Case")]
+    hash: str = Field(description="Hash of its database, whether it is stored or not")

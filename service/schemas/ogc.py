@@ -161,6 +161,13 @@ class StatusInfo(BaseModel):
     links: list[Link]
 
 
+class JobInputs(BaseModel):
+    """The inputs of a job: its process is executed with them again."""
+
+    processID: str  # noqa: N815
+    inputs: dict[str, Any] = Field(description="By name, as in an execution")
+
+
 class JobList(BaseModel):
     """A page of jobs, the newest first."""
 

@@ -23,10 +23,11 @@ def http(tmp_path: Path) -> Iterator[TestClient]:
         yield found
 
 
-def entered(http: TestClient, name: str | None, **wish: Any) -> Any:
+def entered(http: TestClient, name: str | None, reuse: bool = False, **wish: Any) -> Any:
     """Submit and return the answer."""
     headers = {} if name is None else {"Idempotency-Key": name}
-    return http.post("/v1/processes/fake/execution", json={"inputs": {"wish": wish}}, headers=headers)
+    body = {"inputs": {"wish": wish}, "reuse": reuse}
+    return http.post("/v1/processes/fake/execution", json=body, headers=headers)
 
 
 def jobs(http: TestClient) -> int:
@@ -57,3 +58,21 @@ def test_a_name_stands_for_one_request(http: TestClient) -> None:
 def test_a_name_has_a_length(http: TestClient, name: str) -> None:
     assert entered(http, name, text="x").status_code == 422
     assert jobs(http) == 0
+
+
+def test_a_submission_may_take_the_equal_job(http: TestClient) -> None:
+    with ThreadPoolExecutor(8) as pool:
+        answers = list(pool.map(lambda _: entered(http, None, reuse=True, text="x"), range(16)))
+    assert len({answer.json()["jobID"] for answer in answers}) == jobs(http) == 1
+
+
+def test_the_inputs_of_a_job_are_as_its_caller_stated_them(http: TestClient) -> None:
+    job = entered(http, None, text="x").json()["jobID"]
+    long = entered(http, None, text="x" * 70_000).json()["jobID"]
+    assert http.get(f"/v1/jobs/{job}/inputs").json() == {
+        "processID": "fake",
+        "inputs": {"wish": {"text": "x"}},
+    }
+    computed = http.get(f"/v1/jobs/{long}/inputs").json()["inputs"]["wish"]
+    assert computed == {"mode": "write", "text": "x" * 70_000, "number": 0.0}
+    assert http.get(f"/v1/jobs/{uuid.uuid4()}/inputs").status_code == 404

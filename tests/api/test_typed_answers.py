@@ -13,6 +13,7 @@ OPEN = {
     "ValueDescription.schema": "a JSON Schema",
     "ReportPlot.data[]": "a trace of plotly.js",
     "ReportPlot.layout": "a layout of plotly.js",
+    "JobInputs.inputs": "the inputs of a job, by its process, whose description has their schemas",
     "ResultFigures": "the figures of a result, by its kind",
 }
 SCHEMAS = DESCRIPTION["components"]["schemas"]

@@ -14,6 +14,7 @@ REVISIONS = (
     "0011",
     "0012",
     "0013",
+    "0014",
 )
 """All schemas there have been, the newest last."""
 USABLE_SINCE = "0007"

@@ -14,6 +14,9 @@ from running_service import Bench, bench
 from service_fakes import REGISTRY
 
 from service.problems import NoSuchJob, QueueFull
+from service.queue.caller import ANYBODY, Caller
+from service.queue.job import Job
+from service.queue.terms import Terms
 from service.store import Mark, instant, now
 
 
@@ -38,6 +41,43 @@ def test_equal_work_submitted_at_once_from_many_threads_is_one_computation(machi
         jobs = list(pool.map(lambda _: machine.submit(text="same"), range(64)))
     assert len({job.id for job in jobs}) == 64
     assert machine.submissions.counts() == {"accepted": 1}
+
+
+def reused(machine: Bench, stated: str = "{}", caller: Caller = ANYBODY, key: str = "ab" * 32) -> Job:
+    """Enter work unless the caller has an equal job."""
+    terms = Terms(stated=stated, reuse=True)
+    stored = machine.store.find(key, "database") is not None
+    return machine.submissions.submit("fake", key, {"wish": {}}, stored=stored, caller=caller, terms=terms)
+
+
+def test_an_equal_job_of_the_caller_answers_in_place_of_a_new_one(machine: Bench) -> None:
+    with ThreadPoolExecutor(16) as pool:
+        (first,) = {job.id for job in pool.map(lambda _: reused(machine), range(32))}
+    others = [reused(machine, stated='{"wish": {}}'), reused(machine, caller=Caller("bench-3"))]
+    assert len({first, *(job.id for job in others)}) == 3
+    assert machine.submissions.counts() == {"accepted": 1}
+    machine.submissions.dismiss(first)
+    assert reused(machine).id != first
+
+
+def test_a_job_answers_for_an_equal_one_as_long_as_it_has_or_will_have_a_result(
+    machine: Bench, tmp_path: Path
+) -> None:
+    first = reused(machine)
+    claim = machine.claims.claim()
+    assert claim is not None and reused(machine).id == first.id
+    machine.claims.fail(claim, "no mesh")
+    second = reused(machine)
+    assert second.id != first.id
+    claim = machine.claims.claim()
+    assert claim is not None
+    file = tmp_path / "made.nc"
+    file.write_text("kept")
+    machine.store.put(second.key, "database", file)
+    machine.claims.succeed(claim)
+    assert reused(machine).id == second.id
+    machine.store.verified(second.key, "database").path.unlink()
+    assert reused(machine).id != second.id
 
 
 def test_claims_from_many_threads_are_disjoint(machine: Bench) -> None:
