@@ -90,7 +90,7 @@ def test_another_pair_is_compared_at_the_torque_that_is_looked_at(
     until(lambda: answers(page) > count)
     row = page.get_by_role("row").filter(has=page.get_by_role("button", name=re.compile("Open analyze")))
     count = answers(page)
-    row.first.get_by_role("button").press("Enter")  # the newest: the other pair
+    row.first.get_by_role("button", name=re.compile("^Open")).press("Enter")  # the newest: the other pair
     expect(page).to_have_url(re.compile(other))
     until(lambda: answers(page) > count)
     assert "24" in (page.locator("#f-pair-wheel-teeth").input_value())

@@ -75,6 +75,32 @@ export class Address {
   }
 
   /**
+   * Go on to an entry that shows one thing alone, with the design that it was computed from.
+   * @param {string} name
+   * @param {string} value
+   */
+  open(name, value) {
+    this.keep(this.typed());
+    this.names = new Map([[name, value]]);
+    this.kept = { reference: this.kept.reference };
+    this.faults = [];
+    history.pushState(this.kept, "", this.text);
+  }
+
+  /**
+   * Let what came of something stand in its place, which says how new its design is.
+   * @param {string} name
+   * @param {string} successor
+   * @param {string} [value] what the successor shows; left out: the same
+   */
+  settle(name, successor, value = this.names.get(name)) {
+    if (!this.names.has(name)) return;
+    const others = [...this.names].filter(([other]) => other !== successor);
+    this.names = new Map(others.map((part) => (part[0] === name ? [successor, value ?? ""] : part)));
+    this.keep({});
+  }
+
+  /**
    * Keep something typed with this entry.
    * @param {Kept} kept
    */
@@ -88,11 +114,11 @@ export class Address {
     sessionStorage.setItem(LEFT, JSON.stringify({ ...this.kept, ...this.typed() }));
   }
 
-  /** @param {Record<string, string | null>} changes */
+  /** Name something, the newest last. @param {Record<string, string | null>} changes */
   name(changes) {
     for (const [name, value] of Object.entries(changes)) {
+      this.names.delete(name);
       if (value) this.names.set(name, value);
-      else this.names.delete(name);
     }
     this.faults = [];
   }

@@ -60,9 +60,21 @@ export class Design {
     });
   }
 
-  /** The design of a page that is opened without an address. */
+  /** The pair of a page that is opened without an address. */
+  get example() {
+    return this.examples[0];
+  }
+
   begin() {
-    const [{ name, note, case: content }] = this.examples;
+    this.offered(this.example);
+  }
+
+  /** No design: there is none for what the address names. */
+  empty() {
+    this.offered(EMPTY);
+  }
+
+  offered({ name, note, case: content }) {
     this.show(content, { example: name, note });
   }
 

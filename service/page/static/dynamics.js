@@ -2,7 +2,7 @@
 
 import { card } from "./card.js";
 import { byId } from "./elements.js";
-import { sceneOf } from "./scene.js";
+import { sceneOf, wishOf } from "./scene.js";
 
 const SPEEDS = 11;
 
@@ -42,8 +42,9 @@ export class Dynamics {
   constructor({ slot, show }) {
     this.known = null;
     byId("dynamics-body").replaceChildren(
-      card(RUN_UP, (parts) => slot("simulate", parts, show), (values) => this.runUp(values)),
-      card(MODES, (parts) => slot("modes", parts, show), (values) => this.modes(values)),
+      card(RUN_UP, (parts) => slot("simulate", parts, show), (values) => this.runUp(values), ({ inputs }) => wishOf(inputs.scene)),
+      card(MODES, (parts) => slot("modes", parts, show), (values) => this.modes(values),
+        ({ inputs }) => ({ top_rpm: inputs.speed_rpm.at(-1) })),
     );
   }
 
@@ -53,7 +54,7 @@ export class Dynamics {
     const external = known !== null && !known.case.pair.wheel.internal;
     byId("dynamics-none").hidden = external;
     byId("dynamics-body").hidden = !external;
-    if (external) byId("study-Run-up-torque_n_m").value = String(brakeOf(known));
+    byId("study-Run-up-torque_n_m").value = external ? String(brakeOf(known)) : "";
   }
 
   wish(values) {

@@ -2,7 +2,6 @@
 
 import { Problem, dismiss, get, patiently, pause, post } from "./api.js";
 import { duration, make } from "./elements.js";
-import { remember } from "./job_cases.js";
 
 export const ENDED = new Set(["successful", "failed", "dismissed"]);
 const FIRST_LOOK = 150;
@@ -10,16 +9,15 @@ const AGAIN = "It is asked for again until there is an answer.";
 const LONGEST_LOOK = 1000;
 
 /**
- * Submit a job. Inputs name their result, so that one whose answer was lost with the connection is submitted again: the work is shared.
+ * Submit a job, or take the equal one that is under way or done: so one whose answer was lost with the connection is submitted again.
  * @param {HTMLElement} target where it is said that the service is asked in vain
  * @param {string} process
  * @param {object} inputs
  */
 export async function submitted(target, process, inputs) {
-  const status = await patiently(() => post(`/v1/processes/${process}/execution`, { inputs }), (problem) => {
+  const status = await patiently(() => post(`/v1/processes/${process}/execution`, { inputs, reuse: true }), (problem) => {
     target.replaceChildren(...(problem ? [make("p", { class: "hint", role: "status" }, `${problem.message} ${AGAIN}`)] : []));
   });
-  if (inputs.case) remember(status.jobID, inputs.case);
   document.dispatchEvent(new Event("jobs-changed"));
   return status;
 }
@@ -38,6 +36,9 @@ export async function followed(target, id, { expected, signal }) {
   if (ended.status === "dismissed") throw new Problem({ title: "Cancelled", detail: "The job was cancelled.", status: 410 });
   return referenceOf(id);
 }
+
+/** What a job computes: its process, and its inputs as they were submitted. @param {string} job */
+export const orderOf = (job) => patiently(() => get(`/v1/jobs/${job}/inputs`));
 
 /** Where a job's result is, whatever form it was submitted with. */
 export async function referenceOf(job) {

@@ -14,7 +14,8 @@ import { referenceOf, submitted } from "./job.js";
 import { Jobs } from "./jobs.js";
 import { Live } from "./live.js";
 import { goToSection, sectionLinks } from "./menu.js";
-import { clearNotice, sayUnknown } from "./notice.js";
+import { clearNotice, sayMissing } from "./notice.js";
+import { caseOf, ordersOf, pairOf } from "./orders.js";
 import { showReport } from "./report.js";
 import { Results } from "./results.js";
 import { SceneEditor } from "./scene_editor.js";
@@ -55,7 +56,7 @@ class Page {
   parts(studies) {
     const take = (flanks) => this.take(flanks);
     const slot = (name, parts, show) => this.slot(name, parts, show);
-    const show = (this.show = (target, reference, signal) => showResult(target, reference, { take, signal }));
+    const show = (target, reference, signal) => showResult(target, reference, { take, signal });
     showStudies(studies, { design: this.design, slot, show });
     const dynamics = new Dynamics({ slot, show });
     this.scenes = new SceneEditor({ slot, show });
@@ -64,11 +65,11 @@ class Page {
     this.results = new Results(this, this.glance, live, [dynamics, this.scenes]);
     const button = byId("analyze");
     this.analysis = slot("analyze", { progress: byId("analyze-job"), result: byId("analyze-result"), button },
-      (target, reference) => this.analyzed(reference));
+      (target, reference) => this.tabled("analyze", reference));
     this.analysis.refused = (problem) => this.notAnalyzed(problem);
     button.addEventListener("click", () => this.analyze());
     this.reopened = slot("job", { progress: byId("jobs-progress"), result: byId("jobs-result") },
-      (target, reference, signal) => this.showReopened(target, reference, signal));
+      (target, reference, signal) => (reference.kind === "database" ? this.tabled("job", reference) : show(target, reference, signal)));
     this.jobs = new Jobs((job) => this.reopen(job), (first, second) => this.compare(first, second));
     this.jobs.refresh();
   }
@@ -79,27 +80,61 @@ class Page {
     return made;
   }
 
-  /** Show what the address says, whatever was shown before. */
+  /** Show what the address says, whatever was shown before: first what was computed, in the form, then its results. */
   async render() {
     const turn = (this.turn = (this.turn ?? 0) + 1);
-    const { kept, faults } = this.address;
+    const { kept, faults, empty } = this.address;
     this.more = false; // what was typed last belongs to the entry that is left
     clearNotice();
-    for (const fault of faults) sayUnknown(`“${fault}”: the page has no such address.`);
+    for (const fault of faults) sayMissing(`“${fault}”: the page has no such address.`);
+    if (!this.address.get("database")) for (const name in OF_RESULT) this.address.settle(name, "job");
+    this.design.stands = false;
     if (kept.fields) this.design.restore(kept);
-    else this.design.stands = false;
+    const orders = kept.fields ? [] : await ordersOf(this.address.names);
+    const pair = await pairOf(orders);
+    if (turn !== this.turn) return;
+    if (!kept.fields) this.beginWith(pair, orders);
+    this.fill(orders.filter(({ name }) => !(name in OF_RESULT)));
     for (const [name, slot] of this.slots) slot.follow(this.address.get(name));
     await this.results.show(this.address.get("database"));
-    if (turn !== this.turn || this.design.stands) return;
-    this.design.begin();
-    if (this.address.empty) this.first();
+    if (turn !== this.turn) return;
+    this.fill(orders.filter(({ name }) => name in OF_RESULT)); // showing a result resets them
+    if (empty && !kept.fields) this.first();
+  }
+
+  /** Begin with the pair of the address; with none, if it names any other thing; else with the first example. */
+  beginWith(pair, orders) {
+    const { names, faults } = this.address;
+    if (pair) this.design.show(pair, { example: "", note: "The pair of this address." });
+    else if (!names.size && !faults.length) this.design.begin();
+    else {
+      this.design.empty();
+      if (!orders.length) sayMissing("The fields of the gear pair are left empty.");
+    }
+  }
+
+  /** Show what jobs were submitted with where such jobs are submitted. @param {import("./orders.js").Order[]} orders */
+  fill(orders) {
+    for (const order of orders) {
+      const { name, processID, inputs } = order;
+      const place = name !== "job" ? name : inputs.scene ? "scene" : processID;
+      this.slots.get(place)?.fill?.(order);
+    }
   }
 
   /** Analyze the pair that a page without an address begins with: there is a result with nothing to press. */
   async first() {
+    const inputs = { case: this.design.case };
+    const { hash } = this.design.example;
+    const stored = await caseOf(hash);
+    if (!this.address.empty) return;
+    if (stored) {
+      this.address.replace({ database: hash });
+      await this.results.show(hash);
+      return;
+    }
     this.glance.waits();
-    const job = submitted(byId("analyze-job"), "analyze", { case: this.design.case });
-    const { jobID } = await job.catch((problem) => this.notFirst(problem));
+    const { jobID } = await submitted(byId("analyze-job"), "analyze", inputs).catch((problem) => this.notFirst(problem));
     if (!jobID || !this.address.empty) return;
     this.address.replace({ analyze: jobID });
     this.analysis.follow(jobID);
@@ -138,11 +173,11 @@ class Page {
     this.analysis.submit("analyze", { case: this.design.case }, { expected: this.design.expected });
   }
 
-  /** An analysis has ended: its table is what the address names from now on. */
-  async analyzed({ hash }) {
-    this.address.replace({ analyze: null, database: hash, ...OF_RESULT });
-    for (const name of Object.keys(OF_RESULT)) this.slots.get(name).follow(null);
-    byId("analyze-job").replaceChildren();
+  /** A job has ended with a table: that is what the address names in its place from now on. */
+  async tabled(name, { hash }) {
+    this.address.settle(name, "database", hash);
+    this.address.replace(OF_RESULT);
+    for (const other of [name, ...Object.keys(OF_RESULT)]) this.slots.get(other).follow(null);
     await this.results.show(hash);
   }
 
@@ -153,9 +188,10 @@ class Page {
 
   /** Show what came of an earlier job. */
   async reopen({ jobID: job }) {
-    this.address.push({ job });
+    this.address.open("job", job);
     const before = document.activeElement;
-    await this.reopened.follow(job);
+    await this.render();
+    await this.reopened.followed;
     if (document.activeElement !== before) return; // the reader went on while plots were drawn
     byId(this.address.get("job") ? "jobs-result" : "results").focus();
   }
@@ -167,14 +203,6 @@ class Page {
     this.comparing = new AbortController();
     await showReport(byId("jobs-result"), { ...one, against: other.hash }, { making: true, signal: this.comparing.signal });
     byId("jobs-result").focus();
-  }
-
-  /** An earlier job is shown: a table takes the page with its design, anything else stands below the list. */
-  async showReopened(target, reference, signal) {
-    if (reference.kind !== "database") return this.show(target, reference, signal);
-    const names = { database: reference.hash, analyze: null, job: null, ...OF_RESULT };
-    this.address.replace(names, { fields: undefined, ofResult: undefined });
-    return this.render();
   }
 
   /** The service answers again: ask anew for what hangs on it. */

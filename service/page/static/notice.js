@@ -1,5 +1,5 @@
 // @ts-check
-/** What the first screen says of an address that names nothing here. */
+/** What the first screen says of an address that names what cannot be shown. */
 
 import { byId, make } from "./elements.js";
 
@@ -7,15 +7,15 @@ export function clearNotice() {
   byId("notice").replaceChildren();
 }
 
-/** @param {string} text what is not known here, and why that may be */
-export function sayUnknown(text) {
+/** @param {string} text what is not shown, and why; or what stands in its place */
+export function sayMissing(text) {
   const box = byId("notice");
   if (!box.firstChild) {
     box.append(
-      make("strong", {}, "This address names something that is not here."), make("ul"),
+      make("strong", {}, "Not all that this address names can be shown."), make("ul"),
       make("p", {}, make("a", { href: "/" }, "Begin anew"), ", or reopen an earlier result from the ",
         make("a", { href: "#jobs" }, "list of jobs"), "."),
     );
   }
-  box.querySelector("ul").append(make("li", {}, text));
+  box.querySelector("ul").prepend(make("li", {}, text));
 }

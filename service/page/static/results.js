@@ -5,7 +5,7 @@ import { Problem, get, patiently } from "./api.js";
 import { retype, typedIn } from "./controls.js";
 import { DesignNote } from "./design_note.js";
 import { byId } from "./elements.js";
-import { sayUnknown } from "./notice.js";
+import { sayMissing } from "./notice.js";
 import { fetchPlotly } from "./plotly.js";
 import { showReport } from "./report.js";
 
@@ -60,7 +60,7 @@ export class Results {
       if (signal.aborted) return;
       this.key = null;
       this.clear();
-      sayUnknown(`Result ${key.slice(0, 12)}…: ${problem.message}`);
+      sayMissing(`Result ${key.slice(0, 12)}…: ${problem.message}`);
     }
   }
 
@@ -72,7 +72,6 @@ export class Results {
     reported.catch(() => {}); // said where it is awaited
     const facts = await patiently(() => get(href));
     if (signal.aborted) return;
-    if (!this.design.stands) this.design.show(facts.case);
     const plane = PLANE.test(facts.receipt?.plan?.model ?? "");
     const torques = facts.torque_n_m;
     const known = { key, case: facts.case, torques, torque: torques[Math.floor(torques.length / 2)], plane };

@@ -30,3 +30,8 @@ export function sceneOf(known, wish) {
     outputs: { bearing_forces: true },
   };
 }
+
+/** The wish of which a scene was made. @param {any} scene */
+export function wishOf({ run, drives, loads }) {
+  return { top_rpm: drives?.[0]?.speed_rpm.at(-1), duration_s: run.duration_s, torque_n_m: loads?.[0]?.torque_n_m[0] };
+}

@@ -45,7 +45,7 @@ export class SceneEditor {
         if (reference.kind === "run") this.run = reference.hash;
         return show(target, reference, signal);
       }),
-      (values) => this.job(values),
+      (values) => this.job(values), (order) => this.typedFor(order),
     ));
   }
 
@@ -149,6 +149,15 @@ export class SceneEditor {
         return { scene, ...this.varied(process, scene, evenly(from, to, count)) };
       },
     };
+  }
+
+  /** Take the scene of a job; returns what was typed beside it. */
+  typedFor({ processID, inputs }) {
+    this.run = inputs.run ?? this.run;
+    this.put(inputs.scene, "this address", inputs.load_cases);
+    const speeds = inputs.speed_rpm ?? inputs.factors?.[0].levels ?? [];
+    const range = { from: speeds[0], to: speeds.at(-1), count: speeds.length || undefined };
+    return { process: processID, ...range, microphone_mm: inputs.microphone_mm };
   }
 
   /** What a process varies of a scene; a study runs it at each speed of its first drive. */

@@ -4,9 +4,8 @@
 import { Problem } from "./api.js";
 import { DesignNote } from "./design_note.js";
 import { make } from "./elements.js";
-import { followed, showFailure, submitted } from "./job.js";
-import { caseOf } from "./job_cases.js";
-import { sayUnknown } from "./notice.js";
+import { followed, orderOf, showFailure, submitted } from "./job.js";
+import { sayMissing } from "./notice.js";
 
 export class Slot {
   /**
@@ -50,11 +49,12 @@ export class Slot {
    * Show the job that the address names; null: none.
    * @param {string | null} job
    */
-  async follow(job) {
-    if (job === this.job) return;
-    const { signal } = this.begin(job);
-    if (!job) return;
-    await this.guarded(signal, () => this.watch(signal));
+  follow(job) {
+    if (job !== this.job) {
+      const { signal } = this.begin(job);
+      this.followed = job && this.guarded(signal, () => this.watch(signal), (problem) => this.missing(problem));
+    }
+    return this.followed;
   }
 
   /** Leave what was shown. */
@@ -73,23 +73,30 @@ export class Slot {
   async watch(signal, expected) {
     const reference = await followed(this.progress, this.job, { expected, signal });
     if (signal.aborted) return;
+    const { inputs } = await orderOf(this.job);
+    if (signal.aborted) return;
+    this.note.of(inputs.case ?? null);
     await this.show(this.result, reference, signal);
-    if (!signal.aborted) this.note.of(caseOf(this.job));
   }
 
-  /** Run until it is done or left; refusals are said in the place of the progress. */
-  async guarded(signal, action) {
+  /** Run until it is done or left; refusals are said in the place of the progress, or by `refused`. */
+  async guarded(signal, action, refused = (problem) => this.refused(problem)) {
     this.busy(true);
     try {
       await action();
     } catch (problem) {
       if (!(problem instanceof Problem)) throw problem;
       if (signal.aborted) return;
-      if (problem.status === 404 && this.job) sayUnknown(`Job ${this.job} (${this.name}): this service does not know it, or no longer.`);
-      this.refused(problem);
+      refused(problem);
     } finally {
       if (!signal.aborted) this.busy(false);
     }
+  }
+
+  /** What the address names has no result. @param {Problem} problem */
+  missing(problem) {
+    sayMissing(`${this.name}: ${problem.message}`);
+    if (problem.status !== 404) this.refused(problem);
   }
 
   /** @param {Problem} problem */
