@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ipaddress
+import os
 import re
 from importlib.util import find_spec
 from pathlib import Path
@@ -180,9 +181,12 @@ class Settings(BaseSettings):
 
     @property
     def results_keys(self) -> tuple[str, str] | None:
-        """The credentials of the bucket of results."""
+        """The credentials of the bucket of results: workers inherit no variables that hold some."""
         key, secret = self.results_access_key_id, self.results_secret_access_key
-        return None if key is None or secret is None else (key.get_secret_value(), secret.get_secret_value())
+        if key is not None and secret is not None:
+            return key.get_secret_value(), secret.get_secret_value()
+        own, theirs = (os.environ.get(f"AWS_{name}") for name in ("ACCESS_KEY_ID", "SECRET_ACCESS_KEY"))
+        return (own, theirs) if own and theirs else None
 
     @property
     def loopback(self) -> bool:
