@@ -82,7 +82,8 @@ def read_wav(path: Path | str) -> Recording:
         quantity, unit, full_scale = (about[name] for name in COMMENT)
         return Recording(samples * float(full_scale), sample_rate, quantity, unit)
     except (ValueError, KeyError, TypeError, struct.error, InputError) as error:
-        raise ResultError(f"{path} is no WAV file with quantity, unit and full scale: {error}") from error
+        name = Path(path).name
+        raise ResultError(f"{name} is no WAV file with quantity, unit and full scale") from error
 
 
 def _chunk(name: bytes, content: bytes) -> bytes:

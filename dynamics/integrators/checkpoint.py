@@ -80,6 +80,6 @@ def read_checkpoint(path: Path) -> tuple[Arrays, Arrays]:
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             content = {name: file[name] for name in file.files}
     except (OSError, ValueError, zipfile.BadZipFile, KeyError) as error:
-        raise ResultError(f"{path}: not a readable checkpoint ({error}). Start a new run.") from error
+        raise ResultError(f"{path.name}: not a readable checkpoint. Start a new run.") from error
     facts = {name.removeprefix("fact "): value for name, value in content.items() if name[:5] == "fact "}
     return {name: value for name, value in content.items() if name[:5] != "fact "}, facts

@@ -39,7 +39,7 @@ class StateSpool:
             lock(self._file.fileno())
         except BlockingIOError:
             self._file.close()
-            raise InputError("output", str(path), "free: another process runs this") from None
+            raise InputError("output", path.name, "free: another process runs this") from None
 
     def __enter__(self) -> StateSpool:
         return self

@@ -179,7 +179,7 @@ def _read_earlier(folder: Path) -> EarlierRun:
     except FileNotFoundError:
         return FIRST
     except (OSError, ValueError, KeyError, AttributeError) as error:
-        raise ResultError(f"{folder / REPEATED}: not readable: {error}. Start a new run.") from error
+        raise ResultError(f"{REPEATED}: not readable. Start a new run.") from error
 
 
 def _difference(system: System, leg: Leg, check: Leg, end: Ending) -> Json:

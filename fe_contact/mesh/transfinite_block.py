@@ -62,7 +62,7 @@ def fill_blocks(
         grids = [np.array(rows, dtype=float) * scale for rows in answer["blocks"]]
         return [_received(block, points) for block, points in zip(blocks, grids, strict=True)]
     except (KeyError, ValueError, TypeError) as error:
-        raise MeshError(f"gmsh worker: unusable answer ({error})") from error
+        raise MeshError("gmsh worker: unusable answer") from error
 
 
 def _received(block: Block, points: FloatArray) -> FloatArray:

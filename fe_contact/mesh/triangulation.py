@@ -70,7 +70,7 @@ def triangulate(
     try:
         return [_received(r, mesh, scale) for r, mesh in zip(regions, answer["regions"], strict=True)]
     except (KeyError, ValueError, TypeError) as error:
-        raise MeshError(f"gmsh worker: unusable answer ({error})") from error
+        raise MeshError("gmsh worker: unusable answer") from error
 
 
 def _received(region: Region, mesh: dict[str, Any], scale: float) -> Triangulation:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import MISSING, asdict, dataclass, field, fields
 from typing import Any
 
 from fe_contact.errors import DatabaseError
@@ -85,7 +85,9 @@ class PairFacts:
         try:
             return cls(**content)
         except (TypeError, ValueError, IndexError) as error:
-            raise DatabaseError(f"the pair facts are not readable: {error}") from error
+            missing = sorted({each.name for each in fields(cls) if each.default is MISSING} - set(content))
+            words = f"without {', '.join(missing)}" if missing else "of other kinds"
+            raise DatabaseError(f"the pair facts are not readable: {words}") from error
 
 
 @dataclass(frozen=True)

@@ -221,7 +221,7 @@ def _frozen_copy(name: str, values: Any) -> NDArray[Any]:
     try:
         array = np.array(values, dtype=INTEGER_TYPES.get(name, np.float64), order="C")
     except (TypeError, ValueError) as error:
-        raise DatabaseError(f"{name} is no array of numbers: {error}") from error
+        raise DatabaseError(f"{name} is no array of numbers") from error
     array.flags.writeable = False
     return array
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from service.comparison.compare import compare_results
-from service.report.as_json import page_json
+from service.report.as_json import of_the_store, page_json
 from service.runs.run_view import RunView
 
 Json = dict[str, Any]
@@ -16,4 +16,5 @@ NAMES = ("first", "second")
 def stored_comparison(inputs: Json) -> Json:
     """Compare ``{"files": [...]}``, two tables or two runs; work of the live worker."""
     named = dict(zip(NAMES, map(Path, inputs["files"]), strict=True))
-    return page_json(compare_results(named, RunView()))
+    with of_the_store():
+        return page_json(compare_results(named, RunView()))

@@ -97,8 +97,8 @@ def _rows(path: Path) -> tuple[list[str], FloatArray]:
             lines = [line for line in csv.reader(file) if line and not line[0].startswith("#")]
         names = [name.strip() for name in lines[0]]
         rows = np.array([[float(cell) for cell in line] for line in lines[1:]])
-    except (ValueError, IndexError) as error:
-        raise BadInput.of("measured", str(path), "a line of names, then numbers", str(error)) from None
+    except (ValueError, IndexError):
+        raise BadInput.of("measured", str(path), "a line of names, then numbers", _ADVICE) from None
     if rows.ndim != 2 or not np.all(np.isfinite(rows)):
         raise BadInput.of("measured", str(path), "as many finite numbers in each line as names", _ADVICE)
     return names, rows

@@ -68,8 +68,9 @@ def _datasets(path: Path) -> list[Dataset]:
     except ImportError:
         advice = "pip install 'lineofaction[uff]'"
         raise BadInput.of("measured", str(path), "a CSV file without the extra uff", advice) from None
-    except Exception as error:  # noqa: BLE001 (of a damaged file: whatever the reader meets)
-        raise BadInput.of("measured", str(path), "a readable universal file", f"{error}.") from None
+    except Exception:  # noqa: BLE001 (of a damaged file: whatever the reader meets)
+        advice = "Export it again, as text (UFF58)."
+        raise BadInput.of("measured", str(path), "a readable universal file", advice) from None
     return list(_known(read if isinstance(read, list) else [read]))
 
 

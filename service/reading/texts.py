@@ -72,5 +72,5 @@ def _with_case(mesh: object, find: Find, names: set[str], cases: dict[str, Json]
         return mesh
     field = f"{field}.case_file"
     if name not in cases:
-        cases[name] = _written_out(toml_table(read_text(find(name, field)), field), find)
+        cases[name] = _written_out(toml_table(read_text(find(name, field), name), field), find)
     return {key: value for key, value in mesh.items() if key != "case_file"} | {"case": cases[name]}

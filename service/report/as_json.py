@@ -5,7 +5,8 @@ It is what the page of the service shows, so that every plot is described once.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from service.drawing.figure import Figure, Table
 from service.drawing.interactive import plotly_figure
 from service.drawing.page import Page, Section
 from service.drawing.player import sound_json
+from service.problems import BadInput, DamagedFile
 from service.report.content import page_of
 from service.report.inputs import read_inputs
 
@@ -21,7 +23,20 @@ Json = dict[str, Any]
 
 def stored_figures(inputs: Json) -> Json:
     """Return the report on a stored result: ``{"file": ...}``; work of the live worker."""
-    return page_json(page_of(read_inputs([Path(inputs["file"])])))
+    with of_the_store():
+        return page_json(page_of(read_inputs([Path(inputs["file"])])))
+
+
+@contextmanager
+def of_the_store() -> Iterator[None]:
+    """Turn the refusal of a file into `DamagedFile`: no caller gave it, and none learns where it is."""
+    try:
+        yield
+    except BadInput as error:
+        if not any(fault.field == "file" for fault in error.faults):
+            raise
+        words = "; ".join(f"{fault.bound}. {fault.suggestion}" for fault in error.faults)
+        raise DamagedFile(f"The stored file is not {words}") from None
 
 
 def page_json(page: Page) -> Json:

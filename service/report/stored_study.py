@@ -49,8 +49,10 @@ def _undamaged(study: Study, file: Path) -> Iterator[None]:
     """Name the file in the libraries' errors of damaged files."""
     try:
         yield
-    except (ValueError, FeContactError, DynamicsError) as error:
-        advice = f"Something is missing or not as written ({type(error).__name__}: {error})."
+    except (FeContactError, DynamicsError) as error:
+        raise BadInput.of("file", str(file), f"an undamaged {study.kind}", f"{error}.") from None
+    except ValueError:
+        advice = "Something is missing or not as written."
         raise BadInput.of("file", str(file), f"an undamaged {study.kind}", advice) from None
 
 

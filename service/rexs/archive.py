@@ -34,10 +34,8 @@ def read_archive(data: bytes) -> tuple[str, bytes, dict[str, bytes]]:
         RuntimeError,
         ValueError,
         OSError,
-    ) as error:
-        raise refused(
-            "archive", str(error) or type(error).__name__, "a ZIP archive that can be read"
-        ) from None
+    ):
+        raise refused("archive", None, "a ZIP archive that can be read") from None
     models = [name for name in files if name.lower().endswith(_MODEL_ENDINGS)]
     if len(models) != 1:
         raise refused("archive", ", ".join(models) or None, "an archive of one model, .rexs or .rexsj")

@@ -45,8 +45,8 @@ def element_of(data: bytes) -> Element:
         raise refused(
             "file", _line(data, error.lineno), bound, "REXS is XML, JSON or a ZIP of them."
         ) from None
-    except (LookupError, ValueError) as error:
-        raise refused("encoding", str(error), "one that XML readers know, as UTF-8") from None
+    except (LookupError, ValueError):
+        raise refused("encoding", None, "one that XML readers know, as UTF-8") from None
     return builder.root.parts[0]
 
 

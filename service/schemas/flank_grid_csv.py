@@ -21,7 +21,7 @@ Table = dict[str, Any]
 
 
 def with_flank_grids(
-    table: Table, find: Find, read_text: Callable[[Path], str], prefix: str = ""
+    table: Table, find: Find, read_text: Callable[[Path, str], str], prefix: str = ""
 ) -> dict[str, Any]:
     """Return `table` with `flank_grid` in place of every `flank_grid_csv`, at any depth.
 
@@ -32,7 +32,7 @@ def with_flank_grids(
     find : callable
         Returns where the CSV file of a name is.
     read_text : callable
-        Returns the text of a file or raises `BadInput`.
+        Returns the text of a file, given its name for errors, or raises `BadInput`.
     place : str
         Where `table` stands in the file, for errors.
 
@@ -51,13 +51,13 @@ def with_flank_grids(
         raise BadInput.of(field, name, "left out when flank_grid is given", "Give one of the two.")
     file = find(name, field)
     try:
-        text = read_text(file)
+        text = read_text(file, name)
     except BadInput as error:
         raise error.within(field) from None
     return resolved | {"flank_grid": flank_grid(text, field, name)}
 
 
-def _inside(value: object, find: Find, read_text: Callable[[Path], str], prefix: str) -> object:
+def _inside(value: object, find: Find, read_text: Callable[[Path, str], str], prefix: str) -> object:
     """Look for grids inside a table or a list."""
     if isinstance(value, dict):
         return with_flank_grids(value, find, read_text, prefix)

@@ -120,7 +120,7 @@ def _solid(file: Path, field: str) -> Content:
     if file.suffix.lower() not in suffixes:
         raise BadInput.of(field, file.name, f"a file that ends in {', '.join(suffixes)}")
     if not file.is_file():
-        raise BadInput.of(field, str(file), "a file that exists", "It is relative to the scene file.")
+        raise BadInput.of(field, file.name, "a file that exists", "It is relative to the scene file.")
     try:
         return {}, {name: FileContentInput.of(file).model_dump(mode="json")}
     except OSError:

@@ -46,7 +46,7 @@ def read_table(source: Path | InputFile) -> dict[str, Any]:
         The file is missing, too large, no text, or not well formed, or it has no place for a value.
     """
     file = InputFile.of(source)
-    path, text = file.path, read_text(file.path)
+    path, text = file.path, read_text(file.path, str(file.path))
     table = _json(text, str(path)) if path.suffix == ".json" else toml_table(text, str(path))
     if not isinstance(table, dict):
         raise BadInput.of(str(path), table, "a table of fields", "See docs/case-file.md.")
@@ -63,17 +63,17 @@ def _json(text: str, field: str) -> Any:
         raise BadInput.of(field, None, "JSON of less depth", "See docs/case-file.md.") from None
 
 
-def read_text(path: Path) -> str:
-    """Return the text of a file that can be read; raises `BadInput`."""
+def read_text(path: Path, name: str) -> str:
+    """Return the text of a file; raises `BadInput` with the name that its caller has for it."""
     try:
         if path.stat().st_size > _LARGEST_FILE:
-            raise BadInput.of("file", str(path), f"at most {_LARGEST_FILE} bytes", "Is this the right file?")
+            raise BadInput.of("file", name, f"at most {_LARGEST_FILE} bytes", "Is this the right file?")
         return path.read_text(encoding="utf-8")
     except UnicodeDecodeError:
-        raise BadInput.of("file", str(path), "a text file in UTF-8", "Is this the right file?") from None
+        raise BadInput.of("file", name, "a text file in UTF-8", "Is this the right file?") from None
     except OSError as error:
         reason = error.strerror or "unreadable"
-        raise BadInput.of("file", str(path), "a readable file", f"{reason}. Check the path.") from None
+        raise BadInput.of("file", name, "a readable file", f"{reason}. Check the path.") from None
 
 
 _SIGNS = {

@@ -55,7 +55,7 @@ class FlankScene:
             plain["facts"] = PairFacts.from_json(content["facts"])
             return cls(**plain)
         except (TypeError, ValueError, KeyError, AttributeError) as error:
-            raise DatabaseError(f"the scene of the flank results is not readable: {error}") from error
+            raise DatabaseError("the scene of the flank results is not readable") from error
 
 
 def flank_scene(

@@ -116,3 +116,11 @@ def test_files_are_bounded_together(tmp_path):
     with pytest.raises(BadInput, match="with all other files at most 64000000 bytes") as refused:
         scene_of_toml(sent, tmp_path)
     assert [fault.field for fault in refused.value.faults] == ["files[1].content"]
+
+
+def test_a_file_that_is_no_text_is_refused_by_its_own_name(tmp_path):
+    """Not by the place that it has in the service."""
+    with pytest.raises(BadInput) as refused:
+        scene_of_toml({"toml": SCENE.read_text("utf-8"), "files": [packed(CASE.name, b"\xff\xfe")]}, tmp_path)
+    (fault,) = refused.value.faults
+    assert (fault.value, "/tmp" in str(refused.value)) == (CASE.name, False)

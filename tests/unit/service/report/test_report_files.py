@@ -1,15 +1,21 @@
 """The report from files: what they are is read from them, and what is wrong is said."""
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import h5netcdf
 import pytest
 
 from dynamics.results import RunResult
 from fe_contact.ste import SteDatabase
-from service.problems import BadInput
+from service.comparison.as_json import stored_comparison
+from service.problems import BadInput, DamagedFile
 from service.report import write_report
+from service.report.as_json import stored_figures
 from service.report.inputs import read_inputs
+
+Work = Callable[[dict[str, Any]], Any]
 
 
 @pytest.fixture
@@ -106,3 +112,12 @@ def test_an_old_report_survives_a_failed_one(files: tuple[Path, Path], tmp_path:
     with pytest.raises(BadInput):
         write_report(tmp_path / "none.nc", target)
     assert target.read_bytes() == before
+
+
+@pytest.mark.parametrize("work", [stored_figures, stored_comparison])
+def test_of_a_stored_file_nobody_learns_where_it_is(tmp_path: Path, work: Work) -> None:
+    """It is damage in the store, not a fault of the caller."""
+    (tmp_path / "a.nc").write_text("hello")
+    with pytest.raises(DamagedFile, match="not a readable netCDF-4 file") as refused:
+        work({"file": str(tmp_path / "a.nc"), "files": [str(tmp_path / "a.nc")] * 2})
+    assert str(tmp_path) not in str(refused.value)
