@@ -62,11 +62,11 @@ def opened(path: Path) -> Iterator[Any]:
 
 
 @contextmanager
-def opened_netcdf(path: Path) -> Iterator[Any]:
+def opened_netcdf(path: Path, **decoding: Any) -> Iterator[Any]:
     """Open a file as `h5netcdf.File`; raises as `opened`."""
     import h5netcdf  # noqa: PLC0415 - needed for files only
 
-    with opened(path) as content, h5netcdf.File(content.id, "r") as file:
+    with opened(path) as content, h5netcdf.File(content.id, "r", **decoding) as file:
         yield file
 
 
@@ -75,7 +75,7 @@ def read_dataset(path: Path, **decoding: Any) -> xarray.Dataset:
     import xarray  # noqa: PLC0415 - a second, and not needed by other readers
     from xarray.backends import H5NetCDFStore  # noqa: PLC0415
 
-    with opened_netcdf(path) as file:
+    with opened_netcdf(path, decode_vlen_strings=True) as file:
         return xarray.load_dataset(H5NetCDFStore(file), **decoding)
 
 

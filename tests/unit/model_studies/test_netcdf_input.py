@@ -9,6 +9,7 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
+import xarray
 from foreign_netcdf import SECRET, STRIKES, struck, write_canary
 from reduced_housings import random_housing
 from small_table import small_table
@@ -93,6 +94,17 @@ def test_every_reader_walks_a_file_first(reader: str, name: str, strike) -> None
 def test_files_of_the_program_open(good: Path) -> None:
     for kind in WRITERS:
         READERS[kind](good / f"{kind}.nc")
+
+
+def test_a_dataset_is_that_of_xarray(tmp_path: Path) -> None:
+    """Texts in any script, too."""
+    written = xarray.Dataset({"t": ("x", [1.0, 2.0])}, {"name": ("x", ["Ölkühler", "軸受"])}, {"unit": "µm"})
+    written.to_netcdf(tmp_path / "a.nc", engine="h5netcdf")
+    read, expected = (
+        read_dataset(tmp_path / "a.nc"),
+        xarray.load_dataset(tmp_path / "a.nc", engine="h5netcdf"),
+    )
+    assert read.identical(expected) and read["name"].dtype == expected["name"].dtype
 
 
 def test_a_file_may_begin_behind_other_bytes(tmp_path: Path) -> None:
