@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib.util import find_spec
 
 MODULES = {
-    "analysis": ("gmsh", "matplotlib", "meshio", "numba", "plotly", "pymetis", "skfem"),
+    "analysis": ("gmsh", "matplotlib", "meshlane", "numba", "plotly", "pymetis", "skfem"),
     "service": (
         "alembic",
         "cbor2",

@@ -54,7 +54,7 @@ def meshed_step(
     """
     file = None
     if cache is not None and Path(path).is_file():
-        facts = repr([MESH_VERSION, WALL_ELEMENTS, version("gmsh"), version("meshio"), element_size])
+        facts = repr([MESH_VERSION, WALL_ELEMENTS, version("gmsh"), version("meshlane"), element_size])
         content = hashlib.sha256(Path(path).read_bytes() + facts.encode()).hexdigest()
         file = cache / f"mesh-{content}.nc"
     return kept_in(file, _read_mesh, lambda: mesh_step(path, element_size), _write_mesh, UnreadableFile)

@@ -1,4 +1,4 @@
-"""Volume meshes from files, by meshio in a child process."""
+"""Volume meshes from files, by meshlane in a child process."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def _quadratic(content: Content) -> tuple[FloatArray, IntArray]:
     points, cells = content.points, content.tetrahedra
     members = [cells, *content.groups.values()]
     if any(nodes.min(initial=0) < 0 or nodes.max(initial=0) >= len(points) for nodes in members):
-        raise InputError(FIELD, "with elements that lack nodes", "complete, as meshio reads it")
+        raise InputError(FIELD, "with elements that lack nodes", "complete, as meshlane reads it")
     return raised(_right_handed(points, cells), points) if cells.shape[1] == LINEAR_NODES else (points, cells)
 
 

@@ -1,7 +1,7 @@
-"""Child process that reads a mesh by meshio, and does nothing else.
+"""Child process that reads a mesh by meshlane, and does nothing else.
 
 Run as a script by `dynamics.housing_modes.mesh_file`, never imported by it, in a folder of its own, which is
-all that it can reach (`host.confine`): meshio has readers of many formats, and some follow references to
+all that it can reach (`host.confine`): meshlane has readers of many formats, and some follow references to
 other files. It reads one JSON object from standard input and writes one to standard output, and the mesh as
 ``mesh.npz`` into its folder::
 
@@ -42,7 +42,7 @@ class OtherCells(Exception):
 
 def read(file: Path, title: str) -> tuple[dict[str, NDArray[Any]], list[str]]:
     """Return the arrays of a file and the names of its groups."""
-    reader = import_module(f"meshio.{title}")
+    reader = import_module(f"meshlane.{title}")
     try:
         content = reader.read(file)
     # what its readers raise on damaged or foreign files is not one class; some end the program
@@ -102,7 +102,7 @@ def by_number(content: Any, key: str) -> dict[int, Nodes]:
 def main() -> None:
     """Answer the one request on standard input."""
     answer_to = os.dup(1)
-    os.dup2(2, 1)  # whatever meshio prints must not mix with the answer
+    os.dup2(2, 1)  # whatever meshlane prints must not mix with the answer
     request = json.load(sys.stdin)
     end_after(int(request["seconds"]) + 1)
     confine(Path.cwd())

@@ -34,10 +34,10 @@ def write_surface(
     of_triangles : mapping of str to (t,) array, optional
         Constant on triangles.
     """
-    import meshio  # noqa: PLC0415 (start-up time)
+    import meshlane  # noqa: PLC0415 (start-up time)
 
     file = Path(path)
-    mesh = meshio.Mesh(
+    mesh = meshlane.Mesh(
         points,
         [("triangle" if triangles.shape[1] == CORNERS else "triangle6", triangles)],
         point_data={name: np.ascontiguousarray(values) for name, values in fields.items()},
@@ -45,7 +45,7 @@ def write_surface(
     )
     unfinished = file.with_name(f".{file.name}.{os.getpid()}")
     try:
-        meshio.write(unfinished, mesh, file_format="vtu")
+        meshlane.write(unfinished, mesh, file_format="vtu")
         unfinished.replace(file)
     finally:
         unfinished.unlink(missing_ok=True)

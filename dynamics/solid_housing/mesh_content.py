@@ -48,13 +48,13 @@ def _none(_content: bytes) -> Fault:
 
 
 def _of_abaqus(content: bytes) -> Fault:
-    """Find INCLUDE by the rule of meshio: with stars and without, in large letters and small."""
+    """Find INCLUDE by the rule of meshlane: with stars and without, in large letters and small."""
     keywords = (line.partition(",")[0].strip().replace("*", "").upper() for line in mesh_text(content))
     return ("without *INCLUDE: other files are not read", _ALONE) if "INCLUDE" in keywords else None
 
 
 def _of_nastran(content: bytes) -> Fault:
-    """Find INCLUDE, and bulk data without its last line: meshio waits for it without end."""
+    """Find INCLUDE, and bulk data without its last line: meshlane waits for it without end."""
     if any(line.lstrip().upper().startswith("INCLUDE") for line in mesh_text(content)):
         return "without INCLUDE: other files are not read", _ALONE
     lines = iter(mesh_text(content))

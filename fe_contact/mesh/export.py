@@ -1,4 +1,4 @@
-"""Export of gear meshes through meshio: VTU for viewers, msh for gmsh."""
+"""Export of gear meshes through meshlane: VTU for viewers, msh for gmsh."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def write_mesh(mesh: GearMesh, path: Path | str, point_data: Mapping[str, FloatA
     InputError
         The suffix is another one.
     """
-    import meshio  # noqa: PLC0415 - only who exports needs it
+    import meshlane  # noqa: PLC0415 - only who exports needs it
 
     path = Path(path)
     if path.suffix not in FORMATS:
@@ -42,7 +42,7 @@ def write_mesh(mesh: GearMesh, path: Path | str, point_data: Mapping[str, FloatA
     bore = np.zeros(len(mesh.points))
     bore[mesh.bore_nodes] = 1.0
     points = np.column_stack([mesh.points, np.zeros(len(mesh.points))])
-    meshio.Mesh(
+    meshlane.Mesh(
         points,
         [("triangle6", mesh.triangles)],
         point_data={"bore": bore} | dict(point_data or {}),
@@ -83,7 +83,7 @@ def write_cells(
     InputError
         The suffix is another one.
     """
-    import meshio  # noqa: PLC0415 - only who exports needs it
+    import meshlane  # noqa: PLC0415 - only who exports needs it
 
     path = Path(path)
     if path.suffix != ".vtu":
@@ -92,7 +92,7 @@ def write_cells(
     content = {name: [values] for name, values in cell_data.items()}
     draft = path.with_name(f".{path.name}.part")
     try:
-        meshio.Mesh(points, [(kind, cells)], dict(point_data), content).write(draft, file_format="vtu")
+        meshlane.Mesh(points, [(kind, cells)], dict(point_data), content).write(draft, file_format="vtu")
         draft.replace(path)
     finally:
         draft.unlink(missing_ok=True)

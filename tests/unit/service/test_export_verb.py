@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-import meshio
+import meshlane
 import pytest
 from geared_scenes import gear_pair_scene
 from spur_case import SPUR
@@ -67,7 +67,7 @@ def test_one_position_is_two_files_and_several_are_numbered(small: Path, tmp_pat
     # one pair at the pitch point, two half a pitch on; half the load bends half as much, but for the contact
     assert answer["positions"][0]["ste_um"] > answer["positions"][1]["ste_um"]
     high, low = (
-        meshio.read(tmp_path / name).point_data["von_mises_stress"].max()
+        meshlane.read(tmp_path / name).point_data["von_mises_stress"].max()
         for name in ("one/pinion.vtu", "two/pinion_000.vtu")
     )
     assert high == pytest.approx(2.0 * low, rel=0.02)

@@ -9,7 +9,7 @@ from functools import cache
 from html import escape
 from pathlib import Path
 
-import meshio
+import meshlane
 import numpy as np
 import pytest
 from computed_once import computed_once
@@ -140,7 +140,7 @@ def test_regions_and_panels_add_up_to_the_power_of_their_point(scene: Path, tmp_
     assert f"{100.0 * first['share']:.0f} % leaves case at {first['facing']}" in page.sentences(found)[0]
     assert len(page.region_table(found).rows) == sum(len(point["regions"]) for point in points[:3])
     loud = loudest(found, 1)[0]
-    surface = meshio.read(tmp_path / "noise.vtu")
+    surface = meshlane.read(tmp_path / "noise.vtu")
     (triangles,) = (cells.data for cells in surface.cells)
     hull = Hull(surface.points, triangles)
     (intensity,), (power,) = surface.cell_data["intensity"], surface.cell_data["power"]

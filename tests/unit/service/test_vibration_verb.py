@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import meshio
+import meshlane
 import numpy as np
 import pytest
 from computed_once import computed_once
@@ -80,7 +80,7 @@ def test_every_kind_of_output_says_the_same(scene: Path, tmp_path: Path) -> None
     first = dict(zip(head, map(float, rows[1]), strict=True))
     along = [first[f"cover_{axis}_mm_per_s"] for axis in "xyz"]
     assert np.linalg.norm(along) == pytest.approx(written["points"]["cover"]["velocity_mm_per_s"][1][0])
-    surface = meshio.read(files["vtu"])
+    surface = meshlane.read(files["vtu"])
     assert [cells.type for cells in surface.cells] == ["triangle6"]
     size = surface.point_data["velocity_magnitude"]
     parts = surface.point_data["velocity_real"], surface.point_data["velocity_imaginary"]
@@ -137,7 +137,7 @@ def test_orders_that_the_modes_kept_do_not_carry_are_named(folder: Path, scene: 
 
 def test_a_mode_is_drawn_in_place_of_the_deflection(scene: Path, tmp_path: Path) -> None:
     assert loa(scene, *SPEEDS, "--mode", 2, "-o", tmp_path / "mode.vtu").exit_code == 0
-    motion = meshio.read(tmp_path / "mode.vtu").point_data["mode_2_real"]
+    motion = meshlane.read(tmp_path / "mode.vtu").point_data["mode_2_real"]
     assert np.linalg.norm(motion, axis=1).max() == pytest.approx(1.0)
 
 

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import meshio
+import meshlane
 import numpy as np
 import pytest
 from lattice_meshes import box, tube
@@ -54,7 +54,7 @@ def written(path: Path) -> Path:
         write_nastran(path)
         return path
     sets = {"foot": FOOT} if path.suffix == ".inp" else {}
-    whole = meshio.Mesh(MILLIMETERS, [("tetra10", MESH.tetrahedra)], point_sets=sets)
+    whole = meshlane.Mesh(MILLIMETERS, [("tetra10", MESH.tetrahedra)], point_sets=sets)
     whole.write(path, file_format={".msh": "gmsh", ".inp": "abaqus", ".vtu": "vtu"}[path.suffix])
     return path
 
@@ -80,7 +80,7 @@ def test_physical_groups_of_triangles_keep_their_names(tmp_path: Path) -> None:
     base = Plane((0.0, 0.0, 0.0), (0.0, 0.0, -1.0)).triangles(MESH)
     cells = [("tetra10", MESH.tetrahedra), ("triangle6", base)]
     numbers = [np.full(len(data), kind) for kind, (_, data) in enumerate(cells, 1)]
-    whole = meshio.Mesh(
+    whole = meshlane.Mesh(
         MILLIMETERS,
         cells,
         cell_data={"gmsh:physical": numbers, "gmsh:geometrical": numbers},
@@ -96,7 +96,7 @@ def test_linear_tetrahedra_of_either_hand_get_nodes_in_the_middle_of_their_edges
     corners = straight.tetrahedra[:, :4].copy()
     corners[::2] = corners[::2][:, [1, 0, 2, 3]]
     used, corners = np.unique(corners, return_inverse=True)
-    meshio.Mesh(straight.points[used], [("tetra", corners.reshape(-1, 4))]).write(tmp_path / "box.vtu")
+    meshlane.Mesh(straight.points[used], [("tetra", corners.reshape(-1, 4))]).write(tmp_path / "box.vtu")
     back = read_mesh(tmp_path / "box.vtu", "m")
     assert len(back.points) == len(straight.points)
     mass, _ = mass_and_stiffness(back, GRAY_CAST_IRON)
@@ -108,24 +108,42 @@ def test_a_regular_tetrahedron_is_the_best_shape() -> None:
     assert element_shape(type(MESH)(points, np.array([[0, 2, 1, 3, *6 * [0]]]))) == pytest.approx([1.0])
 
 
-def folded() -> meshio.Mesh:
+@pytest.mark.parametrize("placed", [False, True])
+def test_all_nodes_of_an_abaqus_file_are_read(tmp_path: Path, placed: bool) -> None:
+    """In several blocks; in a part, where its instance places it."""
+    rows = [f"{n}, {x!r}, {y!r}, {z!r}" for n, (x, y, z) in enumerate(MILLIMETERS.tolist(), 1)]
+    cells = [", ".join(map(str, (n, *nodes))) for n, nodes in enumerate((MESH.tetrahedra + 1).tolist(), 1)]
+    blocks = ["*NODE", *rows[:100], "*NODE", *rows[100:], "*ELEMENT, TYPE=C3D10", *cells]
+    if placed:
+        instance = ["*INSTANCE, NAME=case-1, PART=case", "10., 20., 30.", "*END INSTANCE"]
+        blocks = ["*PART, NAME=case", *blocks, "*END PART", "*ASSEMBLY, NAME=all", *instance, "*END ASSEMBLY"]
+    (tmp_path / "case.inp").write_text("\n".join(["*HEADING", *blocks, ""]))
+    expected = MESH.points + placed * np.array([0.01, 0.02, 0.03])
+    assert read_mesh(tmp_path / "case.inp", "mm").points == pytest.approx(expected, abs=1e-12)
+
+
+def folded() -> meshlane.Mesh:
     points = MILLIMETERS.copy()
     points[MESH.tetrahedra[0, 4]] = points[MESH.tetrahedra[0, 3]]
-    return meshio.Mesh(points, [("tetra10", MESH.tetrahedra)])
+    return meshlane.Mesh(points, [("tetra10", MESH.tetrahedra)])
 
 
-def sliver() -> meshio.Mesh:
+def sliver() -> meshlane.Mesh:
     flat = box((0.1, 0.1, 1e-5), (1, 1, 1))
-    return meshio.Mesh(1000.0 * flat.points, [("tetra10", flat.tetrahedra)])
+    return meshlane.Mesh(1000.0 * flat.points, [("tetra10", flat.tetrahedra)])
 
 
-def two_parts() -> meshio.Mesh:
+def two_parts() -> meshlane.Mesh:
     both = np.vstack([MILLIMETERS, MILLIMETERS + 500.0])
-    return meshio.Mesh(both, [("tetra10", np.vstack([MESH.tetrahedra, MESH.tetrahedra + len(MILLIMETERS)]))])
+    return meshlane.Mesh(
+        both, [("tetra10", np.vstack([MESH.tetrahedra, MESH.tetrahedra + len(MILLIMETERS)]))]
+    )
 
 
-def hexahedra() -> meshio.Mesh:
-    return meshio.Mesh(100.0 * np.random.default_rng(0).random((8, 3)), [("hexahedron", np.arange(8)[None])])
+def hexahedra() -> meshlane.Mesh:
+    return meshlane.Mesh(
+        100.0 * np.random.default_rng(0).random((8, 3)), [("hexahedron", np.arange(8)[None])]
+    )
 
 
 @pytest.mark.parametrize(
@@ -135,8 +153,8 @@ def hexahedra() -> meshio.Mesh:
         (sliver, "mm", "mesh_file.shape"),
         (two_parts, "mm", "mesh_file.parts"),
         (hexahedra, "mm", "mesh_file.cells"),
-        (lambda: meshio.Mesh(MILLIMETERS, [("tetra10", MESH.tetrahedra)]), "m", "mesh_file.size"),
-        (lambda: meshio.Mesh(MILLIMETERS, [("tetra10", MESH.tetrahedra)]), "inch", "unit"),
+        (lambda: meshlane.Mesh(MILLIMETERS, [("tetra10", MESH.tetrahedra)]), "m", "mesh_file.size"),
+        (lambda: meshlane.Mesh(MILLIMETERS, [("tetra10", MESH.tetrahedra)]), "inch", "unit"),
     ],
 )
 def test_a_bad_mesh_is_refused_by_name(tmp_path: Path, mesh, unit: str, field: str) -> None:
@@ -266,7 +284,7 @@ def test_a_reader_that_is_led_elsewhere_reaches_nothing(
     canary = tmp_path / "canary"
     canary.write_text("canary")
     libraries = tmp_path / "libraries"
-    for name in ("meshio", "gmsh"):
+    for name in ("meshlane", "gmsh"):
         (libraries / name).mkdir(parents=True)
         (libraries / name / "__init__.py").write_text(f"raise RuntimeError(open({str(canary)!r}).read())")
     monkeypatch.syspath_prepend(str(libraries))

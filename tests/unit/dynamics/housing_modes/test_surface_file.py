@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import meshio
+import meshlane
 import numpy as np
 import pytest
 from lattice_meshes import box
@@ -18,7 +18,7 @@ def test_a_reader_finds_quadratic_triangles_with_their_fields(tmp_path: Path) ->
     points, triangles = mesh.points[nodes], triangles.reshape(-1, 6)
     file = tmp_path / "mode.vtu"
     write_surface(file, points, triangles, {"motion": 2.0 * points, "size": points[:, 0]})
-    found = meshio.read(file)
+    found = meshlane.read(file)
     (cells,) = found.cells
     assert cells.type == "triangle6"
     np.testing.assert_array_equal(found.points, points)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import meshio
+import meshlane
 import numpy as np
 import pytest
 
@@ -19,7 +19,7 @@ def test_round_trip(tmp_path: Path, name: str, gear_and_mesh: tuple[Gear, GearMe
     _, mesh = gear_and_mesh
     height = mesh.points[:, 1].copy()
     write_mesh(mesh, tmp_path / name, point_data={"height": height})
-    back = meshio.read(tmp_path / name)
+    back = meshlane.read(tmp_path / name)
     assert np.array_equal(back.points[:, :2], mesh.points)
     assert np.array_equal(back.cells_dict["triangle6"], mesh.triangles)
     assert np.array_equal(back.point_data["height"], height)
