@@ -62,7 +62,7 @@ def test_orientation_plays_no_part() -> None:
 @pytest.mark.parametrize(
     ("answer", "cause"),
     [
-        ('{"blocks": [[[[0, 0], [1, 0]]]]}', "shape"),
+        ('{"blocks": [[[[0, 0], [1, 0]]]]}', "unusable"),
         ('{"blocks": []}', "unusable"),
         ("{}", "unusable"),
         ('{"error": "no surface"}', "no surface"),
