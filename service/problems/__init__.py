@@ -27,7 +27,9 @@
     |- NotAnalyzed       nothing is kept to answer from; submit a job first
     |- LiveUnavailable   the live worker ended or took too long; try again
     |- DatabaseUnavailable  the database does not answer; try again later
-    |  `- DatabaseDamaged    it answers, and has to be mended first
+    |  |- DatabaseDamaged    it answers, and has to be mended first
+    |  |- NoSpace            its disk, or that of the results, is full
+    |  `- OutOfFiles         the service may open no more files
     |- StoreUnavailable  the store of results does not answer; try again later
     |- DamagedFile       a file does not hold what its digest says
     |- Unreachable       no service at the address
@@ -66,6 +68,8 @@ from service.problems.outages import (
     DamagedFile,
     DatabaseDamaged,
     DatabaseUnavailable,
+    NoSpace,
+    OutOfFiles,
     StoreUnavailable,
     Unreachable,
 )
@@ -105,12 +109,14 @@ __all__ = [
     "LiveUnavailable",
     "Malformed",
     "MissingScope",
+    "NoSpace",
     "NoSuchJob",
     "NoSuchProcess",
     "NotAcceptable",
     "NotAnalyzed",
     "NotForUs",
     "NotFound",
+    "OutOfFiles",
     "QueueFull",
     "RateExceeded",
     "ResultNotReady",

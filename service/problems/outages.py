@@ -24,6 +24,24 @@ class DatabaseDamaged(DatabaseUnavailable):
     retry_after_s = None
 
 
+class NoSpace(DatabaseUnavailable):
+    """The disk of the database or of the results is full."""
+
+    type = "urn:lineofaction:problem:no-space"
+    title = "There is no space left"
+    exit_code = EXIT_FAILED
+    retry_after_s = None
+
+
+class OutOfFiles(DatabaseUnavailable):
+    """The process of the service, or its machine, opens no more files."""
+
+    type = "urn:lineofaction:problem:out-of-files"
+    title = "Too many files are open"
+    exit_code = EXIT_FAILED
+    retry_after_s = 5
+
+
 class StoreUnavailable(ServiceError):
     """The store of results does not answer."""
 

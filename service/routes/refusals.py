@@ -15,7 +15,9 @@ from service.problems import (
     KeyExpired,
     Malformed,
     MissingScope,
+    NoSpace,
     NotForUs,
+    OutOfFiles,
     RateExceeded,
     ServiceError,
     StoreUnavailable,
@@ -47,7 +49,7 @@ _OF_ALL: tuple[type[ServiceError], ...] = (
     Unexpected,
 )
 _WITH_KEYS = (Unauthorised, KeyExpired, MissingScope, RateExceeded, TooManyHeld, IssuerUnavailable)
-_OF_STORES = (DatabaseUnavailable, DatabaseDamaged, StoreUnavailable)
+_OF_STORES = (DatabaseUnavailable, DatabaseDamaged, NoSpace, OutOfFiles, StoreUnavailable)
 _OF_BODIES = (TooLarge, UnsupportedMediaType, BadInput)
 _OF_ROUTING: Kinds = {405: {"about:blank": "Method Not Allowed"}}
 _KINDS = "x-problems"

@@ -10,16 +10,19 @@ import json
 import uuid
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
 from sqlalchemy import Column, Engine, String, Table, insert, select, update
 from sqlalchemy.exc import SQLAlchemyError
 
-from service.problems import BadInput
+from service.problems import BadInput, NoSpace
 from service.store.database import metadata, now, reading, writing
+from service.store.dialects import dialect_of
 from service.store.outages import outage_of, retried
 from service.store.result_names import ResultName
 from service.store.results import ResultStore
 from service.store.schema import shown
+from service.store.space import shortage
 
 NOTE = "deployment.json"
 """Name of the note beside the files."""
@@ -139,8 +142,10 @@ class Deployment:
         Raises
         ------
         DatabaseUnavailable
-            It does not answer, has to be mended, or others hold it for longer than a moment.
+            It does not answer, has to be mended, or others hold it for longer than a moment. `NoSpace`: its
+            disk has no room for a submission.
         """
+        _refuse_without_space(dialect_of(self._engine).folder(self._engine.url))
         try:
             with writing(self._engine, in_turn=True, patience_ms=_MOMENT_MS) as connection:
                 connection.execute(update(deployments).values(checked=now()))
@@ -156,7 +161,10 @@ class Deployment:
             The place is no longer ours, or cannot be written.
         StoreUnavailable
             It does not answer.
+        NoSpace
+            Its disk is full.
         """
+        _refuse_without_space(self._files.folder)
         self.confirm()
         self._put(_WRITTEN, now(), replace=True)
 
@@ -204,6 +212,12 @@ class Deployment:
         """Return the error of a place that is not ours."""
         ours = f"the place of deployment {self._named()} (database {shown(self._engine)})"
         return BadInput.of("results", self._files.address, ours + bound, tip)
+
+
+def _refuse_without_space(folder: Path | None) -> None:
+    """Raise `NoSpace` if a folder has none."""
+    if fault := shortage(folder):
+        raise NoSpace(fault)
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ from sqlalchemy.exc import TimeoutError as PoolTimeout
 
 from service.problems import BadInput
 from service.store.commits import Commits, PostgresCommits, SqliteCommits
+from service.store.space import out_of_files, shortage
 
 _PRAGMAS = (
     "PRAGMA busy_timeout=10000",  # first: the others may have to wait too
@@ -61,8 +62,11 @@ class Dialect(Protocol):
     def lost(self, error: DBAPIError) -> bool:
         """Whether the database, not the statement, is why it failed: another attempt may succeed."""
 
-    def remedy(self, error: DBAPIError) -> str | None:
+    def remedy(self, error: DBAPIError, url: URL) -> str | None:
         """Return what a person has to do before any attempt can succeed; None if it is not that."""
+
+    def folder(self, url: URL) -> Path | None:
+        """Return the folder of this machine that it writes to; None: it is elsewhere."""
 
     def check(self, connection: Connection) -> str | None:
         """Look through the whole database where that is cheap; return what is damaged, None if nothing is."""
@@ -102,11 +106,21 @@ class SQLite:
         """Whether others held the file for too long."""
         return any(word in str(error.orig) for word in ("locked", "busy"))
 
-    def remedy(self, error: DBAPIError) -> str | None:
+    def remedy(self, error: DBAPIError, url: URL) -> str | None:
         """Tell by the primary result code; a file that was replaced by an empty one has no tables."""
         if "no such table" in str(error.orig):
             return RESTORE
-        return _SQLITE_REMEDIES.get(getattr(error.orig, "sqlite_errorcode", 0) & 0xFF)
+        code = getattr(error.orig, "sqlite_errorcode", 0) & 0xFF
+        if code in (sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_IOERR):  # of files beside its own, too
+            if out_of_files():
+                return FILES
+            if shortage(self.folder(url)):
+                return ROOM
+        return _SQLITE_REMEDIES.get(code)
+
+    def folder(self, url: URL) -> Path | None:
+        """Return the folder of the file."""
+        return Path(url.database).parent if url.database else None
 
     def check(self, connection: Connection) -> str | None:
         """Read every page, some 0.1 to 1 s for 100 MB."""
@@ -126,7 +140,8 @@ RESTORE = (
     "-shm, and rebuild the index of results with loa store reindex (docs/operations.md)."
 )
 _RIGHTS = "Give the service the right to write it, and for SQLite its folder."
-_ROOM = "Make room on its disk."
+ROOM = "Make room on its disk."
+FILES = "Let the process open more files (ulimit -n, LimitNOFILE= of systemd), or end what holds them."
 _DISK = "Look at its disk and at the log of the system."
 _SQLITE_REMEDIES: Mapping[int, str] = {
     sqlite3.SQLITE_CORRUPT: RESTORE,
@@ -134,7 +149,7 @@ _SQLITE_REMEDIES: Mapping[int, str] = {
     sqlite3.SQLITE_PERM: _RIGHTS,
     sqlite3.SQLITE_READONLY: _RIGHTS,
     sqlite3.SQLITE_CANTOPEN: _RIGHTS,
-    sqlite3.SQLITE_FULL: _ROOM,
+    sqlite3.SQLITE_FULL: ROOM,
     sqlite3.SQLITE_IOERR: _DISK,
     sqlite3.SQLITE_PROTOCOL: _DISK,
 }
@@ -144,7 +159,7 @@ _POSTGRESQL_REMEDIES: Mapping[str, str] = {
     "42P01": RESTORE,  # undefined table
     "25006": _RIGHTS,  # read-only transaction
     "42501": _RIGHTS,  # insufficient privilege
-    "53100": _ROOM,  # disk full
+    "53100": ROOM,  # disk full
     "58030": _DISK,  # I/O error
 }
 
@@ -220,9 +235,13 @@ class PostgreSQL:
             return type(error.orig).__name__ in ("OperationalError", "InterfaceError", "ConnectionTimeout")
         return error.connection_invalidated or state.startswith(("08", "40", "53", "57P", "55P03"))
 
-    def remedy(self, error: DBAPIError) -> str | None:
+    def remedy(self, error: DBAPIError, url: URL) -> str | None:
         """Tell by the SQLSTATE."""
         return _POSTGRESQL_REMEDIES.get(getattr(error.orig, "sqlstate", None) or "")
+
+    def folder(self, url: URL) -> Path | None:
+        """Return none: a server has its own."""
+        return None
 
     def check(self, _connection: Connection) -> str | None:
         """Find nothing: a server has tools and an administrator of its own (pg_amcheck)."""
@@ -254,4 +273,4 @@ def is_lost(error: BaseException, database: Engine) -> bool:
 
 def remedy_of(error: BaseException, database: Engine) -> str | None:
     """Return what a person has to do if `error` says that the database cannot be used as it is."""
-    return dialect_of(database).remedy(error) if isinstance(error, DBAPIError) else None
+    return dialect_of(database).remedy(error, database.url) if isinstance(error, DBAPIError) else None

@@ -41,11 +41,14 @@ class ResultFiles(Protocol):
     ----------
     address : str
         The folder, or the URL of the bucket and prefix.
+    folder : Path or None
+        The folder on this machine that is written to; None: they are elsewhere.
     reads : CacheReads
         Of the cache on this machine; a folder needs none.
     """
 
     address: str
+    folder: Path | None
     reads: CacheReads
 
     def put(self, name: str, file: Path, sha256: str) -> None:
@@ -95,6 +98,7 @@ class DirectoryFiles:
 
     def __init__(self, directory: Path) -> None:
         self._directory, self.address = directory, str(directory)
+        self.folder: Path | None = directory
         self.reads = CacheReads()
 
     def put(self, name: str, file: Path, sha256: str) -> None:

@@ -41,6 +41,7 @@ class ObjectFiles:
 
     def __init__(self, store: S3Store, address: str, cache: Path, cache_bytes: int) -> None:
         self._store, self.address = store, address
+        self.folder: Path | None = None
         self._cache, self._cache_bytes = cache, cache_bytes
         self.reads = CacheReads()
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Concatenate, ParamSpec, Protocol, TypeVar, cast
 
 import structlog
@@ -12,13 +12,19 @@ from sqlalchemy.exc import SQLAlchemyError
 from tenacity import RetryCallState, Retrying, retry_if_exception, stop_after_attempt, stop_after_delay
 from tenacity.wait import wait_exponential, wait_random
 
-from service.problems import DatabaseDamaged, DatabaseUnavailable
-from service.store.dialects import is_lost, remedy_of
+from service.problems import DatabaseDamaged, DatabaseUnavailable, NoSpace, OutOfFiles
+from service.store.dialects import FILES, ROOM, is_lost, remedy_of
 
 _ATTEMPTS = 6
 _PATIENCE_S = 5.0
 """After which a step is not tried again: one attempt may have waited for a lock as long as it may."""
 _FIRST_WAIT_S, _LONGEST_WAIT_S = 0.05, 1.0
+
+_KINDS: Mapping[str, tuple[str, type[DatabaseUnavailable]]] = {
+    ROOM: ("no space", NoSpace),
+    FILES: ("out of files", OutOfFiles),
+}
+"""Event of the log and error by what is to be done, where the database itself is sound."""
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -45,7 +51,9 @@ def retried(step: Callable[Concatenate[S, P], R]) -> Callable[Concatenate[S, P],
     DatabaseUnavailable
         The database has not come back after about two seconds, or others hold what is needed for too long.
     DatabaseDamaged
-        It has to be mended first: damaged, full, read-only. Not tried again.
+        It has to be mended first: damaged, read-only. Not tried again.
+    NoSpace, OutOfFiles
+        Its disk is full, or this process may open no more files. Not tried again.
     """
 
     @functools.wraps(step)
@@ -74,14 +82,15 @@ def outage_of(error: SQLAlchemyError, engine: Engine) -> DatabaseUnavailable | N
     if is_lost(error, engine):
         return DatabaseUnavailable("The database cannot be reached. Try again later.")
     remedy = remedy_of(error, engine)
-    return None if remedy is None else damaged(engine, str(getattr(error, "orig", error)), remedy)
+    return None if remedy is None else unusable(engine, str(getattr(error, "orig", error)), remedy)
 
 
-def damaged(engine: Engine, fault: str, remedy: str) -> DatabaseDamaged:
-    """Return the error of a database that has to be mended; the log alone says where it is."""
+def unusable(engine: Engine, fault: str, remedy: str) -> DatabaseUnavailable:
+    """Return the error of a database that somebody has to see to; the log alone says where it is."""
     where = engine.url.render_as_string(hide_password=True)
-    logger.error("database damaged", database=where, error=fault, remedy=remedy)
-    error = DatabaseDamaged(f"The database cannot be used: {fault}.")
+    event, kind = _KINDS.get(remedy, ("database damaged", DatabaseDamaged))
+    logger.error(event, database=where, error=fault, remedy=remedy)
+    error = kind(f"{kind.title}: {fault}.")
     error.add_note(f"{where}: {remedy}")
     return error
 

@@ -10,7 +10,7 @@ from sqlalchemy import Connection, Engine
 from service.problems import BadInput
 from service.store.dialects import RESTORE, dialect_of
 from service.store.migrations import REVISIONS
-from service.store.outages import damaged, retried
+from service.store.outages import retried, unusable
 from service.store.schema_numbers import SchemaNumbers, schema_numbers, write_oldest
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ class Schema:
         with self._engine.begin() as connection:
             fault = dialect_of(connection).check(connection)
         if fault is not None:
-            raise damaged(self._engine, fault, RESTORE)
+            raise unusable(self._engine, fault, RESTORE)
 
     @retried
     def upgrade(self) -> None:

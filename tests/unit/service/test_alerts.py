@@ -50,6 +50,7 @@ QUIET: Series = {
     "loa_data_free_bytes{": "50000000000x80",
     "loa_data_size_bytes{": "100000000000x80",
     'loa_problems_total{problem="database-damaged"': "0x80",
+    'loa_problems_total{problem="no-space"': "0x80",
     'loa_problems_total{problem="queue-full"': "5x80",
     'loa_problems_total{problem="damaged-file"': "1x80",
     'loa_worker_ends_total{process="analyze", outcome="done"': "0+1x80",
@@ -94,7 +95,7 @@ CASES = {
     ),
     "LoaDatabaseDamaged": Case(
         {'loa_problems_total{problem="database-damaged"': "0x76 1x4"},
-        "a finds the database damaged, full or read-only",
+        "a finds the database damaged or read-only",
         HERE | {"problem": "database-damaged"},
     ),
     "LoaDatabaseLocked": Case(
@@ -106,6 +107,11 @@ CASES = {
         {'loa_writable{part="results"': "1x60 0x20"},
         "a cannot write results",
         HERE | {"part": "results"},
+    ),
+    "LoaDiskFull": Case(
+        {'loa_problems_total{problem="no-space"': "0x76 1x4"},
+        "a finds no space for its database or its results",
+        HERE | {"problem": "no-space"},
     ),
     "LoaDiskAlmostFull": Case(
         {"loa_data_free_bytes{": "50000000000x40 4294967296x40"},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import resource
 import shutil
 import sqlite3
 from collections.abc import Iterator
@@ -13,14 +14,18 @@ from fastapi.testclient import TestClient
 from running_service import until
 from service_fakes import REGISTRY
 from sqlalchemy import event
+from sqlalchemy.exc import OperationalError
 from structlog.testing import LogCapture
 from typer.testing import CliRunner
 
 from service.app import create_app
 from service.cli.commands import app as loa
-from service.problems import EXIT_FAILED, DatabaseDamaged
+from service.problems import EXIT_FAILED, DatabaseDamaged, NoSpace, OutOfFiles, ServiceError
 from service.settings import Settings
+from service.store.database import database_engine
 from service.store.deployment import NOTE
+from service.store.outages import outage_of
+from service.store.space import out_of_files
 
 EXECUTION = "/v1/processes/fake/execution"
 PAGE = 4096
@@ -123,10 +128,14 @@ def test_damage_beneath_a_running_service_is_said_at_once(
 
 
 @pytest.mark.parametrize(
-    ("pragma", "what"), [("query_only=ON", "readonly"), ("max_page_count=1", "database or disk is full")]
+    ("pragma", "kind", "what"),
+    [
+        ("query_only=ON", "database-damaged", "readonly"),
+        ("max_page_count=1", "no-space", "There is no space left: database or disk is full"),
+    ],
 )
 def test_a_database_that_takes_nothing_is_said_and_taken_up_again(
-    client: TestClient, pragma: str, what: str
+    client: TestClient, pragma: str, kind: str, what: str
 ) -> None:
     """Read-only, and full: when that is mended the service goes on."""
     engine = client.app.state.context.engine  # type: ignore[attr-defined]
@@ -140,7 +149,7 @@ def test_a_database_that_takes_nothing_is_said_and_taken_up_again(
         answer = client.post(EXECUTION, json={"inputs": {"wish": {"text": text}}})
     finally:
         event.remove(engine, "connect", harm)
-    assert (answer.status_code, answer.json()["type"]) == (503, "urn:lineofaction:problem:database-damaged")
+    assert (answer.status_code, answer.json()["type"]) == (503, f"urn:lineofaction:problem:{kind}")
     assert what in answer.json()["detail"]
     until(lambda: client.get("/ready").status_code == 200)
     assert client.post(EXECUTION, json={"inputs": {"wish": {"text": "after"}}}).status_code == 201
@@ -159,3 +168,54 @@ def test_a_place_of_results_that_takes_nothing_is_not_ready(client: TestClient, 
     (directory / "results").unlink()
     (directory / "kept").rename(directory / "results")
     assert client.get("/ready").status_code == 200
+
+
+def test_a_disk_without_room_for_a_submission_is_not_ready(
+    client: TestClient, directory: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """57 kB were free, every submission was refused, and /ready said 200."""
+    assert client.get("/ready").status_code == 200
+    little = shutil.disk_usage(directory)._replace(free=57_000)
+    monkeypatch.setattr("shutil.disk_usage", lambda _folder: little)
+    ready = client.get("/ready")
+    assert ready.status_code == 503 and "no space left: 0.057 MB are free" in ready.json()["detail"]
+    assert writable(client) == {"database": 0.0, "results": 0.0}
+    monkeypatch.undo()
+    until(lambda: client.get("/ready").status_code == 200)
+
+
+_IO_ERROR, _CANNOT_OPEN = sqlite3.SQLITE_IOERR, sqlite3.SQLITE_CANTOPEN
+
+
+@pytest.mark.parametrize(
+    ("code", "lacking", "kind"),
+    [
+        (_IO_ERROR, "shortage", NoSpace),
+        (_CANNOT_OPEN, "shortage", NoSpace),
+        (_IO_ERROR, "out_of_files", OutOfFiles),
+        (_CANNOT_OPEN, "out_of_files", OutOfFiles),
+        (_IO_ERROR, "", DatabaseDamaged),
+        (_CANNOT_OPEN, "", DatabaseDamaged),
+    ],
+)
+def test_what_the_files_beside_a_database_lack_is_named(
+    directory: Path, monkeypatch: pytest.MonkeyPatch, code: int, lacking: str, kind: type[ServiceError]
+) -> None:
+    """With no space or no open file left SQLite says that it cannot open or read the files beside its own."""
+    if lacking:
+        monkeypatch.setattr(f"service.store.dialects.{lacking}", lambda *_: True)
+    error = sqlite3.OperationalError("disk I/O error")
+    error.sqlite_errorcode = code
+    engine = database_engine(directory / "service.sqlite3")
+    outage = outage_of(OperationalError("", {}, error), engine)
+    assert type(outage) is kind
+
+
+def test_open_files_that_are_used_up_are_noticed() -> None:
+    assert not out_of_files()
+    limits = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (3, limits[1]))
+    try:
+        assert out_of_files()
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, limits)
