@@ -16,7 +16,7 @@ from service.schemas.model import BoundaryModel, refuse
 from service.schemas.rules import at_most_one_of, exactly_one_of, stated
 from service.schemas.wheel import WheelInput
 
-Load = Annotated[float, Field(gt=0.0, le=1e9)]
+Load = Annotated[float, Field(ge=1e-9, le=1e9)]  # smaller ones underflow where they are squared
 Misalignment = Annotated[float, Field(ge=-10_000.0, le=10_000.0)]
 CenterDistanceChange = Annotated[float, Field(ge=-10.0, le=10.0)]
 Loads = Annotated[tuple[Load, ...], Strict(False), Field(min_length=1, max_length=256)]

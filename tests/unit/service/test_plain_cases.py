@@ -59,3 +59,11 @@ def test_a_disc_that_is_not_looked_at_is_far_from_the_limit(helix: float) -> Non
         disc_rounding(THICK * share, math.radians(helix), MOST_LAYERS, soft) for share in (0.01, 0.1, 1.0)
     ]
     assert max(left) < 0.1 * LARGEST_ROUNDING
+
+
+@pytest.mark.parametrize("torque", [5e-324, 1e-200, 0.9e-9, 1.1e9])
+def test_a_load_is_neither_next_to_nothing_nor_beyond_all_gears(torque: float) -> None:
+    """Squared, the smallest are zero: their plan was an unexpected failure."""
+    with pytest.raises(BadInput, match=r"load\.torque_n_m"):
+        case(torque=torque)
+    assert case(torque=1e-9) and case(torque=1e9)
