@@ -77,12 +77,12 @@ def _show(unit: OpenedUnit, counts: Counter[str], written: list[Path]) -> None:
     values = ", ".join(f"{counts[fate]} {fate}" for fate in FATES if counts[fate])
     out.print(f"{len(unit.lines)} components and values: {values}", highlight=False, soft_wrap=True)
     for line in report_lines(unit.lines, ("assumed", "defaulted", "derived")):
-        out.print(line, highlight=False, soft_wrap=True, markup=False)
+        out.print(line, highlight=False, soft_wrap=True)
     for case in unit.cases:
         others = f" (and {len(case.equal)} equal)" if case.equal else ""
         gears = f"gears {case.driver} and {case.driven}, {case.center_distance * 1e3:.6g} mm"
-        out.print(f"stage {case.stage}{others}: {case.name}.toml, {gears}", highlight=False, markup=False)
+        out.print(f"stage {case.stage}{others}: {case.name}.toml, {gears}", highlight=False)
     for load in unit.load_cases:
         words = f"{load.torque_n_m:g} N m at {load.speed_rpm:g} rpm, {load.direction}, share {load.share:g}"
-        out.print(f"{load.name}: {words}{_others(load)}", highlight=False, markup=False, soft_wrap=True)
-    out.print(f"written to {', '.join(map(str, written))}", highlight=False, soft_wrap=True, markup=False)
+        out.print(f"{load.name}: {words}{_others(load)}", highlight=False, soft_wrap=True)
+    out.print(f"written to {', '.join(map(str, written))}", highlight=False, soft_wrap=True)

@@ -34,8 +34,9 @@ def print_json(facts: dict[str, Any]) -> None:
 
 
 def console() -> Console:
-    """Return the console of standard output; piped, it is as wide as its tables need."""
-    return Console() if sys.stdout.isatty() else Console(width=200, no_color=True)
+    """Return the console of standard output: no text is markup; piped, it is as wide as its tables need."""
+    plain: Any = {"markup": False, "emoji": False}
+    return Console(**plain) if sys.stdout.isatty() else Console(width=200, no_color=True, **plain)
 
 
 def table(

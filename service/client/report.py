@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from html import escape
+from html import escape, unescape
 from typing import Any
 
 from service.client.line_chart import Curve, LineChart
@@ -67,8 +67,8 @@ def _chart(figure: Json) -> LineChart | None:
 
 
 def _title(axis: Json) -> str:
-    """Return the title of an axis."""
-    return str((axis.get("title") or {}).get("text") or "")
+    """Return the title of an axis, whose text is HTML to plotly.js."""
+    return unescape((axis.get("title") or {}).get("text") or "")
 
 
 def _curves(traces: Iterable[Json]) -> Iterator[Curve]:
@@ -84,4 +84,4 @@ def _curves(traces: Iterable[Json]) -> Iterator[Curve]:
         ]
         if drawn and trace.get("yaxis", "y") == "y" and len(points) > 1:
             x, y = zip(*points, strict=True)
-            yield Curve(x, y, trace.get("name") or "", trace["line"].get("color") or "")
+            yield Curve(x, y, unescape(trace.get("name") or ""), trace["line"].get("color") or "")

@@ -30,6 +30,16 @@ class Axis:
     limits: tuple[float, float] | None = None
     names: tuple[tuple[float, str], ...] = ()
 
+    def __post_init__(self) -> None:
+        """Let the data decide where nothing lies between the limits, as those of a spectrum of zeros."""
+        low, high = self.limits or (0.0, 0.0)
+        if not (low < high and self.shows(low) and self.shows(high)):
+            object.__setattr__(self, "limits", None)
+
+    def shows(self, value: float) -> bool:
+        """Whether a value has a place on it."""
+        return bool(np.isfinite(value)) and (self.scale == "linear" or value > 0.0)
+
     def fraction(self, values: FloatArray, ends: tuple[float, float]) -> FloatArray:
         """Return where values lie on an axis with these ends: 0 at the first, 1 at the last."""
         low, high = ends
@@ -158,6 +168,14 @@ class Panel:
     notes: tuple[Note, ...] = ()
     bars: tuple[Bars, ...] = ()
     equal: bool = False
+
+    def __post_init__(self) -> None:
+        """Leave out references and notes that have no place on the axes."""
+        on = {"vertical": self.x, "horizontal": self.y}
+        references = tuple(one for one in self.references if on[one.direction].shows(one.value))
+        notes = tuple(one for one in self.notes if self.x.shows(one.x) and self.y.shows(one.y))
+        object.__setattr__(self, "references", references)
+        object.__setattr__(self, "notes", notes)
 
 
 @dataclass(frozen=True)

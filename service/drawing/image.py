@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+from functools import cache
 from io import BytesIO
 from typing import Any
 
@@ -10,6 +12,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure as Sheet
+from matplotlib.font_manager import FontProperties, findfont, get_font
 from matplotlib.ticker import (
     FuncFormatter,
     LogLocator,
@@ -33,13 +36,16 @@ from service.drawing.figure import (
 )
 from service.drawing.image_shade import draw_shade
 from service.drawing.line_labels import line_labels, vertical_limits
+from service.drawing.words import rewritten
 
 _WIDTH, _PANEL_HEIGHT, _DPI = 9.0, 2.7, 150
 _LEGEND_CHARACTERS, _HANDLE_CHARACTERS = 120, 9  # of the legend's type: across the sheet, beside a name
 _NOTE_ROW = 10  # points
+_LONGEST_WORD = 26  # characters; longer ones would leave panels no width
 _LABEL_ROW = 0.075  # of a row of a label at a line, in parts of the panel's height
 _LEADER = 0.02  # of the panel's width, from the end of a line to its label
 _NARROW = 100.0  # largest over smallest value of a logarithmic axis with plain numbers
+_DECADE = (1.0, 10.0)  # of a logarithmic axis that has nothing to show
 _MOST_WHOLE = 30  # an axis of whole numbers up to here has no ticks between them
 _BOX = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.0}  # under a text on colors
 _DASH = {"solid": "-", "dash": "--", "dot": ":"}
@@ -57,12 +63,36 @@ def svg(figure: Figure) -> bytes:
 
 def _image(figure: Figure, form: str, metadata: dict[str, str | None]) -> bytes:
     """Draw `figure` and return the bytes of a file of the form "png" or "svg"."""
-    sheet = _panel_sheet(figure.content)
-    sheet.suptitle(figure.title, x=0.01, ha="left", fontsize=12, fontweight="bold", color=palette.INK)
+    sheet = _panel_sheet(rewritten(figure.content, _drawable))
+    sheet.suptitle(
+        _drawable(figure.title), x=0.01, ha="left", fontsize=12, fontweight="bold", color=palette.INK
+    )
     FigureCanvasAgg(sheet)
     buffer = BytesIO()
     sheet.savefig(buffer, format=form, dpi=_DPI, metadata=metadata)
     return buffer.getvalue()
+
+
+def _drawable(text: str) -> str:
+    """Write a text so that it is no formula to matplotlib and has no endless words.
+
+    Characters that the font lacks are written by their numbers.
+    """
+    known = "".join(
+        c if c == "\n" or ord(c) in _glyphs() else c.encode("unicode_escape").decode() for c in text
+    )
+    return re.sub(rf"\S{{{_LONGEST_WORD},}}", _shortened, known).replace("$", r"\$")
+
+
+def _shortened(word: re.Match[str]) -> str:
+    """Return the beginning of a word."""
+    return f"{word[0][: _LONGEST_WORD - 1]}\N{HORIZONTAL ELLIPSIS}"
+
+
+@cache
+def _glyphs() -> frozenset[int]:
+    """Return the characters of the font."""
+    return frozenset(get_font(findfont(FontProperties())).get_charmap())
 
 
 def _panel_sheet(panels: tuple[Panel, ...]) -> Sheet:
@@ -175,9 +205,11 @@ def _is_whole(values: Any) -> bool:
 
 def _scale(ax: Axes, axis: Axis, name: str) -> None:
     """Give one axis its label, scale and limits."""
+    empty = axis.scale == "log" and not np.isfinite(getattr(ax.dataLim, f"minpos{name}"))
+    limits = axis.limits or (_DECADE if empty else None)
+    if limits:
+        ax.set(**{f"{name}lim": limits})
     ax.set(**{f"{name}label": axis.label, f"{name}scale": axis.scale})
-    if axis.limits:
-        ax.set(**{f"{name}lim": axis.limits})
     drawn = getattr(ax, f"{name}axis")
     if axis.names:
         drawn.set_ticks([value for value, _ in axis.names], labels=[text for _, text in axis.names])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from html import escape
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,7 @@ from service.drawing.figure import (
 )
 from service.drawing.interactive_shade import shade_traces
 from service.drawing.line_labels import line_labels, vertical_limits
+from service.drawing.words import rewritten
 
 Json = dict[str, Any]
 
@@ -39,18 +41,18 @@ _FONT = {"family": "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', san
 
 def plotly_figure(figure: Figure) -> Json:
     """Return ``{"data": [...], "layout": {...}}`` for ``Plotly.newPlot``."""
-    panels = figure.content
-    names = legend_names(panels)
+    panels = rewritten(figure.content, _plain)
+    names = legend_names(figure.content)
     above = (62 if panels[0].title else 44) + _LEGEND_ROW * (_legend_rows(names) - 1)
     gaps = [_BETWEEN if repeats_below(panels, i) else _BETWEEN + _LABEL for i in range(len(panels) - 1)]
     heights = [round(_PANEL_HEIGHT * panel_height(panel)) for panel in panels]
     inner = sum(heights) + sum(gaps)
     layout: Json = _layout(inner + above + _BELOW)
     layout |= {"shapes": [], "annotations": [], "showlegend": len(names) > 1}
-    layout["margin"] = layout["margin"] | {"t": above, "r": _margin(panels)}
+    layout["margin"] = layout["margin"] | {"t": above, "r": _margin(figure.content)}
     layout["barmode"] = "overlay"
     data: list[Json] = []
-    unnamed = set(names)
+    unnamed = set(map(_plain, names))
     for index, panel in enumerate(panels):
         suffix = str(index + 1) if index else ""
         domain = _domain(sum(heights[:index]) + sum(gaps[:index]), heights[index], inner)
@@ -75,6 +77,11 @@ def plotly_figure(figure: Figure) -> Json:
         for reference in panel.references:
             _add_reference(layout, reference, panel, suffix)
     return {"data": data, "layout": layout}
+
+
+def _plain(text: str) -> str:
+    """Write a text so that plotly.js, which takes its texts for HTML, shows it as it is."""
+    return escape(text, quote=False)
 
 
 def _legend_rows(names: list[str]) -> int:
@@ -121,7 +128,7 @@ def _bars(bars: Bars, suffix: str, *, show: bool) -> Json:
         "xaxis": "x" + suffix,
         "yaxis": "y" + suffix,
         "marker": {"color": bars.color, "opacity": 0.35 if bars.veiled else 1.0},
-        "hovertemplate": f"{bars.name}<br>%{{x}}: %{{customdata:.4g}}<extra></extra>",
+        "hovertemplate": "%{fullData.name}<br>%{x}: %{customdata:.4g}<extra></extra>",
     }
 
 

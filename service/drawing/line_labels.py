@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from service.drawing.figure import FloatArray, Line, Panel
+from service.drawing.figure import Axis, FloatArray, Panel
 
 _ROOM = 0.05  # of the height beyond the curves where the axis has no limits
 
@@ -32,8 +32,8 @@ def line_labels(panel: Panel, row: float) -> list[LineLabel]:
     row : float
         Height of one row of text, as a part of the panel's.
     """
-    lines = [line for line in panel.lines if line.label and np.isfinite(line.y).any()]
-    ends = np.array([_last(line) for line in lines])
+    lines = [line for line in panel.lines if line.label and _shown(line.y, panel.y).size]
+    ends = np.array([_shown(line.y, panel.y)[-1] for line in lines])
     heights = row * np.array([line.label.count("\n") + 1.3 for line in lines])
     at = np.clip(panel.y.fraction(ends, vertical_limits(panel)), 0.0, 1.0) if lines else ends
     middles = spread(at, heights)
@@ -69,8 +69,9 @@ def vertical_limits(panel: Panel) -> tuple[float, float]:
     if panel.y.limits is not None:
         return panel.y.limits
     edges = [line.y + side * np.nan_to_num(line.band) for line in panel.lines for side in (-1.0, 1.0)]
-    values = np.concatenate(edges) if panel.y.scale == "linear" else _positive(panel.lines)
-    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    curves = edges if panel.y.scale == "linear" else [line.y for line in panel.lines]
+    values = _shown(np.concatenate(curves), panel.y)
+    low, high = (float(values.min()), float(values.max())) if values.size else (1.0, 1.0)
     if panel.y.scale == "log":
         room = (high / low) ** _ROOM if high > low else 2.0
         return low / room, high * room
@@ -78,12 +79,6 @@ def vertical_limits(panel: Panel) -> tuple[float, float]:
     return low - room, high + room
 
 
-def _positive(lines: tuple[Line, ...]) -> FloatArray:
-    """Return the values that a logarithmic axis can show."""
-    values = np.concatenate([line.y for line in lines])
-    return np.asarray(values[values > 0.0])
-
-
-def _last(line: Line) -> float:
-    """Return the last value of a line that is drawn."""
-    return float(line.y[np.isfinite(line.y)][-1])
+def _shown(values: FloatArray, axis: Axis) -> FloatArray:
+    """Return the values that an axis can show."""
+    return values[np.isfinite(values) & ((values > 0.0) | (axis.scale == "linear"))]

@@ -125,12 +125,15 @@ function imageOf(url) {
   return new Blob([Uint8Array.from(bytes, (letter) => letter.charCodeAt(0))], { type: "image/png" });
 }
 
+/** The characters of a text of a plot, which plotly.js takes for HTML. */
+const plain = (text) => text.replaceAll("&lt;", "<").replaceAll("&gt;", ">").replaceAll("&amp;", "&");
+
 /** The columns of all curves, named by curve and axis; the edges of error bands are left out. */
 function columnsOf({ data, layout }) {
-  const label = (axis, letter) => layout[`${letter}axis${(axis ?? letter).slice(1)}`]?.title?.text || letter;
+  const label = (axis, letter) => plain(layout[`${letter}axis${(axis ?? letter).slice(1)}`]?.title?.text || letter);
   const curves = data.filter((trace) => trace.hoverinfo !== "skip" && (trace.x?.length > 1 || trace.z));
   return curves.flatMap((trace, k) => {
-    const name = trace.name || trace.type || `curve ${k + 1}`;
+    const name = plain(trace.name || "") || trace.type || `curve ${k + 1}`;
     if (!trace.z) return ["x", "y"].map((letter) => [`${name}, ${label(trace[`${letter}axis`], letter)}`, trace[letter]]);
     const rows = trace.z.map((row, r) => [`${name}, y = ${trace.y[r]}`, row]);
     return [[`${name}, x`, trace.x], ...rows];
