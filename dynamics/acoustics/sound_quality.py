@@ -14,11 +14,14 @@ from typing import Any
 
 import numpy as np
 
-from bounds import exactly
+from bounds import at_least, exactly
 from dynamics.acoustics.recording import SAMPLE_RATE, Recording
 from dynamics.errors import InputError
 from dynamics.types import FloatArray
 from host import MissingExtra
+
+SHORTEST = 0.01
+"""s of a sound that has a loudness."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +50,8 @@ def sound_quality(recording: Recording) -> SoundQuality:
     Raises
     ------
     InputError
-        It is no sound pressure in Pa at 48 kHz: loudness is no linear quantity, a force has none.
+        It is no sound pressure in Pa at 48 kHz (loudness is no linear quantity, a force has none), or shorter
+        than `SHORTEST`.
     MissingExtra
         MoSQITo is not installed.
     """
@@ -80,6 +84,8 @@ def _metrics(recording: Recording) -> Any:
     if recording.sample_rate != SAMPLE_RATE:
         advice = f"Use recording.resampled({SAMPLE_RATE})."
         raise InputError("sample_rate", recording.sample_rate, exactly(SAMPLE_RATE, " Hz"), advice)
+    if recording.samples.size < SHORTEST * SAMPLE_RATE:
+        raise InputError("duration", recording.samples.size / SAMPLE_RATE, at_least(SHORTEST, "s"))
     try:
         from mosqito import sq_metrics  # noqa: PLC0415 (an extra)
     except ModuleNotFoundError as error:

@@ -80,6 +80,9 @@ class ForcedResponse(HarmonicResponse, ArrayFile):
         )
 
 
+NOTHING_EXCITES = "such that one excites: transmission errors and loads are constant"
+
+
 def forced_response(
     system: System,
     speed: Sequence[float] | FloatArray,
@@ -104,7 +107,7 @@ def forced_response(
     Raises
     ------
     InputError
-        If a value is out of range, or the meshes have no common period.
+        If a value is out of range, the meshes have no common period, or nothing excites the scene.
     SolveError
         If there is no static equilibrium, or one beyond the table (`ForceChecks`) that is not accepted.
     """
@@ -123,6 +126,8 @@ def forced_response(
         steady_vibration(at, speeds, harmonics, excitation, share(part))
         for excitation, part in zip(EXCITATIONS, (0.0, 0.5), strict=True)
     )
+    if not steady.harmonics.size:
+        raise InputError("orders", orders, NOTHING_EXCITES, "Give a mesh a table, or let a load vary.")
     response, other = (response_of(at, speeds, each) for each in (steady, blocked))
     power = power_balance(at, speeds, steady)
     seconds["response"] = cpu_seconds() - began

@@ -9,7 +9,7 @@ import numpy as np
 from dynamics.assembly.assemble import System
 from dynamics.assembly.frame_couplings import frame_couplings, frame_joint
 from dynamics.assembly.references import drive_springs
-from dynamics.errors import SolveError
+from dynamics.errors import InputError, SolveError
 from dynamics.forces.spatial_flank import as_running
 from dynamics.integrators import StaticSolution, static_equilibrium
 from dynamics.mechanism.columns import elastic_terms
@@ -55,6 +55,12 @@ class LinearSystem:
     strain: FloatArray
     spring_stiffness: FloatArray
     equilibrium: StaticSolution
+
+
+def require_freedoms(system: System) -> None:
+    """Refuse a system of which nothing can vibrate; raises `InputError`."""
+    if not system.freedoms.name:
+        raise InputError("freedoms", 0, "at least one", "Leave a shaft free to turn, or switch effects on.")
 
 
 def about_running(system: System) -> System:
@@ -139,7 +145,7 @@ def _springs(
     moves = system.freedoms.keep(supports.motion)
     plain = [index for index in range(len(supports.name)) if index not in system.seats.support]
     names += [f"{supports.name[index]}.{axis}" for index in plain for axis in "xyz"]
-    rows.append(moves[plain].reshape(-1, moves.shape[-1]))
+    rows.append(moves[plain].reshape(3 * len(plain), moves.shape[-1]))
     stiffness.append(supports.stiffness[plain].ravel())
     for name, motion, matrix in [*_matrices(system, time), *_tangents(system, tangent)]:
         values, vectors = np.linalg.eigh(matrix)

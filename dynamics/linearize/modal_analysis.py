@@ -13,7 +13,7 @@ from dynamics.linearize.campbell import WhirlBranches, whirl_branches
 from dynamics.linearize.critical_speeds import CriticalSpeeds, critical_speeds
 from dynamics.linearize.energy_shares import freedom_parts, spring_parts
 from dynamics.linearize.flank_cycles import averaged, flank_cycles
-from dynamics.linearize.linear_system import LinearSystem, about_running, linearize
+from dynamics.linearize.linear_system import LinearSystem, about_running, linearize, require_freedoms
 from dynamics.linearize.modes import Modes, natural_modes
 from dynamics.linearize.resolution import resolved_to, with_shafts_to
 from dynamics.linearize.speeds import checked_speeds, leading_law, mesh_frequencies
@@ -164,11 +164,12 @@ def modal_analysis(
     Raises
     ------
     InputError
-        If a value is out of range, or nothing turns where speeds are given.
+        If a value is out of range, nothing can vibrate, or nothing turns where speeds are given.
     SolveError
         If there is no static equilibrium, or one beyond the table (`ForceChecks`) that is not accepted.
     """
     integer("orders", orders, 1, MOST_ORDERS)
+    require_freedoms(system)
     speeds = checked_speeds(np.asarray(speed, dtype=float), above_zero=False)
     began = cpu_seconds()
     highest = resolved_to(system, speeds, orders, highest_frequency)

@@ -103,6 +103,8 @@ def order_waterfall(
     """
     unit = check_series(result, series)
     integer("pitches", pitches, 1, 1_000_000)
+    if not result.mesh:
+        raise InputError("mesh", mesh, "one of the run, which has none: orders are those of a mesh")
     highest = checked_order(result, "highest", highest, mesh)
     per_pitch = max(64, 8 * highest)
     _, time, values = resample_to_position(result, getattr(result, series), per_pitch, mesh)

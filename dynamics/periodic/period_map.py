@@ -18,7 +18,7 @@ from dynamics.integrators.advance import prepare_steps
 from dynamics.integrators.workspace import Workspace, make_workspace
 from dynamics.linearize import natural_modes
 from dynamics.linearize.common_period import CommonPeriod, common_period
-from dynamics.linearize.linear_system import about_running
+from dynamics.linearize.linear_system import about_running, require_freedoms
 from dynamics.linearize.load_harmonics import load_cycles
 from dynamics.mechanism.additions import ELEMENT_PASSING
 from dynamics.periodic.constant_speed import at_constant_speed
@@ -86,8 +86,7 @@ def periodic_problem(
     """
     integer("repeat", repeat, 1, 1000)
     integer("steps_per_cycle", steps_per_cycle, 4, 100_000)
-    if not system.freedoms.name:
-        raise InputError("freedoms", 0, "at least one", "Leave a shaft free to turn, or switch effects on.")
+    require_freedoms(system)
     if system.ledger.adds(ELEMENT_PASSING):
         name = system.ledger.effect_adding(ELEMENT_PASSING)
         bound = "off: cages turn at no ratio of integers to the meshes, so nothing repeats"

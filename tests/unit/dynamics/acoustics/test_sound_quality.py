@@ -69,3 +69,11 @@ def test_only_a_sound_pressure_has_a_loudness(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setitem(sys.modules, "mosqito", None)
     with pytest.raises(MissingExtra, match=r"lineofaction\[psychoacoustics\]"):
         sound_quality(tone(60.0))
+
+
+@pytest.mark.parametrize("samples", [2, 20, 200])
+def test_a_sound_of_a_few_milliseconds_has_no_loudness(samples: int) -> None:
+    brief = Recording(TIME[:samples], RATE, "sound pressure", "Pa")
+    for metric in (sound_quality, loudness_over_time):
+        with pytest.raises(InputError, match="duration"):
+            metric(brief)

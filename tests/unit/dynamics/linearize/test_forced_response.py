@@ -145,3 +145,26 @@ def test_what_cannot_be_used_is_named(speed, field):
     with pytest.raises(InputError) as caught:
         forced_response(assemble(gear_pair_scene()), speed)
     assert caught.value.field == field
+
+
+def test_a_scene_that_nothing_excites_has_no_response():
+    """Constant stiffness, no transmission error, constant loads: no order is left."""
+    scene = replace(gear_pair_scene(spring_table(STIFFNESS)), bushings=(), effects={})
+    with pytest.raises(InputError, match="transmission errors and loads are constant"):
+        forced_response(assemble(scene), [100.0])
+
+
+def test_a_system_without_freedoms_has_no_modes_and_its_run_is_whole(tmp_path):
+    """Both shafts turn as a free rotation says: relative to it nothing moves."""
+    rigid = replace(
+        gear_pair_scene(spring_table(STIFFNESS), duration=0.01),
+        bushings=(),
+        effects={},
+        loads=(),
+        gears=(),
+        meshes=(),
+    )
+    alone = replace(rigid, shafts=rigid.shafts[:1])
+    with pytest.raises(InputError, match="freedoms = 0"):
+        modal_analysis(assemble(alone), [0.0])
+    assert simulate(alone).modes["frequency"] == []
