@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from dynamics.export import FUNCTIONS, write_universal_file
-from dynamics.results import RunResult
 from service.cli.output import check_writable, console, print_json
 from service.problems import BadInput
+from service.report.inputs import read_run
 
 UNIVERSAL = (".unv", ".uff", ".uf")
 TABLE = ".csv"
@@ -26,7 +26,7 @@ def run_export_run(
         allowed = "time" if output.suffix == TABLE else ", ".join(FUNCTIONS)
         raise BadInput.of("--function", function, f"one of {allowed}")
     check_writable(output)
-    run = RunResult.from_netcdf(file)
+    run = read_run(file, "file")
     facts: dict[str, object] = {"written": [str(output)]}
     if output.suffix == TABLE:
         run.to_csv(output)

@@ -28,8 +28,7 @@ def study_page(study: Study, file: Path, database: SteDatabase | None = None) ->
     BadInput
         It is damaged.
     """
-    with _undamaged(study, file):
-        return page_beside(study, study.run.file.read(file), database)
+    return page_beside(study, read_stored(study, file), database)
 
 
 def read_stored(study: Study, file: Path) -> Any:

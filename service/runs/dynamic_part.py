@@ -30,7 +30,7 @@ from service.runs.run_view import RunView, Signal, shown_signal
 from service.runs.sideband_table import sideband_tables
 from service.runs.signal_over_time import signal_over_time
 from service.runs.signal_recording import along_direction
-from service.runs.signal_spectrum import signal_spectrum
+from service.runs.signal_spectrum import TOO_SHORT, has_spectrum, signal_spectrum
 from service.runs.sound import Heard, sound_of
 
 ROUNDING = 1e-15
@@ -77,8 +77,9 @@ def dynamic_results(run: RunResult, view: RunView) -> tuple[Section, ...]:
     signal = shown_signal(run, view)
     series = run_series(run, signal.mesh)
     seen = along_direction(run, signal)
-    shown = (signal_over_time(run, series, signal), signal_spectrum(seen, signal))
-    section = Section(signal.heading, figures=shown)
+    over_time = signal_over_time(run, series, signal)
+    spectrum = (signal_spectrum(seen, signal),) if has_spectrum(run) else ()
+    section = Section(signal.heading, "" if spectrum else TOO_SHORT, figures=(over_time, *spectrum))
     if not run.mesh:
         return (section,)
     text = "" if len(run.mesh) == 1 else f"Of {len(run.mesh)} meshes, {run.mesh[signal.mesh]} is shown."

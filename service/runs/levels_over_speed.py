@@ -8,6 +8,7 @@ from dynamics.orders import Waterfall, highest_valid_order, order_waterfall
 from dynamics.results import RunResult
 from service.drawing import palette
 from service.drawing.figure import Axis, Figure, FloatArray, Line, Panel, Table, number, unit_of
+from service.problems import BadInput
 from service.runs.run_series import validity
 from service.runs.run_view import Signal, decibels, run_axis
 
@@ -16,10 +17,24 @@ MAPPED, NAMED = 10, 5
 """Mesh orders of an order map, as far as the output holds them, and how many of them are cut unless named."""
 
 
+def pitches_passed(run: RunResult, mesh: int = 0) -> float:
+    """Return how many base pitches a mesh passes; 0 of a run without meshes."""
+    return float(np.ptp(np.unwrap(run.position[mesh], period=1.0))) if run.mesh else 0.0
+
+
 def order_blocks(run: RunResult, signal: Signal) -> Waterfall:
-    """Return spectra over mesh orders in blocks of whole base pitches along the run."""
+    """Return spectra over mesh orders in blocks of whole base pitches along the run.
+
+    Raises
+    ------
+    BadInput
+        It has no mesh, or is shorter than one block.
+    """
     highest = max((*signal.orders, min(MAPPED, highest_valid_order(run, signal.mesh)), 1))
-    travel = float(np.abs(np.ptp(np.unwrap(run.position[signal.mesh], period=1.0))))
+    travel = pitches_passed(run, signal.mesh)
+    if travel < SHORTEST:
+        bound = f"at least {SHORTEST} base pitches of a mesh, in which its orders are counted"
+        raise BadInput.of("run", f"{travel:.4g} base pitches", bound, "Simulate a longer one.")
     pitches = max(SHORTEST, int(travel / POINTS))
     return order_waterfall(run, signal.quantity.series, pitches, highest, signal.mesh, signal.window, OVERLAP)
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from dynamics.results import RunResult
 from service.drawing.figure import Axis
-from service.runs.levels_over_speed import largest_orders, order_blocks
+from service.runs.levels_over_speed import largest_orders, order_blocks, pitches_passed
 from service.runs.run_view import PRINCIPAL, SCALES, Signal, run_axis
 from service.runs.signal_recording import along_direction
 
@@ -40,7 +40,7 @@ class Loudest:
 
 def has_orders(run: RunResult, mesh: int = 0) -> bool:
     """Whether a run passes enough base pitches for orders over it."""
-    return bool(run.mesh) and float(np.ptp(np.unwrap(run.position[mesh], period=1.0))) >= LEAST_PITCHES
+    return pitches_passed(run, mesh) >= LEAST_PITCHES
 
 
 def loudest(run: RunResult, signal: Signal) -> Loudest | None:

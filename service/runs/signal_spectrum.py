@@ -13,6 +13,8 @@ from service.runs.run_view import Signal
 
 WINDOW = (0.9, 0.95)  # of the duration
 ORDERS = 8
+LEAST_SAMPLES = 8  # of a window
+TOO_SHORT = f"Too short for a spectrum: 90 to 95 % of the duration holds fewer than {LEAST_SAMPLES} samples."
 _NAMES = {"hann": "Hann", "rectangular": "rectangular", "flat_top": "flat top"}
 
 
@@ -35,6 +37,12 @@ def signal_spectrum(run: RunResult, signal: Signal) -> Figure:
         content=(_panel(signal, frequency, amplitude, float(np.median(mesh)), valid),),
         table=_table(signal, frequency, amplitude, mesh, (of, valid)),
     )
+
+
+def has_spectrum(run: RunResult) -> bool:
+    """Whether a run is long enough for one: its window holds a line beside the mean."""
+    window = spectrum_window(run.time)
+    return len(run.time[window]) >= LEAST_SAMPLES
 
 
 def spectrum_window(time: FloatArray) -> slice:
@@ -69,7 +77,7 @@ def order_amplitudes(
 def _panel(signal: Signal, frequency: FloatArray, amplitude: FloatArray, mesh: float, valid: int) -> Panel:
     """Draw up to a little beyond the last order marked, as far as it is valid."""
     last = max(min(ORDERS, valid), 1)
-    end = min((last + 0.5) * mesh, float(frequency[-1]))
+    end = float(np.clip((last + 0.5) * mesh or np.inf, frequency[0], frequency[-1]))  # a line at least
     shown = frequency <= end
     orders = [Reference(f"{k}×", k * mesh) for k in range(1, last + 1) if k * mesh < end]
     line = Line(signal.name, frequency[shown], np.maximum(amplitude[shown], 1e-12), palette.BLUE, width=1.2)

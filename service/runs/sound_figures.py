@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.acoustics import Recording, loudness_over_time, sound_pressure_level, sound_quality
+from dynamics.acoustics.sound_quality import SHORTEST
 from dynamics.results import RunResult
 from host import MissingExtra
 from service.runs.run_series import driving_shaft
@@ -44,9 +45,11 @@ class SoundFigures:
 
 
 def sound_figures(recording: Recording, run: RunResult) -> SoundFigures:
-    """Return the figures of a sound pressure; without the extra `psychoacoustics` its levels alone."""
+    """Return the figures of a sound pressure; of a very short one, or without MoSQITo, its levels alone."""
     level, weighted = (sound_pressure_level(recording, weighted=by_ear) for by_ear in (False, True))
     steady = _steady(run)
+    if recording.samples.size < SHORTEST * recording.sample_rate:
+        return SoundFigures(level, weighted, steady)
     try:
         quality = sound_quality(recording)
         loudness = quality.loudness if steady else _exceeded(recording)
