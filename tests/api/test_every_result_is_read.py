@@ -1,0 +1,89 @@
+"""Extreme results of every kind pass every reader: none answers 5xx, no verb meets a defect.
+
+Results are made by the work of their processes, of inputs at the ends of what these take: names of all
+characters, the shortest run, one position, one torque, no load, no excitation. A new study is among them by
+its row. By day a few of each kind are read and images are left out; at night 500 with all their images.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from random import Random
+
+import pytest
+from condensed_once import find_condensed
+from extreme_inputs import extreme_inputs
+from fastapi.testclient import TestClient
+from made_results import make
+from pydantic import ValidationError
+from result_readers import READERS, Reading
+
+from service.app import create_app
+from service.convert.errors import translated
+from service.drawing.figure import Figure
+from service.problems import ServiceError
+from service.settings import Settings
+from service.store import StoredResult
+from service.worker.catalogue import default_registry
+
+PROCESSES = tuple(default_registry())
+FEW, MANY = 1, -(-500 // len(PROCESSES))
+DRAWS = 12
+"""Inputs that are drawn for a result at most: some are refused, as they should be."""
+
+
+@pytest.fixture(scope="module")
+def home(tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path) -> Path:
+    """Where results are, and bodies condensed once."""
+    folder = tmp_path_factory.mktemp("read")
+    find_condensed(condensed_bodies, folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def http(home: Path) -> Iterator[TestClient]:
+    """The service that has them."""
+    with TestClient(create_app(Settings(data_directory=home)), raise_server_exceptions=False) as client:
+        yield client
+
+
+def results(home: Path, process: str, seed: int) -> list[StoredResult]:
+    """Return what a process makes of the first inputs drawn that it takes."""
+    draw = Random(f"{process} {seed}")
+    for _ in range(DRAWS):
+        try:
+            return make(home, process, extreme_inputs(process, draw))
+        except (ServiceError, ValidationError):
+            pass
+        except Exception as error:
+            if translated(error) is None:
+                raise
+    return []
+
+
+def read(home: Path, http: TestClient, process: str, count: int, folder: Path) -> int:
+    """Put results of a process through all readers; return how many there were."""
+    made = [result for seed in range(count) for result in results(home, process, seed)]
+    for result in made:
+        for reader in READERS:
+            reader(Reading(result, http, folder))
+    return len(made)
+
+
+@pytest.mark.parametrize("process", PROCESSES)
+def test_a_few_of_every_kind_are_read(
+    home: Path, http: TestClient, process: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def undrawn(_figure: Figure) -> bytes:
+        return b""
+
+    monkeypatch.setattr("service.report.write.png", undrawn)
+    monkeypatch.setattr("service.cli.study.png", undrawn)
+    assert read(home, http, process, FEW, tmp_path) >= FEW
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("process", PROCESSES)
+def test_many_of_every_kind_are_read(home: Path, http: TestClient, process: str, tmp_path: Path) -> None:
+    assert read(home, http, process, MANY, tmp_path) >= MANY
