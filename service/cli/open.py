@@ -30,7 +30,7 @@ def run_open(file: Path, out: Path | None, assume: Sequence[str] = (), *, as_jso
     counts = Counter[str](line.fate for line in unit.lines)
     left_out = headline(unit.lines)
     if left_out and not as_json:
-        console().print(left_out, highlight=False, soft_wrap=True, markup=False)
+        console().print(left_out, highlight=False, soft_wrap=True)
     warn(left_out_warnings(unit.left_out))
     if as_json:
         print_json(
@@ -46,7 +46,7 @@ def run_open(file: Path, out: Path | None, assume: Sequence[str] = (), *, as_jso
         return
     _show(unit, counts, written)
     if left_out:
-        console().print(left_out, highlight=False, soft_wrap=True, markup=False)
+        console().print(left_out, highlight=False, soft_wrap=True)
 
 
 def _others(load: LoadCase) -> str:
