@@ -71,7 +71,7 @@ def rest_over(system: System, times: FloatArray) -> Rest:
 
 
 def _centroids(system: System, force: FloatArray) -> FloatArray:
-    """Return where along the face the forces (R, K) of the driving flanks act, (m, K), m."""
+    """Return where along the face the forces (R, K) of the driving flanks act, (m, K), m; NaN of none."""
     elements, scene = system.arrays.elements, system.scene
     centroid = np.full((len(scene.meshes), force.shape[1]), np.nan)
     for mesh in range(len(scene.meshes)):
@@ -81,5 +81,6 @@ def _centroids(system: System, force: FloatArray) -> FloatArray:
         tilting = force[row + laws.row[elements.entry[mesh], 0]]
         line, sense = system.lines[mesh], system.kinematics.mesh_sense[mesh]
         middle = middle_from_driver(scene, mesh, line, sense)
-        centroid[mesh] = middle - common_face_width(scene, mesh) * tilting / force[row]
+        loaded = np.where(force[row] != 0.0, force[row], np.nan)
+        centroid[mesh] = middle - common_face_width(scene, mesh) * tilting / loaded
     return centroid

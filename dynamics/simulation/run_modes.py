@@ -29,7 +29,7 @@ def modes_of_run(system: System) -> Json:
     modes = natural_modes(linear)
     most = np.argmax(modes.kinetic_energy, axis=1) if modes.frequency.size else []
     turning = any(part.speed.extreme != 0.0 for part in system.scene.references)
-    rotating = turning and system.ledger.adds(SPEED_DEPENDENCE)
+    rotating = turning and linear.freedom and system.ledger.adds(SPEED_DEPENDENCE)
     return {
         "frequency": [float(value) for value in modes.frequency],
         "damping_ratio": [float(value) for value in modes.damping_ratio],

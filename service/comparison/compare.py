@@ -59,6 +59,9 @@ def _page(
     if tables:
         teeth = next(iter(tables.values())).facts.teeth[0]
         return compare_tables(tables, _measured(files, teeth, "µm"), torque)
+    for name, run in runs.items():
+        if not run.mesh:
+            raise BadInput.of(name, "a run without meshes", "one with a mesh, of whose frequency orders are")
     first = next(iter(runs.values()))
     driver = first.case["meshes"][0]["driver"]
     teeth = next(int(gear["teeth"]) for gear in first.case["gears"] if gear["name"] == driver)

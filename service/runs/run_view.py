@@ -157,7 +157,7 @@ def shown_signal(run: RunResult, view: RunView) -> Signal:
     for field, name, names in (("window", view.window, WINDOWS), ("scale", view.scale, SCALES)):
         if name not in names:
             raise BadInput.of(field, name, str(one_of(names)))
-    name = view.quantity or ("force" if run.bearing else "mesh_force")
+    name = view.quantity or ("mesh_force" if run.mesh and not run.bearing else "force")
     if name not in QUANTITIES:
         raise BadInput.of("quantity", name, str(one_of(QUANTITIES)))
     quantity = QUANTITIES[name]

@@ -29,7 +29,7 @@ from service.worker.catalogue import default_registry
 
 PROCESSES = tuple(default_registry())
 FEW, MANY = 1, -(-500 // len(PROCESSES))
-DRAWS = 12
+DRAWS = 40
 """Inputs that are drawn for a result at most: some are refused, as they should be."""
 
 

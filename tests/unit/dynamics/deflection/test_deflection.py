@@ -204,6 +204,13 @@ def test_the_coast_side_of_a_helical_gearbox_is_another_one(sliced):
     assert abs(coast.meshes[0].misalignment) != pytest.approx(abs(drive.meshes[0].misalignment), rel=0.05)
 
 
+def test_a_mesh_without_load_has_no_centroid(sliced):
+    system = assemble(replace(rigid_pair(table=sliced), loads=()))
+    rest = rest_over(system, np.zeros(1))
+    assert rest.mesh_force.tolist() == [[0.0]]
+    assert np.isnan(rest.centroid).all()
+
+
 def test_mesh_load_and_shaft_deflection_agree(sliced):
     """The reactions put the load where the table has its centroid at the misalignment of the shafts."""
     system = assemble(loaded_scene(rigid_pair(table=sliced), LoadCase("load")))

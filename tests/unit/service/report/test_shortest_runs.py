@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 from dynamics.errors import InputError
 from dynamics.orders import order_waterfall
 from dynamics.results import RunResult
+from dynamics.results.series import SERIES
 from fe_contact.ste import SteDatabase
 from service.cli.commands import app
 from service.cli.output import console
@@ -24,6 +25,8 @@ from service.registry import STUDIES
 from service.report.as_json import stored_figures
 from service.report.stored_study import study_page
 from service.runs.signal_spectrum import TOO_SHORT
+
+SHAPES = {series.name: series.dimensions for series in SERIES}
 
 
 def first(run: RunResult, samples: int, **changes: Any) -> RunResult:
@@ -59,6 +62,14 @@ def test_a_run_without_motion_is_drawn(run: RunResult, speed: float, tmp_path: P
 def test_runs_too_short_for_orders_are_refused_by_their_length(run: RunResult, tmp_path: Path) -> None:
     first(run, 400).to_netcdf(tmp_path / "run.nc")
     with pytest.raises(BadInput, match="at least 16 base pitches"):
+        stored_comparison({"files": [str(tmp_path / "run.nc")] * 2})
+
+
+def test_a_run_without_meshes_is_not_compared(run: RunResult, tmp_path: Path) -> None:
+    alone = {name: value[:0] for name, value in vars(run).items() if SHAPES.get(name, ("",))[0] == "mesh"}
+    case = run.case | {"meshes": [], "gears": []}
+    replace(run, **(alone | {"mesh": (), "case": case})).to_netcdf(tmp_path / "run.nc")
+    with pytest.raises(BadInput, match="a run without meshes"):
         stored_comparison({"files": [str(tmp_path / "run.nc")] * 2})
 
 
