@@ -8,6 +8,7 @@ from fastapi import APIRouter, Depends, Request, Response
 from pydantic import BaseModel, Field
 from starlette.responses import PlainTextResponse
 
+from host import missing_protections
 from service.access import Scope
 from service.management.server import METRICS_TYPE
 from service.management.vitals import Vitals
@@ -48,6 +49,10 @@ class Readiness(BaseModel):
     computations: dict[str, int] | None = Field(
         None, description="Number of computations by state; left out where keys are needed"
     )
+    missing_protections: tuple[str, ...] | None = Field(
+        None,
+        description="What the system lacks to confine readers of files; left out where nothing is missing",
+    )
 
 
 @router.get("/health", summary="Liveness")
@@ -64,7 +69,8 @@ async def health() -> Health:
 def ready(request: Request, context: Ctx) -> Readiness:
     """Answer that database and place of results take what is written, and that the scheduler runs.
 
-    The numbers of computations are left out where keys are needed: this is answered to everybody.
+    The numbers of computations are left out where keys are needed: this is answered to everybody. Readers of
+    files that the system cannot confine do not make it unready: what is missing is stated.
     """
     outcome = context.writes.outcome()
     if outcome.fault:
@@ -72,7 +78,7 @@ def ready(request: Request, context: Ctx) -> Readiness:
     counts = None if request.state.closed else context.submissions.counts()
     if fault := Vitals(context.scheduler, context.writes).fault_of_health():
         raise NotReady(fault)
-    return Readiness(computations=counts)
+    return Readiness(computations=counts, missing_protections=missing_protections() or None)
 
 
 @router.get("/metrics", summary="Metrics for Prometheus", response_class=PlainTextResponse)

@@ -12,12 +12,17 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from fastapi.testclient import TestClient
 from running_service import PATIENCE_S, lives, until
+from service_fakes import REGISTRY
+from structlog.testing import capture_logs
 
+from service.app import create_app
 from service.live.order import LiveOrder
 from service.own_folder import own_folder, remove_left
 from service.problems import LiveUnavailable, QueueFull, ServiceError, TooLarge, TooManyHeld, Unexpected
 from service.reading.pool import AT_ONCE, MOST_WAITING, ReadingPool
+from service.settings import Settings
 
 
 def order(name: str, **inputs: Any) -> LiveOrder:
@@ -128,3 +133,11 @@ def test_a_reader_sees_no_file_of_the_service(pool: ReadingPool, tmp_path: Path)
     (tmp_path / "keys.json").write_text("canary")
     with pytest.raises(Unexpected):
         pool.ask(order("peek", file=str(tmp_path / "keys.json"))).result(timeout=PATIENCE_S)
+
+
+def test_a_system_that_confines_nothing_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("host.landlock.version", lambda: 0)
+    with capture_logs() as log, TestClient(create_app(Settings(data_directory=tmp_path), REGISTRY)) as http:
+        ready = http.get("/ready", headers={"Host": "localhost"})
+    assert ready.json()["missing_protections"] == ["files (Landlock)"]
+    assert [entry["missing"] for entry in log if "confine" in entry["event"]] == [("files (Landlock)",)]
