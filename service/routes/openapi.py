@@ -10,7 +10,7 @@ from pydantic.json_schema import models_json_schema
 
 from service.access import MEANINGS
 from service.routes.events import EVENT_STREAM
-from service.routes.media_types import JSON
+from service.routes.media_types import CBOR, JSON
 from service.routes.refusals import describe_refusals
 from service.routes.response_headers import HEADERS, OF_ALL, described_headers
 from service.routes.scopes import KEY_SCHEME
@@ -65,7 +65,7 @@ _LINKS = {
 """From every status document, by name."""
 
 _REF = "#/components/schemas/{model}"
-_SHOWN = (JSON, EVENT_STREAM)
+_SHOWN = (JSON, CBOR, EVENT_STREAM)
 _BESIDE = (ProblemBody, QueryInput, InputWarning, ReportSection)
 """Models that no handler names."""
 

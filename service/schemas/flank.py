@@ -19,13 +19,13 @@ class FlankPoint(BoundaryModel):
     torque_n_m: Annotated[float | None, Spelling("--torque")] = Field(
         default=None,
         title="Torque on the pinion, N m",
-        gt=0.0,
+        ge=1e-9,
         le=1e9,
         description="Torque on the driving gear in N m; left out, with no force: the highest of the case",
         examples=[100.0],
     )
     normal_force_n: Annotated[float | None, Spelling("--force")] = Field(
-        default=None, gt=0.0, le=1e9, description="Normal tooth force in N, instead of a torque"
+        default=None, ge=1e-9, le=1e9, description="Normal tooth force in N, instead of a torque"
     )
     misalignment_um: float | None = Field(
         default=None,

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Optional
 from pydantic import Field, Strict, create_model
 
 from fe_contact.flank.modification import FlankModification
-from service.schemas.case import Case
+from service.schemas.case import Case, Load
 from service.schemas.declared import figures
 from service.schemas.gear import ToothingInput
 from service.schemas.model import BoundaryModel
@@ -28,8 +28,7 @@ FlankChange = create_model(
     **{figure.field: _left_out(figure.field) for figure in figures(FlankModification)},
 )
 
-Torque = Annotated[float, Field(ge=1e-9, le=1e9)]
-Torques = Annotated[tuple[Torque, ...], Strict(False), Field(min_length=1, max_length=16)]
+Torques = Annotated[tuple[Load, ...], Strict(False), Field(min_length=1, max_length=16)]
 Caller = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,64}$")]
 
 

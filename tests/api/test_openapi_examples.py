@@ -22,7 +22,7 @@ from service.schemas.answer_examples import HASH
 from service.schemas.request_examples import request_example
 from service.settings import Settings
 
-BINARY = ("application/x-netcdf", "application/octet-stream", "application/cbor", "audio/wav")
+BINARY = ("application/x-netcdf", "application/octet-stream", "audio/wav")
 _directory = tempfile.TemporaryDirectory(prefix="loa-examples-")
 _app = create_app(Settings(data_directory=Path(_directory.name)))
 RESPONSES = DESCRIPTION["components"]["responses"]

@@ -58,6 +58,7 @@ def test_answers_are_typed_but_for_what_others_define() -> None:
         for status, response in operation["responses"].items()
         if status.startswith("2")
         for content in response.get("content", {}).values()
+        if "schema" in content  # events are text
         for place in untyped(content["schema"], f"{method} {path} {status}", met)
     ]
     assert len(met) > 30 and sorted(places) == sorted(OPEN)

@@ -9,14 +9,14 @@ from pydantic import Field, Strict, model_validator
 
 from bounds import DEPTHS, Kind
 from fe_contact.flank.modification import FlankModification
+from service.schemas.case import Load
 from service.schemas.declared import Figure, figures, with_fields
 from service.schemas.model import BoundaryModel, refuse
 from service.schemas.one_or_many import MANY, ONE, ONE_OR_MANY
 
 Deviation = Annotated[float, Field(gt=0.0, le=1000.0)]
-Torque = Annotated[float, Field(gt=0.0, le=1e9)]
 _EACH = (Strict(False), Field(min_length=1, max_length=64))
-Torques = Annotated[tuple[Torque, ...], *_EACH]
+Torques = Annotated[tuple[Load, ...], *_EACH]
 Misalignment = Annotated[float, Field(ge=-10_000.0, le=10_000.0)]
 Misalignments = Annotated[
     Annotated[Misalignment, ONE] | Annotated[tuple[Misalignment, ...], *_EACH, MANY], ONE_OR_MANY

@@ -215,7 +215,7 @@ def test_a_number_where_a_list_is_due_is_told_the_bound_of_each(tmp_path: Path) 
     text = (ROOT / "examples" / CASE).read_text()
     (tmp_path / "case.toml").write_text(re.sub(r"torque_n_m = .*", "torque_n_m = 100", text))
     result = loa("analyze", tmp_path / "case.toml", "-o", tmp_path / "x.nc")
-    assert "load.torque_n_m = 100: must be a list in brackets, each above 0" in result.stderr
+    assert "load.torque_n_m = 100: must be a list in brackets, each from 1e-09" in result.stderr
 
 
 def test_a_job_submitted_names_the_command_that_fetches_its_result(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -13,6 +13,7 @@ from fe_contact.material import Material
 from service.convert.checks import THICK, check_case, check_plain_case
 from service.problems import BadInput
 from service.schemas import Case
+from service.schemas.flank import FlankPoint
 from service.schemas.reading import validated
 
 MOST_LAYERS = 36
@@ -67,3 +68,9 @@ def test_a_load_is_neither_next_to_nothing_nor_beyond_all_gears(torque: float) -
     with pytest.raises(BadInput, match=r"load\.torque_n_m"):
         case(torque=torque)
     assert case(torque=1e-9) and case(torque=1e9)
+
+
+@pytest.mark.parametrize("point", [{"torque_n_m": 1e-152}, {"normal_force_n": 1e-152}])
+def test_a_flank_is_looked_at_under_a_load_that_a_case_may_have(point: dict[str, float]) -> None:
+    with pytest.raises(BadInput, match="from 1e-09 to 1e"):
+        validated(FlankPoint, point)
