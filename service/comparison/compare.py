@@ -45,7 +45,7 @@ def compare_results(
     read = {name: read_result(file) for name, file in results.items()}
     warnings = dict.fromkeys(one["message"] for file in results.values() for one in stamped(file))
     page = _page(read, measured, view, torque)
-    return replace(page, alarms=(*(f"Implausible: {text}" for text in warnings), *page.alarms))
+    return replace(page, alarms=(*(f"Warning: {text}" for text in warnings), *page.alarms))
 
 
 def _page(

@@ -89,7 +89,7 @@ class ReadingPool:
         return question.answer
 
     def stop(self) -> None:
-        """Refuse what waits, end the readers."""
+        """Refuse what waits, end the readers; a question that comes later begins anew."""
         with self._changed:
             self._stopping = True
             for question in self._waiting.values():
@@ -100,6 +100,7 @@ class ReadingPool:
         for thread in running:
             thread.join()
         self._reader.close()
+        self._stopping = False
 
     def _begin(self) -> None:
         """Let those that have waited longest begin, one of each caller."""

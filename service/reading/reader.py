@@ -88,8 +88,9 @@ class Reader:
                 kill_group(pid)
 
     def close(self) -> None:
-        """End the warm process."""
+        """End the warm process, once no child is left; later children start another."""
         self._forks.close()
+        self._stopping = False
 
     def _started(self, folder: Path) -> tuple[ChildProcess, _Pipes]:
         """Start a child that works in a folder."""

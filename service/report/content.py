@@ -19,7 +19,7 @@ def page_of(read: Inputs) -> Page:
     A study alone has its own page.
     """
     page = _page_of(read)
-    alarms = (*(f"Implausible: {text}" for text in read.warnings), *page.alarms)
+    alarms = (*(f"Warning: {text}" for text in read.warnings), *page.alarms)
     sections = sorted(one_effects_section(page.sections), key=lambda section: section.part)
     return replace(page, alarms=alarms, sections=tuple(sections))
 

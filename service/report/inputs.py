@@ -86,7 +86,7 @@ def read_result(file: Path) -> SteDatabase | RunResult:
     """
     study, kind = _kind(file)
     if study is not None:
-        raise BadInput.of("file", str(file), "an STE database or a run", f"It holds {kind}.")
+        raise BadInput.of("result", f"{file.name}, which holds {kind}", "an STE database or a run")
     result: SteDatabase | RunResult = _read(file, kind)
     return result
 

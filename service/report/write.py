@@ -48,7 +48,7 @@ def write_whole(
     page: Page, output: Path, images: Path | None = None, warnings: Sequence[str] = ()
 ) -> list[Path]:
     """Write a page from its caller, under what is implausible; parameters as for `write_report`."""
-    page = replace(page, alarms=(*(f"Implausible: {text}" for text in warnings), *page.alarms))
+    page = replace(page, alarms=(*(f"Warning: {text}" for text in warnings), *page.alarms))
     drawn = {figure.key: png(figure) for section in page.sections for figure in section.figures}
     _write(output, html(page, drawn).encode("utf-8"))
     written = [output]

@@ -59,7 +59,7 @@ def workers() -> list[int]:
             command = (entry / "cmdline").read_bytes()
         except (FileNotFoundError, ProcessLookupError, PermissionError):
             continue
-        if parent == os.getpid() and b"service.worker.child" in command:
+        if parent == os.getpid() and b"service.worker.child\0" in command and b"fork_server" not in command:
             found.append(int(entry.name))
     return found
 

@@ -18,7 +18,7 @@ from service.problems import BadInput
 from service.schemas import Case, validated
 from service.studies.computation import Means
 from service.studies.optimize import Inputs
-from service.studies.optimize.run import optimization_json, optimization_of
+from service.studies.optimize.run import optimization_json, optimization_of, worse_loads
 from service.worker.catalogue import default_registry
 
 OPTIMISE = default_registry()["optimize"]
@@ -67,7 +67,7 @@ def test_the_optimization_is_that_of_python(served: Served, data: Path) -> None:
     told = figures_alone(answer)
     # on the gears as the job condensed them: linear algebra in more threads sums in another order
     here = optimization_of(validated(Case, CASE), validated(Inputs, STUDY), Means(data, lambda *_: None))
-    expected = json.loads(json.dumps(optimization_json(here))) | {"warnings": []}
+    expected = json.loads(json.dumps(optimization_json(here) | {"warnings": worse_loads(here)}))
     assert untimed(told) == untimed(expected)
     assert told["outcome"] == "improved" and told["gain_um"] > told["gain_error_um"]
     assert set(told["optimum"]["values"]) == {"pinion", "wheel"}

@@ -50,7 +50,7 @@ def test_a_case_is_assessed_from_plan_to_result(served: tuple[LineOfActionClient
     place = f"/v1/results/{result.key}"
     assert messages(http.get(place).json()) == said
     (alarm,) = http.get(f"{place}/figures").json()["alarms"][:1]
-    assert alarm.startswith(f"Implausible: {said[0]}")
+    assert alarm.startswith(f"Warning: {said[0]}")
     file = http.get(place, headers={"accept": "application/x-netcdf"}).content
     with h5netcdf.File(io.BytesIO(file), "r") as content:
         assert messages({"warnings": json.loads(content.attrs["warnings"])}) == said
@@ -85,7 +85,7 @@ def test_what_an_import_left_out_goes_with_every_answer(
     assert client.status(status["jobID"]).warnings == (warning,)
     result = client.wait(status["jobID"])
     assert messages(http.get(result.href).json()) == [said]
-    assert http.get(f"{result.href}/figures").json()["alarms"][0].startswith(f"Implausible: {said}")
+    assert http.get(f"{result.href}/figures").json()["alarms"][0].startswith(f"Warning: {said}")
 
 
 def test_a_plausible_case_has_an_empty_list(served: tuple[LineOfActionClient, TestClient]) -> None:

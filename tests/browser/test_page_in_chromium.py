@@ -232,6 +232,6 @@ def test_what_is_implausible_is_said_above_the_plan_and_above_the_results(
     for part in ("#plan", "#results-body"):
         expect(page.locator(f"{part} > .alarm + .headline")).to_be_visible()
         expect(page.locator(f"{part} > .alarm")).to_contain_text(
-            "Implausible: pair.pinion.face_width_mm = 1000 mm"
+            "Warning: pair.pinion.face_width_mm = 1000 mm"
         )
     page.close()

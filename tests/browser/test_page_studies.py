@@ -77,10 +77,15 @@ def ran(visit: Visit, name: str) -> Locator:
     return part
 
 
+WORSE = "Warning: expected peak-to-peak rises at"
+"""What a search says of loads that it makes worse: this one, of a short search on few positions, does."""
+
+
 @pytest.mark.parametrize("name", EACH)
 def test_every_plot_of_a_study_is_drawn_and_has_words(visit: Visit, name: str) -> None:
     part = ran(visit, name)
-    assert part.get_by_role("alert").all_text_contents() == []
+    alerts = part.get_by_role("alert").all_text_contents()
+    assert [text for text in alerts if not text.startswith(WORSE)] == []
     for key in STUDIES[name][3]:
         node = part.locator(f"[data-figure='{key}'] .plot")
         expect(node).to_have_attribute("data-drawn", "yes", timeout=PATIENCE)

@@ -29,7 +29,7 @@ export function showPlan(found) {
   const same = (entry) => ["model", "level", "slices"].every((key) => entry[key] === choice[key]);
   const chosen = found.levels.findIndex(same);
   byId("plan").replaceChildren(
-    ...found.warnings.map(({ message }) => make("p", { class: "alarm", role: "alert" }, `Implausible: ${message}`)),
+    ...found.warnings.map(({ message }) => make("p", { class: "alarm", role: "alert" }, `Warning: ${message}`)),
     head,
     make("p", { class: choice.met && !found.conflict ? "hint" : "alarm" }, `Mesh ${choice.level}: ${said}.`),
     folded("All meshes", dataTable(levels, (row) => row === chosen)),

@@ -85,7 +85,7 @@ def test_table_report_and_json_carry_it(case: Path, tmp_path: Path) -> None:
     assert curve.stdout.startswith("position") and MESSAGE in curve.stderr
     assert loa("report", table, "-o", page, "--strict").exit_code == EXIT_WARNINGS
     text = page.read_text(encoding="utf-8")
-    assert text.index(f"Implausible: {MESSAGE}") < text.index('class="headline"')
+    assert text.index(f"Warning: {MESSAGE}") < text.index('class="headline"')
 
 
 @pytest.mark.parametrize("name", VERBS)
