@@ -139,7 +139,7 @@ def verb_of_study(reading: Reading) -> None:
     for ending, write in _writers(study, None).items():
         if ending not in further:
             write(result, reading.folder / f"result{ending}")
-    _show(study, result, [])
+    _show(study, result, [], 0.0)
     print_json(study.run.facts(result))
 
 
