@@ -23,6 +23,7 @@ export class OpenedUnit {
 
   /** @param {File} file */
   async open(file) {
+    this.place.replaceChildren(); // the buttons of an earlier unit would open that one
     const body = { rexs_base64: await base64(file) };
     this.show(file.name, await post("/v1/units/open", body));
   }
