@@ -11,6 +11,9 @@ from service.rexs.refusal import MOST_DEPTH, MOST_ENTRIES, refused
 _SHOWN = 60
 """Characters of a line that is not well-formed."""
 
+_ENCODINGS = ("utf-8", "utf-16", "utf-16le", "utf-16be", "us-ascii", "iso-8859-1", "windows-1252")
+"""What expat decodes itself, and what writers on Windows use."""
+
 
 @dataclass(slots=True)
 class Element:
@@ -29,7 +32,7 @@ class Element:
 
 
 def element_of(data: bytes) -> Element:
-    """Return the root of an XML text in any encoding that expat knows.
+    """Return the root of an XML text in an encoding of its own: no codec is looked up by a name of the file.
 
     Raises
     ------
@@ -45,8 +48,6 @@ def element_of(data: bytes) -> Element:
         raise refused(
             "file", _line(data, error.lineno), bound, "REXS is XML, JSON or a ZIP of them."
         ) from None
-    except (LookupError, ValueError):
-        raise refused("encoding", None, "one that XML readers know, as UTF-8") from None
     return builder.root.parts[0]
 
 
@@ -67,6 +68,7 @@ class _Builder:
         self.parser.EndElementHandler = self._end
         self.parser.CharacterDataHandler = self._characters
         self.parser.StartDoctypeDeclHandler = self._document_type
+        self.parser.XmlDeclHandler = self._declaration
         self._open = [self.root]
         self._count = 0
 
@@ -91,6 +93,11 @@ class _Builder:
 
     def _characters(self, text: str) -> None:
         self._open[-1].words.append(text)
+
+    def _declaration(self, version: str, encoding: str | None, standalone: int) -> None:
+        del version, standalone
+        if encoding is not None and encoding.lower() not in _ENCODINGS:
+            raise refused("encoding", encoding[:_SHOWN], f"one of {', '.join(_ENCODINGS)}", "Write UTF-8.")
 
     def _document_type(self, name: str, *rest: object) -> NoReturn:
         del rest

@@ -67,6 +67,7 @@ def _texts() -> Iterator[tuple[str, bytes, str]]:
     yield "null", b'{"model": null}', "a table"
     yield "no fields", b"<model/>", "version"
     yield "encoding", b'<?xml version="1.0" encoding="x-none"?><model/>', "encoding"
+    yield "codec", b'<?xml version="1.0" encoding="hex"?><model/>', "encoding = 'hex'"
     yield "latin", XML.replace("Ä".encode(), b"\xc4"), "well-formed"
     yield "latin JSON", JSON.replace("Ä".encode(), b"\xc4"), "UTF-8"
     changes = {
