@@ -25,6 +25,7 @@ COPY bounds bounds
 COPY model_studies model_studies
 COPY fe_contact fe_contact
 COPY dynamics dynamics
+COPY lineofaction lineofaction
 COPY service service
 RUN pip install --no-compile --no-deps --no-build-isolation . && pip uninstall --yes pip setuptools
 

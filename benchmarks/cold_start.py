@@ -27,7 +27,7 @@ _VERBS: tuple[tuple[str, ...], ...] = (
     ("modes", str(_SCENE), "-o", "modes.nc"),
     ("response", str(_SCENE), "--speed-rpm", "100:2000:100", "-o", "response.nc"),
 )
-_PROGRAMS = {"the service's app": "import service.app", "the client": "import service.client"}
+_PROGRAMS = {"the service's app": "import service.app", "the client": "import lineofaction.client"}
 
 
 def figures() -> list[Figure]:
@@ -35,7 +35,7 @@ def figures() -> list[Figure]:
     with tempfile.TemporaryDirectory() as folder:
         measured = []
         for verb in _VERBS:
-            program = [sys.executable, "-X", "importtime", "-m", "service.cli", *verb]
+            program = [sys.executable, "-X", "importtime", "-m", "lineofaction.cli", *verb]
             _cost(program, folder)
             title = verb[0] if verb[0] != "report" else f"report of {verb[1]}"
             measured += _figures(f"loa {title}", program, folder)

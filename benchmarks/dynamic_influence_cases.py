@@ -17,8 +17,8 @@ from dynamics.joints.matrix import Matrix
 from dynamics.scene import Outputs, Scene, pair_scene
 from dynamics.types import FloatArray
 from fe_contact import GearPair, analyze
-from service.cli.scene_tables import scene_with_tables
-from service.client.portable import scene_of
+from lineofaction.cli.scene_tables import scene_with_tables
+from lineofaction.client.portable import scene_of
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 RPM = math.pi / 30.0

@@ -11,9 +11,9 @@ from benchmarks.full_contact_coverage import quantities, reference
 from fe_contact import analyze
 from fe_contact.full_contact import solve_full_contact
 from fe_contact.types import FloatArray
-from service.drawing import palette
-from service.drawing.figure import Axis, Figure, Line, Panel
-from service.drawing.image import png
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel
+from lineofaction.report.drawing.image import png
 
 PICTURE = Path(__file__).parents[1] / "docs" / "images" / "accuracy.png"
 CASES = ("20/20", "20/20, 30 um over 3.5 mm", "24/72, ring", "35/42, tall teeth")

@@ -40,7 +40,16 @@ def figures() -> list[Figure]:
 def _service() -> Iterator[str]:
     """Serve an empty directory on a free port."""
     with tempfile.TemporaryDirectory() as folder:
-        command = [sys.executable, "-m", "service.cli", "serve", "--port", "0", "--data-directory", folder]
+        command = [
+            sys.executable,
+            "-m",
+            "lineofaction.cli",
+            "serve",
+            "--port",
+            "0",
+            "--data-directory",
+            folder,
+        ]
         log = (Path(folder) / "service.log").open("wb")
         with log, subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, text=True) as service:
             assert service.stdout is not None

@@ -24,7 +24,7 @@ def running(
     Its log goes to a file, if one is named; `options` are those of ``loa serve``.
     """
     begin = time.perf_counter()
-    command = [sys.executable, "-m", "service.cli", "serve", "--port", "0", *options]
+    command = [sys.executable, "-m", "lineofaction.cli", "serve", "--port", "0", *options]
     with (log or Path(os.devnull)).open("w") as errors:
         process = subprocess.Popen(
             [*command, "--data-directory", str(directory)], stdout=subprocess.PIPE, stderr=errors, text=True

@@ -16,7 +16,7 @@ from benchmarks.example_pair import PAIR, TORQUES
 from benchmarks.figures import Figure
 from benchmarks.fresh_process import measure
 from benchmarks.service_process import idle_memory_mb, memory_mb, running
-from service.client import LineOfActionClient
+from lineofaction.client import LineOfActionClient
 from service.store import stored_results
 
 KEY = "ab" * 32

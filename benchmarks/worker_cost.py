@@ -14,8 +14,8 @@ from typing import Any
 from benchmarks.boxed_scene import boxed_scene
 from benchmarks.figures import Figure
 from benchmarks.service_process import cpu_seconds, running
-from service.client import LineOfActionClient
-from service.client.portable import case_of, scene_inputs
+from lineofaction.client import LineOfActionClient
+from lineofaction.client.portable import case_of, scene_inputs
 
 _EXAMPLES = Path(__file__).parents[1] / "examples"
 _SUBJECT = "workers of the service"

@@ -23,8 +23,8 @@ from pathlib import Path
 
 from main_job_summary import summary
 
-from service.client import JobState, LineOfActionClient
-from service.report import write_report
+from lineofaction.client import JobState, LineOfActionClient
+from lineofaction.report.document import write_report
 
 EXAMPLES = Path(__file__).parent
 CASE, SCENE = EXAMPLES / "palermo_spur_20_20.toml", EXAMPLES / "palermo_scene.toml"
@@ -66,7 +66,7 @@ def _arguments() -> argparse.Namespace:
 def _service(out: Path) -> Iterator[str]:
     """Run a service on a free port and yield its address; it ends with the block."""
     data = str(out / "service")
-    command = [sys.executable, "-m", "service.cli", "serve", "--port", "0", "--data-directory", data]
+    command = [sys.executable, "-m", "lineofaction.cli", "serve", "--port", "0", "--data-directory", data]
     with (out / "service.log").open("w", encoding="utf-8") as log:
         process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, text=True)
     try:
@@ -104,7 +104,7 @@ def _compute(address: str, out: Path) -> dict[str, float]:
             shutil.copyfile(client.fetch_file(key), out / name)
     with urllib.request.urlopen(f"{address}/v1/results/{key}/figures"):  # drawn once: the page opens on them
         times["STE databases"], start = time.perf_counter() - start, time.perf_counter()
-    simulate = [sys.executable, "-m", "service.cli", "simulate", str(SCENE), "--service", address]
+    simulate = [sys.executable, "-m", "lineofaction.cli", "simulate", str(SCENE), "--service", address]
     subprocess.run([*simulate, "-o", str(out / "run.nc")], stdout=subprocess.DEVNULL, check=True)
     times["run-up"] = time.perf_counter() - start
     return times

@@ -15,7 +15,7 @@ from pathlib import Path
 from main_job_summary import dynamic_lines, static_lines
 
 from dynamics.simulation import simulate
-from service.client import JobState, LineOfActionClient
+from lineofaction.client import JobState, LineOfActionClient
 
 EXAMPLES = Path(__file__).parent
 CASE, SCENE = EXAMPLES / "palermo_spur_20_20.toml", EXAMPLES / "palermo_scene.toml"

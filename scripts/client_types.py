@@ -1,6 +1,6 @@
 """Write the types of the client's processes from the registry and from what the studies say they return.
 
-Usage: client_types.py service/client/processes.pyi
+Usage: client_types.py lineofaction/client/processes.pyi
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
-from service.registry import STUDIES, Study
+from lineofaction.gearbox.registry import STUDIES, Study
 
-HEAD = """# Written by scripts/client_types.py from service.registry: do not edit.
+HEAD = """# Written by scripts/client_types.py from lineofaction.gearbox.registry: do not edit.
 # fmt: off
 # ruff: noqa: E501 (a line for each parameter)
 from collections.abc import Callable, Sequence
@@ -37,10 +37,10 @@ class Processes(Surface):
 OWN = {
     "from dynamics.results import RunResult",
     "from fe_contact.ste import SteDatabase",
-    "from service.client.portable import CaseLike, SceneLike, StudyLike",
-    "from service.client.process import Offered",
-    "from service.client.surface import Surface",
-    "from service.schemas.figures import Figures, RunFigures, TableFigures",
+    "from lineofaction.client.portable import CaseLike, SceneLike, StudyLike",
+    "from lineofaction.client.process import Offered",
+    "from lineofaction.client.surface import Surface",
+    "from lineofaction.gearbox.schemas.figures import Figures, RunFigures, TableFigures",
 }
 SUBJECTS = {"case": "CaseLike", "scene": "SceneLike", "case or scene": "CaseLike | SceneLike"}
 

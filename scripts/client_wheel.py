@@ -18,12 +18,12 @@ ROOT = Path(__file__).parents[1]
 NEEDS = ("numpy", "pydantic", "httpx2")
 _LOADED = """
 import importlib, json, pkgutil, sys
-import service.client
-from service import schemas
-from service.registry import STUDIES
+import lineofaction.client
+from lineofaction.gearbox import schemas
+from lineofaction.gearbox.registry import STUDIES
 [getattr(schemas, name) for name in schemas.__all__]  # loaded on first use
 [study.answer for study in STUDIES.values()]
-for module in pkgutil.walk_packages(service.client.__path__, "service.client."):
+for module in pkgutil.walk_packages(lineofaction.client.__path__, "lineofaction.client."):
     importlib.import_module(module.name)
 files = (getattr(module, "__file__", None) for module in list(sys.modules.values()))
 print(json.dumps([file for file in files if file]))

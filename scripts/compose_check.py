@@ -14,9 +14,9 @@ from typing import Any
 import httpx2
 from containers import STOP_S, assess, await_answer, free_port, podman, same_table, the_case, tried
 
-from service.client import JobState, LineOfActionClient
-from service.problems import Unauthorised
-from service.schemas import Case
+from lineofaction.client import JobState, LineOfActionClient
+from lineofaction.gearbox.problems import Unauthorised
+from lineofaction.gearbox.schemas import Case
 
 _PATIENCE_S = 300.0
 _TEETH = range(21, 27)

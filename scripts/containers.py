@@ -11,10 +11,10 @@ import httpx2
 import numpy as np
 
 from fe_contact.analysis import ste_database
-from service.client import LineOfActionClient
-from service.convert.case import analysis_options, case_json, table_axes
-from service.convert.checks import check_case
-from service.schemas import Case, read_model
+from lineofaction.client import LineOfActionClient
+from lineofaction.gearbox.convert.case import analysis_options, case_json, table_axes
+from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.schemas import Case, read_model
 
 CASE = Path("examples/palermo_spur_20_20.toml")
 START_S, READY_S, STOP_S = 60.0, 3.0, 5.0

@@ -16,8 +16,8 @@ from containers import READY_S, STOP_S, assess, await_answer, free_port, podman,
 from cyclonedx.schema import SchemaVersion
 from cyclonedx.validation.json import JsonStrictValidator
 
-from service.client import LineOfActionClient
-from service.schemas import Case
+from lineofaction.client import LineOfActionClient
+from lineofaction.gearbox.schemas import Case
 
 _LARGEST_MB = 800.0
 

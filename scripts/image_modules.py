@@ -9,8 +9,13 @@ from pathlib import Path
 
 import service.worker
 
-LOADED_AT_THE_START = ("service.cli", "service.app", "uvicorn.protocols.http.auto", "uvicorn.lifespan.on")
-OURS = ("host", "bounds", "model_studies", "fe_contact", "dynamics", "service")
+LOADED_AT_THE_START = (
+    "lineofaction.cli",
+    "service.app",
+    "uvicorn.protocols.http.auto",
+    "uvicorn.lifespan.on",
+)
+OURS = ("host", "bounds", "model_studies", "fe_contact", "dynamics", "lineofaction", "service")
 
 
 def main() -> None:

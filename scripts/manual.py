@@ -22,7 +22,7 @@ from pathlib import Path
 
 from typer.testing import CliRunner
 
-from service.cli.commands import app
+from lineofaction.cli.commands import app
 
 ROOT = Path(__file__).parents[1]
 PICTURES = ROOT / "docs" / "images" / "manual"

@@ -11,9 +11,9 @@ import sys
 from collections import Counter
 from pathlib import Path
 
-from service.hardcases import run_scenes
-from service.hardcases.sweep.outcome import kind_of_end
-from service.hardcases.sweep.sweep_case import sweep_case
+from lineofaction.hardcases import run_scenes
+from lineofaction.hardcases.sweep.outcome import kind_of_end
+from lineofaction.hardcases.sweep.sweep_case import sweep_case
 
 
 def main(folder: Path, kind: str, count: int, first: int = 0) -> int:

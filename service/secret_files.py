@@ -10,7 +10,7 @@ from pydantic import SecretStr
 from pydantic.fields import FieldInfo
 from pydantic_settings import BaseSettings, PydanticBaseSettingsSource
 
-from service.problems import BadInput
+from lineofaction.gearbox.problems import BadInput
 
 _LARGEST = 65_536
 

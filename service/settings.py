@@ -20,9 +20,9 @@ from pydantic import (
 )
 from pydantic_settings import BaseSettings, PydanticBaseSettingsSource, SettingsConfigDict
 
+from lineofaction.gearbox.problems import BadInput, Fault
 from service.directories import absolute, data_home
 from service.origin import Origin
-from service.problems import BadInput, Fault
 from service.secret_files import SecretFiles
 from service.signature import secret_bytes
 

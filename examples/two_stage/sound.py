@@ -16,7 +16,7 @@ from dynamics.acoustics import (
     write_wav,
 )
 from dynamics.noise import RadiatedSound, loudest
-from service.units import RPM
+from lineofaction.gearbox.units import RPM
 
 LISTED = 5
 """Orders that are compared."""

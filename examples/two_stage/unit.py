@@ -25,8 +25,8 @@ from sound import deciding, levels, verdict, write_sounds
 from dynamics.noise import RadiatedSound, loudest
 from dynamics.orders import order_track
 from dynamics.results import RunResult
-from service.convert.toml import toml_text
-from service.units import RPM
+from lineofaction.gearbox.convert.toml import toml_text
+from lineofaction.gearbox.units import RPM
 
 UNIT = Path(__file__).parent
 ORDERS = 3

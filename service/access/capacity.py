@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import structlog
 
 from host import most_open_files
-from service.problems import BadInput
+from lineofaction.gearbox.problems import BadInput
 
 _MOST_CONNECTIONS = 800
 _LEAST_CONNECTIONS = 32

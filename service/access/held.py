@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from service.problems import TooManyHeld, TooManyRequests
+from lineofaction.gearbox.problems import TooManyHeld, TooManyRequests
 
 _AGAIN_S = 1
 NOBODY = ""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from lineofaction.gearbox.problems import BadInput, Unauthorised
 from service.access.holder import Holder
 from service.access.issuer import Issuer
 from service.access.key_file import PREFIX, KeyFile
 from service.access.keyring import Keyring
 from service.access.oidc_settings import load_oidc_settings
 from service.access.tokens import Tokens
-from service.problems import BadInput, Unauthorised
 from service.settings import Settings
 
 

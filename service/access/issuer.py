@@ -12,7 +12,7 @@ from urllib.parse import urlsplit
 import httpx2
 import structlog
 
-from service.problems import IssuerUnavailable, Unauthorised
+from lineofaction.gearbox.problems import IssuerUnavailable, Unauthorised
 
 FRESH_S, STALE_S = 3600.0, 86_400.0
 """Keys are fetched anew after so long; while the issuer does not answer they are good for so long."""

@@ -18,10 +18,10 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
+from lineofaction.gearbox.problems import BadInput
 from service.access.access_key import AccessKey, record_of
 from service.access.holder import LEAST, LIMITS, Holder, Scope
 from service.access.lifetime import duration, read, written
-from service.problems import BadInput
 from service.project import COMMON, PROJECT
 
 PREFIX = "loa_"

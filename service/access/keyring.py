@@ -8,10 +8,10 @@ from threading import Lock
 
 import structlog
 
+from lineofaction.gearbox.problems import BadInput
 from service.access.access_key import AccessKey
 from service.access.key_file import KeyFile, digest_of
 from service.access.lifetime import SOON
-from service.problems import BadInput
 
 logger = structlog.get_logger(__name__)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from datetime import UTC, datetime, timedelta
 
-from service.problems import BadInput
+from lineofaction.gearbox.problems import BadInput
 
 SOON = timedelta(days=7)
 """A key that ends within this is mentioned in the log."""

@@ -9,7 +9,7 @@ from urllib.parse import urlsplit
 from pydantic import ValidationError, field_validator, model_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
-from service.problems import BadInput, Fault
+from lineofaction.gearbox.problems import BadInput, Fault
 
 ALGORITHMS = ("RS256", "RS384", "RS512", "PS256", "PS384", "PS512", "ES256", "ES384", "ES512", "EdDSA")
 """Signatures that only the holder of a private key makes (RFC 7518, RFC 8037): no others can be allowed."""

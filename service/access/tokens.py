@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from lineofaction.gearbox.problems import KeyExpired, Unauthorised
 from service.access.holder import Holder, Scope
 from service.access.issuer import Issuer
 from service.access.oidc_settings import OidcSettings
-from service.problems import KeyExpired, Unauthorised
 from service.project import COMMON, PROJECT
 
 _LEEWAY_S = 30

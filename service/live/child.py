@@ -21,8 +21,8 @@ from pathlib import Path
 from typing import BinaryIO, TypeAlias
 
 from host import kill_own_group, lower_priority
+from lineofaction.gearbox.problems import ServiceError
 from service.live.order import AnswerHead, LiveOrder, LiveWork
-from service.problems import ServiceError
 from service.worker.memory import hold_to
 
 Note: TypeAlias = Callable[[], None]
@@ -95,7 +95,7 @@ def problem(error: ServiceError) -> tuple[AnswerHead, bytes]:
 
 def _translated(error: Exception) -> ServiceError | None:
     """Return an error of the libraries as the boundary's."""
-    from service.convert.errors import translated  # noqa: PLC0415 (start-up time; failures are rare)
+    from lineofaction.gearbox.convert.errors import translated  # noqa: PLC0415 (start-up time; failures are rare)
 
     return translated(error)
 

@@ -16,10 +16,10 @@ from pathlib import Path
 
 import structlog
 
+from lineofaction.gearbox.problems import LiveUnavailable, QueueFull, Superseded, Unexpected
 from service.live.order import LiveOrder
 from service.live.worker import LiveWorker, WorkerGone
 from service.own_folder import remove_left
-from service.problems import LiveUnavailable, QueueFull, Superseded, Unexpected
 from service.settings import LEAST_MEMORY_MB, Settings
 from service.worker.memory import machine_memory_mb
 from service.worker.propagated import propagated

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from fe_contact.analysis import CondensedPair
-from service.convert.live import condensed_of, live_curves
-from service.convert.plan import plan_of
-from service.convert.plausibility import case_warnings
-from service.schemas import Case
-from service.schemas.live import LiveInput
+from lineofaction.gearbox.convert.live import condensed_of, live_curves
+from lineofaction.gearbox.convert.plan import plan_of
+from lineofaction.gearbox.convert.plausibility import case_warnings
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.live import LiveInput
 
 Json = dict[str, Any]
 

@@ -8,7 +8,7 @@ from prometheus_client import Metric
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, HistogramMetricFamily
 from prometheus_client.registry import Collector
 
-from service.problems import DatabaseUnavailable
+from lineofaction.gearbox.problems import DatabaseUnavailable
 from service.queue.workload import Workload, WorkloadReader
 from service.store.write_check import WriteCheck
 

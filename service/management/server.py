@@ -17,8 +17,8 @@ from types import TracebackType
 from typing import Any, NamedTuple, Self
 from urllib.parse import urlsplit
 
+from lineofaction.gearbox.problems import BadInput
 from service.management.vitals import Vitals
-from service.problems import BadInput
 
 METRICS_TYPE = "text/plain; version=0.0.4; charset=utf-8"
 _MOST_REQUESTS = 16

@@ -1,4 +1,4 @@
-"""The files that the pages are made of: their own, and plotly.js and Swagger UI from Python packages."""
+"""The files that the pages are made of: their own, the player of reports, plotly.js and Swagger UI."""
 
 from __future__ import annotations
 
@@ -21,6 +21,8 @@ _FROM_PACKAGES = {
     PLOTLY: ("plotly", "package_data"),
     "swagger-ui-bundle.js": ("fastapi_swagger", "resources"),
     "swagger-ui.css": ("fastapi_swagger", "resources"),
+    "player.js": ("lineofaction", "report/drawing"),
+    "player.css": ("lineofaction", "report/drawing"),
 }
 """Package and folder in it."""
 

@@ -13,9 +13,9 @@ from pathlib import Path
 
 import structlog
 
-from service.problems import BadInput, NoSuchProcess
+from lineofaction.gearbox.problems import BadInput, NoSuchProcess
+from lineofaction.gearbox.schemas.reading import validated
 from service.queue.claims import Claim, Claims
-from service.schemas.reading import validated
 from service.store import ResultStore
 from service.worker.process import Registry
 

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import structlog
 
+from lineofaction.gearbox.stages import PacedFraction
 from service.queue.attempt_trace import AttemptTrace
 from service.queue.claims import Claim
 from service.queue.worker_figures import WorkerFigures
 from service.settings import LEAST_MEMORY_MB, Settings
-from service.stages import PacedFraction
 from service.tracing.traceparent import trace_facts
 from service.worker.child_process import Launch
 from service.worker.memory import machine_memory_mb

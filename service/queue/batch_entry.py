@@ -11,7 +11,7 @@ from typing import Any
 
 from sqlalchemy import Connection, Engine, insert, select
 
-from service.problems import BadInput
+from lineofaction.gearbox.problems import BadInput
 from service.project import address_of
 from service.queue.batches import FOR_EVER, HELD, batch_steps
 from service.queue.caller import ANYBODY, Caller

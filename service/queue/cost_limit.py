@@ -6,7 +6,7 @@ from sqlalchemy import Update, update
 
 from bounds import engineering
 from host import family_cpu_seconds
-from service.problems import BadInput
+from lineofaction.gearbox.problems import BadInput
 from service.queue.attempt import Attempt
 from service.queue.caller import Caller
 from service.queue.claims import Claims

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, Self
 
-from service.problems import BadInput
-from service.registry import NETCDF
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.registry import NETCDF
 
 Response = Literal["raw", "document"]
 Transmission = Literal["value", "reference"]

@@ -8,7 +8,7 @@ from typing import Any
 
 from sqlalchemy import ColumnElement, Connection, func, insert, select
 
-from service.problems import BadInput, QueueFull
+from lineofaction.gearbox.problems import BadInput, QueueFull
 from service.project import COMMON
 from service.queue.caller import Caller
 from service.queue.tables import computations, jobs

@@ -6,7 +6,7 @@ import threading
 
 import structlog
 
-from service.problems import ServiceError
+from lineofaction.gearbox.problems import ServiceError
 from service.queue.retention import Retention
 
 FIRST_S, EVERY_S = 60.0, 3600.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sqlalchemy import Update, update
 
-from service.problems import BadInput
+from lineofaction.gearbox.problems import BadInput
 from service.queue.caller import Caller
 from service.queue.tables import computations
 

@@ -13,7 +13,7 @@ import uuid
 import structlog
 
 from host import never_wait_at
-from service.problems import DatabaseUnavailable, ServiceError, StoreUnavailable
+from lineofaction.gearbox.problems import DatabaseUnavailable, ServiceError, StoreUnavailable
 from service.queue.adoption import Adoption
 from service.queue.attempt import Attempt, begun
 from service.queue.claims import Claim, Claims

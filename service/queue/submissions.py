@@ -9,7 +9,7 @@ from typing import Any
 
 from sqlalchemy import ColumnElement, Connection, Engine, exists, insert, select, update
 
-from service.problems import NoSuchJob
+from lineofaction.gearbox.problems import NoSuchJob
 from service.project import COMMON, address_of
 from service.queue.batch_entry import BatchEntry
 from service.queue.batches import HELD

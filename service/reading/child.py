@@ -16,9 +16,9 @@ import warnings
 from pathlib import Path
 
 from host import READING, confine, end_after, lower_priority
+from lineofaction.gearbox.problems import TooLarge
 from service.live.child import problem, worked
 from service.live.order import AnswerHead, LiveOrder
-from service.problems import TooLarge
 
 LONGEST_S = 30
 """Time after which it ends, whatever it waits for."""

@@ -16,9 +16,9 @@ from pathlib import Path
 import structlog
 
 from host import missing_protections
+from lineofaction.gearbox.problems import LiveUnavailable, QueueFull, TooManyHeld
 from service.live.order import LiveOrder
 from service.own_folder import remove_left
-from service.problems import LiveUnavailable, QueueFull, TooManyHeld
 from service.reading.reader import Reader
 
 AT_ONCE = 4

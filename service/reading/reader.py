@@ -14,16 +14,21 @@ from pathlib import Path
 import structlog
 
 from host import READING, Ended, ending_signal, kill_group
+from lineofaction.gearbox.problems import LiveUnavailable, ServiceError, TooLarge, Unexpected
 from service.live.order import AnswerHead, LiveOrder
 from service.own_folder import own_folder
-from service.problems import LiveUnavailable, ServiceError, TooLarge, Unexpected
 from service.reading.child import LONGEST_S, MOST_ANSWER_BYTES
 from service.worker.child_process import ChildProcess, Ends
 from service.worker.forks import Forks
 from service.worker.propagated import propagated
 
 WORK = "service.reading.child"
-MODULES = ("service.convert.errors", "service.from_rexs.answer", "service.reading.texts", "scipy.optimize")
+MODULES = (
+    "lineofaction.gearbox.convert.errors",
+    "lineofaction.gearbox.from_rexs.answer",
+    "service.reading.texts",
+    "scipy.optimize",
+)
 _WARM_WITHIN_S = 30.0
 _PATIENCE_S = 2.0
 """The child ends itself first, and so says why."""

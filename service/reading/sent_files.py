@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from service.problems import BadInput
-from service.schemas.file_content import LARGEST, FileContentInput
-from service.schemas.named_files import Find, own_name
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.file_content import LARGEST, FileContentInput
+from lineofaction.gearbox.schemas.named_files import Find, own_name
 
 
 def sent_files(files: Sequence[FileContentInput], folder: Path) -> Find:

@@ -6,15 +6,15 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from service.convert.case import case_json
+from lineofaction.gearbox.convert.case import case_json
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.file_content import FileContentInput
+from lineofaction.gearbox.schemas.housing_file import SENT
+from lineofaction.gearbox.schemas.named_files import Find, own_name
+from lineofaction.gearbox.schemas.reading import read_text, validated, written_out
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.schemas.toml_table import toml_table
 from service.reading.sent_files import sent_files
-from service.schemas import Case
-from service.schemas.file_content import FileContentInput
-from service.schemas.housing_file import SENT
-from service.schemas.named_files import Find, own_name
-from service.schemas.reading import read_text, validated, written_out
-from service.schemas.scene import SceneInput
-from service.schemas.toml_table import toml_table
 
 Json = dict[str, Any]
 

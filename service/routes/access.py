@@ -7,8 +7,8 @@ from contextlib import ExitStack
 from starlette.types import ASGIApp, Receive, Scope, Send
 from structlog.contextvars import bind_contextvars
 
+from lineofaction.gearbox.problems import KeyExpired, NotForUs, RateExceeded, ServiceError
 from service.access import NOBODY, Held, Identities, RateLimits
-from service.problems import KeyExpired, NotForUs, RateExceeded, ServiceError
 from service.routes.admission import Admission
 from service.routes.audit import Visit
 from service.routes.caching import for_one_caller

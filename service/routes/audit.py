@@ -8,8 +8,8 @@ from typing import Any
 import structlog
 from starlette.types import Message, Scope, Send
 
+from lineofaction.gearbox.problems import ServiceError
 from service.access import Holder
-from service.problems import ServiceError
 
 _KEY = re.compile(r"loa_[A-Za-z0-9_-]+")
 _LONGEST = 200

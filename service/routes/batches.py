@@ -9,8 +9,10 @@ from typing import Any
 import structlog
 from fastapi import APIRouter, Response
 
+from lineofaction.gearbox.problems import BadInput, Fault, QueueFull
+from lineofaction.gearbox.schemas.few_faults import MOST_FAULTS
+from lineofaction.gearbox.schemas.reading import validated
 from service.access import Scope
-from service.problems import BadInput, Fault, QueueFull
 from service.queue.batch_entry import BatchCase
 from service.queue.cost_limit import cost_limit
 from service.queue.label import Label
@@ -24,9 +26,7 @@ from service.routes.response_headers import described_headers
 from service.routes.scopes import ScopedRoute, needs
 from service.routes.webhooks import checked_uris, enter_calls
 from service.schemas.batch import BatchRequest
-from service.schemas.few_faults import MOST_FAULTS
 from service.schemas.ogc import StatusInfo
-from service.schemas.reading import validated
 from service.store import now
 from service.worker.process import Process, on_demand
 

@@ -9,22 +9,22 @@ from fastapi import APIRouter, Request
 from pydantic import BaseModel, Field, Strict
 from starlette.responses import JSONResponse, Response
 
+from lineofaction.gearbox.convert.toml import toml_text
+from lineofaction.gearbox.problems import LiveUnavailable, QueueFull, TooLarge, TooManyHeld
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.file_content import FileContentInput
+from lineofaction.gearbox.schemas.model import BoundaryModel
+from lineofaction.gearbox.schemas.named import Named
+from lineofaction.gearbox.schemas.outline import OutlineBody
+from lineofaction.gearbox.schemas.reading import validated
 from service.access import Scope
-from service.convert.toml import toml_text
 from service.live.order import LiveOrder
 from service.page.examples import Example, examples
-from service.problems import LiveUnavailable, QueueFull, TooLarge, TooManyHeld
 from service.routes.context import Context, Ctx, key_of
 from service.routes.media_types import JSON
 from service.routes.refusals import documented
 from service.routes.scopes import ScopedRoute, needs
-from service.schemas import Case
-from service.schemas.file_content import FileContentInput
-from service.schemas.model import BoundaryModel
-from service.schemas.named import Named
 from service.schemas.offers import ExampleBody
-from service.schemas.outline import OutlineBody
-from service.schemas.reading import validated
 from service.worker.catalogue import ANALYZE
 from service.worker.process import on_demand
 
@@ -34,7 +34,7 @@ _MOST_FILES = 16
 
 router = APIRouter(tags=["cases"], route_class=ScopedRoute)
 case_json, outline_json = (
-    on_demand(f"service.convert.{name}") for name in ("case:case_json", "outline:outline_json")
+    on_demand(f"lineofaction.gearbox.convert.{name}") for name in ("case:case_json", "outline:outline_json")
 )
 
 

@@ -11,7 +11,7 @@ from urllib.parse import urlencode
 
 from fastapi import Query, Request
 
-from service.problems import BadInput
+from lineofaction.gearbox.problems import BadInput
 from service.schemas.ogc import Link
 from service.store import Mark
 

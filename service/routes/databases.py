@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Request
 
+from lineofaction.gearbox.loading import LOADING
+from lineofaction.gearbox.schemas.result_kinds import RESULTS
 from service.access import Scope
-from service.loading import LOADING
 from service.routes.context import Ctx
 from service.routes.cursor import Cursor, Limit, mark_of, page_links
 from service.routes.scopes import ScopedRoute, needs
 from service.schemas.database_list import DatabaseEntry, DatabaseList
-from service.schemas.result_kinds import RESULTS
 from service.store import IndexLine, Mark, ResultStore
 from service.store.files import WrongContent
 
@@ -32,7 +32,7 @@ def list_databases(request: Request, context: Ctx, limit: Limit = 20, cursor: Cu
 def _entry(store: ResultStore, mark: Mark, line: IndexLine) -> DatabaseEntry:
     """Return what the list tells of a database, which is not thereby used; of a damaged file its name."""
     with LOADING:
-        from service.convert.database_case import case_of_file  # noqa: PLC0415 (start-up time)
+        from lineofaction.gearbox.convert.database_case import case_of_file  # noqa: PLC0415 (start-up time)
 
     try:
         case = case_of_file(store.files.local(line.file, line.sha256))

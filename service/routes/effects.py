@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from fastapi import APIRouter
 
+from lineofaction.gearbox.loading import LOADING
 from service.access import Scope
-from service.loading import LOADING
 from service.routes.scopes import ScopedRoute, needs
 from service.schemas.offers import EffectBody
 

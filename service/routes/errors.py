@@ -14,10 +14,10 @@ from starlette.exceptions import HTTPException
 from starlette.responses import Response
 from starlette.routing import compile_path
 
-from service.problems import BadInput, Fault, ServiceError, UnsupportedMediaType
+from lineofaction.gearbox.problems import BadInput, Fault, ServiceError, UnsupportedMediaType
+from lineofaction.gearbox.schemas.faults import fault_of, innermost
 from service.routes.caching import NO_STORE
 from service.routes.media_types import JSON, PROBLEM, media_type
-from service.schemas.faults import fault_of, innermost
 
 
 def problem_response(facts: Mapping[str, Any], headers: Mapping[str, str] | None = None) -> Response:

@@ -12,8 +12,8 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response, StreamingResponse
 from starlette.types import Receive, Scope, Send
 
+from lineofaction.gearbox.problems import NoSuchJob, QueueFull
 from service import access
-from service.problems import NoSuchJob, QueueFull
 from service.queue.job import Job
 from service.routes.caching import NO_STORE
 from service.routes.context import Context, Ctx

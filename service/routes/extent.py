@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from service.problems import TooLarge
+from lineofaction.gearbox.problems import TooLarge
 from service.routes.media_types import CBOR, RAW, media_type
 
 _MOST = {b"{": (5_000, "tables"), b"[": (50_000, "lists"), b":": (50_000, "fields"), b"=": (50_000, "fields")}

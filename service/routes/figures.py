@@ -8,9 +8,10 @@ from fastapi import APIRouter, Query, Request
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
+from lineofaction.gearbox.problems import DamagedFile, LiveUnavailable, NotFound, QueueFull
+from lineofaction.gearbox.schemas.result_kinds import HASH
 from service.access import Scope
 from service.live.order import LiveOrder
-from service.problems import DamagedFile, LiveUnavailable, NotFound, QueueFull
 from service.routes.context import Ctx
 from service.routes.kept_answers import VERSION, kept_answer
 from service.routes.refusals import documented
@@ -18,11 +19,10 @@ from service.routes.response_headers import described_headers
 from service.routes.results import Key, known_result
 from service.routes.scopes import ScopedRoute, needs
 from service.schemas.report import ReportBody
-from service.schemas.result_kinds import HASH
 from service.version import program_tag
 
-FIGURES = "service.report.as_json:stored_figures"
-COMPARISON = "service.comparison.as_json:stored_comparison"
+FIGURES = "lineofaction.report.document.as_json:stored_figures"
+COMPARISON = "lineofaction.report.comparison.as_json:stored_comparison"
 
 router = APIRouter(tags=["results"], route_class=ScopedRoute)
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 from fastapi import APIRouter, Request
 from starlette.responses import RedirectResponse
 
+from lineofaction.gearbox.problems import NotFound
+from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS, RESULTS, ResultKind
 from service.access import Scope
-from service.problems import NotFound
 from service.routes.context import Ctx
 from service.routes.moved import moved
 from service.routes.results import Key
 from service.routes.scopes import ScopedRoute, needs
-from service.schemas.result_kinds import RESULT_KINDS, RESULTS, ResultKind
 
 router = APIRouter(include_in_schema=False, route_class=ScopedRoute)
 

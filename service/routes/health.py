@@ -9,10 +9,10 @@ from pydantic import BaseModel, Field
 from starlette.responses import PlainTextResponse
 
 from host import missing_protections
+from lineofaction.gearbox.problems import ServiceError
 from service.access import Scope
 from service.management.server import METRICS_TYPE
 from service.management.vitals import Vitals
-from service.problems import ServiceError
 from service.routes.caching import NO_STORE
 from service.routes.context import Ctx
 from service.routes.refusals import documented

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 from fastapi import Depends, Query
 from pydantic import Field
 
-from service.problems import BadInput
+from lineofaction.gearbox.problems import BadInput
 from service.queue.job_filter import JobFilter
 from service.schemas.label import Tag, Title
 from service.schemas.ogc import JobStatus

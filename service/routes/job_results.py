@@ -7,8 +7,7 @@ from typing import Annotated, Any, Union
 from fastapi import APIRouter, Header, Query, Request
 from starlette.responses import JSONResponse, Response
 
-from service.access import Scope
-from service.problems import (
+from lineofaction.gearbox.problems import (
     DamagedFile,
     Fault,
     JobDismissed,
@@ -18,10 +17,12 @@ from service.problems import (
     ResultNotReady,
     ServiceError,
 )
+from lineofaction.gearbox.registry import NETCDF
+from lineofaction.gearbox.schemas.result_kinds import RESULTS
+from service.access import Scope
 from service.queue.delivery import Delivery, Transmission, delivery
 from service.queue.delivery import Response as Form
 from service.queue.job import Job
-from service.registry import NETCDF
 from service.routes.context import Context, Ctx
 from service.routes.media_types import JSON, negotiated
 from service.routes.refusals import documented
@@ -31,7 +32,6 @@ from service.routes.scopes import ScopedRoute, needs
 from service.schemas.batch import BatchResult, BatchResults
 from service.schemas.ogc import JobStatus, ResultReference, results_document
 from service.schemas.problem import ProblemBody
-from service.schemas.result_kinds import RESULTS
 from service.worker.process import Registry
 
 AskedForm = Annotated[Form | None, Query(description="Form of the result; overrides that of the execution")]

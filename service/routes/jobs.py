@@ -8,8 +8,8 @@ from datetime import UTC, datetime
 
 from fastapi import APIRouter, Request
 
+from lineofaction.gearbox.problems import NoSuchJob
 from service.access import Scope
-from service.problems import NoSuchJob
 from service.queue.differences import Differences
 from service.queue.job import Job
 from service.queue.subject import subject_of

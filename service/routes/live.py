@@ -9,17 +9,24 @@ from fastapi import APIRouter
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
+from lineofaction.gearbox.problems import (
+    DamagedFile,
+    LiveUnavailable,
+    NotAnalyzed,
+    NotFound,
+    QueueFull,
+    Superseded,
+)
+from lineofaction.gearbox.schemas.live import LiveInput, PlanRequest
+from lineofaction.gearbox.schemas.live_answer import LiveOutput
+from lineofaction.gearbox.schemas.plan import PlanBody
 from service.access import Scope
 from service.live.order import LiveOrder
-from service.problems import DamagedFile, LiveUnavailable, NotAnalyzed, NotFound, QueueFull, Superseded
 from service.project import address_of
 from service.routes.context import Context, Ctx
 from service.routes.refusals import documented
 from service.routes.results import Key
 from service.routes.scopes import ScopedRoute, needs
-from service.schemas.live import LiveInput, PlanRequest
-from service.schemas.live_answer import LiveOutput
-from service.schemas.plan import PlanBody
 
 router = APIRouter(tags=["live"], route_class=ScopedRoute)
 

@@ -8,8 +8,8 @@ from typing import Any
 from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
 from prometheus_client.multiprocess import MultiProcessCollector
 
-from service.problems import ServiceError
-from service.problems.error import last_part
+from lineofaction.gearbox.problems import ServiceError
+from lineofaction.gearbox.problems.error import last_part
 
 _METHODS = frozenset(("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "TRACE", "CONNECT"))
 """Of RFC 9110 and RFC 5789; a caller may send any word."""
@@ -28,7 +28,7 @@ class Metrics:
     def __init__(self, process: CollectorRegistry) -> None:
         self._process, self._registry = process, CollectorRegistry()
         self._answered = self._registry
-        if "PROMETHEUS_MULTIPROC_DIR" in os.environ:  # see `service.cli.serving_processes`
+        if "PROMETHEUS_MULTIPROC_DIR" in os.environ:  # see `lineofaction.cli.serving_processes`
             self._answered = CollectorRegistry()
             MultiProcessCollector(self._answered)  # type: ignore[no-untyped-call]
         labels = ["method", "route", "status"]

@@ -13,7 +13,7 @@ import structlog
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from structlog.contextvars import bind_contextvars, clear_contextvars
 
-from service.problems import (
+from lineofaction.gearbox.problems import (
     ServiceError,
     TooLarge,
     TooSlow,

@@ -8,7 +8,7 @@ from functools import cached_property
 from threading import Lock
 from typing import TYPE_CHECKING
 
-from service.loading import LOADING
+from lineofaction.gearbox.loading import LOADING
 from service.store import ResultStore
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ class OpenDatabase:
         """The compiled force; raises as `boundary_errors` of what `CompiledForce.of` raises."""
         with LOADING:
             from fe_contact.ste.compiled_force import CompiledForce  # noqa: PLC0415 (loads the compiler)
-            from service.convert.case import boundary_errors  # noqa: PLC0415
+            from lineofaction.gearbox.convert.case import boundary_errors  # noqa: PLC0415
 
         with boundary_errors():
             return CompiledForce.of(self.database)

@@ -8,6 +8,9 @@ from typing import Any
 from fastapi import FastAPI
 from pydantic.json_schema import models_json_schema
 
+from lineofaction.gearbox.schemas.named import with_named
+from lineofaction.gearbox.schemas.query import QueryInput
+from lineofaction.gearbox.schemas.warning import InputWarning
 from service.access import MEANINGS
 from service.routes.events import EVENT_STREAM
 from service.routes.media_types import CBOR, JSON
@@ -15,12 +18,9 @@ from service.routes.refusals import describe_refusals
 from service.routes.response_headers import HEADERS, OF_ALL, described_headers
 from service.routes.scopes import KEY_SCHEME
 from service.schemas.answer_examples import answer_example
-from service.schemas.named import with_named
 from service.schemas.problem import ProblemBody
-from service.schemas.query import QueryInput
 from service.schemas.report import ReportSection
 from service.schemas.request_examples import request_example
-from service.schemas.warning import InputWarning
 
 Json = dict[str, Any]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from fastapi import APIRouter, Request
 from starlette.responses import Response
 
+from lineofaction.gearbox.problems import NotFound
 from service.page.files import PageFile, page_file
-from service.problems import NotFound
 from service.routes.scopes import OPEN_TO_ALL, ScopedRoute, needs
 
 router = APIRouter(include_in_schema=False, route_class=ScopedRoute)

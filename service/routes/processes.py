@@ -11,9 +11,11 @@ import structlog
 from fastapi import APIRouter, Header, Query, Request, Response
 from pydantic import BaseModel, create_model
 
+from lineofaction.gearbox.problems import LiveUnavailable, NoSuchProcess, QueueFull
+from lineofaction.gearbox.registry import NETCDF
+from lineofaction.gearbox.schemas.model import BoundaryModel
 from service.access import Scope
 from service.live.order import LiveOrder
-from service.problems import LiveUnavailable, NoSuchProcess, QueueFull
 from service.queue.caller import Caller
 from service.queue.cost_limit import cost_limit, refuse_beyond
 from service.queue.delivery import delivery
@@ -22,7 +24,6 @@ from service.queue.former_jobs import FormerJobs
 from service.queue.label import Label
 from service.queue.priority import check_priority
 from service.queue.terms import Terms
-from service.registry import NETCDF
 from service.routes.context import Context, Ctx, From
 from service.routes.cursor import Limit
 from service.routes.jobs import status_info
@@ -32,7 +33,6 @@ from service.routes.response_headers import described_headers
 from service.routes.scopes import ScopedRoute, needs
 from service.routes.webhooks import checked_uris, enter_calls
 from service.schemas.execute import execute_model
-from service.schemas.model import BoundaryModel
 from service.schemas.ogc import (
     AdditionalParameters,
     Link,

@@ -10,17 +10,17 @@ from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import Response
 
+from lineofaction.gearbox.convert.force_query import force_answer
+from lineofaction.gearbox.problems import BadInput, DamagedFile, NotAcceptable, NotFound, UnsupportedMediaType
+from lineofaction.gearbox.schemas.query import LIMITS, QueryInput, QueryOutput
+from lineofaction.gearbox.schemas.result_kinds import HASH
 from service.access import Scope
-from service.convert.force_query import force_answer
-from service.problems import BadInput, DamagedFile, NotAcceptable, NotFound, UnsupportedMediaType
 from service.routes.context import context_of
 from service.routes.direct import DirectRoute, answered_by
 from service.routes.media_types import CBOR, JSON, RAW, media_type, negotiated
 from service.routes.query_encodings import READ, WRITE
 from service.routes.refusals import documented
 from service.routes.scopes import needs
-from service.schemas.query import LIMITS, QueryInput, QueryOutput
-from service.schemas.result_kinds import HASH
 
 _KEY = re.compile(HASH[:-1] + r"\Z")
 _COLUMNS = "position,deflection_um"

@@ -11,11 +11,16 @@ from pydantic import ValidationError
 from pydantic_core import to_json
 
 from fe_contact.types import FloatArray
-from service.convert.force_query import ForceAnswer, check_columns, points_of_columns, points_of_model
-from service.problems import BadInput
+from lineofaction.gearbox.convert.force_query import (
+    ForceAnswer,
+    check_columns,
+    points_of_columns,
+    points_of_model,
+)
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.faults import fault_of, innermost
+from lineofaction.gearbox.schemas.query import QueryInput, validity_words
 from service.routes.media_types import CBOR, JSON, RAW
-from service.schemas.faults import fault_of, innermost
-from service.schemas.query import QueryInput, validity_words
 
 _WORDS = [validity_words(flags) for flags in range(16)]
 _FLOAT64_ARRAY = 86  # RFC 8746: little-endian float64, the one tag a query may have

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from http import HTTPStatus
 from typing import Any
 
-from service.problems import (
+from lineofaction.gearbox.problems import (
     BadInput,
     DatabaseDamaged,
     DatabaseUnavailable,
@@ -29,7 +29,7 @@ from service.problems import (
     Unexpected,
     UnsupportedMediaType,
 )
-from service.problems.error import last_part
+from lineofaction.gearbox.problems.error import last_part
 from service.routes.access import OPEN_PATHS
 from service.routes.media_types import PROBLEM
 from service.routes.middleware import API_PREFIX

@@ -10,17 +10,17 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Header, Path, Request
 from starlette.responses import FileResponse, JSONResponse, Response
 
+from lineofaction.gearbox.loading import LOADING
+from lineofaction.gearbox.problems import DamagedFile, NotFound
+from lineofaction.gearbox.registry import NETCDF
+from lineofaction.gearbox.schemas.result_kinds import HASH, RESULT_KINDS, SUFFIX
 from service.access import Scope
-from service.loading import LOADING
-from service.problems import DamagedFile, NotFound
-from service.registry import NETCDF
 from service.routes.context import Context, Ctx
 from service.routes.media_types import JSON, negotiated
 from service.routes.refusals import documented
 from service.routes.response_headers import OF_VERSIONS, described_headers
 from service.routes.scopes import ScopedRoute, needs
 from service.schemas.ogc import ResultFigures
-from service.schemas.result_kinds import HASH, RESULT_KINDS, SUFFIX
 from service.store import StoredResult
 
 _IMMUTABLE = "public, max-age=31536000, immutable"
@@ -98,11 +98,11 @@ def _figures(context: Context, stored: StoredResult) -> dict[str, Any]:
     """Return the figures of a stored file; the libraries that read it are loaded when they are needed."""
     if stored.kind == "database":
         with LOADING:
-            from service.convert.answers import metadata_json  # noqa: PLC0415 (start-up time)
+            from lineofaction.gearbox.convert.answers import metadata_json  # noqa: PLC0415 (start-up time)
 
         return metadata_json(context.databases.get(context.store, stored.key).database)
     with LOADING:
-        from service.convert.result_figures import figures_of  # noqa: PLC0415 (start-up time)
+        from lineofaction.gearbox.convert.result_figures import figures_of  # noqa: PLC0415 (start-up time)
 
     return figures_of(stored.kind, stored.path)
 

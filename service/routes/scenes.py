@@ -8,16 +8,16 @@ from fastapi import APIRouter, Request
 from pydantic import BaseModel, Field
 from starlette.responses import Response
 
+from lineofaction.gearbox.convert.toml import toml_text
+from lineofaction.gearbox.schemas.model import BoundaryModel
+from lineofaction.gearbox.schemas.named import Named
+from lineofaction.gearbox.schemas.scene import SceneInput
 from service.access import Scope
-from service.convert.toml import toml_text
 from service.live.order import LiveOrder
 from service.routes.cases import READING_FAILURES, CaseText, TomlBody, explained, read_by
 from service.routes.context import Ctx
 from service.routes.refusals import documented
 from service.routes.scopes import ScopedRoute, needs
-from service.schemas.model import BoundaryModel
-from service.schemas.named import Named
-from service.schemas.scene import SceneInput
 
 router = APIRouter(tags=["scenes"], route_class=ScopedRoute)
 

@@ -9,8 +9,8 @@ from fastapi import Request
 from fastapi.routing import APIRoute
 from starlette.responses import Response
 
+from lineofaction.gearbox.problems import MissingScope
 from service.access import Scope
-from service.problems import MissingScope
 from service.routes.context import key_of
 
 Endpoint = TypeVar("Endpoint", bound=Callable[..., Any])

@@ -11,9 +11,10 @@ from fastapi import APIRouter, Query, Request
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
+from lineofaction.gearbox.problems import BadInput, DamagedFile, LiveUnavailable, NotFound, QueueFull
+from lineofaction.gearbox.schemas.result_kinds import HASH
 from service.access import Scope
 from service.live.order import LiveOrder
-from service.problems import BadInput, DamagedFile, LiveUnavailable, NotFound, QueueFull
 from service.routes.context import Ctx
 from service.routes.kept_answers import VERSION, kept_answer
 from service.routes.media_types import WAV
@@ -21,10 +22,9 @@ from service.routes.refusals import documented
 from service.routes.response_headers import described_headers
 from service.routes.results import FILE, Key, known_result
 from service.routes.scopes import ScopedRoute, needs
-from service.schemas.result_kinds import HASH
 from service.version import program_tag
 
-SOUND = "service.runs.stored_sound:stored_sound"
+SOUND = "lineofaction.report.runs.stored_sound:stored_sound"
 HEARD = ("run", "recording")
 """Kinds of results that have a sound."""
 _NAME = 200  # characters

@@ -6,14 +6,14 @@ import threading
 from collections.abc import Sequence
 from importlib import import_module
 
-from service.loading import LOADING
+from lineofaction.gearbox.loading import LOADING
 from service.page.files import PLOTLY, page_file
 
 HEAVY = (
     "service.worker.preparations",
-    "service.convert.answers",
-    "service.convert.outline",
-    "service.convert.result_figures",
+    "lineofaction.gearbox.convert.answers",
+    "lineofaction.gearbox.convert.outline",
+    "lineofaction.gearbox.convert.result_figures",
     "service.worker.study_work",
     "fe_contact.ste.compiled_force",
 )

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from lineofaction.gearbox.problems import BadInput
 from service.origin import Origin
-from service.problems import BadInput
 from service.routes.context import Context
 from service.routes.job_results import batch_results, problem_of, reference_of
 from service.routes.jobs import status_info

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from lineofaction.gearbox.schemas.result_kinds import RESULTS
 from service.schemas.request_examples import BODIES, CASE
-from service.schemas.result_kinds import RESULTS
 from service.version import solver_version
 
 Json = dict[str, Any]

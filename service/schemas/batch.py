@@ -6,9 +6,9 @@ from typing import Any
 
 from pydantic import BaseModel, Field
 
+from lineofaction.gearbox.schemas.model import BoundaryModel
 from service.schemas.execute import Cost, Priority
 from service.schemas.label import Tags, Title
-from service.schemas.model import BoundaryModel
 from service.schemas.ogc import JobStatus, ResultReference
 from service.schemas.problem import ProblemBody
 from service.schemas.subscriber import Subscriber

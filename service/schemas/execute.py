@@ -7,9 +7,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, create_model, model_validator
 
-from service.registry import JSON, NETCDF
+from lineofaction.gearbox.registry import JSON, NETCDF
+from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
 from service.schemas.label import Tags, Title
-from service.schemas.model import BoundaryModel, refuse
 from service.schemas.ogc import class_name
 from service.schemas.subscriber import Subscriber
 

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, Field
 
-from service.schemas.named import Named
+from lineofaction.gearbox.schemas.named import Named
 
 
 class EffectBody(BaseModel):

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, create_model
 
-from service.schemas.named import Named
+from lineofaction.gearbox.schemas.named import Named
 from service.schemas.subscriber import WebhookState
 
 JobStatus = Literal["accepted", "running", "successful", "failed", "dismissed"]

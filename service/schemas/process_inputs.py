@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from pydantic import Field, create_model
 
-from service.registry import Study
-from service.schemas.case import Case
-from service.schemas.case_or_scene import CaseOrScene
-from service.schemas.model import BoundaryModel
+from lineofaction.gearbox.registry import Study
+from lineofaction.gearbox.schemas.case import Case
+from lineofaction.gearbox.schemas.case_or_scene import CaseOrScene
+from lineofaction.gearbox.schemas.model import BoundaryModel
+from lineofaction.gearbox.schemas.scene import SceneInput
 from service.schemas.ogc import class_name
-from service.schemas.scene import SceneInput
 
 
 class AnalyzeInputs(BoundaryModel):

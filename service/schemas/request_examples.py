@@ -6,7 +6,7 @@ from base64 import b64encode
 from typing import Any
 from zlib import compress
 
-from service.registry import STUDIES, Study
+from lineofaction.gearbox.registry import STUDIES, Study
 
 Json = dict[str, Any]
 

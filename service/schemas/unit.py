@@ -6,8 +6,8 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, Field
 
-from service.schemas.model import BoundaryModel
-from service.schemas.named import Named
+from lineofaction.gearbox.schemas.model import BoundaryModel
+from lineofaction.gearbox.schemas.named import Named
 
 
 class UnitFile(BoundaryModel):

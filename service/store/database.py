@@ -10,7 +10,7 @@ from pathlib import Path
 from sqlalchemy import URL, Connection, Engine, MetaData, make_url
 from sqlalchemy.exc import ArgumentError
 
-from service.problems import BadInput
+from lineofaction.gearbox.problems import BadInput
 from service.store.dialects import dialect_of
 from service.store.schema import prepare_schema
 

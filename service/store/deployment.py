@@ -15,7 +15,7 @@ from pathlib import Path
 from sqlalchemy import Column, Engine, String, Table, insert, select, update
 from sqlalchemy.exc import SQLAlchemyError
 
-from service.problems import BadInput, NoSpace
+from lineofaction.gearbox.problems import BadInput, NoSpace
 from service.store.database import metadata, now, reading, writing
 from service.store.dialects import dialect_of
 from service.store.outages import outage_of, retried

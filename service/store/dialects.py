@@ -15,7 +15,7 @@ from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.exc import DBAPIError
 from sqlalchemy.exc import TimeoutError as PoolTimeout
 
-from service.problems import BadInput
+from lineofaction.gearbox.problems import BadInput
 from service.store.commits import Commits, PostgresCommits, SqliteCommits
 from service.store.space import out_of_files, shortage
 

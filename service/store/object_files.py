@@ -13,8 +13,8 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from fe_contact.cache_reads import CacheReads
+from lineofaction.gearbox.problems import BadInput, StoreUnavailable
 from service.bounded_folder import evict
-from service.problems import BadInput, StoreUnavailable
 from service.store.files import PARTIAL, KeptFile, WrongContent, digest_of, place_whole
 
 if TYPE_CHECKING:

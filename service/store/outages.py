@@ -12,7 +12,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from tenacity import RetryCallState, Retrying, retry_if_exception, stop_after_attempt, stop_after_delay
 from tenacity.wait import wait_exponential, wait_random
 
-from service.problems import DatabaseDamaged, DatabaseUnavailable, NoSpace, OutOfFiles
+from lineofaction.gearbox.problems import DatabaseDamaged, DatabaseUnavailable, NoSpace, OutOfFiles
 from service.store.dialects import FILES, ROOM, is_lost, remedy_of
 
 _ATTEMPTS = 6

@@ -7,7 +7,7 @@ from urllib.parse import unquote, urlsplit
 
 from sqlalchemy import Engine
 
-from service.problems import BadInput
+from lineofaction.gearbox.problems import BadInput
 from service.store.database import open_database
 from service.store.deployment import Deployment
 from service.store.files import DirectoryFiles, ResultFiles

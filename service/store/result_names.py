@@ -6,8 +6,8 @@ import re
 import uuid
 from dataclasses import dataclass
 
+from lineofaction.gearbox.schemas.result_kinds import SUFFIX
 from service.project import COMMON, PROJECT, address_of
-from service.schemas.result_kinds import SUFFIX
 
 _DIGEST_LENGTH = 16
 _NAME = re.compile(

@@ -24,7 +24,7 @@ from sqlalchemy import (
 )
 
 from fe_contact.cache_reads import CacheReads
-from service.problems import DamagedFile, NotFound
+from lineofaction.gearbox.problems import DamagedFile, NotFound
 from service.project import COMMON, address_of, at_address
 from service.store.database import BRIEF_MS, instant, metadata, now, reading, writing
 from service.store.dialects import dialect_of
@@ -62,7 +62,7 @@ class IndexLine:
     key : str
         Hash of the input: the resource's name.
     kind : str
-        One of `service.schemas.result_kinds`.
+        One of `lineofaction.gearbox.schemas.result_kinds`.
     sha256 : str
         Digest of the file's bytes, hexadecimal.
     size : int

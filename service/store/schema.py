@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from sqlalchemy import Connection, Engine
 
-from service.problems import BadInput
+from lineofaction.gearbox.problems import BadInput
 from service.store.dialects import RESTORE, dialect_of
 from service.store.migrations import REVISIONS
 from service.store.outages import retried, unusable

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import structlog
 
-from service.problems import BadInput, DatabaseUnavailable, ServiceError
+from lineofaction.gearbox.problems import BadInput, DatabaseUnavailable, ServiceError
 from service.store.deployment import Deployment
 
 KEPT_S = 1.0

@@ -11,8 +11,8 @@ from typing import Any
 
 import structlog
 
+from lineofaction.gearbox.problems import ServiceError
 from service.origin import Origin
-from service.problems import ServiceError
 from service.signature import signed_headers
 from service.webhooks.calls import Call, Calls
 from service.webhooks.sending import NotCalled, send

@@ -9,9 +9,15 @@ from tempfile import TemporaryDirectory
 from fe_contact.analysis import ste_database
 from fe_contact.options import Run
 from fe_contact.ste import SteDatabase
-from service.convert.case import analysis_options, boundary_errors, case_json, gear_pair, table_axes
-from service.convert.plausibility import phrased_database
-from service.schemas import Case, validated
+from lineofaction.gearbox.convert.case import (
+    analysis_options,
+    boundary_errors,
+    case_json,
+    gear_pair,
+    table_axes,
+)
+from lineofaction.gearbox.convert.plausibility import phrased_database
+from lineofaction.gearbox.schemas import Case, validated
 from service.worker.cluster import table_workers
 from service.worker.drafted_progress import DraftedProgress
 from service.worker.order import Product, Progress, WorkOrder

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from functools import partial
 
-from service.registry import STUDIES, Study
+from lineofaction.gearbox.registry import STUDIES, Study
+from lineofaction.gearbox.stages import Stage
 from service.schemas.process_inputs import AnalyzeInputs, SimulateInputs, study_inputs
-from service.stages import Stage
 from service.worker.process import Process, Registry, on_demand
 
 _HOUSING = Stage("housing", 0.3)

@@ -28,7 +28,7 @@ from typing import Any, TextIO
 
 from fe_contact.cache_reads import COMPLIANCE_READS
 from host import cpu_seconds, kill_own_group, lock, lower_priority
-from service.problems import ServiceError
+from lineofaction.gearbox.problems import ServiceError
 from service.worker.disk import no_space
 from service.worker.memory import hold_to, machine_memory_mb, out_of_memory
 from service.worker.order import Product, WorkOrder
@@ -162,7 +162,7 @@ def _stamp(order: WorkOrder, products: tuple[Product, ...]) -> None:
 
 def _translated(error: Exception) -> ServiceError | None:
     """Return an error of the libraries as the boundary's."""
-    from service.convert.errors import translated  # noqa: PLC0415 (start-up time; failures are rare)
+    from lineofaction.gearbox.convert.errors import translated  # noqa: PLC0415 (start-up time; failures are rare)
 
     return translated(error)
 

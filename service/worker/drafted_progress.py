@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from fe_contact.ste import SteDatabase
-from service.convert.drafts import draft_line
-from service.stages import TableFraction
+from lineofaction.gearbox.convert.drafts import draft_line
+from lineofaction.gearbox.stages import TableFraction
 from service.worker.order import Progress
 
 

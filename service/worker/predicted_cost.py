@@ -7,9 +7,9 @@ from typing import Any
 
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request_check import check_request
-from service.convert.case import analysis_options, boundary_errors, gear_pair, table_axes
-from service.problems import BadInput
-from service.schemas import Case
+from lineofaction.gearbox.convert.case import analysis_options, boundary_errors, gear_pair, table_axes
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import Case
 
 
 def predicted_seconds(inputs: dict[str, Any]) -> float | None:

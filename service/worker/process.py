@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from service.loading import LOADING
-from service.problems import NoSuchProcess
-from service.registry import FORMER
-from service.schemas.model import BoundaryModel
-from service.stages import Stage
+from lineofaction.gearbox.loading import LOADING
+from lineofaction.gearbox.problems import NoSuchProcess
+from lineofaction.gearbox.registry import FORMER
+from lineofaction.gearbox.schemas.model import BoundaryModel
+from lineofaction.gearbox.stages import Stage
 from service.worker.key import content_key
 
 if TYPE_CHECKING:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from service.problems import ServiceError
-from service.problems.error import last_part
+from lineofaction.gearbox.problems import ServiceError
+from lineofaction.gearbox.problems.error import last_part
 
 
 class PropagatedError(ServiceError):

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import NoReturn
 
 from fe_contact.ste import PairFacts, SteDatabase
-from service.convert.checks import check_case
-from service.convert.scene import check_scene
-from service.convert.topology import facts_of
-from service.problems import BadInput
-from service.schemas.scene import SceneInput
-from service.schemas.scene_meshes import MeshInput
+from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.scene import check_scene
+from lineofaction.gearbox.convert.topology import facts_of
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.schemas.scene_meshes import MeshInput
 from service.store import ResultStore
 
 

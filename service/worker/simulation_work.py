@@ -12,15 +12,15 @@ from dynamics.errors import ResultError
 from dynamics.scene import Scene
 from dynamics.simulation import simulate_to_file
 from fe_contact.ste import SteDatabase
+from lineofaction.gearbox.convert.case import case_json
+from lineofaction.gearbox.convert.housings import HousedScene, reduced_in
+from lineofaction.gearbox.convert.plausibility import scene_warnings
+from lineofaction.gearbox.convert.runs import staged
+from lineofaction.gearbox.convert.scene import TabledScene, dynamic_scene
+from lineofaction.gearbox.problems import BadInput, JobFailed
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.schemas.scene_meshes import MeshInput
 from model_studies.progress import Report, by_cost
-from service.convert.case import case_json
-from service.convert.housings import HousedScene, reduced_in
-from service.convert.plausibility import scene_warnings
-from service.convert.runs import staged
-from service.convert.scene import TabledScene, dynamic_scene
-from service.problems import BadInput, JobFailed
-from service.schemas.scene import SceneInput
-from service.schemas.scene_meshes import MeshInput
 from service.store import ResultStore, stored_results
 from service.worker.analysis_work import database_of
 from service.worker.catalogue import ANALYZE

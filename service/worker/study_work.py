@@ -8,13 +8,13 @@ from functools import partial
 from typing import Any
 
 from dynamics.results import RunResult
-from service.convert.housings import HousedScene
-from service.registry import STUDIES, Study
-from service.schemas import Case
-from service.schemas.result_kinds import SUFFIX
-from service.schemas.warning import left_out_warnings
+from lineofaction.gearbox.convert.housings import HousedScene
+from lineofaction.gearbox.registry import STUDIES, Study
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.result_kinds import SUFFIX
+from lineofaction.gearbox.schemas.warning import left_out_warnings
+from lineofaction.gearbox.studies.computation import Means
 from service.store import ResultStore
-from service.studies.computation import Means
 from service.worker.cluster import cluster_of, table_workers
 from service.worker.order import Product, Progress, WorkOrder
 from service.worker.scene_inputs import check_run, check_scene_inputs

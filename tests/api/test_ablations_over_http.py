@@ -13,17 +13,17 @@ from study_service import CASE, Served, figures_alone, prepared, scene_by_hash, 
 
 from fe_contact.effects import EFFECTS
 from fe_contact.ste import SteDatabase
-from service.client import JobState
-from service.convert.scene import TabledScene, dynamic_scene
-from service.problems import BadInput
-from service.schemas import Case, validated
-from service.schemas.scene import SceneInput
-from service.stages import PacedFraction
+from lineofaction.client import JobState
+from lineofaction.gearbox.convert.scene import TabledScene, dynamic_scene
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import Case, validated
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.stages import PacedFraction
+from lineofaction.gearbox.studies.ablate import Inputs
+from lineofaction.gearbox.studies.ablate.run import ablation_of, facts
+from lineofaction.gearbox.studies.computation import Means
 from service.store import stored_results
 from service.store.results import IndexLine
-from service.studies.ablate import Inputs
-from service.studies.ablate.run import ablation_of, facts
-from service.studies.computation import Means
 from service.worker import study_work
 from service.worker.catalogue import default_registry
 from service.worker.order import WorkOrder

@@ -12,10 +12,10 @@ from fastapi.testclient import TestClient
 from httpx2 import Response
 from service_fakes import REGISTRY
 
+from lineofaction.client import LineOfActionClient
+from lineofaction.gearbox.problems import RateExceeded, Unauthorised
 from service.access import KeyFile
 from service.app import create_app
-from service.client import LineOfActionClient
-from service.problems import RateExceeded, Unauthorised
 from service.settings import Settings
 
 

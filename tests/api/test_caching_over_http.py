@@ -9,10 +9,10 @@ import pytest
 from fastapi.testclient import TestClient
 from httpx2 import Response
 
+from lineofaction.gearbox.registry import NETCDF
+from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS
 from service.access import KeyFile
 from service.app import create_app
-from service.registry import NETCDF
-from service.schemas.result_kinds import RESULT_KINDS
 from service.settings import Settings
 
 KEY, ABSENT = "5" * 64, "6" * 64

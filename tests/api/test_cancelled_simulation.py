@@ -11,11 +11,11 @@ from fastapi.testclient import TestClient
 from running_service import lives, until
 from scene_files import scene_file
 
+from lineofaction.client import LineOfActionClient
+from lineofaction.gearbox.problems import JobDismissed
+from lineofaction.gearbox.schemas import read_model
+from lineofaction.gearbox.schemas.scene import SceneInput
 from service.app import create_app
-from service.client import LineOfActionClient
-from service.problems import JobDismissed
-from service.schemas import read_model
-from service.schemas.scene import SceneInput
 from service.settings import Settings
 from service.store import stored_results
 

@@ -18,13 +18,13 @@ from service_fakes import REGISTRY
 from small_table import small_table
 from walked_routes import WalkedRoute, walked_routes
 
+from lineofaction.gearbox.problems import KeyExpired, MissingScope, NotFound, Unauthorised
+from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS
 from service.access import KeyFile, Scope
 from service.access.key_file import written
 from service.app import create_app
-from service.problems import KeyExpired, MissingScope, NotFound, Unauthorised
 from service.routes.access import OPEN_FOLDER, OPEN_PATHS
 from service.routes.scopes import OPEN_TO_ALL, ScopedRoute
-from service.schemas.result_kinds import RESULT_KINDS
 from service.settings import Settings
 
 KEY, NO_KEY = "ab" * 32, "cd" * 32
@@ -226,8 +226,8 @@ def _table(name: str) -> Path:
 
 def test_a_scene_takes_no_table_of_another_project(two: Two) -> None:
     """Checked by the worker too: `tests/unit/service/test_projects.py`."""
-    from service.problems import BadInput  # noqa: PLC0415
-    from service.schemas.scene_meshes import MeshInput  # noqa: PLC0415
+    from lineofaction.gearbox.problems import BadInput  # noqa: PLC0415
+    from lineofaction.gearbox.schemas.scene_meshes import MeshInput  # noqa: PLC0415
     from service.worker.scene_inputs import _check_source  # noqa: PLC0415
 
     mesh = MeshInput.model_construct(database_hash=KEY, case=None, case_file=None, database_file=None)

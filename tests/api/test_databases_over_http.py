@@ -14,10 +14,10 @@ from fastapi.testclient import TestClient
 from small_table import small_table
 
 from fe_contact.ste import SteDatabase
+from lineofaction.client import LineOfActionClient
+from lineofaction.gearbox.problems import NotFound
+from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS, ResultKind
 from service.app import create_app
-from service.client import LineOfActionClient
-from service.problems import NotFound
-from service.schemas.result_kinds import RESULT_KINDS, ResultKind
 from service.settings import Settings
 
 KEY = hashlib.sha256(b"small table").hexdigest()

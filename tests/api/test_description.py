@@ -12,9 +12,9 @@ import pytest
 from described_api import DESCRIPTION
 from openapi_spec_validator import OpenAPIV30SpecValidator, OpenAPIV31SpecValidator
 
-from service import problems
-from service.problems import ServiceError
-from service.registry import STUDIES
+from lineofaction.gearbox import problems
+from lineofaction.gearbox.problems import ServiceError
+from lineofaction.gearbox.registry import STUDIES
 from service.routes.openapi30 import in_version_30
 from service.routes.response_headers import OF_STATUS
 from service.schemas.ogc import class_name

@@ -10,9 +10,9 @@ import pytest
 from fastapi.testclient import TestClient
 from sqlalchemy import delete
 
+from lineofaction.client import LineOfActionClient
 from service.access import KeyFile
 from service.app import create_app
-from service.client import LineOfActionClient
 from service.queue.tables import jobs
 from service.schemas.request_examples import CASE
 from service.settings import Settings

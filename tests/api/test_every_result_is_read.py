@@ -19,10 +19,10 @@ from made_results import make
 from pydantic import ValidationError
 from result_readers import READERS, Reading
 
+from lineofaction.gearbox.convert.errors import translated
+from lineofaction.gearbox.problems import ServiceError
+from lineofaction.report.drawing.figure import Figure
 from service.app import create_app
-from service.convert.errors import translated
-from service.drawing.figure import Figure
-from service.problems import ServiceError
 from service.settings import Settings
 from service.store import StoredResult
 from service.worker.catalogue import default_registry
@@ -78,8 +78,8 @@ def test_a_few_of_every_kind_are_read(
     def undrawn(_figure: Figure) -> bytes:
         return b""
 
-    monkeypatch.setattr("service.report.write.png", undrawn)
-    monkeypatch.setattr("service.cli.study.png", undrawn)
+    monkeypatch.setattr("lineofaction.report.document.write.png", undrawn)
+    monkeypatch.setattr("lineofaction.cli.study.png", undrawn)
     assert read(home, http, process, FEW, tmp_path) >= FEW
 
 

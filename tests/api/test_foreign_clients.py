@@ -23,8 +23,8 @@ from running_service import until
 from small_inputs import small_inputs
 from written_service import Service, running_service, written_service
 
-from service.client import LineOfActionClient
-from service.registry import NETCDF
+from lineofaction.client import LineOfActionClient
+from lineofaction.gearbox.registry import NETCDF
 from service.routes.media_types import RAW, WAV
 from service.schemas.ogc import class_name
 from service.schemas.request_examples import INPUTS

@@ -15,16 +15,16 @@ from dynamics.accuracy.registry import FIDELITIES as SCENE_FIDELITIES
 from fe_contact.analysis.studies.accuracy_study import FIDELITIES
 from fe_contact.errors import SolveError
 from fe_contact.ste import SteDatabase
-from service.client import JobState
-from service.convert.result_figures import figures_of
-from service.convert.scene import TabledScene, dynamic_scene
-from service.schemas import Case, validated
-from service.schemas.scene import SceneInput
-from service.stages import PacedFraction
+from lineofaction.client import JobState
+from lineofaction.gearbox.convert.result_figures import figures_of
+from lineofaction.gearbox.convert.scene import TabledScene, dynamic_scene
+from lineofaction.gearbox.schemas import Case, validated
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.stages import PacedFraction
+from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.frontier import Inputs
+from lineofaction.gearbox.studies.frontier.run import frontier_of
 from service.store import stored_results
-from service.studies.computation import Means
-from service.studies.frontier import Inputs
-from service.studies.frontier.run import frontier_of
 from service.worker import study_work
 from service.worker.catalogue import default_registry
 from service.worker.order import WorkOrder

@@ -16,9 +16,9 @@ from running_service import until
 from served_app import served
 from service_fakes import REGISTRY
 
+from lineofaction.gearbox.problems import TooManyHeld, TooManyRequests
 from service.access import Held, KeyFile
 from service.app import create_app
-from service.problems import TooManyHeld, TooManyRequests
 from service.settings import Settings
 
 EXECUTION = "/v1/processes/fake/execution"

@@ -11,10 +11,10 @@ import uvicorn
 from running_service import PATIENCE_S, until
 from service_fakes import REGISTRY
 
+from lineofaction.cli import bounded_http
+from lineofaction.cli.bounded_http import BoundedHttp
 from service.access.capacity import Capacity
 from service.app import create_app
-from service.cli import bounded_http
-from service.cli.bounded_http import BoundedHttp
 from service.routes import middleware
 from service.settings import Settings
 

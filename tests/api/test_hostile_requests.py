@@ -15,12 +15,12 @@ from fastapi.testclient import TestClient
 from httpx2 import Response
 from small_table import small_table
 
+from lineofaction.gearbox.problems import BadInput, DatabaseUnavailable
+from lineofaction.gearbox.schemas.toml_table import toml_table
 from service.access import KeyFile
 from service.access.capacity import Capacity
 from service.app import create_app
-from service.problems import BadInput, DatabaseUnavailable
 from service.schemas.request_examples import CASE, SCENE
-from service.schemas.toml_table import toml_table
 from service.settings import Settings, load_settings
 from service.store.places import result_files
 

@@ -17,9 +17,9 @@ from scipy.io import wavfile
 from study_service import empty_service, without
 from typer.testing import CliRunner
 
-from service.cli.commands import app
-from service.client import LineOfActionClient
-from service.problems import BadInput, NotFound
+from lineofaction.cli.commands import app
+from lineofaction.client import LineOfActionClient
+from lineofaction.gearbox.problems import BadInput, NotFound
 from service.store import stored_results
 
 TABLE, ABSENT = "cd" * 32, "ef" * 32

@@ -16,14 +16,14 @@ from study_service import empty_service
 
 from dynamics.housing_modes import ReducedHousing
 from dynamics.linearize import ModalAnalysis
-from service.cli.scene_tables import tabled_scene
-from service.client import JobState, LineOfActionClient
-from service.client.portable import scene_inputs, scene_of
-from service.problems import BadInput
+from lineofaction.cli.scene_tables import tabled_scene
+from lineofaction.client import JobState, LineOfActionClient
+from lineofaction.client.portable import scene_inputs, scene_of
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.modes import Inputs
+from lineofaction.gearbox.studies.modes.run import modes_of
 from service.store import stored_results
-from service.studies.computation import Means
-from service.studies.modes import Inputs
-from service.studies.modes.run import modes_of
 
 KEY = "cd" * 32
 Served = tuple[LineOfActionClient, TestClient, Path]

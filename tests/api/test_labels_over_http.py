@@ -11,10 +11,10 @@ from fastapi.testclient import TestClient
 from service_fakes import REGISTRY
 from typer.testing import CliRunner
 
+from lineofaction.cli.commands import app as command
+from lineofaction.client import LineOfActionClient
 from service.access import KeyFile
 from service.app import create_app
-from service.cli.commands import app as command
-from service.client import LineOfActionClient
 from service.settings import Settings
 
 
@@ -125,9 +125,9 @@ def test_the_client_labels_what_it_submits(client: TestClient, tmp_path: Path) -
 
 def test_the_verb_labels_what_it_submits(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
     plain = LineOfActionClient("http://testserver", transport=client._transport)
-    monkeypatch.setattr("service.cli.remote.LineOfActionClient", lambda _: plain)
+    monkeypatch.setattr("lineofaction.cli.remote.LineOfActionClient", lambda _: plain)
     monkeypatch.setattr(
-        "service.cli.remote._submitted", lambda client, *_: client.submit("fake", {"wish": {}})
+        "lineofaction.cli.remote._submitted", lambda client, *_: client.submit("fake", {"wish": {}})
     )
     labels = ("--title", "Study 7", "--tag", "EV-3", "--tag", "draft")
     result = CliRunner().invoke(command, ["submit", "examples/palermo_spur_20_20.toml", *labels, "--json"])

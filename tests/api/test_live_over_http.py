@@ -14,15 +14,15 @@ from running_service import PATIENCE_S, REFERENCES, until
 
 from fe_contact.analysis import flank_results
 from fe_contact.options import AnalysisOptions, OperatingPoint
+from lineofaction.client import LineOfActionClient
+from lineofaction.gearbox.convert.case import gear_pair
+from lineofaction.gearbox.problems import ServiceError
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.live_answer import LiveOutput
+from lineofaction.gearbox.schemas.reading import validated
 from service.app import create_app
-from service.client import LineOfActionClient
-from service.convert.case import gear_pair
 from service.live.order import LiveOrder
-from service.problems import ServiceError
 from service.routes.live import STE
-from service.schemas import Case
-from service.schemas.live_answer import LiveOutput
-from service.schemas.reading import validated
 from service.settings import Settings
 
 GEAR: dict[str, Any] = {"teeth": 20, "face_width_mm": 4.0, "bore_diameter_mm": 10.0}

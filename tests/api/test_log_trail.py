@@ -12,8 +12,8 @@ from fastapi.testclient import TestClient
 from running_service import until
 from service_fakes import REGISTRY
 
+from lineofaction.cli.log import log_to_standard_error
 from service.app import create_app
-from service.cli.log import log_to_standard_error
 from service.settings import Settings
 
 EXECUTION = "/v1/processes/fake/execution"

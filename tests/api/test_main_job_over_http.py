@@ -18,11 +18,11 @@ from running_service import until
 
 from dynamics.simulation import simulate
 from fe_contact.analysis import ste_database
+from lineofaction.client import LineOfActionClient
+from lineofaction.gearbox.convert.case import analysis_options, case_json, gear_pair, table_axes
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import Case, validated
 from service.app import create_app
-from service.client import LineOfActionClient
-from service.convert.case import analysis_options, case_json, gear_pair, table_axes
-from service.problems import BadInput
-from service.schemas import Case, validated
 from service.settings import Settings
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -11,11 +11,11 @@ from httpx2 import Response
 from local_issuer import AUDIENCE, LocalIssuer, local_issuer
 from service_fakes import REGISTRY
 
+from lineofaction.gearbox.problems import BadInput, IssuerUnavailable, KeyExpired, MissingScope, Unauthorised
 from service.access import KeyFile, open_identities
 from service.access import issuer as issuer_module
 from service.access.issuer import FRESH_S, PAUSE_S, STALE_S
 from service.app import create_app
-from service.problems import BadInput, IssuerUnavailable, KeyExpired, MissingScope, Unauthorised
 from service.settings import Settings
 
 EXECUTION = "/v1/processes/fake/execution"

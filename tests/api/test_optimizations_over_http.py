@@ -13,12 +13,12 @@ from fastapi.testclient import TestClient
 from running_service import REFERENCES
 from study_service import empty_service, figures_alone
 
-from service.client import JobState, LineOfActionClient
-from service.problems import BadInput
-from service.schemas import Case, validated
-from service.studies.computation import Means
-from service.studies.optimize import Inputs
-from service.studies.optimize.run import optimization_json, optimization_of, worse_loads
+from lineofaction.client import JobState, LineOfActionClient
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import Case, validated
+from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.optimize import Inputs
+from lineofaction.gearbox.studies.optimize.run import optimization_json, optimization_of, worse_loads
 from service.worker.catalogue import default_registry
 
 OPTIMISE = default_registry()["optimize"]

@@ -17,9 +17,9 @@ from httpx2 import Response
 from sliced_face import sliced_database
 
 from fe_contact.ste import SteDatabase
+from lineofaction.client import LineOfActionClient
+from lineofaction.gearbox.schemas.query import LIMITS, MOST_POINTS
 from service.app import create_app
-from service.client import LineOfActionClient
-from service.schemas.query import LIMITS, MOST_POINTS
 from service.settings import Settings
 
 KEY = hashlib.sha256(b"sliced table").hexdigest()

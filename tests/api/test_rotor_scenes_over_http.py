@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
+from lineofaction.client import LineOfActionClient
 from service.app import create_app
-from service.client import LineOfActionClient
 from service.settings import Settings
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

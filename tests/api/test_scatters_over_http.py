@@ -12,12 +12,12 @@ from declared_figures import document
 from fastapi.testclient import TestClient
 from study_service import empty_service, figures_alone
 
-from service.client import JobState, LineOfActionClient
-from service.problems import BadInput
-from service.schemas import Case, validated
-from service.studies.computation import Means
-from service.studies.scatter import Inputs
-from service.studies.scatter.run import draw, facts
+from lineofaction.client import JobState, LineOfActionClient
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import Case, validated
+from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.scatter import Inputs
+from lineofaction.gearbox.studies.scatter.run import draw, facts
 from service.worker.catalogue import default_registry
 
 SCATTER = default_registry()["scatter"]

@@ -21,20 +21,20 @@ from dynamics.results import RunResult
 from dynamics.simulation import simulate
 from dynamics.study import Response, Study, responses_of
 from fe_contact.ste import SteDatabase
+from lineofaction.client import JobState, LineOfActionClient
+from lineofaction.client.portable import scene_inputs
+from lineofaction.gearbox.convert.scene import dynamic_scene
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.registry import STUDIES
+from lineofaction.gearbox.schemas import read_model
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.stages import PacedFraction
+from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.modes import Inputs
+from lineofaction.gearbox.studies.modes.run import facts, modes_of
 from service.app import create_app
-from service.client import JobState, LineOfActionClient
-from service.client.portable import scene_inputs
-from service.convert.scene import dynamic_scene
-from service.problems import BadInput
-from service.registry import STUDIES
-from service.schemas import read_model
-from service.schemas.scene import SceneInput
 from service.settings import Settings
-from service.stages import PacedFraction
 from service.store import stored_results
-from service.studies.computation import Means
-from service.studies.modes import Inputs
-from service.studies.modes.run import facts, modes_of
 from service.worker.catalogue import default_registry
 from service.worker.order import WorkOrder
 

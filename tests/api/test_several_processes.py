@@ -23,8 +23,8 @@ import pytest
 from running_service import PATIENCE_S, lives, until
 from whole_service import _CASE
 
-from service.cli import serving_processes
-from service.cli.serving_processes import ServingProcesses
+from lineofaction.cli import serving_processes
+from lineofaction.cli.serving_processes import ServingProcesses
 
 ROOT = Path(__file__).parents[2]
 NUMBER, CALLERS = 3, 6
@@ -33,7 +33,7 @@ NUMBER, CALLERS = 3, 6
 @contextmanager
 def serving(folder: Path, **settings: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
     """Serve with several processes on a free port; gives the supervising process and the address."""
-    command = [sys.executable, "-m", "service.cli", "serve", "--port", "0", "--processes", str(NUMBER)]
+    command = [sys.executable, "-m", "lineofaction.cli", "serve", "--port", "0", "--processes", str(NUMBER)]
     path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
     environment = {**os.environ, **settings, "PYTHONPATH": path}
     with (folder / "log").open("w") as log:

@@ -12,9 +12,9 @@ import pytest
 from running_service import until
 from served_app import served
 
+from lineofaction.gearbox.registry import NETCDF
 from service.access import KeyFile
 from service.app import create_app
-from service.registry import NETCDF
 from service.settings import Settings
 
 KEY = "5" * 64

@@ -47,7 +47,7 @@ class Process:
 def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Process]:
     """A service that has loaded what it needs to read bodies."""
     directory = tmp_path_factory.mktemp("stall")
-    command = [sys.executable, "-m", "service.cli", "serve", "--port", "0"]
+    command = [sys.executable, "-m", "lineofaction.cli", "serve", "--port", "0"]
     environment = os.environ | {"LOA_DATA_DIRECTORY": str(directory / "data")}
     log = directory / "log"
     with (

@@ -14,15 +14,15 @@ from fastapi.testclient import TestClient
 from study_service import empty_service, figures_alone, without
 
 from fe_contact import LoadDistribution
-from service.client import JobState, LineOfActionClient
-from service.convert.case import case_at
-from service.problems import BadInput
-from service.schemas import Case, validated
-from service.schemas.flank import FlankPoint
-from service.studies.computation import Means
-from service.studies.flank.run import flank_json, flanks_of
-from service.studies.root_stress import Inputs
-from service.studies.root_stress.run import root_stress_json, root_stress_of
+from lineofaction.client import JobState, LineOfActionClient
+from lineofaction.gearbox.convert.case import case_at
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import Case, validated
+from lineofaction.gearbox.schemas.flank import FlankPoint
+from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.flank.run import flank_json, flanks_of
+from lineofaction.gearbox.studies.root_stress import Inputs
+from lineofaction.gearbox.studies.root_stress.run import root_stress_json, root_stress_of
 from service.worker.catalogue import default_registry
 
 FLANK = default_registry()["flank"]

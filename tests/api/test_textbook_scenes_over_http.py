@@ -10,8 +10,8 @@ from fastapi.testclient import TestClient
 
 from dynamics.linearize import ModalAnalysis
 from dynamics.results import RunResult
+from lineofaction.client import LineOfActionClient
 from service.app import create_app
-from service.client import LineOfActionClient
 from service.settings import Settings
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -18,9 +18,9 @@ from served_app import served
 from service_fakes import REGISTRY
 from trace_receiver import TraceReceiver, trace_receiver
 
+from lineofaction.cli.log import log_to_standard_error
+from lineofaction.client import LineOfActionClient
 from service.app import create_app
-from service.cli.log import log_to_standard_error
-from service.client import LineOfActionClient
 from service.queue.worker_figures import WorkerFigures
 from service.settings import Settings
 from service.tracing.tracer import tracer
@@ -164,11 +164,11 @@ def test_no_span_no_header(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> N
 def test_nothing_of_opentelemetry_is_loaded_by_the_client_and_its_sdk_by_nobody_unasked() -> None:
     script = (
         "import sys\n"
-        "from service.client import LineOfActionClient\n"
-        "from service.client.trace import traced\n"
+        "from lineofaction.client import LineOfActionClient\n"
+        "from lineofaction.client.trace import traced\n"
         "assert traced({'json': 1}) == {'json': 1}\n"
         "assert not [name for name in sys.modules if name.startswith('opentelemetry')]\n"
-        "import service.cli.work, service.app\n"
+        "import lineofaction.cli.work, service.app\n"
         "from service.tracing.tracer import Silent, tracer\n"
         "assert isinstance(tracer(), Silent)\n"
         "assert not [name for name in sys.modules if name.startswith('opentelemetry.sdk')]\n"

@@ -11,7 +11,7 @@ from page_visit import CASE, Visit, choose_case, computed, opened, shown
 from playwright.sync_api import Browser, Page, Route, expect
 from running_service import until
 
-from service.client import LineOfActionClient
+from lineofaction.client import LineOfActionClient
 
 LONG = CASE | {"accuracy": {"level": "fine", "model": "3d", "positions": 512}}
 NOWHERE = "11111111-1111-4111-8111-111111111111"

@@ -8,7 +8,7 @@ import re
 from page_visit import found_inaccessible, opened
 from playwright.sync_api import Browser, expect
 
-from service.client import LineOfActionClient
+from lineofaction.client import LineOfActionClient
 
 
 def test_the_first_example_is_computed_when_the_page_opens(browser: Browser, address: str) -> None:

@@ -25,7 +25,7 @@ from running_service import until
 
 from bounds import DEPTHS, Direction, Kind
 from fe_contact.flank.modification import FlankModification
-from service.schemas.declared import figures
+from lineofaction.gearbox.schemas.declared import figures
 
 FIGURES = (
     "ste",

@@ -12,7 +12,7 @@ from page_visit import CASE, Visit, answers, choose_case, found_inaccessible, op
 from playwright.sync_api import Browser, expect
 from running_service import until
 
-from service.client import LineOfActionClient
+from lineofaction.client import LineOfActionClient
 
 LONG = CASE | {"accuracy": {"level": "fine", "model": "3d", "positions": 512}}
 

@@ -13,7 +13,7 @@ from page_visit import CASE, Visit, choose_case, opened, shown
 from playwright.sync_api import Browser, Page, expect
 from running_service import until
 
-from service.client import LineOfActionClient
+from lineofaction.client import LineOfActionClient
 
 EDITED = "Edited since: pinion tip relief 0 µm → 7 µm"
 LONG = CASE | {"accuracy": {"level": "fine", "model": "3d", "positions": 512}}

@@ -11,7 +11,7 @@ from page_visit import PATIENCE, Visit, found_inaccessible, shown, unfold
 from playwright.sync_api import Browser, Locator, Page, expect
 from running_service import until
 
-from service.registry import STUDIES as REGISTERED
+from lineofaction.gearbox.registry import STUDIES as REGISTERED
 
 # title, button, what is typed or chosen by label, figures
 STUDIES = {

@@ -11,7 +11,7 @@ import pytest
 from page_visit import PATIENCE
 from playwright.sync_api import Browser, Page
 
-from service.report import write_report
+from lineofaction.report.document import write_report
 
 # curves of every figure; all panels together
 CURVES = {

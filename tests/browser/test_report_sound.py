@@ -11,10 +11,10 @@ import pytest
 from page_visit import PATIENCE
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from service.comparison.compare import compare
-from service.report import write_report
-from service.report.write import write_whole
-from service.runs.run_view import RunView
+from lineofaction.report.comparison.compare import compare
+from lineofaction.report.document import write_report
+from lineofaction.report.document.write import write_whole
+from lineofaction.report.runs.run_view import RunView
 
 DURATION, TOP = 2.0, 900.0  # s, rpm of the run-up from standstill
 

@@ -15,10 +15,10 @@ from fastapi.testclient import TestClient
 from typer.testing import CliRunner
 
 from fe_contact.errors import InputError
+from lineofaction.cli.commands import app as loa
+from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.schemas import Case, validated
 from service.app import create_app
-from service.cli.commands import app as loa
-from service.convert.checks import check_case
-from service.schemas import Case, validated
 from service.settings import Settings
 
 

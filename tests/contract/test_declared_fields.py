@@ -18,14 +18,14 @@ from fe_contact.material import Material
 from fe_contact.microgeometry import QUANTITIES
 from fe_contact.microgeometry.variables import ACROSS_FACE
 from fe_contact.plausibility import pair_findings
-from service.convert.case import gear_pair
-from service.convert.vocabulary import boundary_name, case_field
-from service.schemas import Case
-from service.schemas.declared import Figure, figures
-from service.schemas.gear import SHARED
-from service.schemas.live import LiveInput
+from lineofaction.gearbox.convert.case import gear_pair
+from lineofaction.gearbox.convert.vocabulary import boundary_name, case_field
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.declared import Figure, figures
+from lineofaction.gearbox.schemas.gear import SHARED
+from lineofaction.gearbox.schemas.live import LiveInput
+from lineofaction.gearbox.studies.optimize import GearScatterInput, GearVariablesInput
 from service.schemas.request_examples import CASE
-from service.studies.optimize import GearScatterInput, GearVariablesInput
 
 FIGURES = figures(FlankModification)
 EVERY = pytest.mark.parametrize("figure", FIGURES, ids=[figure.name for figure in FIGURES])

@@ -14,8 +14,8 @@ from fe_contact.contact import ContactModel
 from fe_contact.effects import EFFECTS as OF_CONTACT
 
 ROOT = Path(__file__).parents[2]
-PRODUCT = ("dynamics", "fe_contact", "model_studies", "service")
-EXAMPLES = ("service/hardcases/", "service/page/examples.py", "service/schemas/answer_examples.py")
+PRODUCT = ("dynamics", "fe_contact", "model_studies", "lineofaction", "service")
+EXAMPLES = ("lineofaction/hardcases/", "service/page/examples.py", "service/schemas/answer_examples.py")
 WORDS = {"axial", "backlash", "friction", "lateral", "misalignment", "tilt"}
 """Effects whose names are directions or quantities too: refused where an effect is chosen or looked up."""
 REMAINS = {
@@ -23,9 +23,9 @@ REMAINS = {
     ("fe_contact/planning/discretization.py", "finite_width"): "key of the hash by which tables are stored",
     ("fe_contact/ste/curve_errors.py", "finite_width"): "source of an error in stored tables",
     ("fe_contact/analysis/estimates/curve_error_estimate.py", "finite_width"): "the same source",
-    ("service/convert/shafts.py", "shaft_deflection"): "the ledger of a stored table",
-    ("service/studies/sensitivity/run.py", "corner_contact"): "field of the study's result",
-    ("service/studies/sensitivity/stored.py", "corner_contact"): "the same field in its file",
+    ("lineofaction/gearbox/convert/shafts.py", "shaft_deflection"): "the ledger of a stored table",
+    ("lineofaction/gearbox/studies/sensitivity/run.py", "corner_contact"): "field of the study's result",
+    ("lineofaction/gearbox/studies/sensitivity/stored.py", "corner_contact"): "the same field in its file",
 }
 CHOSEN_BY = ("choices", "decided", "effect", "effects", "ledger", "neglected", "turned_on")
 

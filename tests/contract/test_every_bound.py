@@ -21,15 +21,15 @@ from toml_text import toml_text
 from bounds import Kind
 from fe_contact.flank.modification import FlankModification
 from fe_contact.ste import PairFacts
+from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.scene import check_scene
+from lineofaction.gearbox.convert.topology import facts_of
+from lineofaction.gearbox.problems import BadInput, Fault
+from lineofaction.gearbox.schemas import Case, read_model, validated
+from lineofaction.gearbox.schemas.declared import figures
+from lineofaction.gearbox.schemas.scene import SceneInput
 from service.app import create_app
-from service.convert.checks import check_case
-from service.convert.scene import check_scene
-from service.convert.topology import facts_of
-from service.problems import BadInput, Fault
-from service.schemas import Case, read_model, validated
-from service.schemas.declared import figures
 from service.schemas.request_examples import SCENE
-from service.schemas.scene import SceneInput
 from service.settings import Settings
 
 Table = dict[str, Any]

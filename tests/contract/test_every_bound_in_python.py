@@ -17,7 +17,7 @@ from dynamics.forces import CoastFlank, RollingContact
 from dynamics.joints import Bushing, Coupling
 from dynamics.scene import Integration, Outputs
 from fe_contact.geometry import BoreSeat, FlankModification, Gear, GearBlank, GearPair, Key, RingGear, Shaft
-from service.problems import Fault
+from lineofaction.gearbox.problems import Fault
 
 FAR = 10.0**6
 """Far off in SI: lengths of a thousand kilometers."""

@@ -8,7 +8,7 @@ from graphlib import TopologicalSorter
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = ("host", "bounds", "model_studies", "fe_contact", "dynamics", "service")
+PACKAGES = ("host", "bounds", "model_studies", "fe_contact", "dynamics", "lineofaction", "service")
 
 
 def module_name(path: Path) -> str:

@@ -5,8 +5,8 @@ import pytest
 from dynamics.bodies import BeamSection
 from fe_contact import STEEL
 from fe_contact.body.shaft import Shaft
-from service.schemas.gear_body import MaterialInput
-from service.schemas.scene_shafts import SectionInput
+from lineofaction.gearbox.schemas.gear_body import MaterialInput
+from lineofaction.gearbox.schemas.scene_shafts import SectionInput
 
 
 def in_si(young, poisson, density):

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from service.rexs import serialized
+from lineofaction.gearbox.rexs import serialized
 from tests.fakes.rexs_unit import place, two_stages
 
 ROOT = Path(__file__).parents[2]
@@ -53,7 +53,7 @@ def modules_after(unit: str, out: Path) -> set[str]:
     code = f"""
 import sys
 from pathlib import Path
-from service.cli.open import run_open
+from lineofaction.cli.open import run_open
 run_open(Path({unit!r}), Path({str(out)!r}), as_json=True)
 print(*sys.modules, file=sys.stderr)
 """
@@ -61,5 +61,5 @@ print(*sys.modules, file=sys.stderr)
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120, cwd=ROOT
     )
     loaded = set(done.stderr.split())
-    assert '"scene": true' in done.stdout and "service.from_rexs.opened" in loaded
+    assert '"scene": true' in done.stdout and "lineofaction.gearbox.from_rexs.opened" in loaded
     return loaded

@@ -13,13 +13,13 @@ from fastapi.testclient import TestClient
 from typer.testing import CliRunner
 
 from dynamics.errors import InputError
+from lineofaction.cli.commands import app as loa
+from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.scene import check_scene
+from lineofaction.gearbox.convert.topology import facts_of
+from lineofaction.gearbox.schemas import validated
+from lineofaction.gearbox.schemas.scene import SceneInput
 from service.app import create_app
-from service.cli.commands import app as loa
-from service.convert.checks import check_case
-from service.convert.scene import check_scene
-from service.convert.topology import facts_of
-from service.schemas import validated
-from service.schemas.scene import SceneInput
 from service.settings import Settings
 
 EVERY = pytest.mark.parametrize("bad", BAD_SCENES, ids=[bad.name.replace(" ", "_") for bad in BAD_SCENES])

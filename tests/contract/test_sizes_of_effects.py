@@ -15,17 +15,17 @@ from typer.testing import CliRunner
 from fe_contact.analysis.studies import ablation
 from fe_contact.analysis.studies.ablation import Figures
 from fe_contact.ste import SteDatabase
-from service.cli.commands import app
-from service.drawing.page import html
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.studies.ablate import Inputs
+from lineofaction.gearbox.studies.ablate.run import ablation_of, facts
+from lineofaction.gearbox.studies.computation import Means
+from lineofaction.report.document.as_json import stored_figures
+from lineofaction.report.document.content import page_of
+from lineofaction.report.document.inputs import read_inputs
+from lineofaction.report.drawing.page import html
+from lineofaction.report.studies.ablate import ablation_table
 from service.live.work import live_plan
-from service.report.as_json import stored_figures
-from service.report.content import page_of
-from service.report.inputs import read_inputs
-from service.schemas import Case
-from service.studies.ablate import Inputs
-from service.studies.ablate.page import ablation_table
-from service.studies.ablate.run import ablation_of, facts
-from service.studies.computation import Means
 
 pytestmark = pytest.mark.usefixtures("coarse_sectors")
 

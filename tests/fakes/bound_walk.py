@@ -11,7 +11,7 @@ from typing import Any, Union, get_args, get_origin
 
 from pydantic import BaseModel
 
-from service.problems import Fault
+from lineofaction.gearbox.problems import Fault
 
 Table = dict[str, Any]
 Place = tuple[str | int, ...]

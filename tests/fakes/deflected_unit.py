@@ -8,17 +8,17 @@ import numpy as np
 
 from dynamics.deflection import CaseDeflection, MeshAlignment, deflect
 from dynamics.scene import Scene
-from service.convert.case import gear_pair
-from service.convert.scene import check_scene
-from service.convert.topology import facts_of
-from service.from_rexs.files import SCENE_FILE, load_case_tables, unit_files
-from service.from_rexs.opened import OpenedUnit
-from service.schemas import validated
-from service.schemas.scene import SceneInput
-from service.studies.deflect import Inputs
-from service.studies.deflect.outline import outline_of
-from service.studies.deflect.result import GearboxDeflection, MeshFlanks
-from service.studies.deflect.run import load_cases, scene_of
+from lineofaction.gearbox.convert.case import gear_pair
+from lineofaction.gearbox.convert.scene import check_scene
+from lineofaction.gearbox.convert.topology import facts_of
+from lineofaction.gearbox.from_rexs.files import SCENE_FILE, load_case_tables, unit_files
+from lineofaction.gearbox.from_rexs.opened import OpenedUnit
+from lineofaction.gearbox.schemas import validated
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.studies.deflect import Inputs
+from lineofaction.gearbox.studies.deflect.outline import outline_of
+from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks
+from lineofaction.gearbox.studies.deflect.run import load_cases, scene_of
 
 HALF_FACE = 0.01
 POSITIONS = 3

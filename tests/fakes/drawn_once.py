@@ -1,7 +1,7 @@
 """Figures of reports are drawn once in a run of the tests: images are most of what a page costs.
 
-All tests of all workers share the images by what is drawn. The laws of drawing call `service.drawing.image`
-itself.
+All tests of all workers share the images by what is drawn. The laws of drawing call
+`lineofaction.report.drawing.image` itself.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from pathlib import Path
 
 import pytest
 
-from service.cli import study
-from service.drawing.figure import Figure
-from service.report import write
+from lineofaction.cli import study
+from lineofaction.report.document import write
+from lineofaction.report.drawing.figure import Figure
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -16,8 +16,8 @@ from pydantic.fields import FieldInfo
 from small_inputs import small_inputs
 
 from dynamics.effects.registry import EFFECTS
-from service.registry import STUDIES
-from service.schemas.scene import OutputsInput
+from lineofaction.gearbox.registry import STUDIES
+from lineofaction.gearbox.schemas.scene import OutputsInput
 
 Json = dict[str, Any]
 

@@ -15,7 +15,7 @@ import threading
 import structlog
 from service_fakes import REGISTRY
 
-from service.problems import DatabaseUnavailable
+from lineofaction.gearbox.problems import DatabaseUnavailable
 from service.queue.machinery import job_machinery
 from service.settings import load_settings
 from service.store import DirectoryLock
@@ -23,8 +23,8 @@ from service.store import DirectoryLock
 
 def serve(works: bool, descriptor: int) -> None:
     """Answer on the socket until stopped."""
+    from lineofaction.cli.serve import http_server  # noqa: PLC0415
     from service import app as application  # noqa: PLC0415 (start-up time: working needs no web framework)
-    from service.cli.serve import http_server  # noqa: PLC0415
 
     application.warm_up = lambda: None
     app = application.create_app(load_settings(), REGISTRY, works=works)

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from fe_contact.errors import InfeasibleGeometry
 from fe_contact.geometry import Gear, GearPair, InternalGearPair, RingGear
-from service.schemas.case import OF_PAIR
-from service.schemas.declared import figures
+from lineofaction.gearbox.schemas.case import OF_PAIR
+from lineofaction.gearbox.schemas.declared import figures
 
 Json = dict[str, Any]
 

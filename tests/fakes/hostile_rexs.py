@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 from small_rexs import small_model
 
-from service.rexs import Document, serialized
+from lineofaction.gearbox.rexs import Document, serialized
 
 XML = serialized(Document(small_model()), "a.rexs")
 JSON = serialized(Document(small_model()), "a.rexsj")

@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from service.problems import BadInput
+from lineofaction.gearbox.problems import BadInput
 
 _asked: list[str] = []
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from service.convert.stamp import stamp
+from lineofaction.gearbox.convert.stamp import stamp
 from service.store import StoredResult, stored_results
 from service.worker.catalogue import default_registry
 from service.worker.order import WorkOrder

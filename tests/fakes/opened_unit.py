@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from service.convert.case import gear_pair
-from service.convert.scene import check_scene
-from service.convert.topology import facts_of
-from service.from_rexs.opened import OpenedUnit, opened
-from service.rexs import Document
-from service.schemas.scene import SceneInput
+from lineofaction.gearbox.convert.case import gear_pair
+from lineofaction.gearbox.convert.scene import check_scene
+from lineofaction.gearbox.convert.topology import facts_of
+from lineofaction.gearbox.from_rexs.opened import OpenedUnit, opened
+from lineofaction.gearbox.rexs import Document
+from lineofaction.gearbox.schemas.scene import SceneInput
 
 
 def scene_of(document: Document) -> SceneInput:

@@ -16,7 +16,7 @@ from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Browser, Page, expect
 from running_service import PATIENCE_S, until
 
-from service.client import LineOfActionClient
+from lineofaction.client import LineOfActionClient
 
 GEAR: dict[str, Any] = {"teeth": 20, "face_width_mm": 4.0, "bore_diameter_mm": 10.0}
 CASE: dict[str, Any] = {
@@ -55,7 +55,7 @@ def served(home: Path, **further: str) -> Iterator[str]:
     root = str(Path(__file__).parents[2])
     path = os.pathsep.join(part for part in (root, os.environ.get("PYTHONPATH", "")) if part)
     environment = {**os.environ, "PYTHONPATH": path, "XDG_DATA_HOME": str(home), **further}
-    command = [sys.executable, "-m", "service.cli", "serve", "--port", "0"]
+    command = [sys.executable, "-m", "lineofaction.cli", "serve", "--port", "0"]
     with (
         (home / "log").open("wb") as log,
         subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=log, text=True) as service,

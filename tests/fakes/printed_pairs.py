@@ -10,7 +10,7 @@ import csv
 from pathlib import Path
 from typing import Any
 
-from service.schemas import Case, validated
+from lineofaction.gearbox.schemas import Case, validated
 
 FILE = Path(__file__).parents[1] / "reference" / "printed_pairs.csv"
 RACK = ("addendum_coefficient", "dedendum_coefficient", "root_radius_coefficient")

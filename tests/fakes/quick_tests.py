@@ -13,10 +13,10 @@ import pytest
 LONG = (
     "fe_contact.analysis", "fe_contact.compliance", "fe_contact.full_contact", "fe_contact.mesh",
     "fe_contact.microgeometry", "fe_contact.workers", "dynamics.accuracy", "dynamics.engines",
-    "dynamics.integrators", "dynamics.periodic", "dynamics.simulation", "service.app", "service.cli",
-    "service.client", "service.drawing", "service.live", "service.queue", "service.report",
-    "service.runs", "service.store", "service.tables", "service.worker", "benchmarks", "concurrent",
-    "fastapi", "multiprocessing", "subprocess", "typer",
+    "dynamics.integrators", "dynamics.periodic", "dynamics.simulation", "service.app",
+    "lineofaction.cli", "lineofaction.client", "lineofaction.report.document", "lineofaction.report.drawing",
+    "lineofaction.report.runs", "lineofaction.report.tables",
+    "service.live", "service.queue", "service.store", "service.worker", "benchmarks", "concurrent", "fastapi", "multiprocessing", "subprocess", "typer",
 )  # fmt: skip
 PROCESSES = {"postgres", "database_url", "s3_objects"}
 """Fixtures that start one."""

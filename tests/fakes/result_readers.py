@@ -12,12 +12,13 @@ from declared_figures import check_declared
 from fastapi.testclient import TestClient
 from typer.testing import CliRunner
 
-from service.cli.commands import app
-from service.cli.output import print_json
-from service.cli.study import _show, _writers
-from service.client.report import Report
-from service.registry import study_of
-from service.report.stored_study import read_stored
+from lineofaction.cli.commands import app
+from lineofaction.cli.output import print_json
+from lineofaction.cli.study import _show, _writers
+from lineofaction.client.report import Report
+from lineofaction.gearbox.registry import study_of
+from lineofaction.report.document.stored_study import read_stored
+from lineofaction.report.presentation import presentation_of
 from service.store import StoredResult
 
 DEFECT = 500
@@ -135,7 +136,7 @@ def verb_of_study(reading: Reading) -> None:
     if study is None:
         return
     result = read_stored(study, reading.result.path)
-    further = {*study.run.writers, *([] if study.page.series else [".csv"])}
+    further = {*study.run.writers, *([] if presentation_of(study).series else [".csv"])}
     for ending, write in _writers(study, None).items():
         if ending not in further:
             write(result, reading.folder / f"result{ending}")

@@ -101,7 +101,7 @@ def holders() -> dict[tuple[str | None, str | None], list[str]]:
 
 
 def step_of(old: str, new: str) -> dict[str, Any]:
-    """Return what a changelog says, in the form of `service/rexs/steps`."""
+    """Return what a changelog says, in the form of `lineofaction/gearbox/rexs/steps`."""
     root = changelog(old, new)
     changes = root.findall("attributeChanges/attributeChange")
     lasting = set(names_at(new).values())

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 from typing import Any
 
-from service.from_rexs.gear_unit import GearUnit
-from service.rexs import Attribute, Component, Model, Reference, Relation
+from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
+from lineofaction.gearbox.rexs import Attribute, Component, Model, Reference, Relation
 
 PINION, WHEEL, STAGE = 11, 12, 20
 PINION_LEFT, PINION_RIGHT, WHEEL_LEFT, WHEEL_RIGHT = 31, 32, 33, 34

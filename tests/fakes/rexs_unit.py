@@ -12,12 +12,14 @@ from typing import Any
 import numpy as np
 
 from bounds.types import FloatArray
-from service.rexs import Attribute, Component, Document, LoadCase, LoadSpectrum, Model, Relation
+from lineofaction.gearbox.rexs import Attribute, Component, Document, LoadCase, LoadSpectrum, Model, Relation
 from tests.fakes.rexs_stage import relation
 
 Values = Mapping[int, Mapping[str, Any]]
 DATE = "2026-01-01T00:00:00+00:00"
-_TABLE = tomllib.loads(files("service.rexs").joinpath("quantities.toml").read_text(encoding="utf-8"))
+_TABLE = tomllib.loads(
+    files("lineofaction.gearbox.rexs").joinpath("quantities.toml").read_text(encoding="utf-8")
+)
 UNITS = {name: unit for unit, names in _TABLE.items() for name in names}
 
 ROOT, CASING, INPUT, MIDDLE, OUTPUT = 1, 2, 3, 4, 5

@@ -8,7 +8,7 @@ import subprocess
 import sys
 import time
 
-from service.hardcases import HardScene, Measured
+from lineofaction.hardcases import HardScene, Measured
 
 
 def good() -> list[Measured]:

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from fastapi import FastAPI
 from running_service import until
 
-from service.cli.serve import http_server
+from lineofaction.cli.serve import http_server
 
 
 @contextmanager

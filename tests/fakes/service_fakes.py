@@ -6,8 +6,8 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from service.problems import BadInput
-from service.schemas.model import BoundaryModel
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.model import BoundaryModel
 from service.store import ResultStore
 from service.worker.process import Process, Registry, Stage
 

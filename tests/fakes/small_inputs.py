@@ -10,7 +10,7 @@ from typing import Any
 
 from housing_solid import write_block
 
-from service.schemas.file_content import FileContentInput
+from lineofaction.gearbox.schemas.file_content import FileContentInput
 from service.schemas.request_examples import INPUTS
 
 Json = dict[str, Any]

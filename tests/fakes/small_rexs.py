@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
-from service.rexs import Attribute, Component, Document, LoadCase, LoadSpectrum, Model, Reference, Relation
+from lineofaction.gearbox.rexs import (
+    Attribute,
+    Component,
+    Document,
+    LoadCase,
+    LoadSpectrum,
+    Model,
+    Reference,
+    Relation,
+)
 
 
 def small_model(version: str = "1.7") -> Model:

@@ -17,13 +17,13 @@ from fastapi.testclient import TestClient
 from running_service import REFERENCES
 from scene_files import scene_file
 
+from lineofaction.client import LineOfActionClient
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.registry import JSON, NETCDF
+from lineofaction.gearbox.schemas import read_model
+from lineofaction.gearbox.schemas.figures import Figures
+from lineofaction.gearbox.schemas.scene import SceneInput
 from service.app import create_app
-from service.client import LineOfActionClient
-from service.problems import BadInput
-from service.registry import JSON, NETCDF
-from service.schemas import read_model
-from service.schemas.figures import Figures
-from service.schemas.scene import SceneInput
 from service.settings import Settings
 from service.store import stored_results
 from service.worker.process import Process

@@ -112,7 +112,7 @@ class RollingService:
 
     def upgrade(self, version: Version) -> None:
         """Bring the database up to the schema of a version, as its `loa database upgrade` does."""
-        words = [sys.executable, "-c", "from service.cli import main; main()", "database", "upgrade"]
+        words = [sys.executable, "-c", "from lineofaction.cli import main; main()", "database", "upgrade"]
         environment = self._environment(version, "upgrade")
         subprocess.run(words, env=environment, check=True, capture_output=True, timeout=PATIENCE_S)
 

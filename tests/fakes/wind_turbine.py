@@ -11,11 +11,11 @@ from typing import Any
 from small_table import small_table
 
 from dynamics.scene import Scene
-from service.convert.checks import check_case
-from service.convert.scene import dynamic_scene
-from service.convert.topology import facts_of
-from service.schemas import Case, read_model, validated
-from service.schemas.scene import SceneInput
+from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.scene import dynamic_scene
+from lineofaction.gearbox.convert.topology import facts_of
+from lineofaction.gearbox.schemas import Case, read_model, validated
+from lineofaction.gearbox.schemas.scene import SceneInput
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 Change = Callable[[dict[str, Any]], object]

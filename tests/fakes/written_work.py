@@ -7,7 +7,7 @@ from functools import partial
 
 import h5netcdf
 
-from service.schemas.result_kinds import RESULT_KINDS
+from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS
 from service.worker.order import Product, Progress, WorkOrder
 
 Work = Callable[[WorkOrder, Progress], tuple[Product, ...]]

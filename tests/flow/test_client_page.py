@@ -19,7 +19,7 @@ from small_table import small_table
 
 from dynamics.results import RunResult
 from host.extras import MODULES
-from service.client import OfflineWarning, ResultCache
+from lineofaction.client import OfflineWarning, ResultCache
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "client.md").read_text(encoding="utf-8")
@@ -34,7 +34,7 @@ def service(
     folder = tmp_path_factory.mktemp("service")
     find_condensed(condensed_bodies, folder)
     with subprocess.Popen(
-        [sys.executable, "-m", "service.cli", "serve", "--port", "0", "--data-directory", str(folder)],
+        [sys.executable, "-m", "lineofaction.cli", "serve", "--port", "0", "--data-directory", str(folder)],
         env=os.environ | {"OMP_NUM_THREADS": "1"},
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
@@ -127,7 +127,7 @@ def test_what_the_page_installs_is_enough_to_ask_a_service(tmp_path: Path) -> No
     code = f"""
 import sys
 sys.modules.update(dict.fromkeys({hidden!r}))  # importing one of these fails now
-from service.client import LineOfActionClient
+from lineofaction.client import LineOfActionClient
 client = LineOfActionClient("http://127.0.0.1:9", cache_dir={str(tmp_path / "tables")!r})
 table = client.fetch({KEY!r})
 print(table.peak_to_peak(torque=float(table.torque[-1])).value > 0.0, table.force_at(0.0, 3e-6).force > 0.0)

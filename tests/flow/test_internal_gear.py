@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from fe_contact.ste import SteDatabase
-from service.cli.commands import app
+from lineofaction.cli.commands import app
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "internal_gear.toml"
 

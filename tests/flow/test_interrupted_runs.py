@@ -17,7 +17,7 @@ from running_service import PATIENCE_S
 from scene_files import scene_file
 from typer.testing import CliRunner
 
-from service.cli.commands import app
+from lineofaction.cli.commands import app
 
 DURATION, RATE = 5.0, 10_000.0
 RECORD = 8 * (2 * 5 + 1 + 2 * 5 + 3 + 2)  # q, v, quanta; filtered with force, place, error; extremes
@@ -27,7 +27,8 @@ EDGE = 12  # samples
 HELD = """
 import sys, time
 from pathlib import Path
-from service.cli import commands, simulate
+from lineofaction.cli import commands
+from lineofaction.cli import simulate
 march, enough = simulate.simulate_to_file, int(sys.argv.pop(1))
 states, gate = Path(sys.argv.pop(1)), Path(sys.argv.pop(1))
 def held(*arguments, progress, **more):
@@ -42,7 +43,7 @@ commands.main()
 
 
 def command(folder: Path, *arguments: str) -> list[str]:
-    return [sys.executable, "-m", "service.cli", "simulate", str(folder / "scene.toml"), *arguments]
+    return [sys.executable, "-m", "lineofaction.cli", "simulate", str(folder / "scene.toml"), *arguments]
 
 
 def environment(folder: Path) -> dict[str, str]:

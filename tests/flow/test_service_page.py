@@ -26,7 +26,7 @@ def address(tmp_path: Path, condensed_bodies: Path) -> Iterator[str]:
     """A service, started as the page says but on a free port."""
     find_condensed(condensed_bodies, tmp_path / "data")
     environment = os.environ | {"OMP_NUM_THREADS": "1", "XDG_CACHE_HOME": str(tmp_path / "cache")}
-    command = [sys.executable, "-m", "service.cli", "serve", "--port", "0"]
+    command = [sys.executable, "-m", "lineofaction.cli", "serve", "--port", "0"]
     command += ["--data-directory", str(tmp_path / "data")]
     with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from service.convert.case import gear_pair
-from service.problems import BadInput, Fault
-from service.schemas import Case, validated
+from lineofaction.gearbox.convert.case import gear_pair
+from lineofaction.gearbox.problems import BadInput, Fault
+from lineofaction.gearbox.schemas import Case, validated
 
 Table = dict[str, Any]
 

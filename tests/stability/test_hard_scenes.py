@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from service.hardcases import HARD_SCENES, HardScene
+from lineofaction.hardcases import HARD_SCENES, HardScene
 
 LONG = (
     "ten_million_", "job_", "worker_killed_at_every_attempt", "mesher_without_end",

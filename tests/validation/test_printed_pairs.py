@@ -20,7 +20,7 @@ from fe_contact.geometry.printed_data import (
     PROFILE_SHIFT,
     backlash_rounding,
 )
-from service.convert.case import analysis_options, gear_pair, table_axes
+from lineofaction.gearbox.convert.case import analysis_options, gear_pair, table_axes
 
 PAIRS = printed_pairs()
 

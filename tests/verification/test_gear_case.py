@@ -22,9 +22,9 @@ from dynamics.housing_modes import (
     mesh_step,
     reduced_housing,
 )
-from service.convert.toml import toml_text
-from service.from_rexs.opened import opened
-from service.rexs import read_rexs
+from lineofaction.gearbox.convert.toml import toml_text
+from lineofaction.gearbox.from_rexs.opened import opened
+from lineofaction.gearbox.rexs import read_rexs
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "two_stage"
 ELEMENT_SIZE = 0.03

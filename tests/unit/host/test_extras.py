@@ -43,17 +43,17 @@ def test_the_base_reads_tables_and_says_what_computing_needs(tmp_path: Path) -> 
 import importlib, sys
 sys.modules.update(dict.fromkeys({hidden!r}))  # importing one of these fails now
 from fe_contact import Gear, SteDatabase
-from service.client import LineOfActionClient
+from lineofaction.client import LineOfActionClient
 Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 for name in ("fe_contact.analysis", "fe_contact.contact", "fe_contact.compliance", "fe_contact.mesh",
              "fe_contact.full_contact", "fe_contact.microgeometry", "dynamics.simulation",
-             "dynamics.linearize", "dynamics.forces", "service.report"):
+             "dynamics.linearize", "dynamics.forces", "lineofaction.report.document"):
     try:
         importlib.import_module(name)
         print(name, "is imported")
     except ImportError as error:
         print(error)
-from service.cli import main
+from lineofaction.cli import main
 sys.argv = ["loa", *sys.argv[1:]]
 main()
 """

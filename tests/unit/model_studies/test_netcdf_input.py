@@ -17,13 +17,13 @@ from small_table import small_table
 from dynamics.housing_modes import ReducedHousing
 from dynamics.results import RunResult
 from fe_contact.ste import SteDatabase
+from lineofaction.gearbox.convert.database_case import case_of_file
+from lineofaction.gearbox.convert.runs import run_json
+from lineofaction.gearbox.convert.stamp import stamped
+from lineofaction.report.document.inputs import file_attributes
 from model_studies import netcdf_input
 from model_studies.array_file import Stored, read_arrays, write_arrays
 from model_studies.netcdf_input import UnreadableFile, opened, read_dataset
-from service.convert.database_case import case_of_file
-from service.convert.runs import run_json
-from service.convert.stamp import stamped
-from service.report.inputs import file_attributes
 
 
 def write_own(file: Path) -> None:

@@ -9,7 +9,7 @@ from types import ModuleType
 import pytest
 
 from fe_contact.flank.modification import FlankModification
-from service.schemas.declared import figures
+from lineofaction.gearbox.schemas.declared import figures
 
 ROOT = Path(__file__).parents[3]
 PAGE = (ROOT / "docs" / "case-file.md").read_text("utf-8")

@@ -6,11 +6,11 @@ import ast
 import importlib.util
 from pathlib import Path
 
-from service.client.processes import Processes
-from service.registry import FORMER, STUDIES
+from lineofaction.client.processes import Processes
+from lineofaction.gearbox.registry import FORMER, STUDIES
 
 ROOT = Path(__file__).parents[3]
-STUB = (ROOT / "service" / "client" / "processes.pyi").read_text("utf-8")
+STUB = (ROOT / "lineofaction" / "client" / "processes.pyi").read_text("utf-8")
 
 
 def test_the_types_are_current() -> None:
@@ -18,7 +18,7 @@ def test_the_types_are_current() -> None:
     assert spec is not None and spec.loader is not None
     script = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(script)
-    again = "python scripts/client_types.py service/client/processes.pyi"
+    again = "python scripts/client_types.py lineofaction/client/processes.pyi"
     assert script.stub() == STUB, f"write them anew: {again}"
 
 

@@ -16,7 +16,7 @@ import pytest
 import yaml
 from typer.main import get_command
 
-from service.cli.commands import app
+from lineofaction.cli.commands import app
 from service.queue.claims import DEFAULT_LEASE_S
 from service.secret_files import is_secret
 from service.settings import Settings

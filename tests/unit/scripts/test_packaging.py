@@ -10,7 +10,7 @@ import pytest
 ROOT = Path(__file__).parents[3]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 DATA = PROJECT["tool"]["setuptools"]["package-data"]
-PACKAGES = ("host", "bounds", "model_studies", "fe_contact", "dynamics", "service")
+PACKAGES = ("host", "bounds", "model_studies", "fe_contact", "dynamics", "lineofaction", "service")
 
 
 def packaged(file: Path) -> bool:

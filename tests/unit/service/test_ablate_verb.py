@@ -12,10 +12,10 @@ from spur_case import spur_case
 from typer.testing import CliRunner
 
 from dynamics.ablation import ablate
-from service.cli.commands import app
-from service.drawing.image import png
-from service.studies.ablate.page import ablation_figure, ablation_table
-from service.studies.ablate.run import facts
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.studies.ablate.run import facts
+from lineofaction.report.drawing.image import png
+from lineofaction.report.studies.ablate import ablation_figure, ablation_table
 
 CASE = (
     spur_case(

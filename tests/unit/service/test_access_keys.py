@@ -12,9 +12,9 @@ import pytest
 import structlog.testing
 from typer.testing import CliRunner
 
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.problems import BadInput
 from service.access import AccessKey, KeyFile, Keyring, RateLimits, Scope, open_identities
-from service.cli.commands import app
-from service.problems import BadInput
 from service.settings import Settings
 
 

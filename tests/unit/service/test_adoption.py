@@ -14,11 +14,11 @@ from running_service import Bench, bench
 from service_fakes import FAKE, REGISTRY
 from sqlalchemy import update
 
-from service.problems import BadInput
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.reading import validated
 from service.queue.adoption import Adoption
 from service.queue.claims import Claim, Claims
 from service.queue.tables import computations
-from service.schemas.reading import validated
 from service.schemas.request_examples import INPUTS, SCENE
 from service.store import writing
 from service.version import solver_version

@@ -11,10 +11,10 @@ from awaited import outcome
 from served_app import served
 from service_fakes import REGISTRY
 
+from lineofaction.client import AsyncLineOfActionClient, LineOfActionClient
+from lineofaction.client.offers import offers
+from lineofaction.gearbox.problems import BadInput, JobDismissed, ServiceError
 from service.app import create_app
-from service.client import AsyncLineOfActionClient, LineOfActionClient
-from service.client.offers import offers
-from service.problems import BadInput, JobDismissed, ServiceError
 from service.settings import Settings
 
 WISHES: list[dict[str, Any]] = [{"text": "b"}, {"text": "a"}, {"mode": "mesh"}]

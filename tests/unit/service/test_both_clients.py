@@ -16,7 +16,7 @@ import pytest
 from awaited import outcome
 from stored_jobs import StoredJobs, state
 
-from service.client import (
+from lineofaction.client import (
     AsyncBatch,
     AsyncJob,
     AsyncLineOfActionClient,
@@ -25,9 +25,9 @@ from service.client import (
     LineOfActionClient,
     LiveOptions,
 )
-from service.client.events import EventReader
-from service.problems import BadInput, JobFailed, NotFound, Unreachable
-from service.schemas.live import LiveInput
+from lineofaction.client.events import EventReader
+from lineofaction.gearbox.problems import BadInput, JobFailed, NotFound, Unreachable
+from lineofaction.gearbox.schemas.live import LiveInput
 
 ADDRESS = "http://127.0.0.1:1"
 

@@ -13,8 +13,8 @@ from typer.testing import CliRunner, Result
 
 from fe_contact.compliance.cache import read_compliance
 from fe_contact.compliance.flank import FlankCompliance
+from lineofaction.cli.commands import app
 from service.bounded_folder import evict, files_in
-from service.cli.commands import app
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "palermo_spur_20_20.toml"
 HOUR = 3600.0

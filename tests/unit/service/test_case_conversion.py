@@ -14,13 +14,13 @@ from bad_inputs import GOOD
 
 from bounds import Kind
 from fe_contact import AllowedError, FlankModification
-from service.convert.case import analysis_options, case_json, gear_pair, table_axes
-from service.convert.checks import check_case
-from service.problems import BadInput
-from service.schemas import Case, read_model, validated
-from service.schemas.declared import figures
+from lineofaction.gearbox.convert.case import analysis_options, case_json, gear_pair, table_axes
+from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import Case, read_model, validated
+from lineofaction.gearbox.schemas.declared import figures
+from lineofaction.gearbox.units import factor
 from service.schemas.request_examples import CASE
-from service.units import factor
 from service.worker.key import content_key
 
 ROOT = Path(__file__).parents[3]

@@ -19,9 +19,8 @@ from small_table import small_table
 from starlette.testclient import TestClient
 
 from fe_contact.ste import SteDatabase
-from service.app import create_app
-from service.client import JobState, LineOfActionClient, OfflineWarning
-from service.problems import (
+from lineofaction.client import JobState, LineOfActionClient, OfflineWarning
+from lineofaction.gearbox.problems import (
     BadInput,
     DamagedFile,
     JobDismissed,
@@ -31,6 +30,7 @@ from service.problems import (
     StillRunning,
     Unreachable,
 )
+from service.app import create_app
 from service.settings import Settings
 
 KEY = "ab" * 32
@@ -239,8 +239,14 @@ def _digest(content: bytes) -> dict[str, str]:
 def test_the_import_is_light() -> None:
     heavy = {"gmsh", "skfem", "fastapi", "starlette", "sqlalchemy", "uvicorn"}
     heavy |= {"scipy", "numba", "xarray", "h5py", "matplotlib", "plotly"}
-    own = {"service.app", "service.convert", "service.queue", "service.worker", "service.settings"}
-    code = "import json, sys, service.client; print(json.dumps(list(sys.modules)))"
+    own = {
+        "service.app",
+        "lineofaction.gearbox.convert",
+        "service.queue",
+        "service.worker",
+        "service.settings",
+    }
+    code = "import json, sys, lineofaction.client; print(json.dumps(list(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     loaded = set(json.loads(done.stdout))
     assert not (heavy | own) & loaded

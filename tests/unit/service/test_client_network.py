@@ -16,10 +16,10 @@ from typing import Any
 import httpx2
 import pytest
 
-from service import problems
-from service.client import JobState, LineOfActionClient
-from service.client.answers import problem_of
-from service.problems import (
+from lineofaction.client import JobState, LineOfActionClient
+from lineofaction.client.answers import problem_of
+from lineofaction.gearbox import problems
+from lineofaction.gearbox.problems import (
     BadInput,
     JobFailed,
     QueueFull,

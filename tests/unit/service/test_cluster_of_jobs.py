@@ -19,7 +19,7 @@ from structlog.testing import capture_logs
 from fe_contact.analysis.pairs import contact_lines, solved_operating_points
 from fe_contact.ste import SteDatabase
 from fe_contact.workers import RunCost, dask_cluster
-from service.problems import BadInput
+from lineofaction.gearbox.problems import BadInput
 from service.queue.claims import Claim
 from service.settings import Settings, load_settings
 from service.worker import cluster

@@ -17,9 +17,9 @@ import pytest
 from small_table import small_table
 from typer.testing import CliRunner, Result
 
-from service.cli import commands
-from service.cli.commands import app
-from service.client import JobState, LineOfActionClient, OfflineWarning
+from lineofaction.cli import commands
+from lineofaction.cli.commands import app
+from lineofaction.client import JobState, LineOfActionClient, OfflineWarning
 
 ROOT = Path(__file__).parents[3]
 VERBS = (
@@ -78,7 +78,7 @@ def test_the_help_names_the_exit_codes() -> None:
 
 def test_help_loads_none_of_the_machinery() -> None:
     code = (
-        "import sys, service.cli.commands as c; from typer.testing import CliRunner; "
+        "import sys, lineofaction.cli.commands as c; from typer.testing import CliRunner; "
         "CliRunner().invoke(c.app, ['--help']); "
         "print(sorted({'scipy', 'numba', 'skfem', 'fastapi', 'sqlalchemy', 'xarray'} & set(sys.modules)))"
     )
@@ -263,7 +263,7 @@ def test_a_defect_is_a_number_and_a_log(tmp_path: Path, monkeypatch: pytest.Monk
     def explode(*_: object, **__: object) -> None:
         raise RuntimeError("the text of a defect")
 
-    monkeypatch.setattr("service.cli.ste.curve_json", explode)
+    monkeypatch.setattr("lineofaction.cli.ste.curve_json", explode)
     result = loa("ste", table, "--torque", 1)
     assert result.exit_code == 5
     assert "the text of a defect" not in result.stderr
@@ -277,7 +277,7 @@ def test_the_service_refuses_an_address_that_others_reach(host: str, monkeypatch
         raise AssertionError("a socket would have been opened")
 
     monkeypatch.setattr(
-        "service.cli.serve._listener", open_nothing
+        "lineofaction.cli.serve._listener", open_nothing
     )  # whatever breaks, this test never listens
     result = loa("serve", "--host", host)
     assert result.exit_code == 2

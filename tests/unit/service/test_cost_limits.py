@@ -13,9 +13,9 @@ from running_service import Bench, bench, until
 from service_fakes import REGISTRY
 
 from host import family_cpu_seconds
+from lineofaction.gearbox.problems import BadInput
 from service.access import KeyFile
 from service.app import create_app
-from service.problems import BadInput
 from service.queue.caller import ANYBODY, Caller
 from service.queue.cost_limit import cost_limit, refuse_beyond
 from service.queue.job import Job

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from service.cli.analyze import _cost
+from lineofaction.cli.analyze import _cost
 
 
 def receipt(left_out: float) -> dict[str, object]:

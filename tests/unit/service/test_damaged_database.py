@@ -18,9 +18,9 @@ from sqlalchemy.exc import OperationalError
 from structlog.testing import LogCapture
 from typer.testing import CliRunner
 
+from lineofaction.cli.commands import app as loa
+from lineofaction.gearbox.problems import EXIT_FAILED, DatabaseDamaged, NoSpace, OutOfFiles, ServiceError
 from service.app import create_app
-from service.cli.commands import app as loa
-from service.problems import EXIT_FAILED, DatabaseDamaged, NoSpace, OutOfFiles, ServiceError
 from service.settings import Settings
 from service.store.database import database_engine
 from service.store.deployment import NOTE

@@ -17,8 +17,8 @@ from running_service import Bench, bench
 from service_fakes import REGISTRY
 from sqlalchemy import Connection, event, false
 
+from lineofaction.gearbox.problems import BadInput, DatabaseUnavailable
 from service.app import create_app
-from service.problems import BadInput, DatabaseUnavailable
 from service.queue.caller import ANYBODY
 from service.queue.terms import USUAL
 from service.settings import Settings, load_settings

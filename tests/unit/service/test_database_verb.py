@@ -9,7 +9,7 @@ import pytest
 from postgres_server import PostgresServer
 from typer.testing import CliRunner
 
-from service.cli.commands import app
+from lineofaction.cli.commands import app
 from service.store.migrations import REVISIONS
 
 

@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
-from service.convert.outline import outline_json
+from lineofaction.gearbox.convert.outline import outline_json
+from lineofaction.gearbox.schemas import Case, read_model
+from lineofaction.gearbox.schemas.outline import OutlineBody
+from lineofaction.gearbox.schemas.plan import PlanBody
 from service.live.work import live_plan
-from service.schemas import Case, read_model
-from service.schemas.outline import OutlineBody
-from service.schemas.plan import PlanBody
 
 EXAMPLES = Path(__file__).parents[3] / "service" / "page" / "examples"
 

@@ -19,9 +19,9 @@ from service_fakes import REGISTRY
 from sqlalchemy import delete, update
 from typer.testing import CliRunner
 
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.problems import BadInput
 from service.app import create_app
-from service.cli.commands import app
-from service.problems import BadInput
 from service.queue.retention import Retention
 from service.settings import Settings
 from service.store import ResultStore, open_database, writing

@@ -10,7 +10,7 @@ import pytest
 from spur_case import SPUR
 from typer.testing import CliRunner
 
-from service.cli.commands import app
+from lineofaction.cli.commands import app
 from service.directories import cache_home
 
 CASE = f"""{SPUR}

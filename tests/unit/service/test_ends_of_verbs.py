@@ -10,8 +10,8 @@ from scene_files import scene_file
 from small_table import small_table
 from typer.testing import CliRunner
 
-from service.cli.commands import app
-from service.client import LineOfActionClient
+from lineofaction.cli.commands import app
+from lineofaction.client import LineOfActionClient
 
 SPUR = Path(__file__).parents[3] / "examples" / "palermo_spur_20_20.toml"
 COARSE = ("--level", "draft", "--set", "accuracy.positions=16")

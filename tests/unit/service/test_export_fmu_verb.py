@@ -11,7 +11,7 @@ import pytest
 from small_table import BASE_RADIUS, small_table
 from typer.testing import CliRunner, Result
 
-from service.cli.commands import app
+from lineofaction.cli.commands import app
 
 
 def loa(*arguments: object) -> Result:

@@ -7,12 +7,12 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from service.problems import BadInput, Fault
-from service.schemas import Case
-from service.schemas.model import BoundaryModel
-from service.schemas.reading import validated
+from lineofaction.gearbox.problems import BadInput, Fault
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.model import BoundaryModel
+from lineofaction.gearbox.schemas.reading import validated
+from lineofaction.gearbox.schemas.scene import SceneInput
 from service.schemas.request_examples import CASE, SCENE
-from service.schemas.scene import SceneInput
 
 MANY = 100_000
 SPOILED: dict[str, tuple[type[BoundaryModel], dict[str, Any]]] = {

@@ -13,12 +13,12 @@ from pydantic import ValidationError
 from small_table import small_table
 from stored_jobs import StoredJobs
 
-from service.client import AsyncJob, AsyncLineOfActionClient, Job, LineOfActionClient
-from service.client.surface import Listing, Operation
-from service.convert.answers import metadata_json
-from service.registry import STUDIES
-from service.schemas.figures import Figures, RunFigures, TableFigures
-from service.schemas.result_kinds import RESULT_KINDS, figures_model
+from lineofaction.client import AsyncJob, AsyncLineOfActionClient, Job, LineOfActionClient
+from lineofaction.client.surface import Listing, Operation
+from lineofaction.gearbox.convert.answers import metadata_json
+from lineofaction.gearbox.registry import STUDIES
+from lineofaction.gearbox.schemas.figures import Figures, RunFigures, TableFigures
+from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS, figures_model
 
 OF_FILE = {"hash": "ab" * 32, "sha256": "cd" * 32, "size": 3}
 ABLATION = OF_FILE | {

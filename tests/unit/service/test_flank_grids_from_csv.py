@@ -11,11 +11,11 @@ import pytest
 from bad_inputs import GOOD
 from spur_case import spur_case
 
-from service.convert.case import case_json, gear_pair
-from service.convert.checks import check_case
-from service.problems import BadInput
-from service.schemas import Case, read_model, validated
-from service.schemas.scene import SceneInput
+from lineofaction.gearbox.convert.case import case_json, gear_pair
+from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import Case, read_model, validated
+from lineofaction.gearbox.schemas.scene import SceneInput
 
 HEADING = "roll_length_mm,face_position_mm,removed_um"
 ROWS = [f"{roll},{face},{roll * face / 10}" for roll in (4.5, 10, 19) for face in (-12.5, 0, 12.5)]

@@ -11,11 +11,11 @@ from spur_case import SPUR
 from typer.testing import CliRunner, Result
 
 from fe_contact import LoadDistribution
-from service.cli.commands import app
-from service.client import JobState, LineOfActionClient
-from service.convert.case import case_at
-from service.schemas import Case, validated
-from service.schemas.flank import FlankPoint
+from lineofaction.cli.commands import app
+from lineofaction.client import JobState, LineOfActionClient
+from lineofaction.gearbox.convert.case import case_at
+from lineofaction.gearbox.schemas import Case, validated
+from lineofaction.gearbox.schemas.flank import FlankPoint
 
 SMALL = (
     SPUR
@@ -85,7 +85,7 @@ def test_the_report_takes_its_own_load_and_both_ways_agree(small: Path, tmp_path
 def test_bad_points_are_one_line_before_the_work(
     small: Path, tmp_path: Path, arguments: list[str], said: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.studies.flank.run.flanks_of", None)  # were it called, exit code 5
+    monkeypatch.setattr("lineofaction.gearbox.studies.flank.run.flanks_of", None)  # called: code 5
     result = loa("flank", small, "-o", tmp_path / "f.nc", *arguments)
     assert (result.exit_code, result.stdout) == (2, "")
     assert said in result.stderr

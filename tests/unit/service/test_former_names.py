@@ -8,10 +8,10 @@ import pytest
 import typer
 from fastapi.testclient import TestClient
 
+from lineofaction.cli.commands import app
+from lineofaction.client.processes import Processes
+from lineofaction.gearbox.registry import FORMER, STUDIES
 from service.app import create_app
-from service.cli.commands import app
-from service.client.processes import Processes
-from service.registry import FORMER, STUDIES
 from service.schemas.request_examples import request_example
 from service.settings import Settings
 from service.worker.catalogue import default_registry

@@ -6,8 +6,8 @@ import math
 
 import pytest
 
-from service.from_rexs.gear_unit import GearUnit
-from service.rexs import Attribute, Component, LoadCase, LoadSpectrum, Model, Reference, Relation
+from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
+from lineofaction.gearbox.rexs import Attribute, Component, LoadCase, LoadSpectrum, Model, Reference, Relation
 
 MODULE = Attribute("normal_module", "floating_point", 4.5, "mm")
 HELIX = Attribute("helix_angle_reference_diameter", "floating_point", 21.0, "deg")

@@ -8,10 +8,10 @@ from rexs_bearing_units import BALL, LEFT, LINE, RIGHT, ROLLER, ROW, Values, at,
 from rexs_reference import needs_reference, reference
 
 from dynamics.rolling_bearings import LoadedBearing
-from service.convert.bearings import rolling_bearing_of
-from service.from_rexs.opened import OpenedUnit, opened
-from service.rexs import read_rexs
-from service.schemas.scene_bearings import RollingBearingInput
+from lineofaction.gearbox.convert.bearings import rolling_bearing_of
+from lineofaction.gearbox.from_rexs.opened import OpenedUnit, opened
+from lineofaction.gearbox.rexs import read_rexs
+from lineofaction.gearbox.schemas.scene_bearings import RollingBearingInput
 from tests.fakes.deflected_unit import deflection_of_unit
 from tests.fakes.opened_unit import said
 from tests.fakes.rexs_stage import relation

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from service.from_rexs.files import unit_files
-from service.from_rexs.opened import opened
-from service.problems import BadInput
-from service.rexs import Document
+from lineofaction.gearbox.from_rexs.files import unit_files
+from lineofaction.gearbox.from_rexs.opened import opened
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.rexs import Document
 from tests.fakes.rexs_unit import (
     STAGES,
     planetary,

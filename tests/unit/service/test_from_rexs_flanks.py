@@ -24,10 +24,10 @@ from rexs_stage import (
 
 from fe_contact.geometry import Toothing
 from fe_contact.types import FloatArray
-from service.convert.case import gear_pair
-from service.from_rexs.gear_unit import GearUnit
-from service.from_rexs.stage_case import stage_cases
-from service.schemas import Case
+from lineofaction.gearbox.convert.case import gear_pair
+from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
+from lineofaction.gearbox.from_rexs.stage_case import stage_cases
+from lineofaction.gearbox.schemas import Case
 
 MODIFICATION = 50
 SIGNS = (1, -1)

@@ -10,19 +10,19 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from service.cli.commands import app
-from service.convert.case import gear_pair
-from service.convert.scene import check_scene
-from service.convert.topology import facts_of
-from service.from_rexs.answer import unit_json
-from service.from_rexs.files import LOAD_CASES_FILE, unit_files
-from service.from_rexs.opened import OpenedUnit, opened
-from service.problems import BadInput
-from service.rexs import Document, serialized
-from service.schemas import validated
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.convert.case import gear_pair
+from lineofaction.gearbox.convert.scene import check_scene
+from lineofaction.gearbox.convert.topology import facts_of
+from lineofaction.gearbox.from_rexs.answer import unit_json
+from lineofaction.gearbox.from_rexs.files import LOAD_CASES_FILE, unit_files
+from lineofaction.gearbox.from_rexs.opened import OpenedUnit, opened
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.rexs import Document, serialized
+from lineofaction.gearbox.schemas import validated
+from lineofaction.gearbox.studies.deflect import Inputs
+from lineofaction.gearbox.studies.deflect.run import load_cases
 from service.schemas.unit import UnitBody
-from service.studies.deflect import Inputs
-from service.studies.deflect.run import load_cases
 from tests.fakes.deflected_unit import deflection_of_unit
 from tests.fakes.rexs_stage import relation
 from tests.fakes.rexs_unit import (

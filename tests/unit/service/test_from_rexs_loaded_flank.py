@@ -14,8 +14,8 @@ from rexs_stage import (
     stage_unit,
 )
 
-from service.from_rexs.flank_sides import loaded_flank
-from service.from_rexs.meshing import meshing_of
+from lineofaction.gearbox.from_rexs.flank_sides import loaded_flank
+from lineofaction.gearbox.from_rexs.meshing import meshing_of
 
 SIGNS = (1, -1)
 DIRECTION = {1: "positive", -1: "negative"}

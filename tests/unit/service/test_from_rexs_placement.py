@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from rexs_stage import PINION, stage_unit
 
-from service.from_rexs.placement import frame_of
-from service.problems import BadInput
+from lineofaction.gearbox.from_rexs.placement import frame_of
+from lineofaction.gearbox.problems import BadInput
 
 
 def frame_with(**values: Any) -> Any:

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from service.from_rexs.opened import opened
-from service.rexs import Document, read_rexs
+from lineofaction.gearbox.from_rexs.opened import opened
+from lineofaction.gearbox.rexs import Document, read_rexs
 from tests.fakes.opened_unit import said, scene_of
 from tests.fakes.rexs_stage import relation
 from tests.fakes.rexs_unit import (

@@ -20,9 +20,9 @@ from rexs_stage import (
     stage_unit,
 )
 
-from service.convert.case import gear_pair
-from service.from_rexs.gear_unit import GearUnit
-from service.from_rexs.stage_case import StageCase, stage_cases
+from lineofaction.gearbox.convert.case import gear_pair
+from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
+from lineofaction.gearbox.from_rexs.stage_case import StageCase, stage_cases
 
 
 def only(unit: GearUnit, **options: Any) -> StageCase:

@@ -19,11 +19,11 @@ from fe_contact.analysis.studies.measured_full_contact import PLANE, MeasuredFul
 from fe_contact.full_contact import FullContactPoint, FullContactTable
 from fe_contact.geometry import FlankModification, GearPair
 from fe_contact.types import Status
-from service.cli.commands import app
-from service.drawing.image import png
-from service.drawing.interactive import plotly_figure
-from service.drawing.page import html
-from service.studies.frontier.page import frontier_figure, frontier_page, frontier_table
+from lineofaction.cli.commands import app
+from lineofaction.report.drawing.image import png
+from lineofaction.report.drawing.interactive import plotly_figure
+from lineofaction.report.drawing.page import html
+from lineofaction.report.studies.frontier import frontier_figure, frontier_page, frontier_table
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "palermo_spur_20_20.toml"
 

@@ -12,11 +12,11 @@ from matplotlib.path import Path as Polygon
 from typer.testing import CliRunner, Result
 
 from fe_contact.plausibility import CHECKS
-from service.cli.commands import app
-from service.convert.case import gear_pair
-from service.drawing.figure import Figure, Panel
-from service.schemas import Case, read_model
-from service.tables.pair_drawing import pair_drawing
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.convert.case import gear_pair
+from lineofaction.gearbox.schemas import Case, read_model
+from lineofaction.report.drawing.figure import Figure, Panel
+from lineofaction.report.tables.pair_drawing import pair_drawing
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 SPUR, HELICAL, INTERNAL = (

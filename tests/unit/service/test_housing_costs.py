@@ -12,8 +12,8 @@ from housing_solid import write_housed_scene
 from typer.testing import CliRunner
 
 from dynamics.work_cost import WorkCost
-from service.cli.commands import app
-from service.studies.housing_costs import amount, cost_tables
+from lineofaction.cli.commands import app
+from lineofaction.report.housing_cost_table import amount, cost_tables
 
 STUDIES: dict[str, tuple[str, ...]] = {
     "modes": (),

@@ -28,15 +28,15 @@ from dynamics.housing_modes import (
     mesh_step,
     reduced_housing,
 )
-from service.cli.scene_tables import tabled_scene
-from service.client.portable import scene_of
-from service.convert import solid_housings
-from service.convert.scene import TabledScene, check_scene
-from service.problems import BadInput, JobFailed
-from service.schemas import read_model, validated
-from service.schemas.scene import SceneInput
-from service.studies.study.paths import places_of
-from service.studies.study.scenes import VariedScene
+from lineofaction.cli.scene_tables import tabled_scene
+from lineofaction.client.portable import scene_of
+from lineofaction.gearbox.convert import solid_housings
+from lineofaction.gearbox.convert.scene import TabledScene, check_scene
+from lineofaction.gearbox.problems import BadInput, JobFailed
+from lineofaction.gearbox.schemas import read_model, validated
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.studies.study.paths import places_of
+from lineofaction.gearbox.studies.study.scenes import VariedScene
 
 SOURCE = dict.fromkeys(("step_file", "material", "modes", "element_size_mm", "seats", "feet", "points"))
 LOSS = 0.02

@@ -19,8 +19,8 @@ import pytest
 from awaited import outcome
 from stored_jobs import StoredJobs, state
 
-from service.client import AsyncLineOfActionClient, LineOfActionClient
-from service.problems import BadInput, QueueFull, Unreachable
+from lineofaction.client import AsyncLineOfActionClient, LineOfActionClient
+from lineofaction.gearbox.problems import BadInput, QueueFull, Unreachable
 
 ADDRESS = "http://127.0.0.1:1"
 GEAR = {"face_width_mm": 25.0, "bore_diameter_mm": 40.0}

@@ -13,7 +13,7 @@ import pytest
 from running_service import Bench, bench
 from service_fakes import REGISTRY
 
-from service.problems import NoSuchJob, QueueFull
+from lineofaction.gearbox.problems import NoSuchJob, QueueFull
 from service.queue.caller import ANYBODY, Caller
 from service.queue.job import Job
 from service.queue.terms import Terms

@@ -10,11 +10,11 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
-from service.cli.commands import app
-from service.input_file import InputFile, Override
-from service.problems import BadInput
-from service.schemas import Case, read_model
-from service.schemas.lines import line_of
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.input_file import InputFile, Override
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import Case, read_model
+from lineofaction.gearbox.schemas.lines import line_of
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 SPUR = EXAMPLES / "palermo_spur_20_20.toml"

@@ -19,9 +19,9 @@ import pytest
 from running_service import PATIENCE_S, lives, until
 from structlog.testing import capture_logs
 
+from lineofaction.gearbox.problems import LiveUnavailable, QueueFull, ServiceError, Superseded, Unexpected
 from service.live.order import LiveOrder
 from service.live.pool import LiveLimits, LivePool
-from service.problems import LiveUnavailable, QueueFull, ServiceError, Superseded, Unexpected
 
 WORK = "live_fake_work"
 GEAR = {"teeth": 20, "face_width_mm": 4.0, "bore_diameter_mm": 10.0}
@@ -139,7 +139,7 @@ SERVE = """
 import sys
 from pathlib import Path
 import service.routes.live as live
-from service.cli.serve import run_serve
+from lineofaction.cli.serve import run_serve
 live.PLAN = "live_fake_work:hang"
 run_serve(data_directory=Path(sys.argv[1]), port=0)
 """

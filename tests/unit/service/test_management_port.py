@@ -21,11 +21,11 @@ from prometheus_client.parser import text_string_to_metric_families
 from running_service import PATIENCE_S, bench, until
 from service_fakes import REGISTRY
 
+from lineofaction.gearbox.problems import BadInput
 from service.access import KeyFile
 from service.management import vitals
 from service.management.server import ManagementServer
 from service.management.vitals import EventLoop, Vitals
-from service.problems import BadInput
 from service.store.deployment import Deployment
 from service.store.write_check import WriteCheck
 
@@ -38,7 +38,7 @@ def program(verb: str, folder: Path) -> Iterator[tuple[subprocess.Popen[str], li
     path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
     settings = {"LOA_DATA_DIRECTORY": str(folder), "LOA_MANAGEMENT_PORT": "0", "LOA_PORT": "0"}
     process = subprocess.Popen(
-        [sys.executable, "-m", "service.cli", verb],
+        [sys.executable, "-m", "lineofaction.cli", verb],
         env={**os.environ, **settings, "PYTHONPATH": path},
         text=True,
         stdout=subprocess.PIPE,

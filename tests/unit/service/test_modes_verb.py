@@ -16,13 +16,13 @@ from typer.testing import CliRunner, Result
 from dynamics.assembly.assemble import assemble
 from dynamics.linearize import ModalAnalysis, modal_analysis
 from fe_contact.ste import SteDatabase
-from service.cli.commands import app
-from service.client.portable import scene_of
-from service.convert.scene import dynamic_scene
-from service.problems import EXIT_FAILED, BadInput
-from service.report import write_report
-from service.schemas.number_list import number_list
-from service.studies.modes.run import facts
+from lineofaction.cli.commands import app
+from lineofaction.client.portable import scene_of
+from lineofaction.gearbox.convert.scene import dynamic_scene
+from lineofaction.gearbox.problems import EXIT_FAILED, BadInput
+from lineofaction.gearbox.schemas.number_list import number_list
+from lineofaction.gearbox.studies.modes.run import facts
+from lineofaction.report.document import write_report
 
 
 def loa(*arguments: object) -> Result:

@@ -13,10 +13,10 @@ import pytest
 
 from bounds import Kind
 from fe_contact.flank.modification import FlankModification
-from service.convert.case import gear_pair
-from service.problems import BadInput
-from service.schemas import Case, validated
-from service.schemas.declared import figures
+from lineofaction.gearbox.convert.case import gear_pair
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import Case, validated
+from lineofaction.gearbox.schemas.declared import figures
 
 FILE = Path(__file__).parents[3] / "examples" / "wind_turbine_high_speed.toml"
 FIELDS = {figure.name: figure.field for figure in figures(FlankModification)}

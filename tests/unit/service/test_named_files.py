@@ -10,10 +10,10 @@ import h5py
 import pytest
 from reduced_housings import random_housing
 
-from service.problems import BadInput
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import Case, SceneInput, read_model
+from lineofaction.gearbox.schemas.file_content import LARGEST, FileContentInput
 from service.reading.texts import case_of_toml, scene_of_toml
-from service.schemas import Case, SceneInput, read_model
-from service.schemas.file_content import LARGEST, FileContentInput
 
 ROOT = Path(__file__).parents[3]
 SCENE = ROOT / "examples" / "palermo_scene.toml"

@@ -12,13 +12,13 @@ from typer.testing import CliRunner, Result
 
 from fe_contact.geometry import specific_sliding
 from fe_contact.ste import SteDatabase
-from service.cli.commands import app
-from service.cli.new.run import KINDS, new_text
-from service.cli.new.sketch import Wanted
-from service.convert.case import gear_pair
-from service.problems import BadInput
-from service.schemas import Case, read_model, validated
-from service.schemas.scene import SceneInput
+from lineofaction.cli.commands import app
+from lineofaction.cli.new.run import KINDS, new_text
+from lineofaction.cli.new.sketch import Wanted
+from lineofaction.gearbox.convert.case import gear_pair
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import Case, read_model, validated
+from lineofaction.gearbox.schemas.scene import SceneInput
 
 COARSE = ("--set", "accuracy.receipt=minimal", "--set", "accuracy.positions=8", "--level", "draft")
 NARROW = ("--width", 8)  # few layers over the face

@@ -8,8 +8,8 @@ import numpy as np
 from sounding_scene import sound
 
 from dynamics.noise import RadiatedSound
-from service.drawing.figure import HeatMap, Panel, Table
-from service.studies.noise.drawings import DEPTH, sound_map
+from lineofaction.report.drawing.figure import HeatMap, Panel, Table
+from lineofaction.report.studies.noise_drawings import DEPTH, sound_map
 
 
 def quiet_above() -> RadiatedSound:

@@ -13,15 +13,15 @@ from housing_solid import housed_scene, write_block
 
 from dynamics.acoustics import EquivalentRadiatedPower
 from dynamics.noise import GUESSES, SoundModel, forced_power, housing_radiation, largest_level
-from service.cli.scene_tables import tabled_scene
-from service.client.portable import scene_of
-from service.convert.scene import TabledScene
-from service.problems import BadInput
-from service.schemas import validated
-from service.schemas.noise_ranges import RANGES, NoiseRanges
-from service.studies.computation import Means
-from service.studies.noise.flank_figures import flank_scenes
-from service.studies.noise.uncertainty import (
+from lineofaction.cli.scene_tables import tabled_scene
+from lineofaction.client.portable import scene_of
+from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import validated
+from lineofaction.gearbox.schemas.noise_ranges import RANGES, NoiseRanges
+from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.noise.flank_figures import flank_scenes
+from lineofaction.gearbox.studies.noise.uncertainty import (
     band_json,
     band_of,
     sensitivities_of,

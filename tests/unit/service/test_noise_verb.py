@@ -23,12 +23,13 @@ from typer.testing import CliRunner, Result
 
 from dynamics.acoustics import Hull, a_weighting
 from dynamics.noise import RadiatedSound, loudest
-from service.cli.commands import app
-from service.drawing import surface_view
-from service.studies.noise import page, run
-from service.studies.noise.figures import facts
-from service.studies.noise.model_table import model_tables
-from service.studies.noise.page import limits
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.studies.noise import run
+from lineofaction.gearbox.studies.noise.figures import facts
+from lineofaction.report.drawing import surface_view
+from lineofaction.report.studies import noise as page
+from lineofaction.report.studies.noise import limits
+from lineofaction.report.studies.noise_model_table import model_tables
 
 BANDS = ("--speed-rpm", "300:6000:600", "--orders", 4)
 SPEEDS = (*BANDS, "--no-band")

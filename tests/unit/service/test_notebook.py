@@ -13,9 +13,9 @@ from rich.console import Console
 from small_table import small_table
 from stored_jobs import state
 
-from service.client import JobState, Report, progress_bars
-from service.client.line_chart import BOTTOM, TOP, Axis
-from service.report.as_json import stored_figures
+from lineofaction.client import JobState, Report, progress_bars
+from lineofaction.client.line_chart import BOTTOM, TOP, Axis
+from lineofaction.report.document.as_json import stored_figures
 
 
 @pytest.fixture(scope="module")

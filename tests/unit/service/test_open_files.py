@@ -12,15 +12,24 @@ from pathlib import Path
 import pytest
 from running_service import PATIENCE_S
 
+from lineofaction.gearbox.problems import EXIT_BAD_INPUT, BadInput
 from service.access import capacity as of_process
 from service.access.capacity import Capacity, capacity
-from service.problems import EXIT_BAD_INPUT, BadInput
 
 
 @contextmanager
 def serving(directory: Path, files: int) -> Iterator[subprocess.Popen[str]]:
     """Start `loa serve` as a process that may open so many files; its log is in a file."""
-    serve = [sys.executable, "-m", "service.cli", "serve", "--port", "0", "--data-directory", str(directory)]
+    serve = [
+        sys.executable,
+        "-m",
+        "lineofaction.cli",
+        "serve",
+        "--port",
+        "0",
+        "--data-directory",
+        str(directory),
+    ]
     command = ["sh", "-c", f'ulimit -n {files}; exec "$@"', "sh", *serve]
     with (directory / "lines").open("w") as log:
         process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, text=True)

@@ -13,13 +13,13 @@ import pytest
 from click.testing import Result
 from typer.testing import CliRunner
 
-from service.cli.commands import app as loa
-from service.convert.stamp import stamped
-from service.convert.toml import toml_text
-from service.from_rexs.answer import unit_of_rexs
-from service.input_file import InputFile, Override
-from service.schemas import read_model, validated
-from service.schemas.scene import SceneInput
+from lineofaction.cli.commands import app as loa
+from lineofaction.gearbox.convert.stamp import stamped
+from lineofaction.gearbox.convert.toml import toml_text
+from lineofaction.gearbox.from_rexs.answer import unit_of_rexs
+from lineofaction.gearbox.input_file import InputFile, Override
+from lineofaction.gearbox.schemas import read_model, validated
+from lineofaction.gearbox.schemas.scene import SceneInput
 from service.schemas.unit import UnitBody
 from tests.fakes.faulty_units import LEFT_OUT, REFUSED, TWO_STAGE
 

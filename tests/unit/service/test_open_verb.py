@@ -12,10 +12,10 @@ import pytest
 from fastapi.testclient import TestClient
 from typer.testing import CliRunner
 
+from lineofaction.cli.commands import app as loa
+from lineofaction.gearbox.schemas import Case, validated
+from lineofaction.gearbox.schemas.scene import SceneInput
 from service.app import create_app
-from service.cli.commands import app as loa
-from service.schemas import Case, validated
-from service.schemas.scene import SceneInput
 from service.settings import Settings
 from tests.fakes.rexs_reference import examples, needs_reference
 

@@ -11,8 +11,8 @@ import pytest
 from spur_case import spur_case
 from typer.testing import CliRunner
 
-from service.cli.commands import app
-from service.schemas import Case, read_model
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.schemas import Case, read_model
 
 CASE = (
     spur_case("{pinion}", "{wheel}")
@@ -102,7 +102,7 @@ def test_an_interrupted_search_writes_its_best_and_says_so(
 
         yield cancel
 
-    monkeypatch.setattr("service.cli.study.until_interrupted", interrupted_after_twelve)
+    monkeypatch.setattr("lineofaction.cli.study.until_interrupted", interrupted_after_twelve)
     ran = CliRunner().invoke(app, ["optimize", *map(str, files), "-o", str(tmp_path / "best.json")])
     assert ran.exit_code == 130, ran.output
     told = json.loads((tmp_path / "best.json").read_text(encoding="utf-8"))

@@ -10,12 +10,12 @@ import pytest
 import typer
 from typer.testing import CliRunner, Result
 
-from service.cli.commands import app
-from service.input_file import InputFile, Override
-from service.problems import BadInput
-from service.registry import STUDIES
-from service.schemas import Case, read_model, read_table
-from service.schemas.scene import SceneInput
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.input_file import InputFile, Override
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.registry import STUDIES
+from lineofaction.gearbox.schemas import Case, read_model, read_table
+from lineofaction.gearbox.schemas.scene import SceneInput
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 SPUR, SCENE = EXAMPLES / "palermo_spur_20_20.toml", EXAMPLES / "palermo_scene.toml"

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from service.stages import PacedFraction
+from lineofaction.gearbox.stages import PacedFraction
 
 SHARES = {"analysis": 0.5, "runs": 0.3, "confirmation": 0.2}
 Reported = list[tuple[str, float, float]]

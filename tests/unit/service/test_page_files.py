@@ -13,16 +13,16 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
+from lineofaction.gearbox.convert.case import case_json, gear_pair
+from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.outline import outline_json
+from lineofaction.gearbox.convert.toml import toml_text
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.file_content import FileContentInput
+from lineofaction.gearbox.schemas.reading import validated
+from lineofaction.gearbox.schemas.scene import SceneInput
 from service.app import create_app
-from service.convert.case import case_json, gear_pair
-from service.convert.checks import check_case
-from service.convert.outline import outline_json
-from service.convert.toml import toml_text
 from service.page.examples import examples
-from service.schemas import Case
-from service.schemas.file_content import FileContentInput
-from service.schemas.reading import validated
-from service.schemas.scene import SceneInput
 from service.settings import Settings
 
 ROOT = Path(__file__).parents[3]

@@ -10,11 +10,11 @@ import pytest
 from bounds import PlausibilityWarning
 from fe_contact.compliance.rounding import LARGEST_ROUNDING, disc_rounding
 from fe_contact.material import Material
-from service.convert.checks import THICK, check_case, check_plain_case
-from service.problems import BadInput
-from service.schemas import Case
-from service.schemas.flank import FlankPoint
-from service.schemas.reading import validated
+from lineofaction.gearbox.convert.checks import THICK, check_case, check_plain_case
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.flank import FlankPoint
+from lineofaction.gearbox.schemas.reading import validated
 
 MOST_LAYERS = 36
 

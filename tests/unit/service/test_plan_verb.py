@@ -5,7 +5,7 @@ from pathlib import Path
 
 from typer.testing import CliRunner
 
-from service.cli.commands import app
+from lineofaction.cli.commands import app
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "sensitivity_automotive.toml"
 

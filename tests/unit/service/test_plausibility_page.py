@@ -10,7 +10,7 @@ import pytest
 
 from dynamics.plausibility import CHECKS as SCENE_CHECKS
 from fe_contact.plausibility import CHECKS as PAIR_CHECKS
-from service.convert.plausibility import limit_text
+from lineofaction.gearbox.convert.plausibility import limit_text
 
 DOCS = Path(__file__).parents[3] / "docs"
 PAGE = (DOCS / "plausibility.md").read_text(encoding="utf-8")

@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from service.convert.checks import check_case
-from service.convert.plausibility import case_warnings
-from service.problems import BadInput
-from service.schemas import Case, read_model, validated
+from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.plausibility import case_warnings
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import Case, read_model, validated
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 CASE_FILES = [file for file in sorted(EXAMPLES.rglob("*.toml")) if "[pair]" in file.read_text("utf-8")]

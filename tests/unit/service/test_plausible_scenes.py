@@ -9,13 +9,13 @@ from typing import Any
 
 import pytest
 
-from service.convert.case import gear_pair
-from service.convert.plausibility import scene_warnings
-from service.convert.scene import check_scene
-from service.convert.topology import facts_of
-from service.problems import BadInput
-from service.schemas import Case, validated
-from service.schemas.scene import SceneInput
+from lineofaction.gearbox.convert.case import gear_pair
+from lineofaction.gearbox.convert.plausibility import scene_warnings
+from lineofaction.gearbox.convert.scene import check_scene
+from lineofaction.gearbox.convert.topology import facts_of
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import Case, validated
+from lineofaction.gearbox.schemas.scene import SceneInput
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 HELIX = {"pair.helix_angle_deg": 15.0, "pair.center_distance_mm": 82.8225}

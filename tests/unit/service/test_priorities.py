@@ -9,8 +9,8 @@ import pytest
 from running_service import Bench, bench
 from service_fakes import REGISTRY
 
+from lineofaction.gearbox.problems import BadInput
 from service.access import KeyFile
-from service.problems import BadInput
 from service.queue.caller import ANYBODY, Caller
 from service.queue.job import Job
 from service.queue.priority import check_priority

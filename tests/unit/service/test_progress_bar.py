@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from service.cli.output import progress_bar
+from lineofaction.cli.output import progress_bar
 
 
 class Terminal(io.StringIO):

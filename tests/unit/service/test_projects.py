@@ -14,7 +14,7 @@ from service_fakes import REGISTRY
 from small_table import small_table
 from sqlalchemy import text
 
-from service.problems import NoSuchJob, NotFound
+from lineofaction.gearbox.problems import NoSuchJob, NotFound
 from service.project import COMMON, PROJECT, address_of, at_address
 from service.queue.caller import Caller
 from service.queue.former_jobs import FormerJobs

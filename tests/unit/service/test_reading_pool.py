@@ -17,10 +17,17 @@ from running_service import PATIENCE_S, lives, until
 from service_fakes import REGISTRY
 from structlog.testing import capture_logs
 
+from lineofaction.gearbox.problems import (
+    LiveUnavailable,
+    QueueFull,
+    ServiceError,
+    TooLarge,
+    TooManyHeld,
+    Unexpected,
+)
 from service.app import create_app
 from service.live.order import LiveOrder
 from service.own_folder import own_folder, remove_left
-from service.problems import LiveUnavailable, QueueFull, ServiceError, TooLarge, TooManyHeld, Unexpected
 from service.reading.pool import AT_ONCE, MOST_WAITING, ReadingPool
 from service.settings import Settings
 

@@ -11,10 +11,10 @@ from small_table import small_table
 from stored_jobs import state
 from typer.testing import CliRunner, Result
 
-from service.cli.commands import app
-from service.client import JobState, LineOfActionClient
-from service.client import Result as Reference
-from service.problems import ResultNotReady
+from lineofaction.cli.commands import app
+from lineofaction.client import JobState, LineOfActionClient
+from lineofaction.client import Result as Reference
+from lineofaction.gearbox.problems import ResultNotReady
 
 ROOT = Path(__file__).parents[3]
 CASE = ROOT / "examples" / "palermo_spur_20_20.toml"

@@ -15,9 +15,9 @@ from shown_effects import check_effects_shown
 from typer.testing import CliRunner, Result
 
 from dynamics.linearize import ForcedResponse, peaks
-from service.cli.commands import app
-from service.report import write_report
-from service.studies.response.run import facts
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.studies.response.run import facts
+from lineofaction.report.document import write_report
 
 
 def loa(*arguments: object) -> Result:

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from service.client import Result, ResultCache
-from service.problems import BadInput
+from lineofaction.client import Result, ResultCache
+from lineofaction.gearbox.problems import BadInput
 
 KEY = "ab" * 32
 RESULT = Result(KEY, "database", f"/v1/results/{KEY}")

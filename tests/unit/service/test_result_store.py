@@ -12,7 +12,7 @@ import pytest
 from s3_server import Objects
 from sqlalchemy import event
 
-from service.problems import BadInput, DamagedFile, NotFound, StoreUnavailable
+from lineofaction.gearbox.problems import BadInput, DamagedFile, NotFound, StoreUnavailable
 from service.settings import Settings, load_settings
 from service.store import DirectoryLock, ResultStore, open_database, reading, stored_results, writing
 from service.store.deployment import NOTE

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from small_rexs import small_document, small_model
 
-from service.problems import BadInput
-from service.rexs import Document, external_file, external_files, parsed, read_rexs, serialized
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.rexs import Document, external_file, external_files, parsed, read_rexs, serialized
 
 FORMS = ("a.rexs", "a.rexsj", "a.rexsz", "a.rexs.zip")
 FORMS_IN_TURN = ("a.rexs", "a.rexsj", "a.rexsz", "a.rexs")

@@ -13,9 +13,9 @@ from pathlib import Path
 import pytest
 from hostile_rexs import JSON, XML, ZIP, damaged_files, hostile_files
 
-from service.from_rexs.opened import OpenedUnit, opened
-from service.problems import BadInput
-from service.rexs import Document, parsed, serialized
+from lineofaction.gearbox.from_rexs.opened import OpenedUnit, opened
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.rexs import Document, parsed, serialized
 
 HOSTILE = {name: (data, words) for name, data, words in hostile_files()}
 MOST_SECONDS = 10.0  # the largest takes 2.5 s on a loaded machine

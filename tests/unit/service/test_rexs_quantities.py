@@ -6,9 +6,9 @@ import math
 
 import pytest
 
-from service.problems import BadInput
-from service.rexs import Attribute, Component, quantities, quantity
-from service.rexs.model import Value
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.rexs import Attribute, Component, quantities, quantity
+from lineofaction.gearbox.rexs.model import Value
 
 
 def gear(name: str, value: Value, unit: str | None, *others: Attribute) -> Component:

@@ -35,24 +35,24 @@ from small_table import small_table
 
 from dynamics.deflection import BearingLoad
 from fe_contact.ste import Metadata
-from service.convert.case import case_json
-from service.from_rexs.connections import BEARINGS, COUPLINGS
-from service.from_rexs.gear_unit import GearUnit
-from service.from_rexs.opened import opened
-from service.from_rexs.scene_parts import BearingPart
-from service.from_rexs.stage_case import stage_cases
-from service.rexs import Document, parsed, read_rexs, serialized, upgrade
-from service.rexs.kinds import KINDS, kind_of
-from service.rexs.units import UNITS
-from service.rexs.vocabulary import words
-from service.to_rexs.bearing_results import bearing_results
-from service.to_rexs.deflected import deflected
-from service.to_rexs.exported import exported
+from lineofaction.gearbox.convert.case import case_json
+from lineofaction.gearbox.from_rexs.connections import BEARINGS, COUPLINGS
+from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
+from lineofaction.gearbox.from_rexs.opened import opened
+from lineofaction.gearbox.from_rexs.scene_parts import BearingPart
+from lineofaction.gearbox.from_rexs.stage_case import stage_cases
+from lineofaction.gearbox.rexs import Document, parsed, read_rexs, serialized, upgrade
+from lineofaction.gearbox.rexs.kinds import KINDS, kind_of
+from lineofaction.gearbox.rexs.units import UNITS
+from lineofaction.gearbox.rexs.vocabulary import words
+from lineofaction.gearbox.to_rexs.bearing_results import bearing_results
+from lineofaction.gearbox.to_rexs.deflected import deflected
+from lineofaction.gearbox.to_rexs.exported import exported
 from tests.fakes.deflected_unit import deflection_of_unit
 from tests.fakes.rexs_unit import MOTOR, two_stages
 
 pytestmark = needs_reference
-PACKAGE = Path(__file__).parents[3] / "service" / "rexs"
+PACKAGE = Path(__file__).parents[3] / "lineofaction" / "gearbox" / "rexs"
 COUNTS = {
     "FVA-Industriegetriebe_2_stufig_1-6.rexs": 49,
     "FVA-Industriegetriebe_2stufig_1-4.rexs": 49,

@@ -7,11 +7,11 @@ import math
 import pytest
 from rexs_reference import examples, needs_reference
 
-from service.convert.case import gear_pair
-from service.from_rexs.gear_unit import GearUnit
-from service.from_rexs.stage_case import StageCase, stage_cases
-from service.rexs import read_rexs, upgrade
-from service.schemas.case import PairInput
+from lineofaction.gearbox.convert.case import gear_pair
+from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
+from lineofaction.gearbox.from_rexs.stage_case import StageCase, stage_cases
+from lineofaction.gearbox.rexs import read_rexs, upgrade
+from lineofaction.gearbox.schemas.case import PairInput
 
 pytestmark = needs_reference
 INDUSTRIAL = {(27, 51, 21.0): 1, (23, 34, -10.0): 1}

@@ -6,8 +6,8 @@ import math
 
 import pytest
 
-from service.problems import BadInput
-from service.rexs import si_value
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.rexs import si_value
 
 VALUES = [
     (3.0, "mm", "mm", 3e-3),

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from small_rexs import small_model
 
-from service.problems import BadInput
-from service.rexs import (
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.rexs import (
     NEWEST,
     VERSIONS,
     Attribute,

@@ -11,11 +11,11 @@ import pytest
 
 from fe_contact.analysis import analyze
 from fe_contact.geometry import InternalGearPair, RingGear
-from service.convert.case import case_json, gear_pair
-from service.convert.checks import check_case
-from service.problems import BadInput
-from service.schemas import Case, read_model, validated
-from service.tables.pair import iso_mesh_stiffness, pair_of
+from lineofaction.gearbox.convert.case import case_json, gear_pair
+from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import Case, read_model, validated
+from lineofaction.report.tables.pair import iso_mesh_stiffness, pair_of
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "internal_gear.toml"
 TABLE = tomllib.loads(EXAMPLE.read_text(encoding="utf-8"))

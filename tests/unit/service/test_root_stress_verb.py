@@ -11,13 +11,13 @@ import pytest
 from spur_case import SPUR
 from typer.testing import CliRunner, Result
 
-from service.cli.commands import app
-from service.convert.case import case_at
-from service.schemas import Case, read_model
-from service.studies.computation import Means
-from service.studies.root_stress import Inputs
-from service.studies.root_stress.page import root_stress_figure
-from service.studies.root_stress.run import root_stress_json, root_stress_of
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.convert.case import case_at
+from lineofaction.gearbox.schemas import Case, read_model
+from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.root_stress import Inputs
+from lineofaction.gearbox.studies.root_stress.run import root_stress_json, root_stress_of
+from lineofaction.report.studies.root_stress import root_stress_figure
 
 CASE = (
     SPUR

@@ -10,10 +10,10 @@ import pytest
 from typer.testing import CliRunner
 
 from dynamics.accuracy import FidelityResult, Frontier
-from service.cli.commands import app
-from service.drawing.image import png
-from service.drawing.page import html
-from service.studies.frontier.page import frontier_figure, frontier_page, frontier_table
+from lineofaction.cli.commands import app
+from lineofaction.report.drawing.image import png
+from lineofaction.report.drawing.page import html
+from lineofaction.report.studies.frontier import frontier_figure, frontier_page, frontier_table
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "palermo_scene.toml"
 

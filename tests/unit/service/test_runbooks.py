@@ -15,7 +15,7 @@ from service_fakes import FAKE, REGISTRY
 from sqlalchemy import update
 from typer.main import get_command
 
-from service.cli.commands import app
+from lineofaction.cli.commands import app
 from service.queue.tables import computations, jobs
 from service.store import writing
 from service.store.maintenance import verify_store
@@ -84,7 +84,9 @@ def follow(title: str, tmp_path: Path) -> subprocess.CompletedProcess[str]:
     """Run the commands of a runbook; `loa` is this program."""
     loa = tmp_path / "bin" / "loa"
     loa.parent.mkdir(exist_ok=True)
-    loa.write_text(f"#!/bin/sh\nexec {sys.executable} -c 'from service.cli import main; main()' \"$@\"\n")
+    loa.write_text(
+        f"#!/bin/sh\nexec {sys.executable} -c 'from lineofaction.cli import main; main()' \"$@\"\n"
+    )
     loa.chmod(0o755)
     place = {"DATA": str(tmp_path / "data"), "LOA_DATA_DIRECTORY": str(tmp_path / "data")}
     place |= {"BACKUP": str(tmp_path / "backup"), "PATH": f"{loa.parent}{os.pathsep}{os.environ['PATH']}"}

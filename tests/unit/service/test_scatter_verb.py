@@ -9,7 +9,7 @@ import pytest
 from spur_case import SPUR
 from typer.testing import CliRunner
 
-from service.cli.commands import app
+from lineofaction.cli.commands import app
 
 CASE = (
     SPUR

@@ -13,11 +13,11 @@ import pytest
 from small_table import BASE_RADIUS, small_table
 
 from dynamics.scene import Scene
-from service.convert.scene import dynamic_scene
-from service.convert.topology import facts_of
-from service.problems import BadInput
-from service.schemas import validated
-from service.schemas.scene import SceneInput
+from lineofaction.gearbox.convert.scene import dynamic_scene
+from lineofaction.gearbox.convert.topology import facts_of
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import validated
+from lineofaction.gearbox.schemas.scene import SceneInput
 
 ROOT = Path(__file__).parents[3]
 EXAMPLE = tomllib.loads((ROOT / "examples" / "palermo_scene.toml").read_text())

@@ -16,10 +16,10 @@ from dynamics.assembly.assemble import assemble
 from dynamics.bodies import Inertia, hollow_cylinder
 from dynamics.scene import Scene
 from fe_contact import STEEL
-from service.convert.scene import dynamic_scene
-from service.problems import BadInput
-from service.schemas import validated
-from service.schemas.scene import SceneInput
+from lineofaction.gearbox.convert.scene import dynamic_scene
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import validated
+from lineofaction.gearbox.schemas.scene import SceneInput
 
 ROOT = Path(__file__).parents[3]
 EXAMPLE = tomllib.loads((ROOT / "examples" / "flexible_shafts_scene.toml").read_text())

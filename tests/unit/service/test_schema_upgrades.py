@@ -19,7 +19,7 @@ from sqlalchemy import Engine, inspect, text
 
 import service.queue.tables
 import service.store.results
-from service.problems import BadInput
+from lineofaction.gearbox.problems import BadInput
 from service.store import open_database, writing
 from service.store.database import database_engine, metadata
 from service.store.migrations import REVISIONS, USABLE_SINCE

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from service.problems import BadInput
+from lineofaction.gearbox.problems import BadInput
 from service.secret_files import is_secret
 from service.settings import Settings, load_settings
 

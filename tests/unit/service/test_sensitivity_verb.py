@@ -18,16 +18,18 @@ from fe_contact.analysis import RippleCurve, Sensitivity, check_request
 from fe_contact.errors import DatabaseError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import TableAxes
-from service.cli.commands import app
-from service.drawing.figure import Panel
-from service.problems import BadInput
-from service.report import write_report
-from service.schemas import Case, read_model
-from service.studies.computation import Means
-from service.studies.sensitivity import Inputs
-from service.studies.sensitivity.page import page, sensitivity_figure, sensitivity_table
-from service.studies.sensitivity.run import RUN, studies_json, study_case
-from service.studies.sensitivity.stored import PairStudy, read_studies, write_studies
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import Case, read_model
+from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.sensitivity import Inputs
+from lineofaction.gearbox.studies.sensitivity.run import RUN, studies_json, study_case
+from lineofaction.gearbox.studies.sensitivity.stored import PairStudy, read_studies, write_studies
+from lineofaction.report.document import write_report
+from lineofaction.report.drawing.figure import Panel
+from lineofaction.report.studies.sensitivity import page, sensitivity_figure, sensitivity_table
+
+STUDY = "lineofaction.gearbox.studies.sensitivity.run"
 
 ROOT = Path(__file__).parents[3]
 EXAMPLES = sorted((ROOT / "examples").glob("sensitivity_*.toml"))
@@ -79,7 +81,7 @@ def study(name: str = "pair a", factor: float = 1.0) -> PairStudy:
 
 def computed(monkeypatch: pytest.MonkeyPatch, known: PairStudy) -> None:
     """Let every study have a known result."""
-    monkeypatch.setattr("service.studies.sensitivity.run.RUN", replace(RUN, compute=lambda *_: (known,)))
+    monkeypatch.setattr(f"{STUDY}.RUN", replace(RUN, compute=lambda *_: (known,)))
 
 
 def test_a_study_in_a_folder(small: Path, tmp_path: Path) -> None:
@@ -145,7 +147,7 @@ def test_a_distance_at_which_the_teeth_jam_is_said_in_the_units_of_the_case(
 def test_an_output_that_cannot_be_written_is_said_before_the_work(
     small: Path, tmp_path: Path, output: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.studies.sensitivity.run.study_sensitivity", None)  # called: exit code 5
+    monkeypatch.setattr(f"{STUDY}.study_sensitivity", None)  # called: exit code 5
     result = loa(small, "-o", tmp_path / output)
     assert result.exit_code == 2
     assert "output = " in result.stderr
@@ -225,7 +227,7 @@ def test_the_examples_run_at_every_deviation(file: Path, monkeypatch: pytest.Mon
         studied.append(axes)
         return ()
 
-    monkeypatch.setattr("service.studies.sensitivity.run.study_sensitivity", study_nothing)
+    monkeypatch.setattr(f"{STUDY}.study_sensitivity", study_nothing)
     case = read_model(Case, file)
     varied = Inputs(misalignment_um=(0.0, 60.0), center_distance_change_percent=(-0.2, 0.0, 0.2))
     (found,) = study_case(case, varied, MEANS)
@@ -235,7 +237,7 @@ def test_the_examples_run_at_every_deviation(file: Path, monkeypatch: pytest.Mon
 
 def test_the_highest_torque_is_the_load(small: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """20 teeth of module 4 mm: base radius 37.588 mm."""
-    monkeypatch.setattr("service.studies.sensitivity.run.study_sensitivity", lambda *_, **__: ())
+    monkeypatch.setattr(f"{STUDY}.study_sensitivity", lambda *_, **__: ())
     small.write_text(SMALL.replace("normal_force_n = [500, 1000]", "torque_n_m = [10, 100]"))
     (found,) = study_case(read_model(Case, small), Inputs(), MEANS)
     assert found.normal_force == pytest.approx(100.0 / 37.5877e-3, rel=1e-5)

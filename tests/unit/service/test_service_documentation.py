@@ -10,10 +10,10 @@ import pytest
 from described_api import DESCRIPTION
 from pydantic import BaseModel
 
-from service import problems
-from service.cli.commands import app as loa
-from service.registry import STUDIES
-from service.schemas import (
+from lineofaction.cli.commands import app as loa
+from lineofaction.gearbox import problems
+from lineofaction.gearbox.registry import STUDIES
+from lineofaction.gearbox.schemas import (
     case,
     gear,
     scene,

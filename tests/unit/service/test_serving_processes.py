@@ -19,7 +19,7 @@ import pytest
 from running_service import PATIENCE_S, lives, until
 from typer.testing import CliRunner, Result
 
-from service.cli.commands import app
+from lineofaction.cli.commands import app
 
 ROOT = Path(__file__).parents[3]
 
@@ -33,7 +33,7 @@ def started(*arguments: str, **options: object) -> subprocess.Popen[str]:
     """Run the command line in a process of its own."""
     path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
     return subprocess.Popen(
-        [sys.executable, "-m", "service.cli", *arguments],
+        [sys.executable, "-m", "lineofaction.cli", *arguments],
         env={**os.environ, "PYTHONPATH": path},
         text=True,
         stdout=subprocess.PIPE,

@@ -12,11 +12,11 @@ from typer.testing import CliRunner
 from dynamics.results import RunResult
 from dynamics.simulation import simulate
 from dynamics.types import RunStatus
-from service.cli.commands import app
-from service.cli.interrupt import until_interrupted
-from service.cli.run_headlines import run_headlines
-from service.cli.simulate import _run
-from service.convert.run_effects import effect_lines
+from lineofaction.cli.commands import app
+from lineofaction.cli.interrupt import until_interrupted
+from lineofaction.cli.run_headlines import run_headlines
+from lineofaction.cli.simulate import _run
+from lineofaction.gearbox.convert.run_effects import effect_lines
 
 SCENE = gear_pair_scene(duration=0.02)
 

@@ -17,9 +17,9 @@ from shown_effects import check_effects_shown
 from typer.testing import CliRunner, Result
 
 from dynamics.periodic import SteadyStates, find_orbit
-from service.cli.commands import app
-from service.report import write_report
-from service.studies.steady.run import facts
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.studies.steady.run import facts
+from lineofaction.report.document import write_report
 
 
 def loa(*arguments: object) -> Result:
@@ -87,7 +87,7 @@ def test_ctrl_c_ends_a_study_without_a_file(
 
         yield report
 
-    monkeypatch.setattr("service.cli.study.progress_bar", interrupting)
+    monkeypatch.setattr("lineofaction.cli.study.progress_bar", interrupting)
     handler = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         result = loa(scene, "--speed-rpm", "3000,3200", "--settling-periods", 2, "-o", tmp_path / "s.nc")

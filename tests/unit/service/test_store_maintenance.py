@@ -15,8 +15,8 @@ from service_fakes import REGISTRY
 from sqlalchemy import update
 from typer.testing import CliRunner
 
-from service.cli.commands import app
-from service.problems import NoSuchJob, NotFound
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.problems import NoSuchJob, NotFound
 from service.queue.job import Job
 from service.queue.retention import Retention
 from service.queue.tables import computations, jobs

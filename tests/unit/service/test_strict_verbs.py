@@ -13,8 +13,8 @@ from typer.main import get_command
 from typer.testing import CliRunner, Result
 
 from fe_contact import SteDatabase
-from service.cli.commands import app
-from service.problems import EXIT_BAD_INPUT, EXIT_WARNINGS
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.problems import EXIT_BAD_INPUT, EXIT_WARNINGS
 
 NOT_COMPUTING = {"new", "cache", "hardcases", "serve", "work", "keys", "database", "store", "jobs", "dismiss"}
 LOA = get_command(app)  # loads its verbs when asked: the application itself lists none

@@ -10,16 +10,16 @@ import pytest
 from click import Context
 from typer.main import get_command
 
-from service.cli.commands import app
-from service.client import LineOfActionClient
-from service.client.offers import offers
-from service.registry import STUDIES, Study, study_of
-from service.report.stored_study import stored_study
-from service.schemas.model import BoundaryModel
+from lineofaction.cli.commands import app
+from lineofaction.client import LineOfActionClient
+from lineofaction.client.offers import offers
+from lineofaction.gearbox.registry import STUDIES, Study, study_of
+from lineofaction.gearbox.schemas.model import BoundaryModel
+from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS
+from lineofaction.gearbox.studies.computation import Computation
+from lineofaction.report.document.stored_study import stored_study
+from lineofaction.report.presentation import Presentation, presentation_of
 from service.schemas.request_examples import INPUTS
-from service.schemas.result_kinds import RESULT_KINDS
-from service.studies.computation import Computation
-from service.studies.presentation import Presentation
 from service.worker.catalogue import default_registry
 
 LOA = get_command(app)
@@ -29,7 +29,7 @@ EVERY = pytest.mark.parametrize("study", STUDIES.values(), ids=list(STUDIES))
 @EVERY
 def test_it_has_its_parts(study: Study) -> None:
     assert issubclass(study.inputs, BoundaryModel)
-    assert isinstance(study.run, Computation) and isinstance(study.page, Presentation)
+    assert isinstance(study.run, Computation) and isinstance(presentation_of(study), Presentation)
     assert sum(share for _, share in study.stages) == pytest.approx(1.0)
     assert study_of(study.kind) is study
 

@@ -7,14 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from service.client.offers import offers
-from service.from_rexs.answer import unit_json
-from service.from_rexs.files import unit_files
-from service.from_rexs.opened import opened
-from service.problems import BadInput
-from service.rexs import read_rexs
+from lineofaction.client.offers import offers
+from lineofaction.gearbox.from_rexs.answer import unit_json
+from lineofaction.gearbox.from_rexs.files import unit_files
+from lineofaction.gearbox.from_rexs.opened import opened
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.rexs import read_rexs
+from lineofaction.gearbox.studies.deflect import Inputs
 from service.schemas.unit import UnitBody
-from service.studies.deflect import Inputs
 
 UNIT = Path(__file__).parents[3] / "examples" / "two_stage_gearbox.rexs"
 ROTOR = UNIT.with_name("jeffcott_scene.toml")

@@ -13,11 +13,11 @@ from declared_figures import check_declared
 from spur_case import SPUR
 from typer.testing import CliRunner
 
-from service.cli.commands import app
-from service.input_file import InputFile
-from service.problems import BadInput
-from service.schemas import Case, read_model
-from service.studies.sweep.axes import SWEEPABLE, axis_of
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.input_file import InputFile
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import Case, read_model
+from lineofaction.gearbox.studies.sweep.axes import SWEEPABLE, axis_of
 
 CASE = (
     SPUR.replace("[pair.pinion]", "[pair.pinion]\ntip_relief_um = 15.0\ntip_relief_length_mm = 1.5")

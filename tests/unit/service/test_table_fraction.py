@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
-from service.schemas import Case, validated
-from service.stages import TableFraction
+from lineofaction.gearbox.schemas import Case, validated
+from lineofaction.gearbox.stages import TableFraction
 from service.worker.analysis_work import database_of
 from service.worker.order import WorkOrder
 

@@ -13,7 +13,7 @@ from host import ONE_THREAD
 
 CALLED = """
 import json, os, sys
-from service.cli import commands
+from lineofaction.cli import commands
 commands.app = lambda: print(json.dumps([dict(os.environ), "numpy" in sys.modules]))
 commands.main()
 """

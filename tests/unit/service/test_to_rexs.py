@@ -13,13 +13,13 @@ from small_table import small_table
 from typer.testing import CliRunner
 
 from fe_contact.ste import Metadata, SteDatabase
-from service.cli.commands import app
-from service.convert.case import case_json, gear_pair
-from service.from_rexs.gear_unit import GearUnit
-from service.from_rexs.stage_case import StageCase, stage_cases
-from service.problems import BadInput
-from service.rexs import Attribute, Component, Document, parsed, serialized
-from service.to_rexs.exported import exported
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.convert.case import case_json, gear_pair
+from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
+from lineofaction.gearbox.from_rexs.stage_case import StageCase, stage_cases
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.rexs import Attribute, Component, Document, parsed, serialized
+from lineofaction.gearbox.to_rexs.exported import exported
 
 
 def unit() -> GearUnit:

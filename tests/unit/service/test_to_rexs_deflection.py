@@ -15,13 +15,13 @@ from typer.testing import CliRunner
 from dynamics.assembly.assemble import assemble
 from dynamics.deflection import LoadCase, loaded_scene
 from dynamics.mechanism.flank_gradients import table_sense
-from service.cli.commands import app
-from service.from_rexs.opened import opened
-from service.problems import BadInput
-from service.rexs import Document, parsed, serialized, si_value
-from service.studies.deflect.result import GearboxDeflection
-from service.studies.deflect.run import RUN
-from service.to_rexs.deflected import deflected, left_out
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.from_rexs.opened import opened
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.rexs import Document, parsed, serialized, si_value
+from lineofaction.gearbox.studies.deflect.result import GearboxDeflection
+from lineofaction.gearbox.studies.deflect.run import RUN
+from lineofaction.gearbox.to_rexs.deflected import deflected, left_out
 from tests.fakes.deflected_unit import deflection_of_unit, scene_in_si
 from tests.fakes.rexs_unit import (
     CASING,

@@ -10,10 +10,10 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from fe_contact import AllowedError, Gear, GearPair, SteDatabase, analyze
-from service.cli.commands import app
-from service.cli.tolerance_lines import tolerance_lines, tolerance_warnings
-from service.convert.drafts import draft_line
-from service.problems import EXIT_WARNINGS
+from lineofaction.cli.commands import app
+from lineofaction.cli.tolerance_lines import tolerance_lines, tolerance_warnings
+from lineofaction.gearbox.convert.drafts import draft_line
+from lineofaction.gearbox.problems import EXIT_WARNINGS
 from service.worker.drafted_progress import DraftedProgress
 
 CASE = """

@@ -23,8 +23,8 @@ from bounds import (
 from dynamics.errors import InputError as DynamicsInputError
 from dynamics.errors import SolveError as DynamicsSolveError
 from fe_contact.errors import InputError, MeshError
-from service.convert.errors import translated
-from service.problems import BadInput, JobFailed
+from lineofaction.gearbox.convert.errors import translated
+from lineofaction.gearbox.problems import BadInput, JobFailed
 
 JAM = Text.of("Without backlash: ", FieldName("center_distance"), " = ", Quantity(0.0802, "m"), ".")
 TOO_HIGH = InputError("pinion.modification.tip_relief", 2e-3, at_most(1e-3))

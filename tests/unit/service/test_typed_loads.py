@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from fe_contact import SteDatabase, analyze
-from service.convert.answers import metadata_json, summary_json
-from service.convert.case import gear_pair
-from service.schemas import Case
+from lineofaction.gearbox.convert.answers import metadata_json, summary_json
+from lineofaction.gearbox.convert.case import gear_pair
+from lineofaction.gearbox.schemas import Case
 from service.schemas.request_examples import CASE
 
 TORQUES = [30.0, 60.0, 110.0, 230.0]

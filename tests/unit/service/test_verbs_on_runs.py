@@ -17,8 +17,8 @@ from sounding_housings import smooth_motion, with_surface
 from typer.testing import CliRunner, Result
 
 from dynamics.results import RunResult
-from service.cli.commands import app
-from service.drawing import surface_view
+from lineofaction.cli.commands import app
+from lineofaction.report.drawing import surface_view
 
 ORDERS = 4
 

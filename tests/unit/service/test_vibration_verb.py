@@ -20,11 +20,11 @@ from shown_effects import check_effects_shown
 from typer.testing import CliRunner, Result
 
 from dynamics.vibration import vibration_level
-from service.cli.commands import app
-from service.drawing import surface_view
-from service.report import write_report
-from service.studies.vibration import run
-from service.studies.vibration.run import facts
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.studies.vibration import run
+from lineofaction.gearbox.studies.vibration.run import facts
+from lineofaction.report.document import write_report
+from lineofaction.report.drawing import surface_view
 
 SPEEDS = ("--speed-rpm", "1500:3000:250", "--orders", 4)
 

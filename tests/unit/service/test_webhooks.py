@@ -13,8 +13,8 @@ import pytest
 from running_service import Bench, bench
 from service_fakes import REGISTRY
 
+from lineofaction.gearbox.problems import BadInput
 from service.origin import Origin
-from service.problems import BadInput
 from service.settings import Settings, load_settings
 from service.signature import secret_bytes, signed_headers
 from service.webhooks import calls, sending

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
-from service.problems import DatabaseDamaged, DatabaseUnavailable
+from lineofaction.gearbox.problems import DatabaseDamaged, DatabaseUnavailable
 from service.store import write_check
 from service.store.write_check import WriteCheck
 

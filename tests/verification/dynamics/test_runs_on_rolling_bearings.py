@@ -11,9 +11,9 @@ from small_table import small_table
 
 from dynamics.scene import Integration
 from dynamics.simulation import simulate
-from service.convert.scene import dynamic_scene
-from service.schemas import validated
-from service.schemas.scene import SceneInput
+from lineofaction.gearbox.convert.scene import dynamic_scene
+from lineofaction.gearbox.schemas import validated
+from lineofaction.gearbox.schemas.scene import SceneInput
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "palermo_scene.toml"
 LINE = {"bore_mm": 40.0, "outside_diameter_mm": 80.0, "static_rating_n": 19000.0, "clearance_um": 10.0}

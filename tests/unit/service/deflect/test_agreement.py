@@ -12,7 +12,13 @@ from two_stage_scenes import two_stages
 
 from dynamics.deflection import Deflection, deflect
 from dynamics.settings.load_case import LoadCase
-from service.studies.deflect.agreement import CLOSEST, PASSES, TOLERANCE, in_agreement, with_knots
+from lineofaction.gearbox.studies.deflect.agreement import (
+    CLOSEST,
+    PASSES,
+    TOLERANCE,
+    in_agreement,
+    with_knots,
+)
 
 CASES = (LoadCase("drive"), LoadCase("less", factor=0.4), LoadCase("coast", direction="coast"))
 POSITIONS = 3

@@ -10,12 +10,12 @@ import pytest
 from scene_files import scene_file
 from typer.testing import CliRunner, Result
 
-from service.cli.commands import app
-from service.problems import BadInput
-from service.schemas import read_model, validated
-from service.schemas.scene import SceneInput
-from service.studies.deflect import Inputs
-from service.studies.deflect.run import RUN, load_cases
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import read_model, validated
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.studies.deflect import Inputs
+from lineofaction.gearbox.studies.deflect.run import RUN, load_cases
 
 
 def loa(*arguments: object) -> Result:

@@ -18,23 +18,23 @@ from typer.testing import CliRunner, Result
 
 from dynamics.deflection import BearingLoad, ForceUnderCase, deflect
 from dynamics.settings.load_case import LoadCase
-from service.cli.commands import app
-from service.drawing.figure import number
-from service.report import write_report
-from service.studies.deflect.gearbox_drawing import exaggeration
-from service.studies.deflect.outline import outline_of
-from service.studies.deflect.page import page
-from service.studies.deflect.result import GearboxDeflection, MeshFlanks
-from service.studies.deflect.run import RUN, failure
-from service.studies.deflect.spectrum import optimization_inputs, write_spectrum
-from service.studies.deflect.tables import (
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.studies.deflect.outline import outline_of
+from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks
+from lineofaction.gearbox.studies.deflect.run import RUN, failure
+from lineofaction.gearbox.studies.deflect.spectrum import optimization_inputs, write_spectrum
+from lineofaction.gearbox.studies.optimize import Inputs as OptimizeInputs
+from lineofaction.report.document import write_report
+from lineofaction.report.drawing.figure import number
+from lineofaction.report.studies.deflect import page
+from lineofaction.report.studies.deflect_gearbox_drawing import exaggeration
+from lineofaction.report.studies.deflect_tables import (
     bearing_table,
     force_table,
     life_table,
     mesh_table,
     meshes_worst_first,
 )
-from service.studies.optimize import Inputs as OptimizeInputs
 
 CASES = (
     LoadCase("climb", share=1.0, factor=1.0),

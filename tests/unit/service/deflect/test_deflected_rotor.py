@@ -8,14 +8,14 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from service.cli.commands import app
-from service.convert.scene import TabledScene, dynamic_scene
-from service.problems import BadInput
-from service.schemas import read_model
-from service.schemas.scene import SceneInput
-from service.studies.computation import Means
-from service.studies.deflect import Inputs
-from service.studies.deflect.run import RUN, deflection_of
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.convert.scene import TabledScene, dynamic_scene
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import read_model
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.deflect import Inputs
+from lineofaction.gearbox.studies.deflect.run import RUN, deflection_of
 
 ROTOR = Path(__file__).parents[4] / "examples" / "jeffcott_scene.toml"
 WEIGHT = 10.0 * 9.81
@@ -35,7 +35,7 @@ def test_a_rotor_under_its_weight_hangs_in_its_bearings(tmp_path: Path) -> None:
 
 
 def test_the_cost_of_a_verb_is_that_of_its_process_and_children(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("service.cli.study.cpu_seconds", lambda: 117.0)
+    monkeypatch.setattr("lineofaction.cli.study.cpu_seconds", lambda: 117.0)
     result = CliRunner().invoke(app, ["deflect", str(ROTOR)])
     assert [line for line in result.stdout.splitlines() if "CPU" in line] == ["cost 117 CPU s"]
 

@@ -11,13 +11,13 @@ import pytest
 from two_stage_scenes import two_stages
 
 from dynamics.deflection import deflect
-from service.drawing.figure import Axis, Figure, Line, Panel, panel_height
-from service.drawing.interactive import plotly_figure
-from service.studies.deflect.gear_names import gear_names
-from service.studies.deflect.gearbox_drawing import gearbox_drawing, view_direction
-from service.studies.deflect.outline import outline_of
-from service.studies.deflect.result import GearboxDeflection, Outline
-from service.studies.deflect.run import _pattern
+from lineofaction.gearbox.studies.deflect.outline import outline_of
+from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, Outline
+from lineofaction.gearbox.studies.deflect.run import _pattern
+from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, panel_height
+from lineofaction.report.drawing.interactive import plotly_figure
+from lineofaction.report.studies.deflect_gear_names import gear_names
+from lineofaction.report.studies.deflect_gearbox_drawing import gearbox_drawing, view_direction
 
 
 @pytest.fixture(scope="module")

@@ -9,18 +9,18 @@ import pytest
 import scenes_that_break as fake
 from typer.testing import CliRunner
 
-import service.cli.hardcases as verb
-from service.cli.commands import app as loa
-from service.hardcases import HARD_SCENES, Measured, run_scenes
-from service.problems import EXIT_BAD_INPUT, EXIT_FAILED
+import lineofaction.cli.hardcases as verb
+from lineofaction.cli.commands import app as loa
+from lineofaction.gearbox.problems import EXIT_BAD_INPUT, EXIT_FAILED
+from lineofaction.hardcases import HARD_SCENES, Measured, run_scenes
 
 
 @pytest.fixture(autouse=True)
 def _imported_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Fork the processes of the scenes from one that has imported them."""
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["service.hardcases.guarded", "scenes_that_break"])
-    monkeypatch.setattr("service.hardcases.guarded.multiprocessing.get_context", lambda _: context)
+    context.set_forkserver_preload(["lineofaction.hardcases.guarded", "scenes_that_break"])
+    monkeypatch.setattr("lineofaction.hardcases.guarded.multiprocessing.get_context", lambda _: context)
 
 
 def test_crash_hang_and_exception_each_end_one_scene_only() -> None:

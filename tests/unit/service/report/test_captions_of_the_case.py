@@ -10,10 +10,10 @@ import pytest
 
 from fe_contact.analysis import LoadDistribution
 from fe_contact.ste import SteDatabase
-from service.drawing.figure import Panel
-from service.tables.face_distribution import line_load_figure
-from service.tables.load_sharing import load_sharing
-from service.tables.ste_curves import ste_curves
+from lineofaction.report.drawing.figure import Panel
+from lineofaction.report.tables.face_distribution import line_load_figure
+from lineofaction.report.tables.load_sharing import load_sharing
+from lineofaction.report.tables.ste_curves import ste_curves
 
 
 def of_high_contact_ratio(database: SteDatabase, more: int = 1, helix: float = 0.0) -> SteDatabase:

@@ -12,13 +12,19 @@ import pytest
 from dynamics.results import RunResult
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
-from service.comparison.compare import compare
-from service.comparison.difference import Difference
-from service.comparison.measured import PER_PITCH, MeasuredCurve, MeasuredOrders, aligned_to, read_measured
-from service.comparison.of_runs import compare_runs
-from service.comparison.of_tables import compare_tables
-from service.problems import BadInput
-from service.runs.run_view import RunView
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.report.comparison.compare import compare
+from lineofaction.report.comparison.difference import Difference
+from lineofaction.report.comparison.measured import (
+    PER_PITCH,
+    MeasuredCurve,
+    MeasuredOrders,
+    aligned_to,
+    read_measured,
+)
+from lineofaction.report.comparison.of_runs import compare_runs
+from lineofaction.report.comparison.of_tables import compare_tables
+from lineofaction.report.runs.run_view import RunView
 
 X = np.arange(PER_PITCH) / PER_PITCH
 RIPPLE = np.cos(2 * np.pi * X) + 0.4 * np.cos(4 * np.pi * X + 1.0)

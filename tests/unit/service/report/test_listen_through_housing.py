@@ -22,8 +22,8 @@ from dynamics.joints import Housing
 from dynamics.noise import pressure_recording, sound_limit, velocity_recording
 from dynamics.results import RunResult
 from dynamics.types import FloatArray
-from service.cli.commands import app
-from service.runs.through_housing import other_housings
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.studies.listen.through_housing import other_housings
 
 MICROPHONE = ("--microphone", "600,800,-200")
 

@@ -12,7 +12,7 @@ from typer.testing import CliRunner, Result
 
 from dynamics.acoustics import read_wav
 from dynamics.results import RunResult
-from service.cli.commands import app
+from lineofaction.cli.commands import app
 
 
 def loa(*arguments: object) -> Result:

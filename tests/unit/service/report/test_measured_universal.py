@@ -14,11 +14,11 @@ from dynamics.bodies import TimeLaw
 from dynamics.export import write_universal_file
 from dynamics.simulation import simulate
 from fe_contact.ste import SteDatabase
-from service.comparison.compare import compare
-from service.comparison.measured import PER_PITCH, MeasuredCurve, MeasuredOrders, averaged
-from service.comparison.measured_universal import read_universal
-from service.problems import BadInput
-from service.runs.run_view import RunView
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.report.comparison.compare import compare
+from lineofaction.report.comparison.measured import PER_PITCH, MeasuredCurve, MeasuredOrders, averaged
+from lineofaction.report.comparison.measured_universal import read_universal
+from lineofaction.report.runs.run_view import RunView
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from service.drawing import palette
-from service.drawing.mode_bars import OTHERS, largest_parts, mode_bars
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.mode_bars import OTHERS, largest_parts, mode_bars
 
 SHARES = [{"input lateral": 0.7, "output torsional": 0.3}, {"output torsional": 0.6}]
 

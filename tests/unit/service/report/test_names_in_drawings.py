@@ -14,12 +14,12 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cbook import is_math_text
 from matplotlib.text import Text
 
-from service.client.report import Report
-from service.drawing import palette
-from service.drawing.figure import Axis, Bars, Figure, HeatMap, Line, Note, Panel, Reference
-from service.drawing.image import _drawable, _panel_sheet, png
-from service.drawing.interactive import plotly_figure
-from service.drawing.words import rewritten
+from lineofaction.client.report import Report
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import Axis, Bars, Figure, HeatMap, Line, Note, Panel, Reference
+from lineofaction.report.drawing.image import _drawable, _panel_sheet, png
+from lineofaction.report.drawing.interactive import plotly_figure
+from lineofaction.report.drawing.words import rewritten
 
 X = np.linspace(0.0, 2.0, 5)
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from fe_contact.ste import SteDatabase
-from service.tables.deviation_curves import deviation_curves, has_deviations
-from service.tables.face_load import face_load, has_face_load
-from service.tables.static_part import static_results
+from lineofaction.report.tables.deviation_curves import deviation_curves, has_deviations
+from lineofaction.report.tables.face_load import face_load, has_face_load
+from lineofaction.report.tables.static_part import static_results
 
 SKEW = np.array([-20e-6, 0.0, 40e-6])
 CHANGE = np.array([0.0, 0.1e-3])

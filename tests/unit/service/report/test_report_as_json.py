@@ -10,11 +10,11 @@ import numpy as np
 from fe_contact.analysis import Frontier
 from fe_contact.analysis.studies.fidelity_result import FidelityResult
 from fe_contact.ste import SteDatabase
-from service.report.as_json import page_json, stored_figures
-from service.report.content import page_of
-from service.report.inputs import read_inputs
-from service.studies.frontier.page import frontier_page
-from service.studies.frontier.run import RUN
+from lineofaction.gearbox.studies.frontier.run import RUN
+from lineofaction.report.document.as_json import page_json, stored_figures
+from lineofaction.report.document.content import page_of
+from lineofaction.report.document.inputs import read_inputs
+from lineofaction.report.studies.frontier import frontier_page
 
 
 def rung(name: str, error: float, seconds: float) -> FidelityResult:

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from service.drawing import palette
-from service.drawing.figure import (
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import (
     Axis,
     Figure,
     HeatMap,
@@ -21,8 +21,8 @@ from service.drawing.figure import (
     legend_names,
     number,
 )
-from service.drawing.image import _panel_sheet, png
-from service.drawing.interactive import plotly_figure
+from lineofaction.report.drawing.image import _panel_sheet, png
+from lineofaction.report.drawing.interactive import plotly_figure
 
 X = np.linspace(0.0, 2.0, 9)
 

@@ -7,13 +7,18 @@ import pytest
 
 from dynamics.results import RunResult
 from dynamics.types import RunStatus
-from service.problems import BadInput
-from service.runs.dynamic_error import dynamic_error
-from service.runs.dynamic_part import dynamic_alarms, dynamic_headlines, dynamic_making, dynamic_results
-from service.runs.run_series import run_series
-from service.runs.run_view import RunView, shown_signal
-from service.runs.signal_over_time import signal_over_time
-from service.runs.signal_spectrum import (
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.report.runs.dynamic_error import dynamic_error
+from lineofaction.report.runs.dynamic_part import (
+    dynamic_alarms,
+    dynamic_headlines,
+    dynamic_making,
+    dynamic_results,
+)
+from lineofaction.report.runs.run_series import run_series
+from lineofaction.report.runs.run_view import RunView, shown_signal
+from lineofaction.report.runs.signal_over_time import signal_over_time
+from lineofaction.report.runs.signal_spectrum import (
     amplitude_spectrum,
     order_amplitudes,
     signal_spectrum,

@@ -9,11 +9,11 @@ import pytest
 
 from dynamics.results import RunResult
 from fe_contact.ste import SteDatabase
-from service.comparison.as_json import stored_comparison
-from service.problems import BadInput, DamagedFile
-from service.report import write_report
-from service.report.as_json import stored_figures
-from service.report.inputs import read_inputs
+from lineofaction.gearbox.problems import BadInput, DamagedFile
+from lineofaction.report.comparison.as_json import stored_comparison
+from lineofaction.report.document import write_report
+from lineofaction.report.document.as_json import stored_figures
+from lineofaction.report.document.inputs import read_inputs
 
 Work = Callable[[dict[str, Any]], Any]
 

@@ -10,14 +10,14 @@ import pytest
 
 from fe_contact.analysis import LoadDistribution, pressure_map
 from fe_contact.ste import SteDatabase
-from service.drawing.figure import HeatMap, Panel, Strokes
-from service.drawing.image import png
-from service.drawing.interactive import plotly_figure
-from service.report import write_report
-from service.studies.flank.page import operating_point, page
-from service.tables.contact_lines import contact_lines
-from service.tables.contact_pattern import contact_pattern_figure, isolines
-from service.tables.face_distribution import line_load_figure, load_centroid_figure
+from lineofaction.report.document import write_report
+from lineofaction.report.drawing.figure import HeatMap, Panel, Strokes
+from lineofaction.report.drawing.image import png
+from lineofaction.report.drawing.interactive import plotly_figure
+from lineofaction.report.studies.flank import operating_point, page
+from lineofaction.report.tables.contact_lines import contact_lines
+from lineofaction.report.tables.contact_pattern import contact_pattern_figure, isolines
+from lineofaction.report.tables.face_distribution import line_load_figure, load_centroid_figure
 
 
 def panels(figure: object) -> tuple[Panel, ...]:

@@ -9,12 +9,12 @@ from dynamics.results import RunResult
 from fe_contact.analysis import LoadDistribution
 from fe_contact.geometry import Gear, GearPair
 from fe_contact.ste import SteDatabase
-from service.drawing.page import Part
-from service.report.content import page_of
-from service.report.inputs import Inputs, read_inputs
-from service.tables.data_sheet import data_sheet_section
-from service.tables.pair import pair_of
-from service.tables.pair_remarks import pair_remarks
+from lineofaction.report.document.content import page_of
+from lineofaction.report.document.inputs import Inputs, read_inputs
+from lineofaction.report.drawing.page import Part
+from lineofaction.report.tables.data_sheet import data_sheet_section
+from lineofaction.report.tables.pair import pair_of
+from lineofaction.report.tables.pair_remarks import pair_remarks
 
 
 def test_results_stand_before_effects_accuracy_input_and_receipts(

@@ -11,17 +11,17 @@ from dynamics.bodies import TimeLaw
 from dynamics.linearize import whirl_modes
 from dynamics.results import RunResult
 from dynamics.simulation import simulate
-from service.drawing.figure import HeatMap, Panel
-from service.runs.campbell import campbell, frequency_blocks
-from service.runs.dynamic_factor import dynamic_factor_figure
-from service.runs.dynamic_part import dynamic_results
-from service.runs.level_map import DEPTH
-from service.runs.levels_over_speed import levels_over_speed, order_blocks
-from service.runs.octave_bands import octave_bands
-from service.runs.order_map import order_map
-from service.runs.planet_sharing import planet_sharing
-from service.runs.run_view import RunView, shown_signal
-from service.runs.sideband_table import sideband_tables
+from lineofaction.report.drawing.figure import HeatMap, Panel
+from lineofaction.report.runs.campbell import campbell, frequency_blocks
+from lineofaction.report.runs.dynamic_factor import dynamic_factor_figure
+from lineofaction.report.runs.dynamic_part import dynamic_results
+from lineofaction.report.runs.level_map import DEPTH
+from lineofaction.report.runs.levels_over_speed import levels_over_speed, order_blocks
+from lineofaction.report.runs.octave_bands import octave_bands
+from lineofaction.report.runs.order_map import order_map
+from lineofaction.report.runs.planet_sharing import planet_sharing
+from lineofaction.report.runs.run_view import RunView, shown_signal
+from lineofaction.report.runs.sideband_table import sideband_tables
 
 MODES = {
     "frequency": [0.0, 300.0, 301.0, 900.0],

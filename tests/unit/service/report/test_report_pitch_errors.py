@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from fe_contact.ste import SteDatabase
-from service.convert.answers import curve_json, metadata_json
-from service.tables.aligned import pitches_shown, position_axis, shown_rows, ste_shown
-from service.tables.face_load import face_load
-from service.tables.load_sharing import load_sharing, pair_shares
-from service.tables.static_part import static_results
-from service.tables.ste_curves import ste_curves
+from lineofaction.gearbox.convert.answers import curve_json, metadata_json
+from lineofaction.report.tables.aligned import pitches_shown, position_axis, shown_rows, ste_shown
+from lineofaction.report.tables.face_load import face_load
+from lineofaction.report.tables.load_sharing import load_sharing, pair_shares
+from lineofaction.report.tables.static_part import static_results
+from lineofaction.report.tables.ste_curves import ste_curves
 
 Tables = Callable[..., SteDatabase]
 

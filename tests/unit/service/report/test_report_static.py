@@ -9,14 +9,14 @@ import pytest
 from fe_contact.geometry import Gear, GearPair
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.fields import DIMENSIONS
-from service.drawing.figure import Panel, number
-from service.tables.aligned import shown_loads, ste_shown
-from service.tables.load_sharing import load_sharing, pair_shares
-from service.tables.mesh_stiffness import mesh_stiffness, secant_stiffness
-from service.tables.pair import iso_mesh_stiffness
-from service.tables.ripple_over_torque import ripple_over_torque
-from service.tables.static_part import static_results
-from service.tables.ste_curves import ste_curves
+from lineofaction.report.drawing.figure import Panel, number
+from lineofaction.report.tables.aligned import shown_loads, ste_shown
+from lineofaction.report.tables.load_sharing import load_sharing, pair_shares
+from lineofaction.report.tables.mesh_stiffness import mesh_stiffness, secant_stiffness
+from lineofaction.report.tables.pair import iso_mesh_stiffness
+from lineofaction.report.tables.ripple_over_torque import ripple_over_torque
+from lineofaction.report.tables.static_part import static_results
+from lineofaction.report.tables.ste_curves import ste_curves
 
 
 def test_two_pitches_repeat_the_period(database: SteDatabase) -> None:

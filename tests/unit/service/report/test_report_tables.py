@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from fe_contact.ste import SteDatabase
-from service.drawing.facts import facts, side_by_side
-from service.drawing.page import _is_number
-from service.tables.static_part import (
+from lineofaction.report.drawing.facts import facts, side_by_side
+from lineofaction.report.drawing.page import _is_number
+from lineofaction.report.tables.static_part import (
     case_tables,
     contact_effects,
     static_alarms,

@@ -17,14 +17,16 @@ from dynamics.orders import order_waterfall
 from dynamics.results import RunResult
 from dynamics.results.series import SERIES
 from fe_contact.ste import SteDatabase
-from service.cli.commands import app
-from service.cli.output import console
-from service.comparison.as_json import stored_comparison
-from service.problems import BadInput
-from service.registry import STUDIES
-from service.report.as_json import stored_figures
-from service.report.stored_study import study_page
-from service.runs.signal_spectrum import TOO_SHORT
+from lineofaction.cli.commands import app
+from lineofaction.cli.output import console
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.registry import STUDIES
+from lineofaction.report.comparison.as_json import stored_comparison
+from lineofaction.report.document.as_json import stored_figures
+from lineofaction.report.document.stored_study import study_page
+from lineofaction.report.runs.signal_spectrum import TOO_SHORT
+
+STORED = "lineofaction.report.document.stored_study"
 
 SHAPES = {series.name: series.dimensions for series in SERIES}
 
@@ -84,8 +86,8 @@ def test_a_defect_of_drawing_is_no_damage_of_the_file(
 ) -> None:
     study = STUDIES["response"]
 
-    monkeypatch.setattr("service.report.stored_study.read_stored", lambda _study, _file: object())
-    monkeypatch.setattr("service.report.stored_study.page_beside", _defect)
+    monkeypatch.setattr(f"{STORED}.read_stored", lambda _study, _file: object())
+    monkeypatch.setattr(f"{STORED}.page_beside", _defect)
     with pytest.raises(ValueError, match="argmax of an empty sequence"):
         study_page(study, tmp_path / "response.nc")
 

@@ -33,16 +33,17 @@ from fe_contact.microgeometry.harris_map import HarrisMap
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.registry import STUDIES, Study
+from lineofaction.gearbox.schemas.warning import InputWarning
+from lineofaction.report.document.as_json import page_json, stored_figures
+from lineofaction.report.document.content import page_of
+from lineofaction.report.document.inputs import read_inputs
+from lineofaction.report.presentation import presentation_of
+from lineofaction.report.studies.ablate import ablation_page
+from lineofaction.report.studies.optimize import ripple_table
+from lineofaction.report.tables.harris_map import MOST_CURVES
 from model_studies.record_file import write_record
-from service.problems import BadInput
-from service.registry import STUDIES, Study
-from service.report.as_json import page_json, stored_figures
-from service.report.content import page_of
-from service.report.inputs import read_inputs
-from service.schemas.warning import InputWarning
-from service.studies.ablate.page import ablation_page
-from service.studies.optimize.page import ripple_table
-from service.tables.harris_map import MOST_CURVES
 
 RELIEF = FlankModification(tip_relief=15e-6, tip_relief_length=1.2e-3)
 GEAR = Gear(20, 4e-3, 0.025, 0.04, modification=RELIEF)
@@ -146,7 +147,7 @@ def test_its_file_says_and_draws_what_the_fresh_one_does(
     fresh = json.dumps(study.run.facts(result), allow_nan=False)
     assert json.dumps(study.run.facts(study.run.file.read(file)), allow_nan=False) == fresh
     told = stored_figures({"kind": study.kind, "file": str(file)})
-    assert told == page_json(study.page.page(result))
+    assert told == page_json(presentation_of(study).page(result))
     assert all(f["alternative"] and f["plot"]["data"] for s in told["sections"] for f in s["figures"])
     assert page_json(page_of(read_inputs([file]))) == told, "a report and the service show the same"
 
@@ -157,7 +158,9 @@ def test_both_harris_maps_are_drawn_to_one_scale(
     """A curve's height is its ripple, and the torques stand apart by the same on both."""
     study, result = studies["optimization"]
     content = study.run.facts(result)
-    (figure,) = (f for s in study.page.page(result).sections for f in s.figures if f.key == "harris_map")
+    (figure,) = (
+        f for s in presentation_of(study).page(result).sections for f in s.figures if f.key == "harris_map"
+    )
     before, after, _ = figure.content  # type: ignore[misc]
     assert before.y.limits == after.y.limits
     for panel, name in ((before, "start"), (after, "optimum")):
@@ -183,7 +186,9 @@ def test_torques_that_count_and_those_that_get_worse_are_drawn(
         start=replace(result.start, harris_map=start),
         optimum=replace(result.optimum, harris_map=optimum),
     )
-    (figure,) = (f for s in study.page.page(wide).sections for f in s.figures if f.key == "harris_map")
+    (figure,) = (
+        f for s in presentation_of(study).page(wide).sections for f in s.figures if f.key == "harris_map"
+    )
     expected = {37.0, *result.torque.tolist()}
     for panel in figure.content[:2]:  # type: ignore[index]
         drawn = {float(line.name.removesuffix(" N m")) for line in panel.lines}

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from lattice_meshes import box
 
-from service.drawing import palette
-from service.drawing.figure import Figure
-from service.drawing.interactive import plotly_figure
-from service.drawing.surface_view import folds, rendered, surface_panels, view_of
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import Figure
+from lineofaction.report.drawing.interactive import plotly_figure
+from lineofaction.report.drawing.surface_view import folds, rendered, surface_panels, view_of
 
 SIDES = (0.3, 0.2, 0.1)
 

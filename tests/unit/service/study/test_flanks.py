@@ -9,16 +9,16 @@ from spur_case import spur_case
 
 from dynamics.simulation import simulate
 from dynamics.study import Design, Levels, Response, StudyTask, responses_of, study
-from service.cli.analyze import analyzed
-from service.client.portable import portable_scene, scene_of
-from service.convert.scene import dynamic_scene
-from service.problems import BadInput
-from service.schemas.scene import SceneInput
-from service.studies.study import Inputs
-from service.studies.study.checks import check
-from service.studies.study.design import design_of
-from service.studies.study.paths import places_of
-from service.studies.study.scenes import VariedScene
+from lineofaction.cli.analyze import analyzed
+from lineofaction.client.portable import portable_scene, scene_of
+from lineofaction.gearbox.convert.scene import dynamic_scene
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.studies.study import Inputs
+from lineofaction.gearbox.studies.study.checks import check
+from lineofaction.gearbox.studies.study.design import design_of
+from lineofaction.gearbox.studies.study.paths import places_of
+from lineofaction.gearbox.studies.study.scenes import VariedScene
 
 CASE = (
     spur_case("tip_relief_um = 10.0\ntip_relief_length_mm = 2.0")

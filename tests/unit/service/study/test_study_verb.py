@@ -23,13 +23,13 @@ from typer.testing import CliRunner, Result
 from dynamics.results import RunResult
 from dynamics.study import QUANTITIES, Study
 from dynamics.study.batch import run_batch
-from service.cli.commands import app
-from service.report import write_report
-from service.schemas import read_model
-from service.schemas.scene import SceneInput
-from service.studies.study import Inputs, QuantityName
-from service.studies.study.paths import part_name, places_of, with_value
-from service.studies.study.run import facts
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.schemas import read_model
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.studies.study import Inputs, QuantityName
+from lineofaction.gearbox.studies.study.paths import part_name, places_of, with_value
+from lineofaction.gearbox.studies.study.run import facts
+from lineofaction.report.document import write_report
 
 STUDY = """
 samples = 3
@@ -119,7 +119,7 @@ def test_a_killed_study_goes_on_where_it_was(scene: Path, tmp_path: Path) -> Non
     def finished() -> list[Path]:
         return [file for file in kept.glob("*/*") if file.suffix != ".partial"]
 
-    with subprocess.Popen([sys.executable, "-m", "service.cli", *arguments], env=os.environ) as running:
+    with subprocess.Popen([sys.executable, "-m", "lineofaction.cli", *arguments], env=os.environ) as running:
         deadline = time.monotonic() + 120.0
         while len(finished()) < 3 and time.monotonic() < deadline:
             assert running.poll() is None

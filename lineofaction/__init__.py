@@ -1,0 +1,1 @@
+"""Contact analysis of gears, their dynamics and their noise."""

@@ -1,0 +1,147 @@
+"""``loa analyze``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from bounds import engineering
+from fe_contact.analysis import ste_database
+from fe_contact.options import Run
+from fe_contact.ste import SteDatabase
+from fe_contact.workers import InProcess, Workers
+from lineofaction.cli.assessed_case import assessed_case
+from lineofaction.cli.output import (
+    Report,
+    check_netcdf_output,
+    console,
+    print_json,
+    print_result,
+    progress_bar,
+    table,
+)
+from lineofaction.cli.tolerance_lines import print_draft, tolerance_lines, tolerance_warnings
+from lineofaction.cli.warned import warn
+from lineofaction.gearbox.convert.answers import summary_json
+from lineofaction.gearbox.convert.case import analysis_options, boundary_errors, case_json, table_axes
+from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.effect_lines import assumption_lines, ledger_lines
+from lineofaction.gearbox.convert.plausibility import phrased_database
+from lineofaction.gearbox.convert.task_workers import ExecutorChoice, open_executor
+from lineofaction.gearbox.input_file import InputFile
+from lineofaction.gearbox.problems import JobFailed
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.units import UM
+from lineofaction.report.tables.static_part import static_headlines
+from service.directories import cache_home
+
+_SHOWN_HARMONICS = 3
+
+
+def run_analyze(file: InputFile, output: Path, executor: ExecutorChoice, *, as_json: bool) -> None:
+    """Compute, write, print."""
+    case = assessed_case(file)
+    check_netcdf_output(output)
+    with open_executor(executor) as workers, progress_bar() as report:
+        database = analyzed(case, report, workers)
+    warn([*database.metadata.warnings, *tolerance_warnings(database.metadata.receipt)])
+    database.to_netcdf(output)
+    summary = {"file": str(output), **summary_json(database)}
+    if as_json:
+        print_json(summary)
+    else:
+        _show(summary)
+        print_result(static_headlines(database), [output])
+    if database.n_failed:
+        raise JobFailed(f"{database.failure_message()}. The table in {output} holds NaN there.")
+
+
+def analyzed(
+    case: Case,
+    report: Report,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
+) -> SteDatabase:
+    """Compute the database of a case in this process; condensed gears are kept in the user's cache."""
+    pair = check_case(case)
+    with boundary_errors():
+        database = ste_database(
+            pair,
+            table_axes(case),
+            analysis_options(case),
+            Run(workers, cache_home() / "compliance", report),
+            case=case_json(case),
+            on_draft=print_draft,
+        )
+    return phrased_database(database, case)
+
+
+def _show(summary: dict[str, Any]) -> None:
+    """Print a summary for people."""
+    out = console()
+    names = [f"harmonic {n} um" for n in range(1, _SHOWN_HARMONICS + 1)]
+    rows = [_row(load) for load in summary["loads"]]
+    out.print(
+        table(["torque N m", "force N", "mean um", "peak-to-peak um", *names], rows, "Transmission error")
+    )
+    out.print()
+    for line in (*ledger_lines(summary["effect_ledger"]), *assumption_lines(summary["receipt"])):
+        out.print(line, highlight=False)
+    out.print(_cost(summary["receipt"]), highlight=False)
+    out.print(f"points {summary['points']}, failed {summary['failed_points']}", highlight=False)
+    out.print(f"content hash {summary['content_hash']}", highlight=False)
+
+
+def _cost(receipt: dict[str, Any]) -> str:
+    """Return time by stage and memory in one line, and what plane strain leaves out in another."""
+    seconds = {name: spent["cpu_seconds"] for name, spent in receipt["stages"].items()}
+    stages = ", ".join(f"{name} {engineering(spent, 2)}" for name, spent in seconds.items())
+    memory = receipt["peak_memory_bytes"] / 2**20
+    text = f"\ncost {engineering(receipt['cpu_seconds'], 3)} CPU s ({stages}), {memory:.0f} MiB"
+    others = receipt.get("elsewhere", {})
+    if others.get("tasks"):
+        text += (
+            f"\nof these {engineering(others['cpu_seconds'], 3)} CPU s in {others['tasks']} tasks of workers"
+        )
+    predicted = receipt.get("predicted")
+    if predicted:
+        pitches, seconds = predicted["pitches"], predicted["cpu_seconds"]
+        text += f"\nperiod {pitches} base pitches; contact predicted {engineering(seconds, 2)} CPU s"
+    held_out = _held_out(receipt.get("held_out", {}))
+    if held_out:
+        text += f"\nlargest error at held-out points between the nodes: {held_out} (in the errors there)"
+    for line in tolerance_lines(receipt):
+        text += f"\n{line}"
+    outgrown = receipt.get("patch_outgrown_points", 0)
+    if outgrown:
+        text += f"\ncontact outgrew its load patch at {outgrown} points: the load is far above usual loads"
+    missing = receipt.get("not_estimated", [])
+    if missing:
+        text += f"\nerrors NOT estimated: {', '.join(missing).replace('_', ' ')}"
+    left_out = receipt["error_by_source"]["plane_for_finite_width_relative"]
+    if left_out:
+        text += (
+            "\nfinite width neglected by the plane model: "
+            f"{engineering(100 * left_out, 2)} % of the mean, in the errors"
+        )
+    return text
+
+
+def _held_out(axes: dict[str, Any]) -> str:
+    """Return the largest error between the nodes of each axis."""
+    words = []
+    for name, measured in axes.items():
+        errors = [error for row in measured["error_m"] for error in row]
+        worst = "unknown" if None in errors else f"{engineering(max(errors) / UM, 2)} um"
+        words.append(f"{name.replace('_', ' ')} {worst}")
+    return ", ".join(words)
+
+
+def _row(load: dict[str, Any]) -> list[str]:
+    """One load of the table, each figure with its error."""
+    values = [load["mean_um"], load["peak_to_peak_um"], *load["harmonics_um"]][: 2 + _SHOWN_HARMONICS]
+    figures = [f"{value:.4g}" for value in values]
+    if "mean_error_um" in load:
+        errors = [load["mean_error_um"], load["peak_to_peak_error_um"], *load["harmonics_error_um"]]
+        bands = [engineering(error, 1) for error in errors]
+        figures = [f"{figure} ±{band}" for figure, band in zip(figures, bands, strict=False)]
+    return [f"{load['torque_n_m']:.6g}", f"{load['normal_force_n']:.6g}", *figures]

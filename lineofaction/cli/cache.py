@@ -1,0 +1,101 @@
+"""``loa cache``: what is kept to be quicker the next time."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import time
+
+from bounds import engineering
+from lineofaction.cli.output import console, print_json, table
+from lineofaction.gearbox.problems import BadInput
+from service.bounded_folder import DEFAULT_BYTES, UsedFile, evict, files_in
+from service.directories import cache_home
+
+LIMIT = "LOA_CACHE_BYTES"
+KINDS = {
+    "compliance": "condensed gears",
+    "housings": "meshes and modes of housings",
+    "results": "results of services",
+    "searches": "searches of optimizations",
+    "studies": "tasks of studies",
+}
+"""Folders of the cache, and what they hold."""
+_DAY = 86_400.0
+_GB = 1e9
+
+
+def run_list(*, as_json: bool) -> None:
+    """Print what the cache holds."""
+    held = {kind: files_in(cache_home() / kind) for kind in KINDS}
+    if as_json:
+        print_json(_facts(held))
+        return
+    rows = [[kind, KINDS[kind], str(len(files)), _size(files), _age(files)] for kind, files in held.items()]
+    out = console()
+    out.print(table(["kind", "what", "files", "MB", "oldest use, days"], rows, words=["kind", "what"]))
+    every = [file for files in held.values() for file in files]
+    line = f"{_size(every)} MB of {engineering(1e3 * limit_bytes() / _GB, 4)} MB in {cache_home()}"
+    out.print(line, highlight=False, soft_wrap=True)
+
+
+def run_limit(gigabytes: float | None, *, as_json: bool) -> None:
+    """Remove what was not used for longest until the rest fits."""
+    most = limit_bytes() if gigabytes is None else round(gigabytes * _GB)
+    removed = evict(cache_home(), most)
+    _tell(removed, as_json=as_json)
+
+
+def run_clear(kinds: list[str], *, as_json: bool) -> None:
+    """Remove all that is kept, of some kinds if any are named."""
+    for kind in kinds:
+        if kind not in KINDS:
+            raise BadInput.of("kind", kind, f"one of {', '.join(KINDS)}", "Or leave it out: all of them.")
+    folders = [cache_home() / kind for kind in kinds or KINDS]
+    removed = [file for folder in folders for file in files_in(folder)]
+    for folder in folders:
+        shutil.rmtree(folder, ignore_errors=True)
+    _tell(removed, as_json=as_json)
+
+
+def keep_small() -> None:
+    """Keep the cache within its limit: after a verb that may have filled it."""
+    evict(cache_home(), limit_bytes())
+
+
+def limit_bytes() -> int:
+    """Return what the cache may hold: 2 GB, or what the environment says.
+
+    Raises
+    ------
+    BadInput
+        It says something else than a number of bytes.
+    """
+    text = os.environ.get(LIMIT, str(DEFAULT_BYTES))
+    if not text.isdigit():
+        raise BadInput.of(LIMIT, text, "a number of bytes", f"For example {DEFAULT_BYTES}.")
+    return int(text)
+
+
+def _tell(removed: list[UsedFile], *, as_json: bool) -> None:
+    """Say what was removed."""
+    if as_json:
+        print_json({"removed_files": len(removed), "removed_bytes": sum(file.size for file in removed)})
+        return
+    console().print(f"removed {len(removed)} files, {_size(removed)} MB", highlight=False)
+
+
+def _facts(held: dict[str, list[UsedFile]]) -> dict[str, object]:
+    """Return what the cache holds as plain JSON."""
+    kinds = {kind: {"files": len(files), "bytes": sum(f.size for f in files)} for kind, files in held.items()}
+    return {"folder": str(cache_home()), "limit_bytes": limit_bytes(), "kinds": kinds}
+
+
+def _size(files: list[UsedFile]) -> str:
+    """Return the size of files in MB."""
+    return engineering(sum(file.size for file in files) / 1e6, 4)
+
+
+def _age(files: list[UsedFile]) -> str:
+    """Return the days since the file was used that was not for longest."""
+    return f"{(time.time() - files[0].used) / _DAY:.1f}" if files else ""

@@ -1,0 +1,80 @@
+"""The program ``loa``: its verbs, each of which loads the module that does the work when it is called."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Annotated, TextIO
+
+import typer
+
+from host import keep_to_one_thread
+from lineofaction.cli.verbs import keys, motion, new, pages, remote_jobs, serving, studies, tables, upkeep
+from lineofaction.cli.verbs.of_studies import StudyGroup
+
+_EPILOG = (
+    "Start with: loa new -o pair.toml, loa analyze pair.toml -o ste.nc, then loa report ste.nc. "
+    "Exit codes: 0 done; 1 a mesh, a solve or a job failed; 2 bad input; 3 warnings under --strict; "
+    "4 no service answers; "
+    "5 a defect (a log is named); 130 interrupted."
+)
+
+app = typer.Typer(
+    name="loa",
+    cls=StudyGroup,
+    help="Open contact analysis for gear noise: STE databases of gear pairs, and the dynamics they excite.",
+    epilog=_EPILOG,
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+for family in (new, tables, motion, studies, pages, serving, remote_jobs):
+    for verb in family.verbs.registered_commands:  # the whole sentence, which the list would cut off
+        verb.short_help = (verb.callback.__doc__ or "").partition("\n")[0]
+    app.add_typer(family.verbs)
+app.add_typer(keys.verbs, name="keys")
+app.add_typer(upkeep.cache, name="cache")
+app.add_typer(upkeep.database, name="database")
+app.add_typer(upkeep.store, name="store")
+
+
+def main() -> None:
+    """Run the command line."""
+    keep_to_one_thread()
+    warnings.filterwarnings("ignore", message="implausible")  # each verb says it in its own fields and units
+    foreign = warnings.showwarning
+
+    def show(
+        message: Warning | str,
+        category: type[Warning],
+        filename: str,
+        lineno: int,
+        file: TextIO | None = None,
+        line: str | None = None,
+    ) -> None:
+        if category.__module__.startswith("service."):
+            typer.echo(f"note: {message}", err=True)
+        else:
+            foreign(message, category, filename, lineno, file, line)
+
+    warnings.showwarning = show  # what our own say is for people, without a line of code
+    app()
+
+
+def _version(requested: bool) -> None:
+    """Print the version and end."""
+    if requested:
+        from service.version import solver_version  # noqa: PLC0415 (start-up time)
+
+        typer.echo(f"loa {solver_version()}")
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    """Hold the options of all verbs."""

@@ -1,0 +1,40 @@
+"""``loa export RUN.nc``: a run for other programs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from dynamics.export import FUNCTIONS, write_universal_file
+from lineofaction.cli.output import check_writable, console, print_json
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.report.document.inputs import read_run
+
+UNIVERSAL = (".unv", ".uff", ".uf")
+TABLE = ".csv"
+
+
+def is_for_runs(output: Path) -> bool:
+    """Whether an output so named is made from a run."""
+    return output.suffix in (*UNIVERSAL, TABLE)
+
+
+def run_export_run(
+    file: Path, output: Path, function: str, window: tuple[float | None, float | None], *, as_json: bool
+) -> None:
+    """Read the run, write it in the form that the output's name asks for, print."""
+    if function not in FUNCTIONS or (output.suffix == TABLE and function != "time"):
+        allowed = "time" if output.suffix == TABLE else ", ".join(FUNCTIONS)
+        raise BadInput.of("--function", function, f"one of {allowed}")
+    check_writable(output)
+    run = read_run(file, "file")
+    facts: dict[str, object] = {"written": [str(output)]}
+    if output.suffix == TABLE:
+        run.to_csv(output)
+    else:
+        facts["functions"] = write_universal_file(run, output, function, *window)
+    if as_json:
+        print_json(facts)
+        return
+    if "functions" in facts:
+        console().print(f"{facts['functions']} functions of dataset 58", highlight=False)
+    console().print(f"written to {output}", highlight=False)

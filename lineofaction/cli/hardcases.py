@@ -1,0 +1,84 @@
+"""``loa hardcases``."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import typer
+
+from lineofaction.cli.output import check_writable, console, print_json, progress_bar, table
+from lineofaction.gearbox.problems import EXIT_FAILED, BadInput
+from lineofaction.hardcases import HARD_SCENES, HardScene, Outcome, run_scenes
+from lineofaction.hardcases.page import hardcases_page
+from lineofaction.report.document.write import write_whole
+
+
+def run_hardcases(only: Sequence[str], output: Path | None, *, as_json: bool) -> None:
+    """Run the scenes, write the page, print."""
+    scenes = chosen_scenes(only)
+    if output is not None:
+        check_writable(output)
+    outcomes: list[Outcome] = []
+    with progress_bar() as report:
+        for outcome in run_scenes(scenes):
+            outcomes.append(outcome)
+            report("hard scenes", len(outcomes) / len(scenes))
+    if output is not None:
+        write_whole(hardcases_page(outcomes), output)
+    if as_json:
+        print_json({"scenes": [outcome.to_json() for outcome in outcomes]})
+    else:
+        _show(outcomes, output)
+    if not all(outcome.passed for outcome in outcomes):
+        raise typer.Exit(EXIT_FAILED)
+
+
+def chosen_scenes(only: Sequence[str]) -> list[HardScene]:
+    """Return the scenes of these names or families, in their own order; all if none are named.
+
+    Raises
+    ------
+    BadInput
+        No such scene.
+    """
+    names = [part.strip() for name in only for part in name.split(",") if part.strip()]
+    known = {scene.name for scene in HARD_SCENES} | {scene.family for scene in HARD_SCENES}
+    for name in names:
+        if name not in known:
+            raise BadInput.of("only", name, f"a scene or a family: {', '.join(sorted(known))}")
+    return [s for s in HARD_SCENES if not names or s.name in names or s.family in names]
+
+
+def _show(outcomes: Sequence[Outcome], output: Path | None) -> None:
+    """Print the table for people, and below it what failed."""
+    out = console()
+    rows = [
+        (
+            o.scene.family,
+            o.scene.name,
+            "passed" if o.passed else "FAILED",
+            f"{o.seconds:.2f}",
+            f"{o.cpu_seconds:.2f}",
+            _closest(o),
+        )
+        for o in outcomes
+    ]
+    words = ("family", "scene", "figure closest to its bound")
+    out.print(table((*words[:2], "", "time, s", "CPU, s", words[2]), rows, words=words))
+    for outcome in outcomes:
+        if not outcome.passed:
+            out.print(f"{outcome.scene.name}: {outcome.failure}", highlight=False)
+    passed = sum(outcome.passed for outcome in outcomes)
+    seconds = sum(outcome.seconds for outcome in outcomes)
+    busy = sum(outcome.cpu_seconds for outcome in outcomes)
+    summary = f"{passed} of {len(outcomes)} scenes passed in {seconds:.1f} s ({busy:.1f} s of CPU time)"
+    out.print(summary, highlight=False)
+    if output is not None:
+        out.print(f"written to {output}", highlight=False)
+
+
+def _closest(outcome: Outcome) -> str:
+    """Name the figure that uses most of what its bound allows."""
+    bounded = [figure for figure in outcome.figures if figure.use is not None]
+    return str(max(bounded, key=lambda figure: figure.use or 0.0)) if bounded else ""

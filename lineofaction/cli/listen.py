@@ -1,0 +1,89 @@
+"""``loa listen``."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from bounds import engineering
+from dynamics.acoustics import wav_file
+from lineofaction.cli.listen_sounds import RunSound, bearing_sounds
+from lineofaction.cli.listen_through_housing import HousingReceiver, housing_sounds
+from lineofaction.cli.output import check_writable, console, print_json, table
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.studies.listen.heard_run import recording_facts, rms
+from lineofaction.report.comparison.compare import named_files
+from lineofaction.report.document.inputs import read_run
+from lineofaction.report.drawing.figure import number
+from lineofaction.report.runs.run_view import RunView
+from lineofaction.report.runs.sound import full_scale_of
+
+Json = dict[str, Any]
+
+
+def run_listen(
+    files: Sequence[Path], output: Path, view: RunView, receiver: HousingReceiver | None, *, as_json: bool
+) -> None:
+    """Read the runs, write a WAV file of each on one full scale, print what they hold."""
+    paths = _outputs(files, output)
+    runs = {name: read_run(file, "runs") for name, file in named_files(files)}
+    sounds, remark = bearing_sounds(runs, view) if receiver is None else housing_sounds(runs, receiver, view)
+    scale = full_scale_of([sound.recording for sound in sounds])
+    if output.suffix != ".wav":
+        output.mkdir(exist_ok=True)
+    for path, sound in zip(paths, sounds, strict=True):
+        path.write_bytes(wav_file(sound.recording, scale))
+    if as_json:
+        listed = [
+            {"file": str(path), **recording_facts(sound.recording), **sound.facts}
+            for path, sound in zip(paths, sounds, strict=True)
+        ]
+        print_json({"full_scale": scale, "remark": remark, "files": listed})
+        return
+    _show(sounds, scale, remark)
+    for path in paths:
+        console().print(f"written to {path}", highlight=False)
+
+
+def _outputs(files: Sequence[Path], output: Path) -> list[Path]:
+    """Return a file for every run.
+
+    Raises
+    ------
+    BadInput
+        Several runs would go to one file, to files of one name, or where nothing can be written.
+    """
+    if output.suffix == ".wav":
+        if len(files) > 1:
+            raise BadInput.of("output", str(output), "a folder for several runs", "It gets a file per run.")
+        check_writable(output)
+        return [output]
+    if output.is_file() or not (output.is_dir() or output.parent.is_dir()):
+        raise BadInput.of(
+            "output", str(output), "a file ending in .wav, or a folder", "Make its parent first."
+        )
+    stems = [file.stem for file in files]
+    if len(set(stems)) < len(stems):
+        raise BadInput.of("files", ", ".join(map(str, files)), "runs of different file names", "Rename one.")
+    return [output / f"{stem}.wav" for stem in stems]
+
+
+def _show(sounds: Sequence[RunSound], scale: float, remark: str) -> None:
+    """Print the figures for people."""
+    out, unit = console(), sounds[0].recording.unit
+    more = list(dict.fromkeys(name for sound in sounds for name in sound.cells))
+    rows = [
+        [
+            sound.name,
+            engineering(rms(sound.recording), 4),
+            f"{sound.recording.samples.size / sound.recording.sample_rate:.3f}",
+            *(sound.cells.get(name, "") for name in more),
+        ]
+        for sound in sounds
+    ]
+    columns = ["run", f"rms, {unit}", "s", *more]
+    out.print(table(columns, rows, words=("run", *more[-1:])))
+    for quantity in dict.fromkeys(sound.recording.quantity for sound in sounds):
+        out.print(quantity, highlight=False, soft_wrap=True)
+    out.print(f"full scale: {number(scale)} {unit}; {remark}", highlight=False, soft_wrap=True)

@@ -1,0 +1,140 @@
+"""Output of the verbs: JSON or tables on standard output, progress on standard error."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import sys
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from lineofaction.cli.warned import warnings_so_far
+from lineofaction.gearbox.problems import BadInput
+from model_studies.progress import stage_name
+
+if TYPE_CHECKING:
+    from lineofaction.report.drawing.page import Headline
+
+Report = Callable[[str, float], None]
+
+_MOST_HEADLINES = 2
+
+
+def print_json(facts: dict[str, Any]) -> None:
+    """Print one JSON object, with what the verb warns of; a number that is none is an error, never null."""
+    sys.stdout.write(json.dumps({**facts, "warnings": warnings_so_far()}, allow_nan=False) + "\n")
+    sys.stdout.flush()
+
+
+def console() -> Console:
+    """Return the console of standard output: no text is markup; piped, it is as wide as its tables need."""
+    plain: Any = {"markup": False, "emoji": False}
+    return Console(**plain) if sys.stdout.isatty() else Console(width=200, no_color=True, **plain)
+
+
+def table(
+    columns: Sequence[str], rows: Sequence[Sequence[str]], title: str = "", words: Sequence[str] = ()
+) -> Table:
+    """Return a table of right-aligned numbers; columns of `words` are aligned left."""
+    grid = Table(title=title or None, box=None, pad_edge=False, title_justify="left")
+    for column in columns:
+        grid.add_column(column, justify="left" if column in words else "right")
+    for row in rows:
+        grid.add_row(*row)
+    return grid
+
+
+def print_result(headlines: Sequence[Headline], files: Sequence[Path]) -> None:
+    """End a verb with its main results, a line each and two at most, and the files that were written."""
+    out = console()
+    for headline in headlines[:_MOST_HEADLINES]:
+        band = headline.remark if headline.remark.startswith("±") else f"({headline.remark})"
+        line = f"{headline.name}: {headline.value} {band}".removesuffix(" ()")
+        out.print(line, highlight=False, soft_wrap=True)
+    if files:
+        out.print(f"written to {', '.join(map(str, files))}", highlight=False, soft_wrap=True)
+
+
+def csv_text(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Return a table as CSV."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows((head, *rows))
+    return text.getvalue()
+
+
+@contextmanager
+def progress_bar() -> Iterator[Report]:
+    """Yield ``report(stage, fraction)``; it draws on standard error if that is a terminal, else nothing."""
+    if not sys.stderr.isatty():
+        yield _silent
+        return
+    columns = (TextColumn("{task.description:<14}"), BarColumn(), TextColumn("{task.percentage:>3.0f} %"))
+    with Progress(*columns, TimeElapsedColumn(), console=Console(stderr=True)) as bars:
+        tasks: dict[str, TaskID] = {}
+
+        def report(stage: str, fraction: float) -> None:
+            name = stage_name(stage)
+            if name not in tasks:
+                tasks[name] = bars.add_task(stage, total=1.0)
+            bars.update(tasks[name], description=stage, completed=min(max(fraction, 0.0), 1.0))
+
+        yield report
+
+
+def _silent(_stage: str, _fraction: float) -> None:
+    """Report nothing."""
+
+
+def check_writable(output: Path) -> None:
+    """Refuse an output that cannot be written, before the work is done rather than after it.
+
+    Raises
+    ------
+    BadInput
+        Its folder does not exist, or it is a folder itself.
+    """
+    if not output.parent.is_dir():
+        raise BadInput.of("output", str(output), "in a folder that exists", "Make the folder first.")
+    if output.is_dir():
+        raise BadInput.of("output", str(output), "a file", "Add a file name.")
+
+
+def check_netcdf_output(output: Path) -> None:
+    """Refuse an output that cannot be written, or whose name promises something else than netCDF.
+
+    Raises
+    ------
+    BadInput
+        Not writable, or another ending than those of netCDF.
+    """
+    check_writable(output)
+    if output.suffix not in ("", ".nc", ".nc4"):
+        advice = "Write the netCDF file; `loa report FILE.nc -o PAGE.html` draws it."
+        raise BadInput.of("output", str(output), "a file ending in .nc", advice)
+
+
+def output_files(output: Path, stem: str, endings: Sequence[str]) -> list[Path]:
+    """Return the files to write: one by its ending, or `stem` with all endings in a folder, made if missing.
+
+    Raises
+    ------
+    BadInput
+        Neither, or not writable.
+    """
+    bound = f"a folder, or a file ending in one of {', '.join(endings)}"
+    if output.suffix and not output.is_dir():
+        if output.suffix not in endings:
+            raise BadInput.of("output", str(output), bound)
+        check_writable(output)
+        return [output]
+    if output.is_file():
+        raise BadInput.of("output", str(output), bound)
+    check_writable(output / "x" if output.is_dir() else output)
+    return [output / f"{stem}{ending}" for ending in endings]

@@ -1,0 +1,33 @@
+"""Studies that go on where they were: what their tasks found is kept in the user's cache until they end."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+
+from fe_contact.solver_version import SOLVER_VERSION
+from fe_contact.workers import Remembering, Workers
+from fe_contact.workers.content import content_digest
+from lineofaction.gearbox.registry import Study
+from lineofaction.gearbox.schemas.model import BoundaryModel
+from service.directories import cache_home
+from service.version import solver_version
+
+
+@contextmanager
+def resumed_workers(
+    study: Study, subjects: Sequence[BoundaryModel], inputs: BoundaryModel, workers: Workers
+) -> Iterator[Workers]:
+    """Provide workers that keep what they did, for a study that can be resumed; else the same workers.
+
+    A study that is interrupted or killed leaves its folder to the next one of the same subjects and inputs.
+    """
+    if not study.run.resumed:
+        yield workers
+        return
+    content = (study.name, inputs.model_dump_json(), *(subject.model_dump_json() for subject in subjects))
+    folder = cache_home() / "studies" / content_digest(content)
+    version = f"{solver_version()} {SOLVER_VERSION}"
+    yield Remembering(workers, folder, version)
+    shutil.rmtree(folder, ignore_errors=True)

@@ -1,0 +1,68 @@
+"""``loa simulate``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from dynamics.scene import Scene
+from dynamics.simulation import interrupted_run, simulate_to_file
+from dynamics.types import RunStatus
+from lineofaction.cli.assessed_case import assessed_scene
+from lineofaction.cli.interrupt import until_interrupted
+from lineofaction.cli.output import (
+    Report,
+    check_netcdf_output,
+    console,
+    print_json,
+    print_result,
+    progress_bar,
+)
+from lineofaction.cli.run_headlines import run_headlines
+from lineofaction.cli.scene_tables import scene_with_tables
+from lineofaction.cli.warned import warnings_so_far
+from lineofaction.gearbox.convert.run_effects import model_lines
+from lineofaction.gearbox.convert.runs import run_json, staged
+from lineofaction.gearbox.convert.stamp import stamp
+from lineofaction.gearbox.input_file import InputFile
+from lineofaction.gearbox.problems import BadInput, JobFailed
+
+
+def run_simulate(file: InputFile, output: Path, service: str | None, *, resume: bool, as_json: bool) -> None:
+    """Gather the tables, integrate here into the file, print."""
+    scene, folder = assessed_scene(file)
+    check_netcdf_output(output)
+    if resume and not interrupted_run(output).is_dir():
+        advice = "There is none. Omit --resume to start a run."
+        raise BadInput.of("--resume", str(output), "the file of a run that was interrupted", advice)
+    with progress_bar() as report:
+        _run(scene_with_tables(scene, folder, service, report), output, report, resume=resume)
+    stamp(output, warnings_so_far())
+    facts = {"file": str(output), **run_json(output)}
+    if as_json:
+        print_json(facts)
+    else:
+        _show(facts)
+
+
+def _run(scene: Scene, output: Path, report: Report, *, resume: bool) -> None:
+    """Integrate; say how a run ended that is not complete."""
+    with until_interrupted() as cancel:
+        status = simulate_to_file(scene, output, resume=resume, progress=staged(report), cancel=cancel)
+    if status is RunStatus.CANCELLED:
+        kept = f"What was computed is in {output}; --resume continues it."
+        raise KeyboardInterrupt(f"interrupted. {kept}")
+    if not status.usable:
+        ended = status.name.lower().replace("_", " ")
+        raise JobFailed(f"The run ended early: {ended}. What was computed is in {output}.")
+
+
+def _show(facts: dict[str, Any]) -> None:
+    """Print a run for people."""
+    out = console()
+    attributes, sizes = facts["attributes"], facts["dimensions"]
+    for line in model_lines(attributes):
+        out.print(line, highlight=False, soft_wrap=True)
+    status = str(attributes["status"]).lower().replace("_", " ")
+    out.print(f"run {status}: {sizes['time']} samples", highlight=False)
+    print_result(run_headlines(attributes["receipt"].get("peaks", {})), [Path(str(facts["file"]))])

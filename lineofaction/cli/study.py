@@ -1,0 +1,230 @@
+"""The verb of any study: compute, write, print."""
+
+from __future__ import annotations
+
+import hashlib
+import sys
+from collections.abc import Callable, Sequence
+from contextlib import nullcontext
+from pathlib import Path
+from typing import Any
+
+from bounds import engineering
+from dynamics.results import RunResult
+from host import cpu_seconds
+from lineofaction.cli.assessed_case import assessed_scene
+from lineofaction.cli.interrupt import until_interrupted
+from lineofaction.cli.output import (
+    Report,
+    check_writable,
+    console,
+    csv_text,
+    output_files,
+    print_json,
+    print_result,
+    progress_bar,
+    table,
+)
+from lineofaction.cli.resumed import resumed_workers
+from lineofaction.cli.scene_tables import tabled_scene
+from lineofaction.cli.warned import messages, warn, warnings_so_far
+from lineofaction.gearbox.convert.plausibility import case_warnings
+from lineofaction.gearbox.convert.stamp import stamp
+from lineofaction.gearbox.convert.task_workers import ExecutorChoice, open_executor
+from lineofaction.gearbox.input_file import InputFile
+from lineofaction.gearbox.problems import BadInput, JobFailed
+from lineofaction.gearbox.registry import Study
+from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
+from lineofaction.gearbox.schemas.lines import located
+from lineofaction.gearbox.schemas.number_list import number_list
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.schemas.spelling import item_type, spelling_of
+from lineofaction.gearbox.studies.computation import Means
+from lineofaction.report.document.inputs import read_run
+from lineofaction.report.document.write import write_whole
+from lineofaction.report.drawing.image import png
+from lineofaction.report.presentation import presentation_of
+from service.directories import cache_home
+
+Json = dict[str, Any]
+Writer = Callable[[Any, Path], object]
+
+
+def run_study(study: Study, options: Json) -> None:
+    """Run a study as its verb was called; `options` holds argument and options by their names."""
+    files = options[study.argument] if study.several else [options[study.argument]]
+    read = [_read(study, file) for file in files]
+    run = _run(options)
+    inputs = _inputs(study, options)
+    subjects = []
+    for file, (subject, folder) in zip(files, read, strict=True):
+        with located(file):
+            subjects.append((_assessed(study.run.narrowed(subject, inputs)), folder))
+    targets = _targets(study, options["output"])
+    for subject, _ in subjects:
+        study.run.check(subject, inputs)
+    executor = ExecutorChoice(options.get("workers", 1), options.get("dask"))
+    stopping = until_interrupted if study.run.interruptible else nullcontext
+    with (
+        open_executor(executor) as others,
+        resumed_workers(study, [subject for subject, _ in subjects], inputs, others) as workers,
+        progress_bar() as report,
+        stopping() as cancel,
+    ):
+        means = Means(cache_home(), report, workers, cancel, _runs_folder(targets), run)
+        results = [
+            study.run.compute(_made(subject, folder, options.get("service"), report), inputs, means)
+            for subject, folder in subjects
+        ]
+        interrupted = cancel is not None and cancel()
+    remote_seconds = 0.0 if executor.dask is None else others.cost.cpu_seconds  # else they are our children
+    result = results[0]
+    if study.several:
+        result = study.run.joined(dict(zip(_names(study, files), results, strict=True)))
+    warn(study.run.warnings(result) or ())
+    _tell(study, subjects[0][0], result, targets, options, remote_seconds)
+    if interrupted:
+        raise KeyboardInterrupt("interrupted. The result above is the best so far.")
+    if failure := study.run.failure(result):
+        raise JobFailed(failure)
+
+
+def _tell(
+    study: Study, subject: Any, result: Any, targets: list[Path], options: Json, remote_seconds: float
+) -> None:
+    """Write the files, and print the result in the form that was requested."""
+    for target in targets:
+        target.parent.mkdir(exist_ok=True)
+        _writers(study, subject)[target.suffix](result, target)
+        stamp(target, warnings_so_far())
+    if options["json"]:
+        print_json(_written(study, targets) | study.run.facts(result))
+    elif options.get("csv"):
+        sys.stdout.write(_csv(study, result))
+    else:
+        _show(study, result, targets, remote_seconds)
+
+
+def _run(options: Json) -> RunResult | None:
+    """Return the run that was named."""
+    return None if options.get("run") is None else read_run(options["run"], "run")
+
+
+def _inputs(study: Study, options: Json) -> Any:
+    """Return the inputs, from their file or the options that were given."""
+    if study.from_file:
+        if options["study"] is None:
+            return validated(study.inputs, {})
+        return read_model(study.inputs, options["study"])
+    return validated(study.inputs, _fields(study, options))
+
+
+def _fields(study: Study, options: Json) -> Json:
+    """Return the fields of the inputs, from the options that were given."""
+    fields = {}
+    for name, field in study.inputs.model_fields.items():
+        value, spelling = options[name], spelling_of(field)
+        if spelling and spelling.value is not None:
+            value = spelling.value if value else field.default
+        elif spelling and spelling.file and value is not None:
+            value = _digest(value)
+        elif value is not None and (kind := item_type(field)):
+            option = spelling.option if spelling else f"--{name.replace('_', '-')}"
+            words = [part.strip() for part in value.split(",")]
+            value = number_list(option, value) if kind is float else words
+        if value is not None:
+            fields[name] = value
+    return fields
+
+
+def _digest(file: Path) -> str:
+    """Return the hash of a file, which stands for it in the inputs."""
+    with file.open("rb") as content:
+        return hashlib.file_digest(content, "sha256").hexdigest()
+
+
+def _read(study: Study, file: InputFile) -> tuple[Case | SceneInput, Path]:
+    """Return the case or the scene in a file, and its folder."""
+    if study.subject == "scene" or (study.subject != "case" and "shafts" in read_table(file)):
+        return assessed_scene(file)
+    return read_model(Case, file), file.folder
+
+
+def _assessed(subject: Case | SceneInput) -> Case | SceneInput:
+    """Return what is studied; what is implausible about a case is said, about a scene with its tables."""
+    if isinstance(subject, Case):
+        warn(case_warnings(subject))
+    return subject
+
+
+def _runs_folder(targets: list[Path]) -> Path | None:
+    """Return the folder for runs beside the files to write."""
+    return targets[0].with_name(f"{targets[0].stem}_runs") if targets else None
+
+
+def _made(subject: Case | SceneInput, folder: Path, service: str | None, report: Report) -> Any:
+    """Return the case, or the scene with its tables."""
+    return subject if isinstance(subject, Case) else tabled_scene(subject, folder, service, report)
+
+
+def _names(study: Study, files: Sequence[InputFile]) -> list[str]:
+    """Return names of results: what tells their files apart."""
+    names = [file.path.stem.removeprefix(f"{study.name}_").replace("_", " ") for file in files]
+    return [str(file) for file in files] if len(set(names)) < len(names) else names
+
+
+def _targets(study: Study, output: Path | None) -> list[Path]:
+    """Return the files to write; raises `BadInput` if one cannot be."""
+    if output is None:
+        return []
+    if study.folder:
+        return output_files(output, study.folder, study.endings)
+    if output.suffix not in study.endings:
+        raise BadInput.of("output", str(output), f"a file ending in one of {', '.join(study.endings)}")
+    check_writable(output)
+    return [output]
+
+
+def _writers(study: Study, subject: Any) -> dict[str, Writer]:
+    """Return what writes a result, by the ending of the file; `subject` is what was studied."""
+    run, page = study.run, presentation_of(study)
+    further = {
+        ending: lambda result, file, write=write: write(result, subject, file)
+        for ending, write in run.writers.items()
+    }
+    return {
+        ".nc": run.file.write,
+        ".json": run.save_facts,
+        ".png": lambda result, file: file.write_bytes(png(page.figure(result))),
+        ".html": lambda result, file: write_whole(page.page(result), file, warnings=messages()),
+        ".csv": lambda result, file: file.write_text(_csv(study, result), encoding="utf-8"),
+        **further,
+    }
+
+
+def _csv(study: Study, result: Any) -> str:
+    """Return the numbers of the plot as CSV."""
+    numbers = presentation_of(study).series
+    assert numbers is not None
+    series = numbers(result)
+    return csv_text(series.head, series.rows)
+
+
+def _written(study: Study, targets: list[Path]) -> Json:
+    """Return the files that were written, under the names that verbs have for them."""
+    names = [str(target) for target in targets]
+    if study.folder:
+        return {"written": names}
+    return {"written": names[0], "file": names[0]} if names else {}
+
+
+def _show(study: Study, result: Any, targets: list[Path], remote_seconds: float) -> None:
+    """Print tables and lines for people, and what all of it cost: tables, workers and other children too."""
+    out = console()
+    for part in presentation_of(study).text(result):
+        if isinstance(part, str):
+            out.print(part, highlight=False, soft_wrap=True)
+        else:
+            out.print(table(part.head, part.rows, part.caption))
+    out.print(f"cost {engineering(cpu_seconds() + remote_seconds, 3)} CPU s", highlight=False)
+    print_result(presentation_of(study).page(result).headlines, targets)

@@ -1,0 +1,137 @@
+"""Results on disk, named by the hash of their input and the digest of their bytes, compared at every read."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import asdict
+from pathlib import Path
+from tempfile import NamedTemporaryFile
+from typing import Any, BinaryIO, cast
+
+from lineofaction.client.status import Result
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.result_kinds import SUFFIX
+
+FIGURES = ".json"
+"""Ending of the figures of results."""
+SET_ASIDE = ".damaged"
+"""Ending of what was found damaged: never read again, may be deleted."""
+
+
+class ResultCache:
+    """A directory of result files that processes may share: each appears complete, its digest in its name."""
+
+    def __init__(self, directory: Path) -> None:
+        self._directory = directory
+
+    @contextmanager
+    def incoming(self) -> Iterator[BinaryIO]:
+        """Yield a file to write a result into; it is removed afterwards unless it was kept.
+
+        Raises
+        ------
+        BadInput
+            The directory cannot be written.
+        """
+        with self._part(self._directory) as stream:
+            yield stream
+
+    def keep(self, kind: str, key: str, stream: BinaryIO, digest: str, suffix: str = SUFFIX) -> Path:
+        """Keep the file of `incoming`; `digest` is its SHA-256, hexadecimal."""
+        file = self._folder(kind, key) / f"{digest}{suffix}"
+        file.parent.mkdir(parents=True, exist_ok=True)
+        _settle(stream, file)
+        return file
+
+    def get(self, kind: str, key: str, suffix: str = SUFFIX) -> Path | None:
+        """Return a file of a result if it is here and undamaged; a damaged one is set aside."""
+        for file in sorted(self._folder(kind, key).glob(f"*{suffix}")):
+            if _holds(file, file.stem):
+                with contextlib.suppress(OSError):  # of another owner
+                    os.utime(file)  # its last use, by which caches are kept small
+                return file
+        return None
+
+    def remember(
+        self, service: str, process: str, inputs: dict[str, Any], result: Result, version: str = ""
+    ) -> None:
+        """Record the result of these inputs; `version` is the service's, if it is known."""
+        file = self._note(service, process, inputs)
+        with self._part(file.parent) as stream:
+            stream.write(json.dumps(asdict(result) | {"version": version}).encode())
+            _settle(stream, file)
+
+    def recall(
+        self, service: str, process: str, inputs: dict[str, Any], version: str | None = None
+    ) -> Result | None:
+        """Return the earlier result of these inputs, if its file is here and undamaged.
+
+        If a version is given, only a result of a service of that version.
+        """
+        try:
+            facts = json.loads(self._note(service, process, inputs).read_text())
+            result = Result(str(facts["key"]), str(facts["kind"]), str(facts["href"]))
+            if version not in (None, facts.get("version")):
+                return None
+        except (OSError, ValueError, KeyError, TypeError):
+            return None
+        held = any(self.get(result.kind, result.key, suffix) is not None for suffix in (SUFFIX, FIGURES))
+        return result if held else None
+
+    def _folder(self, kind: str, key: str) -> Path:
+        """Return the folder of a key, whose files differ where services gave different bytes for it."""
+        return self._directory / kind / _plain(key)
+
+    def _note(self, service: str, process: str, inputs: dict[str, Any]) -> Path:
+        """Return the file of the note of a request."""
+        text = json.dumps({"service": service, "process": process, "inputs": inputs}, sort_keys=True)
+        return self._directory / "requests" / f"{hashlib.sha256(text.encode()).hexdigest()}.json"
+
+    @contextmanager
+    def _part(self, folder: Path) -> Iterator[BinaryIO]:
+        """Yield a file in a folder that nobody else sees or writes."""
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            with NamedTemporaryFile(dir=folder, prefix=".", suffix=".part", delete=False) as stream:
+                try:
+                    yield cast("BinaryIO", stream)
+                finally:
+                    Path(stream.name).unlink(missing_ok=True)
+        except OSError as error:
+            bound, advice = "a folder that can be written", "Give cache_dir, or set XDG_CACHE_HOME."
+            raise BadInput.of(
+                "cache_dir", str(self._directory), bound, f"{error.strerror}. {advice}"
+            ) from None
+
+
+def _plain(key: str) -> str:
+    """Return a key as the name of a folder; it is hashed again unless it is a plain hash."""
+    plain = len(key) == 64 and set(key) <= set("0123456789abcdef")
+    return key if plain else hashlib.sha256(key.encode("utf-8", "replace")).hexdigest()
+
+
+def _holds(file: Path, digest: str) -> bool:
+    """Whether a file holds what its name says; if not it is set aside."""
+    try:
+        with file.open("rb") as stream:
+            actual = hashlib.file_digest(stream, "sha256").hexdigest()
+    except OSError:  # unreadable, or set aside by another process: as good as not here
+        return False
+    if actual != digest:
+        with contextlib.suppress(OSError):
+            file.replace(f"{file}{SET_ASIDE}")
+    return actual == digest
+
+
+def _settle(stream: BinaryIO, file: Path) -> None:
+    """Let what was written appear under its name: a reader sees all of it, or nothing.
+
+    What a power failure cuts short is found damaged when it is read, so the disk is not waited for.
+    """
+    stream.flush()
+    Path(stream.name).replace(file)

@@ -1,0 +1,164 @@
+"""The clients of one service: one whose calls block, one whose calls are awaited."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from copy import copy
+from dataclasses import replace
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import httpx2
+
+from lineofaction.client.address import http_options
+from lineofaction.client.awaiting import AwaitingDriver
+from lineofaction.client.batch import AsyncBatch, Batch
+from lineofaction.client.blocking import BlockingDriver
+from lineofaction.client.cache import ResultCache
+from lineofaction.client.exchange import Exchange
+from lineofaction.client.job import AsyncJob, Job
+from lineofaction.client.job_calls import JobCalls
+from lineofaction.client.lookup_calls import LookupCalls
+from lineofaction.client.offers import reader_of
+from lineofaction.client.processes import Processes
+from lineofaction.client.result_calls import ResultCalls
+from lineofaction.client.scene_calls import SceneCalls
+from lineofaction.client.status import Watch
+from lineofaction.client.surface import Awaiting, Blocking, Session
+from service.directories import cache_home
+
+
+class Client(Processes, JobCalls, ResultCalls, LookupCalls, SceneCalls):
+    """All calls of a client.
+
+    Parameters
+    ----------
+    base_url : str, optional
+        Address of the service; default: the environment variable ``LOA_SERVICE``, else
+        ``http://127.0.0.1:8321``.
+    cache_dir : str or Path, optional
+        Where fetched results are kept; default: the user's cache directory.
+    transport : httpx2.BaseTransport or httpx2.AsyncBaseTransport, optional
+        Replaces the network, for tests.
+    timeout : float
+        Seconds that connecting, sending, or the next piece of an answer may take.
+    attempts : int
+        How often a request is sent before the service counts as unreachable.
+    patience : float
+        Seconds for which the service may be away while a job is waited for: jobs outlast its restart.
+    key : str, optional
+        Access key of the service; default: the environment variable ``LOA_KEY``.
+    progress : callable, optional
+        Called with every state seen of any job that is waited for; see `progress_bars`.
+
+    Raises
+    ------
+    BadInput
+        The address is none.
+    """
+
+    def __init__(
+        self,
+        base_url: str | None = None,
+        *,
+        cache_dir: str | Path | None = None,
+        transport: Any = None,
+        timeout: float = 30.0,
+        attempts: int = 4,
+        patience: float = 60.0,
+        key: str | None = None,
+        progress: Watch | None = None,
+    ) -> None:
+        options = http_options(base_url, timeout, key)
+        cache = ResultCache(cache_home() / "results" if cache_dir is None else Path(cache_dir))
+        self.session = Session(Exchange(options["base_url"], attempts), cache, patience, progress)
+        self._connect(transport, options)
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.session.exchange.base_url}>"
+
+    def _connect(self, transport: Any, options: dict[str, Any]) -> None:
+        """Make the driver."""
+        raise NotImplementedError
+
+    def with_terms(
+        self, *, title: str = "", tags: Sequence[str] = (), priority: int = 0, max_cost_s: float | None = None
+    ) -> Self:
+        """Return this client with terms for what it submits; both share connections and cache.
+
+        Parameters
+        ----------
+        title : str
+            Name of its jobs, up to 200 characters.
+        tags : sequence of str
+            What its jobs are found by: up to 16, each of up to 40 letters, digits and ``._:/+-``.
+        priority : int
+            -9 to 9: of the jobs that wait the oldest of the highest is next.
+        max_cost_s : float, optional
+            CPU seconds that each job may take; default: no limit.
+        """
+        view = copy(self)
+        view.session = replace(
+            self.session,
+            terms={"title": title, "tags": list(tags), "priority": priority, "max_cost_s": max_cost_s},
+        )
+        return view
+
+
+class LineOfActionClient(Client, Blocking):
+    """A service whose calls block; threads may share one."""
+
+    def _connect(self, transport: httpx2.BaseTransport | None, options: dict[str, Any]) -> None:
+        self.driver = BlockingDriver(transport, options)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the connections."""
+        self.driver.close()
+
+    def job(self, identifier: str) -> Job[Any, Any]:
+        """Return a job by its identifier; raises `NotFound`."""
+        state = self.status(identifier)
+        return Job(self, state, reader_of(state.process))
+
+    def batch(self, identifier: str) -> Batch[Any, Any]:
+        """Return a batch by its identifier; raises `NotFound`."""
+        state = self.status(identifier)
+        return Batch(self, state, reader_of(state.process))
+
+
+class AsyncLineOfActionClient(Client, Awaiting):
+    """A service whose calls are awaited, in one event loop."""
+
+    def _connect(self, transport: httpx2.AsyncBaseTransport | None, options: dict[str, Any]) -> None:
+        self.driver = AwaitingDriver(transport, options)
+
+    async def __aenter__(self) -> Self:
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        await self.close()
+
+    async def close(self) -> None:
+        """Close the connections."""
+        await self.driver.close()
+
+    async def job(self, identifier: str) -> AsyncJob[Any, Any]:
+        """Return a job by its identifier; raises `NotFound`."""
+        state = await self.status(identifier)
+        return AsyncJob(self, state, reader_of(state.process))
+
+    async def batch(self, identifier: str) -> AsyncBatch[Any, Any]:
+        """Return a batch by its identifier; raises `NotFound`."""
+        state = await self.status(identifier)
+        return AsyncBatch(self, state, reader_of(state.process))

@@ -1,0 +1,261 @@
+"""The jobs of a service: submit, look, wait, list, dismiss; whatever the processes compute."""
+
+from __future__ import annotations
+
+import math
+import time
+import uuid
+import warnings
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from lineofaction.client.events import job_events
+from lineofaction.client.paging import pages
+from lineofaction.client.status import JobState, OfflineWarning, Result, Watch
+from lineofaction.client.steps import Items, Steps
+from lineofaction.client.surface import Session, Surface, listing, operation
+from lineofaction.client.waiting import Pace, ended, outlasting
+from lineofaction.gearbox.problems import BadInput, ServiceError, Unreachable
+from service.version import solver_version
+
+_LONGEST_PAUSE_S = 2.0
+_REFERENCES = {"response": "document", "transmissionMode": "reference"}
+"""Whatever form a job was submitted with: say where its result is."""
+
+
+def pace_of_known(session: Session, timeout: float | None = None, interval: float = 0.05) -> Pace:
+    """Return the pace of waiting for a job that the service is known to have."""
+    longest = math.inf if timeout is None else timeout
+    return Pace(interval, _LONGEST_PAUSE_S, longest, session.patience, time.monotonic())
+
+
+def end_of(surface: Surface, job: str, progress: Watch | None, pace: Pace) -> Steps[JobState]:
+    """Wait until a job has ended, in whatever way; raises `StillRunning`, `Unreachable`."""
+    watch = progress or surface.session.progress
+
+    def look() -> Steps[JobState]:
+        state = yield from JobCalls.status(surface, job)
+        if watch is not None:
+            watch(state)
+        return state
+
+    return (yield from ended(job, look, pace))
+
+
+def result_of(surface: Surface, job: str, progress: Watch | None, pace: Pace) -> Steps[Result]:
+    """Wait for a job and return where its result is; raises as `JobCalls.wait`."""
+    yield from end_of(surface, job, progress, pace)
+    return (yield from outlasting(lambda: JobCalls.result(surface, job), pace.patience))
+
+
+class JobCalls(Surface):
+    """The steps of any process, by identifiers of jobs; inputs are JSON."""
+
+    @operation
+    def submit(
+        self, process: str, inputs: dict[str, Any], *, idempotency_key: str | None = None
+    ) -> Steps[JobState]:
+        """Enter a job; equal work is done once, whoever asks for it.
+
+        However often the network makes it be sent, it is one job: it carries an ``Idempotency-Key``.
+
+        Parameters
+        ----------
+        process : str
+        inputs : dict
+            As JSON.
+        idempotency_key : str, optional
+            Name of this submission: a later one of the same name is the same job. Default: a new name.
+
+        Raises
+        ------
+        BadInput
+            The inputs cannot be used.
+        QueueFull, Unreachable, ServiceError
+        """
+        path = f"/v1/processes/{process}/execution"
+        headers = {"Idempotency-Key": idempotency_key or str(uuid.uuid4())}
+        body = {**self.session.terms, "inputs": inputs}
+        try:
+            return (
+                yield from self.session.exchange.read(
+                    JobState.from_json, "POST", path, json=body, headers=headers
+                )
+            )
+        except BadInput as error:
+            yield from self._note_other_version(error)
+            raise
+
+    @operation
+    def submit_batch(
+        self, process: str, jobs: Sequence[dict[str, Any]], inputs: dict[str, Any] | None = None
+    ) -> Steps[JobState]:
+        """Enter many jobs of a process at once, all or none; return the state of the batch, a job itself.
+
+        Parameters
+        ----------
+        process : str
+        jobs : sequence of dict
+            For each job its inputs, or their differences from what all share, as a JSON merge patch.
+        inputs : dict, optional
+            Inputs that all share.
+
+        Raises
+        ------
+        BadInput
+            With the faults of all jobs, by their index: ``jobs[3].pair.pinion.teeth``.
+        QueueFull, Unreachable, ServiceError
+        """
+        headers = {"Idempotency-Key": str(uuid.uuid4())}
+        body = {**self.session.terms, "process": process, "inputs": inputs or {}, "jobs": list(jobs)}
+        exchange = self.session.exchange
+        return (
+            yield from exchange.read(JobState.from_json, "POST", "/v1/batches", json=body, headers=headers)
+        )
+
+    @operation
+    def version(self) -> Steps[str]:
+        """Return the version of the service."""
+        return (yield from self.session.exchange.read(lambda facts: str(facts["version"]), "GET", "/v1/"))
+
+    @operation
+    def status(self, job: str) -> Steps[JobState]:
+        """Return the state of a job."""
+        return (yield from self.session.exchange.read(JobState.from_json, "GET", f"/v1/jobs/{job}"))
+
+    @operation
+    def dismiss(self, job: str) -> Steps[JobState]:
+        """Cancel a job; its work ends unless other jobs share it."""
+        return (yield from self.session.exchange.read(JobState.from_json, "DELETE", f"/v1/jobs/{job}"))
+
+    @operation
+    def relabel(
+        self, job: str, *, title: str | None = None, tags: Sequence[str] | None = None
+    ) -> Steps[JobState]:
+        """Change title and tags of a job, ended or not; None: they stay. Raises `BadInput`, `NotFound`."""
+        body = {"title": title, "tags": None if tags is None else list(tags)}
+        return (
+            yield from self.session.exchange.read(JobState.from_json, "PATCH", f"/v1/jobs/{job}", json=body)
+        )
+
+    @listing
+    def jobs(
+        self,
+        *,
+        process: Sequence[str] = (),
+        status: Sequence[str] = (),
+        created: str = "../..",
+        tags: Sequence[str] = (),
+        title: str = "",
+        parent: str | None = None,
+        limit: int | None = None,
+    ) -> Items[JobState]:
+        """Yield the states of jobs, the newest first; pages are fetched as they are needed.
+
+        Parameters
+        ----------
+        process, status : sequence of str
+            Only these; default: all.
+        created : str
+            An RFC 3339 instant, or an interval ``start/end`` with ``..`` for an open end.
+        tags : sequence of str
+            Only jobs that have all of these.
+        title : str
+            Only jobs that have all of these words in their title, in any case.
+        parent : str, optional
+            The batch whose jobs are wanted; default: batches, and jobs that are in none.
+        limit : int, optional
+            Most jobs to yield; default: all.
+        """
+        wanted = {"processID": list(process), "status": list(status), "datetime": created}
+        wanted |= {"tag": list(tags), "title": title}
+        wanted |= {} if parent is None else {"parent": parent}
+        yield from pages(self.session.exchange, "/v1/jobs", "jobs", JobState.from_json, wanted, limit)
+
+    @listing
+    def events(self, job: str) -> Items[JobState]:
+        """Yield the state of a job now and whenever it changes, until it has ended.
+
+        Raises
+        ------
+        NotFound
+        QueueFull
+            The service serves as many streams as it may.
+        Unreachable
+            The service was away for longer than the client's patience.
+        """
+        yield from job_events(self.session.exchange, job, self.session.patience)
+
+    @operation
+    def wait(
+        self,
+        job: str,
+        progress: Watch | None = None,
+        *,
+        timeout: float | None = None,
+        interval: float = 0.05,
+    ) -> Steps[Result]:
+        """Wait for a job and return where its result is. Whatever ends the wait, the job continues.
+
+        Parameters
+        ----------
+        job : str
+            Its identifier.
+        progress : callable, optional
+            Called with every state seen; default: that of the client.
+        timeout : float, optional
+            Seconds to wait at most.
+        interval : float
+            Seconds between the first two looks; later pauses grow, to 2 s.
+
+        Raises
+        ------
+        BadInput, JobFailed, JobDismissed
+            The job ended without a result.
+        StillRunning
+            It did not end within `timeout`; a TimeoutError too.
+        Unreachable
+            The service was away for longer than the client's patience.
+        """
+        known = pace_of_known(self.session, timeout, interval)
+        return (yield from result_of(self, job, progress, replace(known, answered=-math.inf)))
+
+    @operation
+    def result(self, job: str) -> Steps[Result]:
+        """Return where the result of a job is; raises as `wait`, or `ResultNotReady`."""
+        path = f"/v1/jobs/{job}/results"
+        return (yield from self.session.exchange.read(Result.from_json, "GET", path, params=_REFERENCES))
+
+    @operation
+    def obtain(self, process: str, inputs: dict[str, Any], progress: Watch | None = None) -> Steps[Result]:
+        """Return where the result of inputs is, computed if need be: submit, wait.
+
+        When the service cannot be reached, the result that it gave for the same inputs before is taken, if
+        its file is in the cache; an `OfflineWarning` says so. Raises as `submit` and `wait`.
+        """
+        service, cache = self.session.exchange.base_url, self.session.cache
+        try:
+            state = yield from JobCalls.submit(self, process, inputs)
+            result = yield from result_of(self, state.id, progress, pace_of_known(self.session))
+        except Unreachable:
+            known = cache.recall(service, process, inputs)
+            if known is None:
+                raise
+            text = f"No service answers at {service}: the {known.kind} is from the cache."
+            warnings.warn(text, OfflineWarning, stacklevel=6)
+            return known
+        cache.remember(service, process, inputs, result)
+        return result
+
+    def _note_other_version(self, error: BadInput) -> Steps[None]:
+        """Add to a refusal that client and service are of different versions, if they are."""
+        try:
+            theirs = yield from JobCalls.version(self)
+        except ServiceError:
+            return
+        if theirs != solver_version():
+            error.add_note(
+                f"The service is version {theirs}, this client {solver_version()}: they "
+                "may differ. Install the version of the service."
+            )

@@ -1,0 +1,81 @@
+"""The STE databases of a scene's meshes: from files, or from whoever holds and computes them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+from lineofaction.client.offers import ANALYZE
+from lineofaction.client.portable import case_of_mesh
+from lineofaction.client.steps import Steps
+from lineofaction.gearbox.problems import BadInput
+
+if TYPE_CHECKING:
+    from fe_contact.ste import SteDatabase
+    from lineofaction.gearbox.schemas import Case
+    from lineofaction.gearbox.schemas.scene_meshes import MeshInput
+
+
+class TableSource(Protocol):
+    """Who holds and computes STE databases."""
+
+    def by_hash(self, key: str) -> Steps[SteDatabase]:
+        """Return the database of a content hash."""
+
+    def by_case(self, case: Case) -> Steps[SteDatabase]:
+        """Return the database of a case."""
+
+
+class MeshTables:
+    """The databases of the meshes of one scene; equal cases are requested once.
+
+    Parameters
+    ----------
+    folder : Path
+        What the files that the scene names are relative to.
+    source : TableSource
+    """
+
+    def __init__(self, folder: Path, source: TableSource) -> None:
+        self._folder, self._source = folder, source
+        self._known: list[tuple[Case, SteDatabase]] = []
+
+    def of(self, index: int, mesh: MeshInput) -> Steps[SteDatabase]:
+        """Return the database of a mesh, the `index`-th of its scene.
+
+        Raises
+        ------
+        BadInput
+            Named by the field of the scene.
+        DatabaseError
+            Its file is no database.
+        """
+        field = f"meshes[{index}]"
+        if mesh.database_file is not None:
+            return self._in_file(f"{field}.database_file", mesh.database_file)
+        case = case_of_mesh(mesh, field, self._folder)
+        try:
+            if case is not None:
+                return (yield from self._of_case(case))
+            assert mesh.database_hash is not None  # the schema has seen to it
+            return (yield from self._source.by_hash(mesh.database_hash))
+        except BadInput as error:
+            raise error.within(field if case is None else f"{field}.case") from None
+
+    def _in_file(self, field: str, name: str) -> SteDatabase:
+        """Return the database in a file."""
+        file = self._folder / name
+        if not file.is_file():
+            advice = "Check the path, or make one with: loa analyze"
+            raise BadInput.of(field, str(file), "an STE database", advice)
+        database: SteDatabase = ANALYZE.read(file)
+        return database
+
+    def _of_case(self, case: Case) -> Steps[SteDatabase]:
+        """Return the database of a case."""
+        known = next((database for other, database in self._known if other == case), None)
+        if known is not None:
+            return known
+        database = yield from self._source.by_case(case)
+        self._known.append((case, database))
+        return database

@@ -1,0 +1,111 @@
+"""The processes of a service as the client offers them: what they take, and how their results are read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache, partial
+from inspect import Parameter, Signature
+from pathlib import Path
+from typing import Any
+
+from lineofaction.client.libraries import libraries
+from lineofaction.client.portable import case_inputs, inputs_of, scene_inputs, study_inputs
+from lineofaction.gearbox.registry import FORMER, STUDIES, Study
+
+
+@dataclass(frozen=True)
+class Offer:
+    """A process.
+
+    Attributes
+    ----------
+    name : str
+        On the service.
+    description : str
+    signature : inspect.Signature
+        Of the client's calls.
+    to_inputs : callable
+        What is computed, to JSON.
+    read : callable
+        The path of the result's file to the result; imports what it needs.
+    """
+
+    name: str
+    description: str
+    signature: Signature
+    to_inputs: Callable[[Any], dict[str, Any]]
+    read: Callable[[Path], Any]
+
+    @property
+    def attribute(self) -> str:
+        """Name of the client's attribute."""
+        return self.name.replace("-", "_")
+
+    def inputs(self, *args: Any, **kwargs: Any) -> dict[str, Any]:
+        """Return the inputs of a call as JSON; raises TypeError for a call that does not fit, `BadInput`."""
+        try:
+            bound = self.signature.bind(*args, **kwargs).arguments
+        except TypeError as error:
+            raise TypeError(f"{self.attribute}{self.signature}: {error}") from None
+        subject = self.to_inputs(bound[next(iter(self.signature.parameters))])
+        varied = bound.get("study", bound.get("options", {}))
+        return subject | study_inputs(varied)
+
+
+def _read_database(file: Path) -> Any:
+    """Read an STE database."""
+    with libraries():
+        from fe_contact.ste import SteDatabase  # noqa: PLC0415 (keeps the import of the client light)
+
+    return SteDatabase.from_netcdf(file)
+
+
+def _read_run(file: Path) -> Any:
+    """Read a run."""
+    with libraries():
+        from dynamics.results import RunResult  # noqa: PLC0415 (keeps the import of the client light)
+
+    return RunResult.from_netcdf(file)
+
+
+def _read_study(study: Study, file: Path) -> Any:
+    """Read the result of a study; the study's module is loaded now."""
+    with libraries():
+        stored = study.run.file
+    return stored.read(file)
+
+
+def _signature(subject: str, *further: Parameter) -> Signature:
+    """Return the signature of calls about a subject."""
+    return Signature([Parameter(subject, Parameter.POSITIONAL_OR_KEYWORD), *further])
+
+
+def _study_offer(study: Study) -> Offer:
+    """Return the process of a study."""
+    to_inputs = {"case": case_inputs, "scene": scene_inputs, "case or scene": inputs_of}[study.subject]
+    varied = (
+        Parameter("study", Parameter.POSITIONAL_OR_KEYWORD, default={} if study.bare else Parameter.empty)
+        if study.from_file
+        else Parameter("options", Parameter.VAR_KEYWORD)
+    )
+    signature = _signature(study.argument, varied)
+    return Offer(study.name, study.description, signature, to_inputs, partial(_read_study, study))
+
+
+ANALYZE = Offer(
+    "analyze", "Compute the STE database of a case.", _signature("case"), case_inputs, _read_database
+)
+SIMULATE = Offer("simulate", "Compute the run of a scene.", _signature("scene"), scene_inputs, _read_run)
+
+
+@cache
+def offers() -> Mapping[str, Offer]:
+    """Return all processes by their names on the service."""
+    return {offer.name: offer for offer in (ANALYZE, SIMULATE, *map(_study_offer, STUDIES.values()))}
+
+
+def reader_of(process: str) -> Callable[[Path], Any]:
+    """Return how results of a process are read; those of an unknown one stay files."""
+    name = FORMER.get(process, process)
+    return offers()[name].read if name in offers() else lambda file: file

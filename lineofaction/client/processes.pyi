@@ -1,0 +1,207 @@
+# Written by scripts/client_types.py from lineofaction.gearbox.registry: do not edit.
+# fmt: off
+# ruff: noqa: E501 (a line for each parameter)
+from collections.abc import Callable, Sequence
+from typing import Any, Concatenate, Literal, ParamSpec, TypeVar
+
+from dynamics.ablation.ablate import Ablation as DynamicsAblation
+from dynamics.accuracy.frontier import Frontier as DynamicsFrontier
+from dynamics.linearize.forced_response import ForcedResponse as DynamicsForcedResponse
+from dynamics.linearize.modal_analysis import ModalAnalysis as DynamicsModalAnalysis
+from dynamics.noise.radiated_sound import RadiatedSound as DynamicsRadiatedSound
+from dynamics.periodic.steady_states import SteadyStates as DynamicsSteadyStates
+from dynamics.results import RunResult
+from dynamics.study.result import Study as DynamicsStudy
+from fe_contact.analysis.flanks.load_distribution import LoadDistribution as FeContactLoadDistribution
+from fe_contact.analysis.studies.ablation import Ablation as FeContactAblation
+from fe_contact.analysis.studies.frontier import Frontier as FeContactFrontier
+from fe_contact.microgeometry.optimization import Optimization as FeContactOptimization
+from fe_contact.microgeometry.tolerance_study import ToleranceStudy as FeContactToleranceStudy
+from fe_contact.ste import SteDatabase
+from lineofaction.client.portable import CaseLike, SceneLike, StudyLike
+from lineofaction.client.process import Offered
+from lineofaction.client.surface import Surface
+from lineofaction.gearbox.schemas.figures import Figures, RunFigures, TableFigures
+from lineofaction.gearbox.studies.ablate.answer import AblationFigures as ServiceAblationFigures
+from lineofaction.gearbox.studies.deflect.answer import DeflectionFigures as ServiceDeflectionFigures
+from lineofaction.gearbox.studies.deflect.result import GearboxDeflection as ServiceGearboxDeflection
+from lineofaction.gearbox.studies.flank.answer import FlankFigures as ServiceFlankFigures
+from lineofaction.gearbox.studies.frontier.answer import FrontierFigures as ServiceFrontierFigures
+from lineofaction.gearbox.studies.listen.answer import RecordingFigures as ServiceRecordingFigures
+from lineofaction.gearbox.studies.listen.heard_run import HeardRun as ServiceHeardRun
+from lineofaction.gearbox.studies.modes.answer import ModesFigures as ServiceModesFigures
+from lineofaction.gearbox.studies.noise.answer import NoiseFigures as ServiceNoiseFigures
+from lineofaction.gearbox.studies.optimize.answer import OptimizationFigures as ServiceOptimizationFigures
+from lineofaction.gearbox.studies.response.answer import ResponseFigures as ServiceResponseFigures
+from lineofaction.gearbox.studies.root_stress.answer import RootStressFigures as ServiceRootStressFigures
+from lineofaction.gearbox.studies.root_stress.run import Roots as ServiceRoots
+from lineofaction.gearbox.studies.scatter.answer import ScatterFigures as ServiceScatterFigures
+from lineofaction.gearbox.studies.sensitivity.answer import SensitivityFigures as ServiceSensitivityFigures
+from lineofaction.gearbox.studies.sensitivity.stored import PairStudy as ServicePairStudy
+from lineofaction.gearbox.studies.steady.answer import SteadyFigures as ServiceSteadyFigures
+from lineofaction.gearbox.studies.study.answer import StudyFigures as ServiceStudyFigures
+from lineofaction.gearbox.studies.sweep.answer import SweepFigures as ServiceSweepFigures
+from lineofaction.gearbox.studies.sweep.run import SweepResult as ServiceSweepResult
+from lineofaction.gearbox.studies.vibration.answer import VibrationFigures as ServiceVibrationFigures
+from lineofaction.gearbox.studies.vibration.run import HousingVibrationResult as ServiceHousingVibrationResult
+
+P = ParamSpec("P")
+T = TypeVar("T")
+F = TypeVar("F", bound=Figures)
+
+def _offered(figures: type[F]) -> Callable[[Callable[Concatenate[Any, P], T]], Offered[P, T, F]]: ...
+
+class Processes(Surface):
+    @_offered(TableFigures)
+    def analyze(self, case: CaseLike) -> SteDatabase: ...
+    @_offered(RunFigures)
+    def simulate(self, scene: SceneLike) -> RunResult: ...
+    @_offered(ServiceFlankFigures)
+    def flank(
+        self,
+        case: CaseLike,
+        *,
+        torque_n_m: float | None = ...,
+        normal_force_n: float | None = ...,
+        misalignment_um: float | None = ...,
+        center_distance_change_mm: float | None = ...,
+    ) -> FeContactLoadDistribution: ...
+    @_offered(ServiceAblationFigures)
+    def ablate(
+        self,
+        given: CaseLike | SceneLike,
+        *,
+        only: Sequence[str] | None = ...,
+    ) -> FeContactAblation | DynamicsAblation: ...
+    @_offered(ServiceFrontierFigures)
+    def frontier(
+        self,
+        given: CaseLike | SceneLike,
+        *,
+        rungs: Sequence[str] | None = ...,
+        up_to: Literal["corrected_fine", "3d_draft", "3d_standard", "3d_fine"] = ...,
+        full_contact: int | None = ...,
+    ) -> FeContactFrontier | DynamicsFrontier: ...
+    @_offered(ServiceSensitivityFigures)
+    def sensitivity(
+        self,
+        case: CaseLike,
+        *,
+        misalignment_um: Sequence[float] = ...,
+        center_distance_change_percent: Sequence[float] = ...,
+    ) -> tuple[ServicePairStudy, ...]: ...
+    @_offered(ServiceRootStressFigures)
+    def root_stress(
+        self,
+        case: CaseLike,
+        *,
+        torque_n_m: float | None = ...,
+        normal_force_n: float | None = ...,
+        misalignment_um: float | None = ...,
+        center_distance_change_mm: float | None = ...,
+    ) -> ServiceRoots: ...
+    @_offered(ServiceOptimizationFigures)
+    def optimize(
+        self,
+        case: CaseLike,
+        study: StudyLike,
+    ) -> FeContactOptimization: ...
+    @_offered(ServiceScatterFigures)
+    def scatter(
+        self,
+        case: CaseLike,
+        *,
+        tolerance_class: int = ...,
+        misalignment_um: float = ...,
+        distribution: Literal["normal", "uniform"] = ...,
+        samples: int = ...,
+        seed: int = ...,
+    ) -> FeContactToleranceStudy: ...
+    @_offered(ServiceSweepFigures)
+    def sweep(
+        self,
+        case: CaseLike,
+        *,
+        over: Sequence[str] = ...,
+        show: Sequence[Literal["peak_to_peak", "harmonic_1", "harmonic_2", "harmonic_3", "max_pressure", "face_load_factor"]] = ...,
+    ) -> ServiceSweepResult: ...
+    @_offered(ServiceModesFigures)
+    def modes(
+        self,
+        scene: SceneLike,
+        *,
+        speed_rpm: Sequence[float] = ...,
+        orders: int = ...,
+        highest_frequency_hz: float | None = ...,
+    ) -> DynamicsModalAnalysis: ...
+    @_offered(ServiceResponseFigures)
+    def response(
+        self,
+        scene: SceneLike,
+        *,
+        speed_rpm: Sequence[float],
+        orders: int = ...,
+    ) -> DynamicsForcedResponse: ...
+    @_offered(ServiceNoiseFigures)
+    def noise(
+        self,
+        scene: SceneLike,
+        *,
+        speed_rpm: Sequence[float] = ...,
+        orders: int = ...,
+        run: str | None = ...,
+        band: bool = ...,
+        sensitivities: bool = ...,
+        housing_damping: Sequence[float] = ...,
+        housing_frequency: Sequence[float] = ...,
+        mount_stiffness: Sequence[float] = ...,
+        bearing_stiffness: Sequence[float] = ...,
+        mesh_damping: Sequence[float] = ...,
+        radiation: Literal["monopoles", "equivalent_radiated_power"] = ...,
+        boundary_elements: bool = ...,
+    ) -> DynamicsRadiatedSound: ...
+    @_offered(ServiceVibrationFigures)
+    def vibration(
+        self,
+        scene: SceneLike,
+        *,
+        speed_rpm: Sequence[float] = ...,
+        orders: int = ...,
+        run: str | None = ...,
+        housing: str | None = ...,
+        at_rpm: float | None = ...,
+        at_order: float | None = ...,
+        mode: int | None = ...,
+    ) -> ServiceHousingVibrationResult: ...
+    @_offered(ServiceRecordingFigures)
+    def listen(
+        self,
+        scene: SceneLike,
+        *,
+        run: str,
+        microphone_mm: Sequence[float] | None = ...,
+        point: str | None = ...,
+        direction: Literal["x", "y", "z", "principal"] | None = ...,
+    ) -> ServiceHeardRun: ...
+    @_offered(ServiceSteadyFigures)
+    def steady(
+        self,
+        scene: SceneLike,
+        *,
+        speed_rpm: Sequence[float],
+        branch: bool = ...,
+        repeat: int = ...,
+        settling_periods: int = ...,
+    ) -> DynamicsSteadyStates: ...
+    @_offered(ServiceDeflectionFigures)
+    def deflect(
+        self,
+        scene: SceneLike,
+        study: StudyLike = ...,
+    ) -> ServiceGearboxDeflection: ...
+    @_offered(ServiceStudyFigures)
+    def study(
+        self,
+        scene: SceneLike,
+        study: StudyLike,
+    ) -> DynamicsStudy: ...

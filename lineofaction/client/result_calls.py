@@ -1,0 +1,224 @@
+"""Stored results: their files, their figures, and what the service answers from them."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Unpack
+
+from lineofaction.client.cache import FIGURES
+from lineofaction.client.libraries import libraries
+from lineofaction.client.live_options import LiveOptions
+from lineofaction.client.offers import ANALYZE
+from lineofaction.client.paging import pages
+from lineofaction.client.raw_columns import Column, query_columns, read_answer
+from lineofaction.client.report import Report
+from lineofaction.client.steps import Items, Steps
+from lineofaction.client.surface import Session, Surface, listing, operation
+from lineofaction.gearbox import schemas
+from lineofaction.gearbox.problems import DamagedFile, NotFound
+from lineofaction.gearbox.registry import JSON, NETCDF
+from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS, RESULTS, SUFFIX, figures_model
+from service.schemas.database_list import DatabaseEntry
+
+if TYPE_CHECKING:
+    import xarray
+
+    from fe_contact.ste import SteDatabase
+    from lineofaction.gearbox.schemas.figures import Figures
+
+
+class ResultCalls(Surface):
+    """Stored results by their content hashes; a cached one needs no service."""
+
+    @listing
+    def databases(self, *, limit: int | None = None) -> Items[DatabaseEntry]:
+        """Yield the stored STE databases with their cases, the newest first, at most `limit`."""
+        yield from pages(
+            self.session.exchange, "/v1/databases", "databases", DatabaseEntry.model_validate, {}, limit
+        )
+
+    @operation
+    def fetch(self, key: str) -> Steps[SteDatabase]:
+        """Return the STE database of a content hash."""
+        file = yield from ResultCalls.fetch_file(self, key)
+        database: SteDatabase = ANALYZE.read(file)
+        return database
+
+    @operation
+    def fetch_dataset(self, key: str, kind: str = "database") -> Steps[xarray.Dataset]:
+        """Return a netCDF result as an xarray Dataset in memory, with units and names (SI).
+
+        Parameters
+        ----------
+        key : str
+            Its content hash.
+        kind : str
+            A name of `lineofaction.gearbox.schemas.result_kinds.RESULT_KINDS`.
+        """
+        file = yield from ResultCalls.fetch_file(self, key, kind)
+        with libraries():
+            from model_studies.netcdf_input import read_dataset  # noqa: PLC0415 (keeps the client light)
+
+            return read_dataset(file)
+
+    @operation
+    def fetch_file(self, key: str, kind: str = "database") -> Steps[Path]:
+        """Return the netCDF file of a result, from the disk cache or the service.
+
+        The file belongs to the cache: read it, or copy it.
+
+        Raises
+        ------
+        NotFound
+            The service has no such result.
+        DamagedFile
+            What arrived is not what was sent.
+        BadInput
+            The cache cannot be written.
+        """
+        file, _ = yield from ResultCalls.fetch_result(self, key, kind)
+        return file
+
+    @operation
+    def fetch_figures(self, key: str, kind: str) -> Steps[Figures]:
+        """Return the figures of a result, which its verb prints by ``--json``; as `fetch_file`."""
+        file, _ = yield from _fetched(self.session, key, (kind,), JSON)
+        return figures_model(kind).model_validate_json(file.read_bytes())
+
+    @operation
+    def fetch_result(self, key: str, *kinds: str) -> Steps[tuple[Path, str]]:
+        """Return the file of a result of one of some kinds, default all, and its kind; as `fetch_file`."""
+        return (yield from _fetched(self.session, key, kinds or tuple(RESULT_KINDS), NETCDF))
+
+    @operation
+    def report(self, key: str, *, against: str | None = None) -> Steps[Report]:
+        """Return the report on a result: main results, figures for plotly.js, tables; notebooks show it.
+
+        Parameters
+        ----------
+        key : str
+            Its content hash.
+        against : str, optional
+            Another result of the same kind, table or run: the report then compares both.
+        """
+        parameters = {} if against is None else {"against": against}
+        path = f"{RESULTS}/{key}/figures"
+        return (yield from self.session.exchange.read(Report.model_validate, "GET", path, params=parameters))
+
+    @operation
+    def sound(
+        self,
+        key: str,
+        *,
+        quantity: str = "",
+        bearing: str = "",
+        mesh: str = "",
+        direction: str = "",
+        against: str | None = None,
+    ) -> Steps[bytes]:
+        """Return a run as a WAV file, as ``loa listen`` writes it; it states quantity and full scale.
+
+        Parameters
+        ----------
+        key : str
+            Content hash of the run.
+        quantity, bearing, mesh, direction : str
+            As the options of ``loa listen``; empty: chosen as there.
+        against : str, optional
+            Another run, whose sound is then on the same full scale.
+
+        Raises
+        ------
+        BadInput
+            The run does not hold that, it is silent, or longer than five minutes.
+        NotFound, QueueFull, LiveUnavailable, Unreachable, ServiceError
+        """
+        named = {"quantity": quantity, "bearing": bearing, "mesh": mesh, "direction": direction}
+        parameters = {name: value for name, value in (named | {"against": against or ""}).items() if value}
+        path = f"{RESULTS}/{key}/sound"
+        answer = yield from self.session.exchange.request("GET", path, params=parameters)
+        return answer.content
+
+    @operation
+    def query(
+        self,
+        key: str,
+        position: Column,
+        deflection_um: Column,
+        *,
+        misalignment_um: Column = 0.0,
+        center_distance_change_mm: Column = 0.0,
+    ) -> Steps[schemas.QueryOutput]:
+        """Return force, tangent stiffness and validity of a stored database at many points.
+
+        Every column (a list, an array) has a value for each point, or one for all. Sent and answered as raw
+        float64, so nothing is rounded.
+
+        Raises
+        ------
+        BadInput
+            Columns of different lengths, too many points, a value that is not finite or out of bounds.
+        NotFound, Unreachable, ServiceError
+        """
+        columns = {
+            "position": position,
+            "deflection_um": deflection_um,
+            "misalignment_um": misalignment_um,
+            "center_distance_change_mm": center_distance_change_mm,
+        }
+        path, content = f"/v1/databases/{key}/query", query_columns(columns)
+        raw = yield from self.session.exchange.columns(path, content, columns=",".join(columns))
+        return read_answer(raw)
+
+    @operation
+    def ste(
+        self, key: str, torque_n_m: Sequence[float], **options: Unpack[LiveOptions]
+    ) -> Steps[schemas.LiveOutput]:
+        """Return curves of the gears of a stored database with other flanks, loads and alignment, at once.
+
+        Parameters
+        ----------
+        key : str
+            Of the database.
+        torque_n_m : sequence of float
+            Increasing, at most twice the highest of the case.
+        **options
+            See `LiveOptions`.
+
+        Returns
+        -------
+        LiveOutput
+            ``curves`` with mean, peak-to-peak and harmonics, each with its error; assumptions; cost.
+
+        Raises
+        ------
+        BadInput
+            Named by the fields of the request.
+        NotAnalyzed
+            The compliance is not in the cache of the service: repeat with `condense`.
+        NotFound, QueueFull, Superseded, LiveUnavailable, Unreachable, ServiceError
+        """
+        pinion, wheel = dict(options.get("pinion") or {}), dict(options.get("wheel") or {})
+        question = {**options, "torque_n_m": list(torque_n_m), "pinion": pinion, "wheel": wheel}
+        reader, path = schemas.LiveOutput.model_validate, f"/v1/databases/{key}/ste"
+        return (yield from self.session.exchange.read(reader, "POST", path, json=question))
+
+
+def _fetched(session: Session, key: str, kinds: Sequence[str], form: str) -> Steps[tuple[Path, str]]:
+    """Return a form of a result, and its kind."""
+    suffix = FIGURES if form == JSON else SUFFIX
+    for kind in kinds:
+        cached = session.cache.get(kind, key, suffix)
+        if cached is not None:
+            return cached, kind
+    with session.cache.incoming() as file:
+        digest, headers = yield from session.exchange.download(f"{RESULTS}/{key}", form, file)
+        kind = headers.get("result-kind", kinds[0])
+        if kind not in kinds:
+            raise NotFound(f"Result {key!r} is no {kinds[0]}, but of the kind {kind}.")
+        coded = base64.b64encode(bytes.fromhex(digest)).decode()
+        if headers.get("content-digest") != f"sha-256=:{coded}:":
+            raise DamagedFile(f"The file of {kind} {key} was damaged in transfer. Fetch it again.")
+        return session.cache.keep(kind, key, file, digest, suffix), kind

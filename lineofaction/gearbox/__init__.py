@@ -1,0 +1,1 @@
+"""The gearbox: case, scene and unit, their files, and the studies of them."""

@@ -1,0 +1,138 @@
+"""Answers of an STE database in boundary units: curves, summaries, metadata."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from fe_contact.ste import Curve, SteDatabase
+from fe_contact.types import Estimate
+from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.problems import JobFailed
+from lineofaction.gearbox.units import MM, UM, as_typed
+
+Json = dict[str, Any]
+
+
+def curve_json(
+    database: SteDatabase,
+    *,
+    torque_n_m: float | None = None,
+    force_n: float | None = None,
+    at: Sequence[float] | None = None,
+    misalignment_um: float | None = None,
+    center_distance_change_mm: float | None = None,
+) -> Json:
+    """Return one curve: position in base pitches by the driving gear, 0 = reference pair at the pitch point.
+
+    Raises
+    ------
+    BadInput
+        The load or the alignment is outside what is stored.
+    JobFailed
+        The table has failed points.
+    """
+    with boundary_errors():
+        curve = database.curve(
+            torque=torque_n_m,
+            force=force_n,
+            at=None if at is None else np.asarray(at, dtype=float),
+            misalignment=None if misalignment_um is None else misalignment_um * UM,
+            center_distance_change=None
+            if center_distance_change_mm is None
+            else center_distance_change_mm * MM,
+        )
+    return _curve(curve)
+
+
+def _curve(curve: Curve) -> Json:
+    """Return a curve as plain JSON; a value that is no number is refused rather than written as null."""
+    answer = {
+        "torque_n_m": as_typed(curve.torque),
+        "normal_force_n": curve.point.force,
+        "misalignment_um": as_typed(curve.point.misalignment, UM),
+        "center_distance_change_mm": as_typed(curve.point.center_distance_change, MM),
+        "period": curve.period,
+        "position": curve.position.tolist(),
+        "ste_um": (curve.ste / UM).tolist(),
+        "pair": curve.pair.tolist(),
+        "load_share": curve.load_share.tolist(),
+        **_figures(curve),
+        **_orders(curve),
+    }
+    if not all(np.all(np.isfinite(answer[name])) for name in ("ste_um", "load_share")):
+        raise JobFailed(
+            "The curve has points without a solution. Compute the table again with other settings."
+        )
+    return answer
+
+
+def _figures(curve: Curve) -> Json:
+    """Mean, peak-to-peak and harmonics with their errors; without those if they were not estimated."""
+    figures = {
+        "mean_um": _um(curve.mean)[0],
+        "mean_error_um": _um(curve.mean)[1],
+        "peak_to_peak_um": _um(curve.peak_to_peak)[0],
+        "peak_to_peak_error_um": _um(curve.peak_to_peak)[1],
+        "harmonics_um": [_um(item)[0] for item in curve.harmonics],
+        "harmonics_error_um": [_um(item)[1] for item in curve.harmonics],
+    }
+    known = bool(
+        np.isfinite([item.error for item in (curve.mean, curve.peak_to_peak, *curve.harmonics)]).all()
+    )
+    return {name: value for name, value in figures.items() if known or "error" not in name}
+
+
+def _orders(curve: Curve) -> Json:
+    """All orders over a period of several base pitches; nothing over one, whose orders are the harmonics."""
+    if curve.period == 1:
+        return {}
+    return {
+        "order": curve.spectrum.order.tolist(),
+        "amplitude_um": (curve.spectrum.amplitude / UM).tolist(),
+    }
+
+
+def _um(estimate: Estimate) -> tuple[float, float]:
+    """Return value and error in um."""
+    return estimate.value / UM, estimate.error / UM
+
+
+def summary_json(database: SteDatabase) -> Json:
+    """Return what `loa analyze` prints: figures for every load, effect ledger, receipt, failed points."""
+    with boundary_errors():
+        curves = [database.curve(force=float(force), allow_failed=True) for force in database.force]
+    return {
+        "content_hash": database.metadata.content_hash,
+        "points": int(database.status.size),
+        "failed_points": database.n_failed,
+        "loads": [
+            {"torque_n_m": as_typed(curve.torque), "normal_force_n": curve.point.force, **_figures(curve)}
+            for curve in curves
+        ],
+        "effect_ledger": database.metadata.effect_ledger,
+        "receipt": database.metadata.receipt,
+        "warnings": database.metadata.warnings,
+    }
+
+
+def metadata_json(database: SteDatabase) -> Json:
+    """Return what a database says about itself, with its axes."""
+    return {
+        "schema_version": database.metadata.schema_version,
+        "content_hash": database.metadata.content_hash,
+        "case": database.metadata.case,
+        "effect_ledger": database.metadata.effect_ledger,
+        "receipt": database.metadata.receipt,
+        "warnings": database.metadata.warnings,
+        "software_versions": database.metadata.software_versions,
+        "failed_points": database.n_failed,
+        "period": database.period,
+        "position": database.position.tolist(),
+        "torque_n_m": [as_typed(torque) for torque in database.torque],
+        "normal_force_n": database.force.tolist(),
+        "misalignment_um": [as_typed(skew, UM) for skew in database.misalignment],
+        "center_distance_change_mm": [as_typed(change, MM) for change in database.center_distance_change],
+    }

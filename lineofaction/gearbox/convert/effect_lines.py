@@ -1,0 +1,60 @@
+"""The effect ledger and what was checked, in lines for people."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+from bounds import engineering
+from lineofaction.gearbox.convert.effect_sizes import by_size, influence_place, influence_words, trifles_title
+
+
+def ledger_lines(ledger: Iterable[Mapping[str, Any]]) -> Iterator[str]:
+    """Yield the decision about every effect, its influence at the nominal load, and its price."""
+    shown, trifles = by_size(ledger)
+    if where := influence_place(ledger):
+        yield f"influence of effects: estimated change without each, {where}"
+    for entry in shown:
+        state = "on " if entry["on"] else "off"
+        yield f"effect {entry['name']}: {state} ({entry['choice']}); {entry['reason']}"
+        if entry["decision"].startswith(("neglected", "on after")):
+            yield f"       {entry['decision']}"
+        if entry["on"] or entry["called_for"]:
+            yield f"       without it {influence_words(entry)}; cost {cost_words(entry)}"
+        if entry["price"] and entry["on"]:
+            yield f"       price of the choice: {entry['price']}"
+    if trifles:
+        yield f"{trifles_title(trifles)}: {', '.join(entry['name'] for entry in trifles)}"
+
+
+def cost_words(entry: Mapping[str, Any]) -> str:
+    """Say what an effect costs."""
+    seconds = entry["cost_cpu_seconds"]
+    return str(entry["cost"]) if seconds is None else f"{engineering(seconds, 2)} CPU s ({entry['cost']})"
+
+
+def assumption_lines(receipt: Mapping[str, Any]) -> Iterator[str]:
+    """Yield what was repeated and why, and the assumptions that do not hold."""
+    for run in receipt.get("repeated", ()):
+        for name, reason in run["turned_on"].items():
+            yield f"repeated with {name}: {reason} ({engineering(run['cpu_seconds'], 2)} CPU s)"
+    for check in receipt.get("assumptions", ()):
+        if check["holds"] is False:
+            yield f"VIOLATED: {check['assumption']}; {check['reason']}"
+
+
+def run_lines(attributes: Mapping[str, Any]) -> Iterator[str]:
+    """Yield what a dynamic run was repeated for, and what it took for granted that does not hold."""
+    earlier = attributes.get("receipt", {}).get("repeated")
+    if earlier:
+        for name, reason in earlier["turned_on"].items():
+            since = f", from {earlier['since']:.6g} s on" if earlier.get("since") else ""
+            yield f"repeated with {name}: {reason} (first run {engineering(earlier['seconds'], 2)} s{since})"
+    corrected = {**attributes, **attributes.get("receipt", {})}.get("base_radius_corrected", {})
+    for gear, radius in corrected.items():
+        stated, used = (1e3 * radius[name] for name in ("given", "used"))
+        yield f"base radius of {gear} corrected from {stated:.6g} to {used:.6g} mm: one base pitch per train"
+    for check in attributes.get("effect_ledger", {}).get("checks", ()):
+        if check["holds"] is False:
+            part = check["part"] or check["effect"]
+            yield f"VIOLATED: {check['assumption']} ({part}); {check['reason']}"

@@ -1,0 +1,101 @@
+"""Errors of the libraries as the boundary shows them: its field names, its units."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from pydantic import BaseModel
+
+from bounds import Reader, RefusedValue, Unit
+from dynamics.errors import DynamicsError
+from dynamics.errors import InputError as DynamicsInputError
+from fe_contact.errors import FeContactError, InfeasibleGeometry
+from fe_contact.errors import InputError as ContactInputError
+from host import Unavailable, missing_extra
+from lineofaction.gearbox.convert.vocabulary import boundary_name, case_field, scene_field
+from lineofaction.gearbox.problems import BadInput, Fault, JobFailed, ServiceError
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.faults import field_advice
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.units import as_typed, factor, unit_in_words, unit_of
+
+
+@dataclass(frozen=True)
+class CaseReader(Reader):
+    """Whoever wrote a case file."""
+
+    knows_si: ClassVar[bool] = False
+    model: ClassVar[type[BaseModel]] = Case
+
+    @property
+    def name(self) -> str:
+        """The case file's name of the field."""
+        return case_field(self.field)
+
+    def own_unit(self, unit: str) -> Unit:
+        """Return the unit of the field by its name, with its symbol if that is to be written."""
+        own = unit_of(self.name) or Unit(unit)
+        return own if unit else Unit("", own.factor)
+
+    def unit(self, value: float, unit: str) -> Unit:
+        """Return the field's unit for what is measured like it, but for lengths."""
+        own = unit_of(self.name)
+        return own if own and own.si == unit != "m" else unit_in_words(value, unit)
+
+    def shown(self, value: Any) -> Any:
+        """Return a value in the unit of its field, rounded to what was typed; lists and tables one by one."""
+        unit = factor(self.name)
+        if isinstance(value, dict):
+            return {boundary_name(key): self.at(key).shown(item) for key, item in value.items()}
+        if isinstance(value, list | tuple):
+            return [self.shown(item) for item in value]
+        if isinstance(value, bool) or not isinstance(value, int | float) or unit == 1.0:
+            return super().shown(value)
+        return as_typed(value, unit) if math.isfinite(value) else value
+
+
+@dataclass(frozen=True)
+class SceneReader(CaseReader):
+    """Whoever wrote a scene file."""
+
+    model: ClassVar[type[BaseModel]] = SceneInput
+
+    @property
+    def name(self) -> str:
+        """The scene file's name of the field."""
+        return scene_field(self.field)
+
+
+def translated(error: Exception) -> ServiceError | None:
+    """Return an error of the libraries as the boundary's, None for one they do not raise on purpose."""
+    if isinstance(error, ContactInputError):
+        return BadInput([_fault(error, CaseReader(error.field))])
+    if isinstance(error, DynamicsInputError):
+        return BadInput([_fault(error, SceneReader(error.field))])
+    if isinstance(error, FeContactError | DynamicsError | Unavailable):
+        return JobFailed(str(error))
+    if isinstance(error, ModuleNotFoundError) and (missing := missing_extra(error)):
+        return JobFailed(str(missing))
+    return None
+
+
+@contextmanager
+def named(part: str) -> Iterator[None]:
+    """Turn input errors of dynamics into the boundary's, named inside `part`."""
+    try:
+        yield
+    except DynamicsInputError as error:
+        raise translated(error.within(part) if part else error) or error from None
+
+
+def _fault(error: RefusedValue, reader: CaseReader) -> Fault:
+    """One input error as it is reported to its reader."""
+    bound = error.bound.worded(reader)
+    if isinstance(error, InfeasibleGeometry):
+        bound = f"{bound} ({error.name})"
+    advice = error.suggestion.worded(reader).strip() or field_advice(reader.model, reader.name)
+    return Fault(reader.name, reader.shown(error.value), bound, advice)

@@ -1,0 +1,138 @@
+"""Live questions at the boundary: from a stored table and a change of its flanks to curves."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+
+from fe_contact.analysis import CondensedPair, condensed_pair, load_distribution
+from fe_contact.geometry import ParallelAxes
+from fe_contact.microgeometry import curve_derivatives
+from fe_contact.ste import SteDatabase
+from lineofaction.gearbox.convert.answers import curve_json
+from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
+from lineofaction.gearbox.convert.derivatives import derivatives_json
+from lineofaction.gearbox.convert.live_flanks import flanks_json
+from lineofaction.gearbox.problems import BadInput, Fault, NotAnalyzed, NotFound
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.live import LiveInput
+from lineofaction.gearbox.schemas.reading import validated
+from lineofaction.gearbox.units import MM, UM
+
+Json = dict[str, Any]
+
+_PLACES = ("pair.", "load.", "errors.")
+
+
+def condensed_of(file: Path, cache: Path, *, compute: bool = False) -> tuple[Case, CondensedPair]:
+    """Return the case of a stored table, and its gears with the compliance that it was computed with.
+
+    Raises
+    ------
+    NotFound
+        The table was removed since it was requested.
+    NotAnalyzed
+        The compliance is not in the cache, and is not to be computed.
+    """
+    if not file.exists():
+        raise NotFound("The database was removed from the store during the request. Submit its case again.")
+    database = SteDatabase.from_netcdf(file)
+    # strict models take JSON's lists for tuples only from text
+    case = Case.model_validate_json(json.dumps(database.metadata.case))
+    with boundary_errors():
+        bodies = condensed_pair(gear_pair(case), database, dict(case.effects), cache, compute=compute)
+    if bodies is None:
+        raise NotAnalyzed(
+            "The compliance of these gears is not in the cache of this service: they were analyzed "
+            "elsewhere, or it was removed. Ask once with condense = true: it is then computed here first, in "
+            "seconds in the plane and up to some minutes over the face."
+        )
+    return case, bodies
+
+
+def live_curves(case: Case, bodies: CondensedPair, change: LiveInput) -> Json:
+    """Return the curves of the changed flanks; raises `BadInput` by the fields of the question."""
+    try:
+        pair = gear_pair(changed_case(case, change))
+        with boundary_errors():
+            return _answer(bodies, pair, change)
+    except BadInput as error:
+        raise BadInput(_as_asked(fault) for fault in error.faults) from None
+
+
+def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput) -> Json:
+    """Return the curves, and of each what else the question is about, with its cost."""
+    torques = np.array(change.torque_n_m)
+    alignment = change.misalignment_um * UM, change.center_distance_change_mm * MM
+    table, solved = bodies.solve_table(pair, torques, *alignment)
+    curves = [_curve(table, k) for k in range(table.force.size)]
+    answer = {"curves": curves, **_receipt(table)}
+
+    def on_flanks() -> Iterator[Json]:
+        for k in range(table.force.size):
+            yield flanks_json(load_distribution(solved.pair, solved.problem, solved.solution, k))
+
+    def derivatives() -> Iterator[Json]:
+        return iter(derivatives_json(curve_derivatives(bodies, pair, torques, None, *alignment)))
+
+    for name, made in (("flanks", on_flanks), ("derivatives", derivatives)):
+        if getattr(change, name):
+            begin = time.process_time()
+            for curve, part in zip(curves, made(), strict=True):
+                curve[name] = part
+            answer["cost"][f"{name}_cpu_seconds"] = time.process_time() - begin
+    return answer
+
+
+def _curve(table: SteDatabase, k: int) -> Json:
+    """Return the curve at a load with its errors by source."""
+    return curve_json(table, force_n=float(table.force[k])) | {
+        "error_by_source_um": {
+            source: {name.removesuffix("_m"): _known(values[k] / UM) for name, values in errors.items()}
+            for source, errors in table.metadata.receipt["curve_error"].items()
+        }
+    }
+
+
+def _receipt(table: SteDatabase) -> Json:
+    """Return what is known of the making of the curves."""
+    receipt, ledger = table.metadata.receipt, cast("list[Json]", table.metadata.effect_ledger)
+    assumptions: list[Json] = receipt["assumptions"]
+    stages = receipt["stages"]
+    return {
+        "effects": {entry["name"]: entry["on"] for entry in ledger},
+        "beyond_load_patches": receipt["beyond_load_patches"],
+        "discretisation_error": receipt["discretisation_error"],
+        "not_estimated": receipt["not_estimated"],
+        "residuals_max": receipt["residuals_max"],
+        "assumptions": [check for check in assumptions if check["holds"] is not None],
+        "not_checked": [check for check in assumptions if check["holds"] is None],
+        "cost": {
+            f"{name.replace(' ', '_')}_cpu_seconds": stage["cpu_seconds"] for name, stage in stages.items()
+        },
+    }
+
+
+def _known(value: float) -> float | None:
+    """Return a number; None for what was not estimated."""
+    return value if np.isfinite(value) else None
+
+
+def changed_case(case: Case, change: LiveInput) -> Case:
+    """Return the case with the flanks of a question, checked as a case is."""
+    facts = case.model_dump(mode="json")
+    for name in ("pinion", "wheel"):
+        facts["pair"][name] |= getattr(change, name).model_dump(mode="json", exclude_none=True)
+    return validated(Case, facts)
+
+
+def _as_asked(fault: Fault) -> Fault:
+    """Name a fault by the field of the question, whose alignments are single values."""
+    name = fault.field.removesuffix("[0]") if fault.field.startswith("errors.") else fault.field
+    name = next((name.removeprefix(prefix) for prefix in _PLACES if name.startswith(prefix)), name)
+    return Fault(name, fault.value, fault.bound, fault.suggestion)

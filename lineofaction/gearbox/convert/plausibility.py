@@ -1,0 +1,141 @@
+"""Plausibility at the boundary: findings of the libraries in its fields and units."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from types import MappingProxyType
+from typing import Any
+
+from bounds import Unit, engineering, finding_of
+from dynamics.plausibility import scene_findings
+from dynamics.scene import Scene
+from fe_contact.plausibility import pair_findings
+from fe_contact.ste import SteDatabase
+from lineofaction.gearbox.convert.case import gear_pair, table_axes
+from lineofaction.gearbox.convert.errors import named
+from lineofaction.gearbox.convert.vocabulary import case_field, scene_field
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.schemas.warning import left_out_warnings
+from lineofaction.gearbox.units import DEGREE, GPA, MM, UM, factor, unit_name
+
+Json = dict[str, Any]
+MPA = 1e6
+
+
+def case_warnings(case: Case) -> list[Json]:
+    """Return what is implausible about a case, before anything is computed.
+
+    Raises
+    ------
+    BadInput
+        No such pair.
+    """
+    pair, axes = gear_pair(case), table_axes(case)
+    alignments = axes.misalignment, axes.center_distance_change
+    found = pair_findings(pair, axes.load(pair), *alignments, loads_as=axes.loads_as)
+    return phrased_for(case, [finding.to_json() for finding in found])
+
+
+def scene_warnings(
+    inputs: SceneInput, scene: Scene, tables: Mapping[str, Iterable[Json]] = MappingProxyType({})
+) -> list[Json]:
+    """Return what is implausible about a scene, and about the tables of its meshes.
+
+    Parameters
+    ----------
+    given : SceneInput
+        The scene file.
+    scene : Scene
+        The same with all its planets.
+    tables : mapping of str to list of dict
+        Warnings of the table of each mesh, by the name of the mesh.
+
+    Raises
+    ------
+    BadInput
+        The parts of the scene do not fit each other.
+    """
+    with named(""):
+        findings = [finding.to_json() for finding in scene_findings(scene)]
+    warnings = left_out_warnings(inputs.left_out) + phrased(
+        [each for each in findings if _in_file(inputs, each["field"])], scene_field
+    )
+    for index, mesh in enumerate(inputs.meshes):
+        warnings += [within(warning, f"meshes[{index}]") for warning in tables.get(mesh.name, ())]
+    return unique(warnings)
+
+
+def _in_file(inputs: SceneInput, field: str) -> bool:
+    """Whether a field is of a part in the file, and not of a further planet, which is its copy."""
+    part = re.match(r"(\w+)\[(\d+)\]", field)
+    return part is None or int(part.group(2)) < len(getattr(inputs, part.group(1)))
+
+
+def within(warning: Json, owner: str) -> Json:
+    """Return a warning of a case as one of what the case is part of."""
+    field = f"{owner}.case.{warning['field']}"
+    return warning | {"field": field, "message": warning["message"].replace(warning["field"], field, 1)}
+
+
+def phrased_for(case: Case, findings: Iterable[Json]) -> list[Json]:
+    """Return findings of a library about a case in its fields and units."""
+    return phrased(findings, _field_in(case))
+
+
+def phrased_database(database: SteDatabase, case: Case) -> SteDatabase:
+    """Return a database whose warnings are in the fields and units of its case."""
+    warnings = phrased_for(case, database.metadata.warnings)
+    return replace(database, metadata=replace(database.metadata, warnings=warnings))
+
+
+def phrased(findings: Iterable[Json], name: Callable[[str], str]) -> list[Json]:
+    """Return findings of a library, as plain JSON in SI, in the fields and units of the boundary."""
+    return unique(_phrased(content, name) for content in findings)
+
+
+def unique(warnings: Iterable[Json]) -> list[Json]:
+    """Return warnings without repetitions, as of two gears of the case's one material."""
+    return list({warning["message"]: warning for warning in warnings}.values())
+
+
+def _phrased(content: Json, name: Callable[[str], str]) -> Json:
+    """Return one finding."""
+    finding, field = finding_of(content), name(content["field"])
+    unit = Unit(unit_name(field) or finding.unit, factor(field))
+    scaled = {
+        key: None if content[key] is None else float(f"{content[key] / unit.factor:.12g}")
+        for key in ("value", "low", "high")
+    }
+    return {**content, **scaled, "field": field, "unit": unit.name, "message": finding.message(field, unit)}
+
+
+def _field_in(case: Case) -> Callable[[str], str]:
+    """Return what names fields as this case has them: a material may be that of both gears."""
+
+    def field(name: str) -> str:
+        boundary = case_field(name)
+        for gear in ("pinion", "wheel"):
+            own, shared = f"pair.{gear}.material.", "material."
+            if boundary.startswith(own) and getattr(case.pair, gear).material is None:
+                return shared + boundary.removeprefix(own)
+        return boundary
+
+    return field
+
+
+def limit_text(limit: float | None, unit: str) -> str:
+    """Return a limit of a check as people read it; empty for none."""
+    if limit is None:
+        return ""
+    small, soft = limit < 1e-3, limit < 1e9
+    scales = {
+        "m": (UM, "um") if small else (MM, "mm"),
+        "Pa": (MPA, "MPa") if soft else (GPA, "GPa"),
+        "rad": (DEGREE, "deg"),
+        "1": (1.0, ""),
+    }
+    scale, name = scales.get(unit, (1.0, unit))
+    return f"{engineering(limit / scale, 3)} {name}".strip()

@@ -1,0 +1,94 @@
+"""The gears and axes of a scene by its meshes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from dynamics.mechanism.base_pitches import PRINTED
+from fe_contact.geometry import ParallelAxes
+from fe_contact.ste import PairFacts
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.units import MM
+
+_SAME = 1e-6  # relative; lengths that are typed with a few digits agree to this
+
+
+@dataclass(frozen=True)
+class Teeth:
+    """One gear as its mesh describes it; SI units, the helix angle with the hand's sign."""
+
+    teeth: int
+    base_radius: float
+    base_helix_angle: float
+    pitch_diameter: float
+    face_width: float
+    internal: bool = False
+
+
+def facts_of(pair: ParallelAxes) -> PairFacts:
+    """Return the facts that a database of `pair` will carry."""
+    pinion, wheel = pair.pinion, pair.wheel
+    return PairFacts(
+        teeth=(pinion.teeth, wheel.teeth),
+        base_radius=(pinion.base_radius, wheel.base_radius),
+        base_pitch=pair.base_pitch,
+        base_helix_angle=abs(pair.base_helix_angle),
+        center_distance=pair.center_distance,
+        working_pressure_angle=pair.working_pressure_angle,
+        face_width=min(pinion.face_width, wheel.face_width),
+        helix_hand=(pair.base_helix_angle > 0.0) - (pair.base_helix_angle < 0.0),
+        internal=pair.internal,
+    )
+
+
+def teeth_of(scene: SceneInput, facts: Mapping[str, PairFacts]) -> dict[str, Teeth]:
+    """Teeth of every gear, by name; a gear in two meshes must be the same in both."""
+    by_name: dict[str, Teeth] = {}
+    for index, mesh in enumerate(scene.meshes):
+        if mesh.wheel_drives and not facts[mesh.name].internal:
+            bound = "left out: the wheel of this case is no ring gear"
+            advice = "Give a case whose pinion is the gear that drives."
+            raise BadInput.of(f"meshes[{index}].wheel_drives", True, bound, advice)
+        for side, role in enumerate(("driven", "driver") if mesh.wheel_drives else ("driver", "driven")):
+            name, teeth = getattr(mesh, role), _side(facts[mesh.name], side)
+            known = by_name.setdefault(name, teeth)
+            if known.teeth != teeth.teeth or not math.isclose(
+                known.base_radius, teeth.base_radius, rel_tol=PRINTED
+            ):
+                bound = f"the gear of {known.teeth} teeth that its other mesh has ({teeth.teeth} teeth here)"
+                raise BadInput.of(f"meshes[{index}].{role}", name, bound, "Check the cases of both meshes.")
+    for index, gear in enumerate(scene.gears):
+        if gear.name not in by_name:
+            raise BadInput.of(
+                f"gears[{index}].name", gear.name, "part of a mesh", "Add it to a mesh or remove it."
+            )
+    return by_name
+
+
+def _side(facts: PairFacts, side: int) -> Teeth:
+    """Return one gear of a pair; the hands of external gears are opposite, those in a ring gear the same."""
+    radius = facts.base_radius[side]
+    hand = facts.helix_hand if side == 0 or facts.internal else -facts.helix_hand
+    diameter = 2.0 * radius / math.cos(facts.working_pressure_angle)
+    helix, ring = hand * facts.base_helix_angle, facts.internal and side == 1
+    return Teeth(facts.teeth[side], radius, helix, diameter, facts.face_width, ring)
+
+
+def check_center_distances(scene: SceneInput, facts: Mapping[str, PairFacts]) -> None:
+    """Refuse axes of meshing gears that are not as far apart as their database says."""
+    origin = {shaft.name: shaft.origin_mm for shaft in scene.shafts}
+    carrier = {gear.name: gear.shaft for gear in scene.gears}
+    number = {shaft.name: index for index, shaft in enumerate(scene.shafts)}
+    for mesh in scene.meshes:
+        first, second = origin[carrier[mesh.driver]], origin[carrier[mesh.driven]]
+        distance = math.hypot(second[0] - first[0], second[1] - first[1])
+        expected = facts[mesh.name].center_distance / MM
+        if not math.isclose(distance, expected, rel_tol=_SAME):
+            field = f"shafts[{number[carrier[mesh.driven]]}].origin_mm"
+            bound = (
+                f"{expected:.7g} mm across the axis from shaft {carrier[mesh.driver]}, not {distance:.7g} mm"
+            )
+            raise BadInput.of(field, list(second), bound, f"That is the center distance of mesh {mesh.name}.")

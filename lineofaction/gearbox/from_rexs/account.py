@@ -1,0 +1,109 @@
+"""The account of an import: what became of every component and attribute of a file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+from lineofaction.gearbox.from_rexs.assumption import ASSUMED, FORMER, shown
+from lineofaction.gearbox.rexs import Attribute, Component, Model
+
+Fate = Literal["taken", "assumed", "derived", "defaulted", "ignored", "refused"]
+"""Taken as it is; assumed by the caller over the file; derived from other values; defaulted for want of a
+usable one; ignored, since nothing here uses it; refused with a reason: the unit has it, the scene has not."""
+FATES: tuple[Fate, ...] = get_args(Fate)
+
+UNUSED = "no analysis uses it"
+
+
+@dataclass(frozen=True)
+class Line:
+    """What became of a component, an attribute of it, or a value that it lacks.
+
+    Attributes
+    ----------
+    place : str
+        The component, with its load case.
+    component : int
+        Id of the component.
+    kind, name : str
+        Type and name of the component.
+    item : str
+        The attribute; empty for the component itself.
+    fate : Fate
+    words : str
+        Its name here, the formula it follows from, or the reason.
+    line : int or None
+        Of the component in an XML file, from 1.
+    """
+
+    place: str
+    component: int
+    kind: str
+    name: str
+    item: str
+    fate: Fate
+    words: str
+    line: int | None = None
+
+
+class Account:
+    """The account of one model. Whoever reads a value states what becomes of it; the last word counts.
+
+    Parameters
+    ----------
+    model : Model
+        Of the newest version.
+    """
+
+    def __init__(self, model: Model) -> None:
+        self._places = {id(part): place for place, part in model.all_components()}
+        self._parts = {id(part): part for _, part in model.all_components()}
+        self._said: dict[tuple[int, str], tuple[Fate, str]] = {}
+
+    def place(self, component: Component) -> str:
+        """Return where a component stands: its id, and its load case."""
+        return self._places[id(component)]
+
+    def say(self, component: Component, item: str, fate: Fate, words: str) -> None:
+        """State what becomes of an attribute that a component has or lacks; `item` "" is the component."""
+        self._said[id(component), item] = (fate, words)
+
+    def is_stated(self, component: Component) -> bool:
+        """Return whether something was said of the component itself."""
+        return (id(component), "") in self._said
+
+    def lines(self) -> tuple[Line, ...]:
+        """Return a line for each component, each attribute, and each value stated that the file lacks.
+
+        In the order of the file. An attribute of which nothing was said is ignored; a component is taken if
+        anything of it is taken or derived, and ignored otherwise.
+        """
+        return tuple(line for part in self._parts.values() for line in self._lines(part))
+
+    def _lines(self, part: Component) -> Iterator[Line]:
+        """Lines of a component, its own first."""
+        said = {item: what for (owner, item), what in self._said.items() if owner == id(part)}
+        own = said.pop("", None)
+        for attribute in part.attributes:
+            fate, words = said.setdefault(attribute.id, ("ignored", UNUSED))
+            if attribute.origin == ASSUMED and fate in ("taken", "ignored"):
+                said[attribute.id] = _assumed(attribute, fate, words)
+        used = any(fate in ("taken", "derived", "assumed") for fate, _ in said.values())
+        fate, words = own or (("taken", "") if used else ("ignored", UNUSED))
+        yield self._line(part, "", fate, words)
+        for item, (fate, words) in said.items():
+            yield self._line(part, item, fate, words)
+
+    def _line(self, part: Component, item: str, fate: Fate, words: str) -> Line:
+        """Return a line of a component."""
+        return Line(self.place(part), part.id, part.type, part.name or "", item, fate, words, part.line)
+
+
+def _assumed(attribute: Attribute, fate: Fate, words: str) -> tuple[Fate, str]:
+    """Return what became of an assumed value: one that nothing reads is refused."""
+    if fate == "ignored":
+        return "refused", f"assumed to be {shown(attribute)}, and {words}"
+    former = dict(attribute.extra)[FORMER]
+    return "assumed", f"{shown(attribute)} instead of {former}: {words}"

@@ -1,0 +1,259 @@
+"""The case of a pair of gears, from the numbers of its stage."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from lineofaction.gearbox.convert.checks import check_plain_case
+from lineofaction.gearbox.from_rexs.flank_sides import LoadedFlank
+from lineofaction.gearbox.from_rexs.gear_bodies import blank_of, elasticity, held_diameter, root_diameter
+from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
+from lineofaction.gearbox.from_rexs.meshing import Meshing
+from lineofaction.gearbox.from_rexs.micro_geometry import micro_geometry
+from lineofaction.gearbox.from_rexs.profile_shift import ToothedPair
+from lineofaction.gearbox.from_rexs.ring_tip import clearing_tip
+from lineofaction.gearbox.from_rexs.thickness_allowance import thickness_allowance
+from lineofaction.gearbox.from_rexs.tooth_depth import ToothDepth, tip_alteration, tooth_depth
+from lineofaction.gearbox.from_rexs.toothing import ToothingData
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.reading import validated
+from lineofaction.gearbox.units import DEGREE, GPA, MM, UM
+
+Table = dict[str, Any]
+
+LOAD_INTENSITIES = (5e6, 15e6, 30e6)
+"""F_t / (b m_n) in Pa of the load levels of a stage without torques."""
+_SAME_ANGLE = 1e-6  # rad
+_HELIX = "helix_angle_reference_diameter"
+
+
+@dataclass(frozen=True)
+class PairData:
+    """What the file says of a stage's two gears.
+
+    Attributes
+    ----------
+    loaded : tuple of LoadedFlank
+        The flanks that carry: of pinion and wheel.
+    axial_offset : float
+        Of the wheel's mid-face from the pinion's towards +z, m.
+    torques : tuple of float
+        On the driving gear, N m; of one sign.
+    """
+
+    meshing: Meshing
+    toothed: ToothedPair
+    loaded: tuple[LoadedFlank, LoadedFlank]
+    axial_offset: float
+    torques: tuple[float, ...]
+
+    @property
+    def gears(self) -> tuple[tuple[ToothingData, LoadedFlank], ...]:
+        """Pinion and wheel, each with its loaded flank."""
+        return (self.toothed.pinion, self.loaded[0]), (self.toothed.wheel, self.loaded[1])
+
+
+def case_of(unit: GearUnit, pair: PairData, pairs: Sequence[PairData], shifts: Mapping[int, float]) -> Case:
+    """Return the case of a pair that can be computed.
+
+    Parameters
+    ----------
+    pairs : sequence of PairData
+        All of the unit; a gear's tip clears all its mates.
+    shifts : mapping of int to float
+        Profile shift coefficients by gear.
+
+    Raises
+    ------
+    BadInput
+        A shift that cannot be derived, gears that do not mate, a value out of its bounds.
+    """
+    _refuse_strangers(pair)
+    depths = [_depth(unit, gear, loaded, pairs, shifts) for gear, loaded in pair.gears]
+    if pair.meshing.internal and not depths[1].tip_given:
+        depths[1] = clearing_tip(pair.toothed, depths, shifts)
+    first, second = (
+        _gear(unit, gear, depth, shifts[gear.part.id])
+        for (gear, _), depth in zip(pair.gears, depths, strict=True)
+    )
+    stiff = tuple(elasticity(unit, gear.part) for gear, _ in pair.gears)
+    if stiff[0] != stiff[1]:
+        second["material"] = _material(stiff[1])
+    pinion = pair.toothed.pinion
+    if pair.meshing.internal:
+        second["internal"] = True
+    table = {
+        "pair": {
+            "normal_module_mm": rounded(pinion.normal_module / MM),
+            "normal_pressure_angle_deg": rounded(pinion.pressure_angle / DEGREE),
+            "helix_angle_deg": rounded(pinion.helix_angle / DEGREE),
+            "center_distance_mm": rounded(pair.toothed.center_distance / MM),
+            "pinion": first,
+            "wheel": second,
+        },
+        "material": _material(stiff[0]),
+        "load": {"torque_n_m": _torques(pair)},
+    }
+    _say_axial_offset(pair)
+    plain = check_plain_case(validated(Case, table))
+    first.update(micro_geometry(unit, plain.pinion, pair.loaded[0]))
+    second.update(micro_geometry(unit, plain.wheel, pair.loaded[1]))
+    case = validated(Case, table)
+    check_plain_case(case)
+    return case
+
+
+def rounded(value: float) -> float:
+    """Return a number without the rounding that a change of units leaves, 12 digits."""
+    return float(f"{value:.12g}") + 0.0
+
+
+def _refuse_strangers(pair: PairData) -> None:
+    """Refuse gears of different module or pressure angle, or of helix angles that do not mate.
+
+    The sign of a ring gear's helix angle depends on the writer's sign of its teeth; its size must fit.
+    """
+    gears = pinion, wheel = pair.toothed.pinion, pair.toothed.wheel
+    if not math.isclose(pinion.normal_module, wheel.normal_module, rel_tol=1e-9):
+        modules = [f"module {gear.normal_module / MM:.9g} mm" for gear in gears]
+        raise _strangers(pair, modules, "of one normal module", "normal_module")
+    if abs(pinion.pressure_angle - wheel.pressure_angle) >= _SAME_ANGLE:
+        angles = [f"pressure angle {gear.pressure_angle / DEGREE:.9g} deg" for gear in gears]
+        raise _strangers(pair, angles, "of one normal pressure angle")
+    _refuse_hands(pair)
+    if wheel.sign < 0 and wheel.helix_angle:
+        wheel.part.say(_HELIX, "derived", "the hand is that of its mate")
+
+
+def _refuse_hands(pair: PairData) -> None:
+    """Refuse helix angles of different size, or of one hand where they must be opposite."""
+    gears = pair.toothed.pinion, pair.toothed.wheel
+    hands = [
+        f"{'right' if gear.helix_angle > 0.0 else 'left'} hand, {abs(gear.helix_angle) / DEGREE:.9g} deg"
+        for gear in gears
+    ]
+    first, second = (gear.helix_angle for gear in gears)
+    if gears[1].sign > 0 and abs(first + second) >= _SAME_ANGLE:
+        raise _strangers(pair, hands, "of helix angles of one size and of opposite hands", _HELIX, -1)
+    if abs(abs(first) - abs(second)) >= _SAME_ANGLE:
+        raise _strangers(pair, hands, "of helix angles of one size", _HELIX)
+
+
+def _strangers(pair: PairData, facts: Sequence[str], bound: str, item: str = "", factor: int = 1) -> BadInput:
+    """Return the error of gears that do not mate: what each is, and its mate's value as an assumption."""
+    parts = pair.toothed.pinion.part, pair.toothed.wheel.part
+    named = [f"{part.id} {part.name}: {fact}" for part, fact in zip(parts, facts, strict=True)]
+    stated = [None if (entry := part.attribute(item)) is None else entry.value for part in parts]
+    mends = [
+        f"--assume {part.id}.{item}={factor * mate:.9g}"
+        for part, mate in zip(parts, stated[::-1], strict=True)
+        if isinstance(mate, (int, float))
+    ]
+    advice = f"Open it with {' or '.join(mends)}." if mends else ""
+    return BadInput.of(f"{pair.meshing.stage.place}, gears", named, bound, advice)
+
+
+def _depth(
+    unit: GearUnit,
+    gear: ToothingData,
+    loaded: LoadedFlank,
+    pairs: Sequence[PairData],
+    shifts: Mapping[int, float],
+) -> ToothDepth:
+    """Return tip and root of a gear; raises `BadInput` without a profile shift."""
+    shift = shifts.get(gear.part.id)
+    if shift is None:
+        field = f"{gear.part.place}, addendum_modification_coefficient"
+        raise BadInput.of(field, None, "given for this gear or for its mate")
+    return tooth_depth(unit, gear, loaded, shift, _tip_alteration(gear, pairs, shifts))
+
+
+def _gear(unit: GearUnit, gear: ToothingData, depth: ToothDepth, shift: float) -> Table:
+    """Return the table of a gear."""
+    held = "rim_diameter_mm" if gear.sign < 0 else "bore_diameter_mm"
+    return {
+        "teeth": gear.teeth,
+        "face_width_mm": rounded(gear.face_width / MM),
+        "profile_shift_coefficient": rounded(shift),
+        "tip_diameter_mm": rounded(depth.tip_diameter / MM),
+        "dedendum_coefficient": rounded(depth.dedendum_coefficient),
+        "root_radius_coefficient": rounded(depth.root_radius_coefficient),
+        "thickness_allowance_um": rounded(thickness_allowance(gear) / UM),
+        held: rounded(held_diameter(unit, gear, root_diameter(gear, depth, shift)) / MM),
+        **_cutter(depth),
+        **_blank(unit, gear),
+    }
+
+
+def _tip_alteration(gear: ToothingData, pairs: Sequence[PairData], shifts: Mapping[int, float]) -> float:
+    """Return the tip alteration coefficient of an external gear that suits all its external mates."""
+    if gear.sign < 0:
+        return 0.0
+    return min(
+        (
+            _alteration(pair.toothed, shifts)
+            for pair in pairs
+            if gear.part.id in (pair.toothed.pinion.part.id, pair.toothed.wheel.part.id)
+        ),
+        default=0.0,
+    )
+
+
+def _alteration(pair: ToothedPair, shifts: Mapping[int, float]) -> float:
+    """Return k of an external pair, 0 of an internal one."""
+    first, second = (shifts.get(gear.part.id) for gear in (pair.pinion, pair.wheel))
+    if pair.wheel.sign < 0 or first is None or second is None:
+        return 0.0
+    reference = 0.5 * (pair.pinion.reference_diameter + pair.wheel.reference_diameter)
+    return tip_alteration(first + second, reference, pair.center_distance, pair.pinion.normal_module)
+
+
+def _cutter(depth: ToothDepth) -> Table:
+    """Return the fields of a ring gear's cutter that the file has."""
+    fields: Table = {}
+    if depth.cutter_teeth is not None:
+        fields["cutter_teeth"] = depth.cutter_teeth
+    if depth.cutter_shift is not None:
+        fields["cutter_profile_shift_coefficient"] = rounded(depth.cutter_shift)
+    return fields
+
+
+def _blank(unit: GearUnit, gear: ToothingData) -> Table:
+    """Return rim and web of an external gear."""
+    blank = None if gear.sign < 0 else blank_of(unit, gear.part)
+    if blank is None:
+        return {}
+    sizes = {"rim_thickness_mm": blank.rim_thickness, "web_thickness_mm": blank.web_thickness}
+    return {"blank": {name: rounded(value / MM) for name, value in sizes.items()}}
+
+
+def _material(stiffness: tuple[float, float]) -> Table:
+    """Return the table of a material."""
+    return {"youngs_modulus_gpa": rounded(stiffness[0] / GPA), "poissons_ratio": rounded(stiffness[1])}
+
+
+def _torques(pair: PairData) -> list[float]:
+    """Return the torques on the pinion in N m, increasing; of a driving ring gear z_1 / z_2 of its own."""
+    pinion, wheel = pair.toothed.pinion, pair.toothed.wheel
+    ratio = pinion.teeth / wheel.teeth if pair.meshing.wheel_drives else 1.0
+    torques = sorted({rounded(abs(torque) * ratio) for torque in pair.torques if torque})
+    if torques:
+        return torques
+    width = min(pinion.face_width, wheel.face_width)
+    arm = 0.5 * pinion.reference_diameter * width * pinion.normal_module
+    torques = [float(f"{intensity * arm:.3g}") for intensity in LOAD_INTENSITIES]
+    intensities = ", ".join(f"{1e-6 * intensity:g}" for intensity in LOAD_INTENSITIES)
+    words = f"{torques} N m on {pinion.part.name}: F_t / (b m_n) = {intensities} N/mm^2, for want of a torque"
+    pair.meshing.stage.say("torque", "defaulted", words)
+    return torques
+
+
+def _say_axial_offset(pair: PairData) -> None:
+    """State an axial offset, which a case does not have."""
+    if abs(pair.axial_offset) > 1e-9:
+        words = f"{pair.axial_offset / MM:.4g} mm between the mid-faces: the case puts them together"
+        pair.meshing.stage.say("axial_offset", "ignored", words)

@@ -1,0 +1,130 @@
+"""The cylindrical stages of a gear unit: which gears mesh, which drives, and which flanks carry."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from bounds.types import FloatArray
+from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
+from lineofaction.gearbox.from_rexs.part import Part
+from lineofaction.gearbox.from_rexs.placement import frame_of
+from lineofaction.gearbox.from_rexs.rotation import rotations, stage_gears
+from lineofaction.gearbox.problems import BadInput
+
+STAGES = ("cylindrical_stage",)
+OTHER_STAGES = ("bevel_stage", "worm_stage", "hypoid_stage", "beveloid_stage")
+_DATA = ("cylindrical_stage_gear_data", "stage_gear_data")
+
+
+@dataclass(frozen=True)
+class Meshing:
+    """Two gears of a stage.
+
+    Attributes
+    ----------
+    stage, pinion, wheel : Part
+        The stage; gear 1 and gear 2 of the case: the driver and the driven gear, a ring gear always gear 2.
+    wheel_drives : bool
+        Whether the ring gear drives.
+    z : array (3,)
+        The case's axis in the frame of the unit: seen from +z, the torque of the shaft on the pinion acts
+        clockwise and right flanks carry.
+    """
+
+    stage: Part
+    pinion: Part
+    wheel: Part
+    wheel_drives: bool
+    z: FloatArray
+
+    @property
+    def internal(self) -> bool:
+        """Whether the wheel is a ring gear."""
+        return self.wheel.type == "ring_gear"
+
+    @property
+    def driver(self) -> Part:
+        """The driving gear."""
+        return self.wheel if self.wheel_drives else self.pinion
+
+    @property
+    def driven(self) -> Part:
+        """The driven gear."""
+        return self.pinion if self.wheel_drives else self.wheel
+
+
+def meshing_of(
+    unit: GearUnit, stage: Part, driver: int | None = None, torques: tuple[float, ...] = ()
+) -> Meshing:
+    """Return the meshing gears of a stage.
+
+    Parameters
+    ----------
+    driver : int, optional
+        Id of the driving gear; else the file's `is_driving_gear`, else gear 1.
+    torques : tuple of float, optional
+        On the driving gear about its u axis, N m; their sign is its sense of rotation.
+
+    Raises
+    ------
+    BadInput
+        No two gears, two ring gears, a driver that is none of them, or torques of both signs.
+    """
+    gears = stage_gears(unit, stage)
+    if gears is None or all(gear.type == "ring_gear" for gear in gears):
+        raise BadInput.of(f"{stage.place}, stage", None, "a relation to two gears, one of them external")
+    driving = _driver(unit, stage, gears, driver)
+    sense = _sense(unit, stage, driving, torques)
+    ring = next((gear for gear in gears if gear.type == "ring_gear"), None)
+    pinion = driving if ring is None else _other(gears, ring)
+    wheel_drives = driving is ring
+    # The driver turns with the torque of its shaft, the pinion of a driving ring gear against it.
+    z = sense * frame_of(unit, driving).u * (1.0 if wheel_drives else -1.0)
+    return Meshing(stage, pinion, _other(gears, pinion), wheel_drives, z)
+
+
+def _other(gears: tuple[Part, Part], gear: Part) -> Part:
+    """Return the mate."""
+    return gears[1] if gear is gears[0] else gears[0]
+
+
+def _driver(unit: GearUnit, stage: Part, gears: tuple[Part, Part], driver: int | None) -> Part:
+    """Return the driving gear."""
+    if driver is not None:
+        chosen = next((gear for gear in gears if gear.id == driver), None)
+        if chosen is None:
+            raise BadInput.of(f"{stage.place}, driver", driver, f"one of {[gear.id for gear in gears]}")
+        return chosen
+    marked = [gear for gear in gears if _is_marked(unit, stage, gear)]
+    if len(marked) == 1:
+        return marked[0]
+    stage.say("driving_gear", "defaulted", f"gear_1, {gears[0].name}: the file marks no driving gear")
+    return gears[0]
+
+
+def _is_marked(unit: GearUnit, stage: Part, gear: Part) -> bool:
+    """Return whether the stage's data of a gear mark it as driving."""
+    for relation in unit.relations("stage_gear_data"):
+        if relation.of_role("stage") == stage.id and relation.of_role("gear") == gear.id:
+            number = relation.of_role("stage_gear_data")
+            data = None if number is None else unit.part(number)
+            if data is not None and data.type in _DATA:
+                return data.text("is_driving_gear", "the driver of the case") == "True"
+    return False
+
+
+def _sense(unit: GearUnit, stage: Part, driver: Part, torques: tuple[float, ...]) -> float:
+    """Return the sense in which the driver turns about its u axis: by its torque, else by the speeds."""
+    signs = {math.copysign(1.0, torque) for torque in torques if torque}
+    if len(signs) > 1:
+        advice = "Make a case for each sense of rotation."
+        raise BadInput.of(f"{stage.place}, torque", list(torques), "of one sign", advice)
+    if signs:
+        return signs.pop()
+    rotation = rotations(unit).get(driver.id)
+    if rotation is not None:
+        stage.say("sense_of_rotation", "derived", f"from the speed of {rotation.source}")
+        return rotation.sense
+    stage.say("sense_of_rotation", "defaulted", f"{driver.name} turns about +u: the file gives no speed")
+    return 1.0

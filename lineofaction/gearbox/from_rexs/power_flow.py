@@ -1,0 +1,197 @@
+"""The flow of power through a gear unit at an operating point: speeds, torques, and which gear drives."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from bounds.types import FloatArray
+from lineofaction.gearbox.from_rexs.gear_stages import GearStage
+from lineofaction.gearbox.from_rexs.layout import Layout
+from lineofaction.gearbox.from_rexs.operating_points import OperatingPoint
+from lineofaction.gearbox.from_rexs.train import Flow, Train
+
+DEFAULT_SPEED = 1000.0 * math.pi / 30.0
+"""rad/s, where the file states none."""
+NO_SPEED = "no speed is stated: the first loaded shaft turns at 1000/min"
+UNBALANCED = "the torques stated do not balance: the first is taken, the others follow from it"
+REPLACED = "it does not balance the first torque stated, from which the scene's follows"
+SHARED = "statics leaves open how parallel stages share the load: equally among equal planets (least squares)"
+
+
+@dataclass(frozen=True)
+class PowerFlow:
+    """Speeds and torques about z at an operating point.
+
+    Attributes
+    ----------
+    point : OperatingPoint
+        The operating point.
+    layout : Layout
+        Where everything is.
+    train : Train
+        The ratios.
+    speeds : (rotors,) array
+        rad/s.
+    loads : mapping of int to float
+        Torque from outside by external load, N m; by shaft where the train's open end has no load that states
+        or leaves open its torque.
+    flow : Flow
+        Torques of the stages on the rotors.
+    remarks : tuple of str
+        What was assumed.
+    joined : frozenset of int
+        The rotors that the train joins to a speed that is known.
+    replaced : tuple of int
+        The loads whose stated torques do not balance the first; theirs follow from it.
+    """
+
+    point: OperatingPoint
+    layout: Layout
+    train: Train
+    speeds: FloatArray
+    loads: Mapping[int, float]
+    flow: Flow
+    remarks: tuple[str, ...]
+    joined: frozenset[int]
+    replaced: tuple[int, ...] = ()
+
+    def moves(self, stage: GearStage) -> bool:
+        """Return whether the train joins a stage to a speed that is known."""
+        return all(self.layout.rotor(shaft.id) in self.joined for shaft in stage.shafts)
+
+    def speed(self, rotor: int) -> float:
+        """Return the speed of a rotor, rad/s."""
+        return float(self.speeds[self.train.rotors.index(rotor)])
+
+    def on_gear(self, stage: GearStage, gear: int) -> float:
+        """Return the torque about z of the stage on its gear 1 (0) or 2 (1), N m."""
+        row = self.train.stages.index(stage)
+        columns = self._columns(stage)
+        share = stage.teeth[0] / float(self.train.rows[row, columns[0]])
+        first = share * float(self.flow.on_rotor[row, columns[0]])
+        ratio = stage.teeth[1] / stage.teeth[0] * (-1.0 if stage.internal else 1.0)
+        return first if gear == 0 else ratio * first
+
+    def driver(self, stage: GearStage) -> int:
+        """Return which gear drives: 0 for gear 1, 1 for gear 2.
+
+        The stage does negative work on it, seen from the carrier. Without load or speed gear 1 is said to.
+        """
+        carrier = self.layout.carrier(stage)
+        frame = 0.0 if carrier is None else self.speed(carrier)
+        speed = float(self.speeds[self._columns(stage)[0]]) - frame
+        return 1 if self.on_gear(stage, 0) * speed > 0.0 else 0
+
+    def _columns(self, stage: GearStage) -> tuple[int, int]:
+        """Return the columns of the rotors of both gears."""
+        first, second = (self.train.rotors.index(self.layout.rotor(s.id)) for s in stage.shafts)
+        return first, second
+
+
+def power_flow(point: OperatingPoint, layout: Layout, train: Train) -> PowerFlow | str:
+    """Return the flow of power at an operating point, or the reason why there is none."""
+    problem = _Problem(point, layout, train)
+    if not problem.speeds_stated and not problem.owner:
+        return "neither a speed nor a torque is stated"
+    speeds = train.speeds(problem.speeds_stated or problem.default_speed)
+    if speeds is None:
+        stated = ", ".join(map(str, point.speeds)) or "none"
+        return (
+            f"the speeds stated (of shafts {stated}) contradict the ratios of the stages, or leave some open"
+        )
+    known = problem.known(speeds)
+    for loads, remark in problem.attempts(known):
+        opened = [load for load in problem.owner if load not in loads]
+        flow = problem.balanced(loads, opened)
+        if flow is not None:
+            torques = loads | {load: flow.outside[problem.rotor(load)] for load in opened}
+            torques |= problem.at_open_ends(flow, opened)
+            remarks = (*problem.remarks, *([remark] if remark else ()), *([SHARED] if flow.is_shared else ()))
+            replaced = tuple(load for load in known if load not in loads)
+            joined = frozenset(problem.joined)
+            return PowerFlow(point, layout, train, speeds, torques, flow, remarks, joined, replaced)
+    return "the torques stated do not balance, or leave some open"
+
+
+class _Problem:
+    """Speeds and torques of an operating point by rotor, about z."""
+
+    def __init__(self, point: OperatingPoint, layout: Layout, train: Train) -> None:
+        self._point, self._layout, self._train = point, layout, train
+        owners = {load: layout.unit.owner(layout.unit.part(load), "shaft") for load in point.torques}
+        self.owner = {load: owner.id for load, owner in owners.items() if owner is not None}
+        self.speeds_stated = {
+            layout.rotor(shaft): speed * layout.sense(shaft) for shaft, speed in point.speeds.items()
+        }
+        self.remarks = () if self.speeds_stated else (NO_SPEED,)
+        self.joined = train.joined_to(self.speeds_stated or (self.default_speed if self.owner else ()))
+        self.owner = {load: shaft for load, shaft in self.owner.items() if layout.rotor(shaft) in self.joined}
+
+    @property
+    def default_speed(self) -> dict[int, float]:
+        """The speed of the first loaded shaft, in the sense of its torque."""
+        load, shaft = next(iter(self.owner.items()))
+        way = math.copysign(1.0, self._point.torques[load] or 1.0) * self._layout.sense(shaft)
+        return {self._layout.rotor(shaft): way * DEFAULT_SPEED}
+
+    def rotor(self, load: int) -> int:
+        """Return the rotor that a load acts on."""
+        return self._layout.rotor(self.owner[load])
+
+    def known(self, speeds: FloatArray) -> dict[int, float]:
+        """Return the torques that are stated, or follow from a stated power, N m about z."""
+        known = {}
+        for load, shaft in self.owner.items():
+            torque, power = self._point.torques[load], self._point.powers.get(load)
+            speed = float(speeds[self._train.rotors.index(self.rotor(load))])
+            if torque is not None:
+                known[load] = torque * self._layout.sense(shaft)
+            elif power is not None and speed != 0.0:
+                known[load] = power / speed
+        return known
+
+    def attempts(self, known: dict[int, float]) -> Iterator[tuple[dict[int, float], str]]:
+        """Yield the torques to start from: all that are stated, else the first alone."""
+        yield known, ""
+        if len(known) > 1:
+            first = next(iter(known))
+            yield {first: known[first]}, UNBALANCED
+
+    def balanced(self, loads: Mapping[int, float], opened: list[int]) -> Flow | None:
+        """Return the torques that balance the known ones; with no open load the train's other end has one."""
+        torques: dict[int, float] = {}
+        for load, torque in loads.items():
+            torques[self.rotor(load)] = torques.get(self.rotor(load), 0.0) + torque
+        rotors = list(dict.fromkeys(map(self.rotor, opened)))
+        if len(rotors) < len(opened):
+            return None
+        if not opened and any(torques.values()) and (flow := self._train.forces(torques, ())) is None:
+            ends = self._ends(set(torques))
+            return self._train.forces(torques, ends) if len(ends) == 1 else flow
+        return self._train.forces(torques, rotors)
+
+    def at_open_ends(self, flow: Flow, opened: list[int]) -> dict[int, float]:
+        """Return the torques of the train's other end by the load that is there, else by the shaft."""
+        stated = set(map(self.rotor, opened))
+        return {self._at(rotor): torque for rotor, torque in flow.outside.items() if rotor not in stated}
+
+    def _at(self, rotor: int) -> int:
+        """Return the external load of a rotor that states no torque, else the rotor's shaft."""
+        unit = self._layout.unit
+        for load in unit.of_type("external_load"):
+            owner = unit.owner(load, "shaft")
+            if owner is not None and self._layout.rotor(owner.id) == rotor and load.id not in self.owner:
+                return load.id
+        return next(part.id for part in unit.of_type("shaft") if self._layout.rotor(part.id) == rotor)
+
+    def _ends(self, loaded: set[int]) -> list[int]:
+        """Return the rotors of a single stage that no load acts on and nothing holds."""
+        counts = np.count_nonzero(self._train.rows, axis=0)
+        held = loaded | {self._train.rotors[column] for column in self._train.held}
+        return [
+            r for r, count in zip(self._train.rotors, counts, strict=True) if count == 1 and r not in held
+        ]

@@ -1,0 +1,180 @@
+"""The scene of a gear unit: shafts, gears, bearings, housing and loads, put together and validated."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from lineofaction.gearbox.from_rexs.gear_stages import NO_STAGE, GearStage
+from lineofaction.gearbox.from_rexs.layout import Layout
+from lineofaction.gearbox.from_rexs.names import Names
+from lineofaction.gearbox.from_rexs.placement import FIXED, placement
+from lineofaction.gearbox.from_rexs.power_flow import PowerFlow
+from lineofaction.gearbox.from_rexs.scene_bearings import scene_bearings, stub_couplings
+from lineofaction.gearbox.from_rexs.scene_forces import SceneForce, scene_forces
+from lineofaction.gearbox.from_rexs.scene_gears import cases_by_stage, scene_discs, scene_gears
+from lineofaction.gearbox.from_rexs.scene_housing import scene_housings
+from lineofaction.gearbox.from_rexs.scene_loads import (
+    AppliedTorque,
+    applied_torques,
+    driving,
+    motion_tables,
+    slowest_mesh,
+    trains_of,
+)
+from lineofaction.gearbox.from_rexs.scene_parts import SceneParts, scene_parts
+from lineofaction.gearbox.from_rexs.scene_shafts import SceneShafts, scene_shafts
+from lineofaction.gearbox.from_rexs.stage_case import StageCase
+
+STANDARD_GRAVITY = 9.80665
+"""m/s^2."""
+PERIODS = 10
+"""Of the slowest mesh in the run of the scene."""
+
+
+@dataclass(frozen=True)
+class SceneTable:
+    """A scene as its file says it.
+
+    Attributes
+    ----------
+    table : dict
+        Tables of a scene file; meshes name their case files.
+    leader : AppliedTorque or None
+        What drives it first.
+    forces : tuple of SceneForce
+        The external loads that its forces are.
+    parts : SceneParts
+        The components that its parts are.
+    """
+
+    table: dict[str, Any]
+    leader: AppliedTorque | None
+    forces: tuple[SceneForce, ...]
+    parts: SceneParts
+
+
+def scene_table(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[StageCase]) -> SceneTable:
+    """Return the scene at an operating point.
+
+    Parameters
+    ----------
+    layout : Layout
+    flows : sequence of PowerFlow
+        Speeds and torques of the scene's operating point, then those of the others.
+    cases : sequence of StageCase
+        Of the stages; those without are cut off.
+    """
+    flow = flows[0]
+    by_stage, names = cases_by_stage(cases), Names()
+    computed = [
+        s for s in layout.stages if s.stage.id in by_stage and layout.is_computed(s) and flow.moves(s)
+    ]
+    cut = [stage for stage in layout.stages if stage not in computed]
+    shafts = scene_shafts(layout, computed, names)
+    _say_without_mesh(layout, cases, computed, shafts)
+    bearings = scene_bearings(layout, shafts)
+    gears, meshes = scene_gears(layout, shafts, by_stage, Names())
+    torques = applied_torques(layout, flow, shafts, cut)
+    drivers = driving(torques, flow, trains_of(layout, shafts))
+    forces = scene_forces(layout, [each.point for each in flows], shafts)
+    table: dict[str, Any] = {
+        "run": {"duration_s": _duration(layout, slowest_mesh(layout, flow, shafts))},
+        "gravity_m_per_s2": _gravity(layout),
+        "shafts": [shaft.table for shaft in shafts.all],
+        "gears": gears,
+        "discs": scene_discs(layout, shafts),
+        "bushings": bearings.bushings,
+        "rolling_bearings": bearings.rolling_bearings,
+        "planet_bearings": bearings.planet_bearings,
+        "couplings": [*bearings.couplings, *stub_couplings(shafts, names)],
+        "housings": scene_housings(layout, bearings.seats),
+        "planets": _planets(layout, {shaft.rotor: shaft.name for shaft in shafts.by_rotor.values()}),
+        "meshes": meshes,
+        **motion_tables(layout, flow, shafts, torques, drivers),
+        "forces": [force.table(flow.point) for force in forces],
+    }
+    named = [
+        (mesh["name"], by_stage[stage.stage.id]) for stage, mesh in zip(shafts.stages, meshes, strict=True)
+    ]
+    return SceneTable(
+        {key: value for key, value in table.items() if value != []},
+        drivers[0] if drivers else None,
+        forces,
+        scene_parts(layout, flow, shafts, bearings.seats, named),
+    )
+
+
+def _say_without_mesh(
+    layout: Layout, cases: Sequence[StageCase], computed: Sequence[GearStage], shafts: SceneShafts
+) -> None:
+    """State which stages have a case but no mesh in the scene, but for those of equal planets."""
+    meshed = {stage.stage.id for stage in shafts.stages}
+    meshed |= {s.stage.id for s in computed} & {equal for case in cases for equal in case.equal}
+    on_shafts = {stage.stage.id for stage in layout.stages}
+    for number in cases_by_stage(cases).keys() - meshed:
+        words = "it has a case and no mesh: its shafts are not parallel to those of the first stage, nothing "
+        words += "places them or joins them to a speed, or they carry a planet unlike the first"
+        layout.unit.part(number).say("", "refused", words if number in on_shafts else NO_STAGE)
+
+
+def _duration(layout: Layout, rate: float) -> float:
+    """Return the duration of the run, s."""
+    duration = float(f"{PERIODS / rate:.2g}") if rate > 0.0 else 1.0
+    for part in layout.unit.of_type("gear_unit"):
+        words = f"{duration:g} s, {PERIODS} periods of the slowest mesh: a REXS file states no run"
+        part.say("run.duration_s", "defaulted", words)
+    return duration
+
+
+def _gravity(layout: Layout) -> list[float]:
+    """Return the acceleration of gravity in x, y, z, m/s^2; none where the file does not account for it."""
+    for part in layout.unit.of_type("gear_unit"):
+        flag = part.attribute("account_for_gravity")
+        if flag is None or flag.value is not True:
+            continue
+        if layout.rotors.sets:
+            part.say("account_for_gravity", "refused", "a scene with a planet carrier's frame has no gravity")
+            break
+        part.say("account_for_gravity", "taken", "gravity of the scene")
+        items = [f"direction_vector_gravity_{axis}" for axis in "uvw"]
+        vector = np.array([part.number(item, "direction of gravity") or 0.0 for item in items])
+        size = part.number("gravitational_acceleration", "gravity, m/s^2")
+        length = float(np.linalg.norm(vector))
+        if length == 0.0 or not math.isfinite(length):
+            part.say("account_for_gravity", "refused", "the file gives gravity no direction")
+            break
+        place = placement(layout.unit, part) or FIXED
+        turned = layout.axes.turn(place) @ vector / length * (size or STANDARD_GRAVITY)
+        return [float(value) + 0.0 for value in np.round(turned, 12)]
+    return [0.0, 0.0, 0.0]
+
+
+def _planets(layout: Layout, names: dict[int, str]) -> list[dict[str, Any]]:
+    """Return how often the first planet of each set is there, and at which angles."""
+    tables = []
+    for planets in layout.rotors.sets:
+        first = planets.planets[0]
+        if first.id not in names:
+            planets.stage.say("", "refused", "no stage of the scene has its planets")
+            continue
+        places = [layout.shafts[p.id].origin[:2] for p in planets.planets if p.id in layout.shafts]
+        central = next((layout.shafts[c.id] for c in planets.central if c.id in layout.shafts), None)
+        middle = np.mean(places, axis=0) if central is None else central.origin[:2]
+        offsets = [place - middle for place in places]
+        angles = [math.degrees(math.atan2(y, x)) for x, y in offsets]
+        turned = sorted((angle - angles[0]) % 360.0 for angle in angles)
+        table: dict[str, Any] = {"planet": names[first.id], "number": len(places)}
+        equal = [index * 360.0 / len(places) for index in range(len(places))]
+        if not np.allclose(turned, equal, atol=1e-6):
+            table["angles_deg"] = turned
+        for planet in planets.planets[1:]:
+            gears = layout.unit.children(planet, "cylindrical_gear")
+            for part in (planet, *gears):
+                part.say("", "derived", f"copy of planet {names[first.id]}")
+        tables.append(table)
+    return tables

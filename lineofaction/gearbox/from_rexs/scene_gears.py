@@ -1,0 +1,183 @@
+"""Gears, meshes and additional masses of the scene."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from dynamics.bodies import Inertia, hollow_cylinder
+from lineofaction.gearbox.from_rexs.gear_stages import GearStage, teeth_of
+from lineofaction.gearbox.from_rexs.layout import Layout
+from lineofaction.gearbox.from_rexs.names import Names
+from lineofaction.gearbox.from_rexs.part import Part
+from lineofaction.gearbox.from_rexs.scene_shafts import SceneShaft, SceneShafts, inertia_table
+from lineofaction.gearbox.from_rexs.stage_case import StageCase
+from lineofaction.gearbox.units import MM
+
+SAME = 1e-6
+"""Relative; axes of a scene that differ more from the center distance of their mesh are refused."""
+RIM = 3.5
+"""Modules; thinner rims weaken the tooth root (ISO 6336-3, rim thickness factor)."""
+INTEGRAL = 0.95
+"""Share of the pitch diameter from which a shaft's section is the gear's own body."""
+
+
+def scene_gears(
+    layout: Layout, shafts: SceneShafts, cases: Mapping[int, StageCase], names: Names
+) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
+    """Return the tables of gears and meshes.
+
+    Parameters
+    ----------
+    layout : Layout
+    shafts : SceneShafts
+    cases : mapping of int to StageCase
+        By stage.
+    names : Names
+        Of the gears.
+    """
+    gears: dict[int, dict[str, Any]] = {}
+    meshes, mesh_names = [], Names()
+    for stage in shafts.stages:
+        case = cases[stage.stage.id]
+        for gear, shaft in zip(stage.gears, stage.shafts, strict=True):
+            if gear.id not in gears:
+                gears[gear.id] = _gear(layout, shafts, gear, shaft, names)
+        _say_apart(layout, stage, case)
+        driver, driven = driving_gears(stage, case)
+        mesh: dict[str, Any] = {
+            "name": mesh_names.of(stage.stage),
+            "driver": gears[driver.id]["name"],
+            "driven": gears[driven.id]["name"],
+            "case_file": f"{case.name}.toml",
+        }
+        if case.wheel_drives:
+            mesh["wheel_drives"] = True
+        meshes.append(mesh | _offset(layout, stage))
+    return list(gears.values()), meshes
+
+
+def _say_apart(layout: Layout, stage: GearStage, case: StageCase) -> None:
+    """State a center distance that contradicts the places of the shafts: no verb takes such a scene."""
+    first, second = (layout.shafts[shaft.id].origin for shaft in stage.shafts)
+    apart = math.hypot(*(second - first)[:2])
+    if not math.isclose(apart, case.center_distance, rel_tol=SAME):
+        words = f"{case.center_distance / MM:.7g} mm, and its shafts are {apart / MM:.7g} mm apart, "
+        mend = f"--assume {stage.stage.id}.center_distance={apart / MM:.7g}"
+        words += f"where no verb takes them: open it with {mend}, or move a shaft"
+        stage.stage.say("center_distance", "refused", words)
+
+
+def driving_gears(stage: GearStage, case: StageCase) -> tuple[Part, Part]:
+    """Return driver and driven gear of a stage: as in its case, which may be that of an equal planet."""
+    first = {gear.id: gear for gear in stage.gears}
+    if case.driver in first:
+        driver = first[case.driver]
+    elif case.driven in first:
+        driver = next(gear for gear in stage.gears if gear.id != case.driven)
+    else:
+        driver = stage.gears[0]
+    return driver, next(gear for gear in stage.gears if gear is not driver)
+
+
+def _offset(layout: Layout, stage: GearStage) -> dict[str, float]:
+    """Return the position of planet and ring at the start: half a pitch if the planet's teeth are even.
+
+    A planet's flanks at sun and ring are opposite: half a turn apart, and an even number of teeth is then a
+    whole number of pitches, of which tooth meets space.
+    """
+    if layout.carrier(stage) is None or not stage.internal:
+        return {}
+    if min(stage.teeth) % 2:
+        return {}
+    stage.stage.say("position_offset", "derived", "0.5: the planet's number of teeth is even")
+    return {"position_offset": 0.5}
+
+
+def _gear(layout: Layout, shafts: SceneShafts, gear: Part, shaft: Part, names: Names) -> dict[str, Any]:
+    """Return a gear at its mid-face."""
+    placed = layout.shafts[shaft.id]
+    u = layout.u_on(placed, gear)
+    on = shafts.stubs.get(gear.id) or shafts.by_rotor[layout.rotor(shaft.id)]
+    z = float(placed.start[2]) + placed.sense * u
+    if gear.id not in shafts.stubs:
+        gear.say("", "taken", f"gear on shaft {on.name}")
+    return {
+        "name": names.of(gear),
+        "shaft": on.name,
+        "position_mm": on.position_mm(z),
+        **_body(gear, placed.outer_diameter(u), is_shaft_massless=not placed.sections),
+    }
+
+
+def _body(gear: Part, shaft_diameter: float, *, is_shaft_massless: bool) -> dict[str, Any]:
+    """Return the bore of a gear's cylinder, or its inertia where its body is the shaft's section."""
+    module = gear.number("normal_module", "pitch cylinder, from which the inertia follows, mm")
+    helix = gear.number("helix_angle_reference_diameter", "pitch cylinder, deg") or 0.0
+    count = teeth_of(gear) or 0
+    pitch = abs(count) * (module or 0.0) / math.cos(helix)
+    if gear.type == "ring_gear":
+        return {"inertia": inertia_table(_ring(gear, pitch, module or 0.0, is_shaft_massless))}
+    if shaft_diameter >= INTEGRAL * pitch:
+        words = f"0: the section of its shaft is {shaft_diameter / MM:.6g} mm, the gear's own body"
+        gear.say("inertia", "derived", words)
+        return {"inertia": inertia_table(Inertia())}
+    gear.say("inertia", "derived", f"a steel cylinder of {pitch / MM:.6g} mm, bore that of its shaft")
+    return {"bore_diameter_mm": shaft_diameter / MM}
+
+
+def _ring(gear: Part, pitch: float, module: float, is_shaft_massless: bool) -> Inertia:
+    """Return the inertia of a ring gear: none if its shaft's sections have it, else that of a rim."""
+    width = gear.number("face_width", "width of the ring, mm") or 0.0
+    if not is_shaft_massless or pitch <= 0.0 or width <= 0.0:
+        gear.say("inertia", "derived", "0: the ring is a section of its shaft")
+        return Inertia()
+    gear.say("inertia", "defaulted", f"a steel ring {RIM:g} modules thick on the pitch cylinder")
+    return hollow_cylinder(pitch + 2.0 * RIM * module, width, pitch)
+
+
+def scene_discs(layout: Layout, shafts: SceneShafts) -> list[dict[str, Any]]:
+    """Return the additional masses on the shafts of the scene as discs."""
+    discs, names = [], Names()
+    for part in layout.unit.of_type("additional_mass"):
+        owner = layout.unit.owner(part, "shaft")
+        on = None if owner is None else shafts.by_rotor.get(layout.rotor(owner.id))
+        if owner is None or on is None or owner.id not in layout.shafts:
+            part.say("", "refused", "on no shaft of the scene")
+            continue
+        placed = layout.shafts[owner.id]
+        z = layout.z_on(placed, part)
+        table = _disc(part, on, z, names)
+        discs += [] if table is None else [table]
+    return discs
+
+
+def _disc(part: Part, on: SceneShaft, z: float, names: Names) -> dict[str, Any] | None:
+    """Return a disc; moments of inertia that are not stated are 0."""
+    mass = part.number("mass_of_component", "mass of a disc, kg")
+    if not mass or mass < 0.0:
+        part.say("", "refused", "no mass is stated")
+        return None
+    moments = []
+    for axis in "uvw":
+        item = f"moment_of_inertia_{axis}_axis"
+        value = part.number(item, "moment of inertia of a disc, kg m^2")
+        if value is None:
+            part.say(item, "defaulted", "0 kg m^2: a point mass on the axis")
+        moments.append(max(0.0, value or 0.0))
+    if moments[1] != moments[2]:
+        part.say("moment_of_inertia_w_axis", "derived", "mean of v and w: a disc is a body of revolution")
+    inertia = Inertia(mass, moments[0], 0.5 * (moments[1] + moments[2]))
+    part.say("", "taken", f"disc on shaft {on.name}")
+    return {
+        "name": names.of(part),
+        "shaft": on.name,
+        "position_mm": on.position_mm(z),
+        "inertia": inertia_table(inertia),
+    }
+
+
+def cases_by_stage(cases: Sequence[StageCase]) -> dict[int, StageCase]:
+    """Return the case of each stage, of equal ones too."""
+    return {stage: case for case in cases for stage in (case.stage, *case.equal)}

@@ -1,0 +1,212 @@
+"""The shafts of the scene: those of the file, rigid planet carriers, and stubs of planetary sets."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from dynamics.bodies import BeamSection, Inertia
+from lineofaction.gearbox.from_rexs.carrier_body import carrier_body
+from lineofaction.gearbox.from_rexs.gear_stages import GearStage
+from lineofaction.gearbox.from_rexs.layout import Layout
+from lineofaction.gearbox.from_rexs.names import Names
+from lineofaction.gearbox.from_rexs.part import Part
+from lineofaction.gearbox.from_rexs.shafts import PlacedShaft
+from lineofaction.gearbox.units import MM
+
+STUB = 1e-3
+"""m; a stub has neither mass nor an elastic part, so its length is of no account."""
+
+
+@dataclass(frozen=True)
+class SceneShaft:
+    """A shaft of the scene.
+
+    Attributes
+    ----------
+    name : str
+        Its name there.
+    rotor : int
+        The rotor that it is, or belongs to.
+    table : dict
+        Its table in a scene file.
+    """
+
+    name: str
+    rotor: int
+    table: dict[str, Any]
+
+    @property
+    def begin(self) -> float:
+        """Left end in z, m."""
+        return float(self.table["origin_mm"][2]) * MM
+
+    def position_mm(self, z: float) -> float:
+        """Return the position of a z from the left end, mm; within the shaft."""
+        return min(max((z - self.begin) / MM, 0.0), float(self.table["length_mm"]))
+
+
+@dataclass(frozen=True)
+class SceneShafts:
+    """All shafts of the scene.
+
+    Attributes
+    ----------
+    by_rotor : mapping of int to SceneShaft
+        The shaft of each rotor.
+    stubs : dict of int to SceneShaft
+        By gear: the stub on which a gear of a set stands whose shaft also meshes outside of the set.
+    stages : tuple of GearStage
+        The stages that the scene has: of equal planets those of the first.
+    """
+
+    by_rotor: dict[int, SceneShaft]
+    stages: tuple[GearStage, ...]
+    stubs: dict[int, SceneShaft] = field(default_factory=dict)
+
+    @property
+    def all(self) -> tuple[SceneShaft, ...]:
+        """Shafts and stubs."""
+        return (*self.by_rotor.values(), *self.stubs.values())
+
+
+def scene_shafts(layout: Layout, stages: Sequence[GearStage], names: Names) -> SceneShafts:
+    """Return the shafts that computed stages and couplings make parts of one train.
+
+    Parameters
+    ----------
+    layout : Layout
+    stages : sequence of GearStage
+        Those that have a case.
+    names : Names
+        Of the shafts.
+    """
+    first = {planets.planets[0].id for planets in layout.rotors.sets}
+    others = {shaft.id for planets in layout.rotors.sets for shaft in planets.planets} - first
+    kept = tuple(s for s in stages if not others & {shaft.id for shaft in s.shafts})
+    rotors = _joined(layout, kept)
+    bodies = SceneShafts({rotor: _shaft(layout, rotor, names) for rotor in sorted(rotors)}, kept)
+    for placed in layout.shafts.values():
+        if placed.part.id not in others and layout.rotor(placed.part.id) not in rotors:
+            placed.part.say("", "refused", "no computed stage or coupling joins it to the train")
+    for stage in kept:
+        for gear, shaft in zip(stage.gears, stage.shafts, strict=True):
+            carrier = layout.carrier(stage)
+            if carrier is not None and _meshes_outside(layout, kept, shaft, carrier):
+                bodies.stubs[gear.id] = _stub(layout, shaft, gear, names)
+    _enter_frames(layout, bodies)
+    return bodies
+
+
+def _joined(layout: Layout, stages: Sequence[GearStage]) -> set[int]:
+    """Return the rotors of the stages, their carriers, and what is coupled to them."""
+    rotors = {layout.rotor(shaft.id) for stage in stages for shaft in stage.shafts}
+    rotors |= {carrier for stage in stages if (carrier := layout.carrier(stage)) is not None}
+    known: set[int] = set()
+    while rotors != known:
+        known = set(rotors)
+        for entry in layout.rotors.couplings:
+            ends = {layout.rotor(entry.inner.id), layout.rotor(entry.outer.id)}
+            if ends & rotors and {entry.inner.id, entry.outer.id} <= set(layout.shafts):
+                rotors |= ends
+    return rotors
+
+
+def _meshes_outside(layout: Layout, stages: Sequence[GearStage], shaft: Part, carrier: int) -> bool:
+    """Return whether a shaft also carries a gear that meshes outside of the carrier's set."""
+    return any(
+        shaft.id in {own.id for own in stage.shafts} and layout.carrier(stage) != carrier for stage in stages
+    )
+
+
+def _shaft(layout: Layout, rotor: int, names: Names) -> SceneShaft:
+    """Return the shaft of a rotor."""
+    part = layout.unit.part(rotor)
+    if rotor in {layout.rotor(planets.carrier[0].id) for planets in layout.rotors.sets}:
+        return _carrier(layout, rotor, names)
+    placed = layout.shafts[rotor]
+    part.say("", "taken", f"shaft of the scene, {'u along z' if placed.sense > 0 else 'u against z'}")
+    return SceneShaft(names.of(part), rotor, {"name": names.of(part), **_body(placed, part)})
+
+
+def _body(placed: PlacedShaft, part: Part) -> dict[str, Any]:
+    """Return place, length and sections of a shaft; without sections it is rigid and has no mass."""
+    length = placed.length
+    if not placed.sections:
+        part.say("shaft_section", "defaulted", "no sections: a rigid shaft without mass")
+        length = 1.0
+    table = {"length_mm": length / MM, "origin_mm": [float(value) / MM for value in placed.origin]}
+    if not placed.sections:
+        return table | {"inertia": inertia_table(Inertia())}
+    return table | {"sections": [_section(section) for section in placed.sections]}
+
+
+def _section(section: BeamSection) -> dict[str, Any]:
+    """Return the table of a section; steel is not written out."""
+    steel = BeamSection(section.length, section.outer_diameter)
+    table: dict[str, Any] = {
+        "length_mm": section.length / MM,
+        "outer_diameter_mm": section.outer_diameter / MM,
+        "bore_diameter_mm": section.bore_diameter / MM,
+    }
+    if section.end_outer_diameter is not None:
+        table["end_outer_diameter_mm"] = section.outer_diameters[1] / MM
+        table["end_bore_diameter_mm"] = section.bore_diameters[1] / MM
+    if section.youngs_modulus != steel.youngs_modulus:
+        table["youngs_modulus_gpa"] = section.youngs_modulus / 1e9
+    if section.poissons_ratio != steel.poissons_ratio:
+        table["poissons_ratio"] = section.poissons_ratio
+    if section.density != steel.density:
+        table["density_kg_per_m3"] = section.density
+    return table
+
+
+def _carrier(layout: Layout, rotor: int, names: Names) -> SceneShaft:
+    """Return a planet carrier as a rigid shaft."""
+    body = carrier_body(layout, rotor)
+    members = [layout.unit.part(member) for member in layout.rotors.members(rotor)]
+    for member in members:
+        member.say("", "derived", f"part of the rigid planet carrier of {len(members)} parts")
+    name = names.of(layout.unit.part(rotor))
+    table = {
+        "name": name,
+        "length_mm": body.length / MM,
+        "origin_mm": [value / MM for value in body.origin],
+        "inertia": inertia_table(body.inertia),
+    }
+    return SceneShaft(name, rotor, table)
+
+
+def _stub(layout: Layout, shaft: Part, gear: Part, names: Names) -> SceneShaft:
+    """Return a stub at a gear."""
+    placed = layout.shafts[shaft.id]
+    z = layout.z_on(placed, gear)
+    x, y = (float(value) / MM for value in placed.origin[:2])
+    name = names.of(shaft, " stub")
+    gear.say("", "derived", f"on a stub of its shaft in the carrier's frame, {name}")
+    origin = [x, y, (z - 0.5 * STUB) / MM]
+    table = {"name": name, "length_mm": STUB / MM, "origin_mm": origin, "inertia": inertia_table(Inertia())}
+    return SceneShaft(name, layout.rotor(shaft.id), table)
+
+
+def _enter_frames(layout: Layout, shafts: SceneShafts) -> None:
+    """Describe the members of planetary sets in the frame of their carrier."""
+    for stage in shafts.stages:
+        carrier = layout.carrier(stage)
+        if carrier is None:
+            continue
+        frame = shafts.by_rotor[carrier]
+        frame.table["frame"] = frame.name
+        for gear, shaft in zip(stage.gears, stage.shafts, strict=True):
+            member = shafts.stubs.get(gear.id) or shafts.by_rotor[layout.rotor(shaft.id)]
+            member.table["frame"] = frame.name
+
+
+def inertia_table(inertia: Inertia) -> dict[str, float]:
+    """Return the table of an inertia."""
+    return {
+        "mass_kg": inertia.mass,
+        "polar_kg_m2": inertia.polar,
+        "transverse_kg_m2": inertia.transverse,
+    }

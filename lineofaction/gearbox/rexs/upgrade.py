@@ -1,0 +1,210 @@
+"""Upgrades of REXS: what a version renamed is renamed, what it removed is kept and reported."""
+
+from __future__ import annotations
+
+import functools
+import tomllib
+from dataclasses import dataclass, replace
+from importlib.resources import files
+from typing import Any
+
+from lineofaction.gearbox.rexs.model import Attribute, Component, Model, Value
+from lineofaction.gearbox.rexs.refusal import refused
+from lineofaction.gearbox.rexs.units import same_in_si
+
+VERSIONS = ("1.0", "1.1", "1.2", "1.3", "1.4", "1.5", "1.6", "1.7", "2.0.0")
+NEWEST = VERSIONS[-1]
+_SHORT = {"2.0": "2.0.0"}
+
+
+@dataclass(frozen=True)
+class Change:
+    """What a version changed of a model.
+
+    Attributes
+    ----------
+    version : str
+        The version that changed it.
+    place : str
+        The component, and its load case.
+    item : str
+        Name of the attribute, or type of the component, before.
+    kept : bool
+        Whether it stays as it was, since the newer version has nothing that says the same.
+    words : str
+        What became of it, or why it is kept.
+    """
+
+    version: str
+    place: str
+    item: str
+    kept: bool
+    words: str
+
+
+@dataclass(frozen=True)
+class _Step:
+    """What a version renamed, moved, retyped and removed: a file of `steps`."""
+
+    version: str
+    components_removed: frozenset[str]
+    removed: frozenset[str]
+    renamed: dict[str, str]
+    units: dict[str, list[str]]
+    kinds: dict[str, list[str]]
+    moved: dict[str, list[str]]
+    enums: dict[str, dict[str, Any]]
+
+
+def upgrade(model: Model, version: str = NEWEST) -> tuple[Model, tuple[Change, ...]]:
+    """Return a model in a newer version of REXS, and what changed; one of that version or a newer as it is.
+
+    Names and spellings that the changelogs of REXS rename are renamed. What they remove, move to another
+    component or give another quantity stays as it is and is reported.
+
+    Raises
+    ------
+    BadInput
+        The model's version is not known.
+    """
+    start, end = version_number(model.version), version_number(version)
+    changes: list[Change] = []
+    for old, new in zip(VERSIONS[start:end], VERSIONS[start + 1 : end + 1], strict=True):
+        model = _stepped(model, _step(old, new), changes)
+    return model, tuple(changes)
+
+
+def version_number(version: str) -> int:
+    """Return the index of a version in `VERSIONS`; 2.0 is 2.0.0.
+
+    Raises
+    ------
+    BadInput
+        It is not known.
+    """
+    name = _SHORT.get(version, version)
+    if name not in VERSIONS:
+        raise refused("version", version, "one of " + ", ".join(VERSIONS))
+    return VERSIONS.index(name)
+
+
+@functools.cache
+def _step(old: str, new: str) -> _Step:
+    """Return the step between neighboring versions."""
+    name = f"steps/{old}_to_{new}.toml"
+    table = tomllib.loads(files("lineofaction.gearbox.rexs").joinpath(name).read_text(encoding="utf-8"))
+    attributes = table["attributes"]
+    return _Step(
+        version=new,
+        components_removed=frozenset(table["components"]["removed"]),
+        removed=frozenset(attributes["removed"]),
+        renamed=attributes["renamed"],
+        units=attributes["units"],
+        kinds=attributes["kinds"],
+        moved=table["moved"],
+        enums=table["enums"],
+    )
+
+
+def _stepped(model: Model, step: _Step, changes: list[Change]) -> Model:
+    """Return a model one version newer; what changes goes to `changes`."""
+    places = (place for place, _ in model.all_components())
+
+    def newer(component: Component) -> Component:
+        return _component(component, step, next(places), changes)
+
+    return replace(
+        model,
+        version=step.version,
+        components=tuple(map(newer, model.components)),
+        spectra=tuple(
+            replace(
+                spectrum,
+                cases=tuple(
+                    replace(case, components=tuple(map(newer, case.components))) for case in spectrum.cases
+                ),
+                accumulation=None
+                if spectrum.accumulation is None
+                else tuple(map(newer, spectrum.accumulation)),
+            )
+            for spectrum in model.spectra
+        ),
+    )
+
+
+def _component(component: Component, step: _Step, place: str, changes: list[Change]) -> Component:
+    """Return a component one version newer."""
+    if component.type in step.components_removed:
+        changes.append(Change(step.version, place, component.type, True, "components of this type are gone"))
+        return component
+    names = {attribute.id for attribute in component.attributes}
+    attributes = []
+    for attribute in component.attributes:
+        for change in (_unit, _kind, _enum):
+            attribute, words, kept = change(attribute, step)  # noqa: PLW2901  # the attribute as it goes
+            if words:
+                changes.append(Change(step.version, place, attribute.id, kept, words))
+        name, words = _name(component.type, attribute.id, step, names)
+        if words:
+            changes.append(Change(step.version, place, attribute.id, name == attribute.id, words))
+        attributes.append(replace(attribute, id=name))
+    return replace(component, attributes=tuple(attributes))
+
+
+_Changed = tuple[Attribute, str, bool]
+
+
+def _name(component: str, name: str, step: _Step, names: set[str]) -> tuple[str, str]:
+    """Return the name of an attribute, and what to say of it."""
+    own = f"{component}.{name}"
+    if own in step.moved:
+        targets = ", ".join(step.moved[own])
+        return name, f"the component has it no more{f'; these have it now: {targets}' if targets else ''}"
+    if name in step.removed:
+        return name, "the attribute is gone"
+    later = step.renamed.get(own, step.renamed.get(name, name))
+    if later != name and later in names:
+        return name, f"renamed to {later}, which the component has besides"
+    return later, f"renamed to {later}" if later != name else ""
+
+
+def _unit(attribute: Attribute, step: _Step) -> _Changed:
+    """Respell a unit; a value whose unit becomes another quantity is kept in its own."""
+    old, new = step.units.get(attribute.id, (None, None))
+    if new is None or attribute.unit != old:
+        return attribute, "", False
+    if same_in_si(str(old), new):
+        return replace(attribute, unit=new), f"unit {old} is spelled {new}", False
+    return attribute, f"the unit is {new} now; the value is in {old}", True
+
+
+def _kind(attribute: Attribute, step: _Step) -> _Changed:
+    """Give a value its newer type where it has the same meaning."""
+    old, new = step.kinds.get(attribute.id, (None, None))
+    if new is None or attribute.kind != old:
+        return attribute, "", False
+    value = attribute.value
+    if isinstance(value, tuple) and len(value) == 1 and old in _UNWRAPPED:
+        return replace(attribute, kind=new, value=_first(value), code=None), f"type {old} is {new}", False
+    return attribute, f"the type is {new} now; the value is of type {old}", True
+
+
+_UNWRAPPED = ("floating_point_array", "floating_point_matrix")
+
+
+def _first(value: tuple[Any, ...]) -> Value:
+    """Return the only entry."""
+    entry: Value = value[0]
+    return entry
+
+
+def _enum(attribute: Attribute, step: _Step) -> _Changed:
+    """Rename a value of an enum."""
+    table = step.enums.get(attribute.id, {})
+    value = str(attribute.value)
+    if value in table.get("renamed", {}):
+        later = table["renamed"][value]
+        return replace(attribute, value=later, kind="enum"), f"value {value} is {later}", False
+    if attribute.value is not None and value in table.get("removed", []):
+        return attribute, f"the value {value} is gone", True
+    return attribute, "", False

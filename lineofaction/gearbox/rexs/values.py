@@ -1,0 +1,140 @@
+"""Values of attributes from text and from base64, and back."""
+
+from __future__ import annotations
+
+import array
+import base64
+import binascii
+import math
+import re
+import sys
+from collections.abc import Callable
+
+from lineofaction.gearbox.rexs.model import Array, Scalar
+from lineofaction.gearbox.rexs.refusal import refused
+
+CODES = {"float32": "f", "float64": "d", "int32": "i"}
+"""The codes of REXS, little-endian, with the letters of `array`."""
+
+_INTEGER = re.compile(r"[+-]?\d{1,19}")
+_MOST_INTEGER = 2**63
+
+
+def integer_of(text: str, place: str) -> int:
+    """Return an integer of at most 64 bits.
+
+    Raises
+    ------
+    BadInput
+        It is none.
+    """
+    plain = text.strip()
+    if not _INTEGER.fullmatch(plain) or abs(int(plain)) >= _MOST_INTEGER:
+        raise refused(place, text, "an integer of at most 64 bits")
+    return int(plain)
+
+
+def float_of(text: str, place: str) -> float:
+    """Return a finite number.
+
+    Raises
+    ------
+    BadInput
+        It is none.
+    """
+    try:
+        number = float(text) if "_" not in text else math.nan
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise refused(place, text, "a finite number")
+    return number
+
+
+def boolean_of(text: str, place: str) -> bool:
+    """Return true or false, in any case.
+
+    Raises
+    ------
+    BadInput
+        It is neither.
+    """
+    plain = text.strip().lower()
+    if plain not in ("true", "false"):
+        raise refused(place, text, "true or false")
+    return plain == "true"
+
+
+def _words(text: str, place: str) -> str:
+    """Return the text as it is."""
+    del place
+    return text
+
+
+OF_TEXT: dict[str, Callable[[str, str], Scalar]] = {
+    "floating_point": float_of,
+    "integer": integer_of,
+    "reference_component": integer_of,
+    "boolean": boolean_of,
+}
+
+
+def scalar_of(kind: str, text: str, place: str) -> Scalar:
+    """Return the value of a text of a scalar kind.
+
+    Raises
+    ------
+    BadInput
+        The text is no value of the kind.
+    """
+    return OF_TEXT.get(kind, _words)(text, place)
+
+
+def text_of(value: Scalar) -> str:
+    """Return a value as XML writes it; a float reads back the same to the last bit."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return repr(value) if isinstance(value, float) else str(value)
+
+
+def decoded(code: str, text: str, place: str) -> Array:
+    """Return the numbers of a base64 text.
+
+    Raises
+    ------
+    BadInput
+        The code is none of REXS, the text is not base64, or a number is not finite.
+    """
+    if code not in CODES:
+        raise refused(place, code, "one of " + ", ".join(CODES))
+    numbers = array.array(CODES[code])
+    try:
+        numbers.frombytes(base64.b64decode("".join(text.split()), validate=True))
+    except (ValueError, binascii.Error):
+        raise refused(place, text[:40], f"base64 of whole {code} numbers") from None
+    if sys.byteorder == "big":
+        numbers.byteswap()
+    if code != "int32" and not all(map(math.isfinite, numbers)):
+        raise refused(place, "a number that is not finite", "finite numbers")
+    return tuple(numbers)
+
+
+def coded(code: str, values: Array) -> str:
+    """Return numbers as base64 of a code."""
+    numbers = array.array(CODES[code], values)  # type: ignore[type-var]  # numbers, by the kind
+    if sys.byteorder == "big":
+        numbers.byteswap()
+    return base64.b64encode(numbers.tobytes()).decode("ascii")
+
+
+def rows_of(values: Array, rows: int, columns: int, place: str) -> tuple[Array, ...]:
+    """Return the rows of a matrix of which base64 holds all values, row by row.
+
+    Raises
+    ------
+    BadInput
+        There are more or fewer values than the matrix has.
+    """
+    if rows < 0 or columns < 0 or rows * columns != len(values):
+        raise refused(place, f"{rows} x {columns}", f"the size of a matrix of {len(values)} values")
+    return tuple(values[start : start + columns] for start in range(0, len(values), columns or 1))

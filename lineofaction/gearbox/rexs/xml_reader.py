@@ -1,0 +1,196 @@
+"""A model from REXS's XML form (``.rexs``)."""
+
+from __future__ import annotations
+
+from lineofaction.gearbox.rexs.kinds import KIND_FIELD, KINDS, entry_kind, kind_of
+from lineofaction.gearbox.rexs.model import (
+    Attribute,
+    Component,
+    Extra,
+    LoadCase,
+    LoadSpectrum,
+    Model,
+    Reference,
+    Relation,
+    Value,
+)
+from lineofaction.gearbox.rexs.refusal import refused
+from lineofaction.gearbox.rexs.values import decoded, integer_of, rows_of, scalar_of
+from lineofaction.gearbox.rexs.xml_tree import Element, element_of
+
+_OWN = ("id", "unit", "origin")
+
+
+def read_xml(data: bytes) -> Model:
+    """Return the model of an XML text; comments are not kept.
+
+    Raises
+    ------
+    BadInput
+        It is no XML that may be read, or no REXS.
+    """
+    root = element_of(data)
+    if root.name.rpartition(":")[2] != "model":
+        raise refused(_place(root), root.name, "model, the root of a REXS file")
+    parts = _parts(root, {"relations": 1, "components": 1, "load_spectrum": None})
+    return Model(
+        version=_text(root, "version"),
+        application=_text(root, "applicationId"),
+        application_version=_text(root, "applicationVersion"),
+        date=_text(root, "date"),
+        relations=tuple(
+            _relation(part) for group in parts["relations"] for part in _inside(group, "relation")
+        ),
+        components=tuple(
+            _component(part) for group in parts["components"] for part in _inside(group, "component")
+        ),
+        spectra=tuple(map(_spectrum, parts["load_spectrum"])),
+        language=root.fields.get("applicationLanguage"),
+        extra=_extra(root, "version", "applicationId", "applicationVersion", "date", "applicationLanguage"),
+    )
+
+
+def _relation(element: Element) -> Relation:
+    """Return a relation."""
+    order = element.fields.get("order")
+    return Relation(
+        id=_number(element, "id"),
+        type=_text(element, "type"),
+        refs=tuple(map(_reference, _only(element, "ref"))),
+        order=None if order is None else integer_of(order, _place(element)),
+        extra=_extra(element, "id", "type", "order"),
+    )
+
+
+def _reference(element: Element) -> Reference:
+    """Return a component in a relation."""
+    extra = _extra(element, "id", "role", "hint")
+    return Reference(_number(element, "id"), _text(element, "role"), element.fields.get("hint"), extra)
+
+
+def _component(element: Element) -> Component:
+    """Return a component."""
+    return Component(
+        id=_number(element, "id"),
+        type=_text(element, "type"),
+        attributes=tuple(map(_attribute, _only(element, "attribute"))),
+        name=element.fields.get("name"),
+        extra=_extra(element, "id", "type", "name"),
+        line=element.line,
+    )
+
+
+def _spectrum(element: Element) -> LoadSpectrum:
+    """Return a load spectrum."""
+    parts = _parts(element, {"load_case": None, "accumulation": 1})
+    cases = tuple(
+        LoadCase(_number(case, "id"), tuple(map(_component, _only(case, "component"))), _extra(case, "id"))
+        for case in parts["load_case"]
+    )
+    whole = [tuple(map(_component, _inside(part, "component"))) for part in parts["accumulation"]]
+    return LoadSpectrum(_number(element, "id"), cases, whole[0] if whole else None, _extra(element, "id"))
+
+
+def _attribute(element: Element) -> Attribute:
+    """Return an attribute."""
+    name = _text(element, "id")
+    shapes = _parts(element, {"array": 1, "matrix": 1, "array_of_arrays": 1})
+    bodies = [part for group in shapes.values() for part in group]
+    if len(bodies) > 1 or (bodies and element.text.strip()):
+        raise refused(_place(element), name, "one value, array or matrix")
+    known = (*_OWN, KIND_FIELD) if entry_kind(element.fields.get(KIND_FIELD, "")) in KINDS else _OWN
+    kind = element.fields.get(KIND_FIELD) if KIND_FIELD in known else None
+    form, value, code = _shaped(name, bodies[0], kind) if bodies else _scalar(name, element, kind)
+    fields = element.fields
+    extra = _extra(element, *known)
+    return Attribute(name, form, value, fields.get("unit"), code, fields.get("origin"), extra)
+
+
+def _scalar(name: str, element: Element, said: str | None) -> tuple[str, Value, None]:
+    """Return kind, value and no code of a scalar; an empty one has no value."""
+    text = element.text if element.text.strip() else ""
+    if not text:
+        return said or kind_of(name, []), None, None
+    kind = entry_kind(said) if said else kind_of(name, [text])
+    return kind, scalar_of(kind, text, f"{_place(element)}, {name}"), None
+
+
+def _shaped(name: str, body: Element, said: str | None) -> tuple[str, Value, str | None]:
+    """Return kind, value and code of an array, a matrix or an array of arrays."""
+    place = f"{_place(body)}, {name}"
+    code = body.fields.get("code")
+    if code is not None:
+        return _coded(body, code, place)
+    if body.name == "array":
+        texts = _cells(body)
+        kind = entry_kind(said) if said else kind_of(name, texts)
+        return f"{kind}_array", tuple(scalar_of(kind, text, place) for text in texts), None
+    rows = [_cells(row) for row in _only(body, "r" if body.name == "matrix" else "array")]
+    kind = entry_kind(said) if said else kind_of(name, [text for row in rows for text in row])
+    form = f"{kind}_matrix" if body.name == "matrix" else f"array_of_{kind}_arrays"
+    return form, tuple(tuple(scalar_of(kind, text, place) for text in row) for row in rows), None
+
+
+def _coded(body: Element, code: str, place: str) -> tuple[str, Value, str]:
+    """Return kind, value and code of an array or matrix in base64."""
+    if body.parts or body.name == "array_of_arrays":
+        raise refused(place, body.name, "an array or a matrix in base64, or one of elements")
+    values = decoded(code, body.text, place)
+    kind = "integer" if code == "int32" else "floating_point"
+    if body.name == "array":
+        return f"{kind}_array", values, code
+    rows, columns = (_number(body, name) for name in ("rows", "columns"))
+    return f"{kind}_matrix", rows_of(values, rows, columns, place), code
+
+
+def _cells(element: Element) -> list[str]:
+    """Return the texts of the cells of an array or a row."""
+    return [cell.text for cell in _only(element, "c")]
+
+
+def _inside(group: Element, name: str) -> list[Element]:
+    """Return the elements of a group, which has no fields of its own."""
+    for field in group.fields:
+        raise refused(_place(group), field, "left out: a group has no fields")
+    return _only(group, name)
+
+
+def _only(element: Element, name: str) -> list[Element]:
+    """Return the elements of one name, where no other may be."""
+    return _parts(element, {name: None})[name]
+
+
+def _parts(element: Element, known: dict[str, int | None]) -> dict[str, list[Element]]:
+    """Return the elements inside by their names, where `known` says how many there may be."""
+    groups: dict[str, list[Element]] = {name: [] for name in known}
+    for part in element.parts:
+        name = part.name.rpartition(":")[2]
+        if name not in groups:
+            raise refused(_place(part), part.name, "one of " + ", ".join(known))
+        groups[name].append(part)
+        if known[name] is not None and len(groups[name]) > 1:
+            raise refused(_place(part), part.name, "given once")
+    return groups
+
+
+def _text(element: Element, name: str) -> str:
+    """Return a field that must be given."""
+    text = element.fields.get(name)
+    if text is None:
+        raise refused(f"{_place(element)}, {name}", None, "given")
+    return text
+
+
+def _number(element: Element, name: str) -> int:
+    """Return an integer that must be given."""
+    return integer_of(_text(element, name), f"{_place(element)}, {name}")
+
+
+def _extra(element: Element, *known: str) -> Extra:
+    """Return the fields that REXS does not define."""
+    return tuple((name, text) for name, text in element.fields.items() if name not in known)
+
+
+def _place(element: Element) -> str:
+    """Return where an element stands."""
+    return f"line {element.line}, {element.name}"

@@ -1,0 +1,205 @@
+"""The case file: a gear pair, its material, loads, errors, accuracy and effects."""
+
+from __future__ import annotations
+
+from dataclasses import MISSING, replace
+from itertools import pairwise
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import ConfigDict, Field, Strict, model_validator
+
+from fe_contact.geometry.gear_pair import GearPair
+from lineofaction.gearbox.schemas.declared import as_fields, figures, with_fields
+from lineofaction.gearbox.schemas.gear import SHARED, GearInput
+from lineofaction.gearbox.schemas.gear_body import MaterialInput
+from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
+from lineofaction.gearbox.schemas.rules import at_most_one_of, exactly_one_of, stated
+from lineofaction.gearbox.schemas.wheel import WheelInput
+
+Load = Annotated[float, Field(ge=1e-9, le=1e9)]  # smaller ones underflow where they are squared
+Misalignment = Annotated[float, Field(ge=-10_000.0, le=10_000.0)]
+CenterDistanceChange = Annotated[float, Field(ge=-10.0, le=10.0)]
+Loads = Annotated[tuple[Load, ...], Strict(False), Field(min_length=1, max_length=256)]
+Misalignments = Annotated[tuple[Misalignment, ...], Strict(False), Field(min_length=1, max_length=64)]
+CenterDistanceChanges = Annotated[
+    tuple[CenterDistanceChange, ...], Strict(False), Field(min_length=1, max_length=64)
+]
+_WISHES = ("tolerance", "time_budget_s", "level")
+Switch = Literal["on", "off", "auto"]
+EffectName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,63}$")]
+
+
+def _increasing(field: str, values: tuple[float, ...] | None) -> None:
+    """Refuse a list that is not strictly increasing."""
+    if values is not None and any(b <= a for a, b in pairwise(values)):
+        refuse(field, list(values), "strictly increasing", "Sort the list and drop repeats.")
+
+
+OF_PAIR = (*SHARED, *(replace(figure, default=MISSING) for figure in figures(GearPair)))
+"""Figures that a case has in ``[pair]``."""
+
+
+@with_fields(as_fields(OF_PAIR))
+class _PairFigures(BoundaryModel):
+    """The figures of a pair."""
+
+    normal_module_mm: float
+
+
+class PairInput(_PairFigures):
+    """A pinion, an external wheel or a ring gear of the same basic rack, and their center distance."""
+
+    pinion: GearInput = Field(description="The driving gear")
+    wheel: WheelInput = Field(description="The driven gear, external or a ring gear")
+
+
+class LoadInput(BoundaryModel):
+    """Loads of the table: torques on the driving gear or normal forces."""
+
+    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of("torque_n_m", "normal_force_n")))
+
+    torque_n_m: Loads | None = Field(
+        default=None,
+        description="Torques on the driving gear in N m, increasing",
+        examples=[[10.0, 100.0, 400.0]],
+    )
+    normal_force_n: Loads | None = Field(
+        default=None, description="Normal tooth forces in N, increasing", examples=[[266.0, 2660.0]]
+    )
+
+    @model_validator(mode="after")
+    def _one_of_both(self) -> Self:
+        """Exactly one kind of load."""
+        if (self.torque_n_m is None) == (self.normal_force_n is None):
+            value = None if self.torque_n_m is None else list(self.torque_n_m)
+            refuse(
+                "torque_n_m",
+                value,
+                "given, or normal_force_n instead, but not both",
+                "For example torque_n_m = [10, 100, 400].",
+            )
+        _increasing("torque_n_m", self.torque_n_m)
+        _increasing("normal_force_n", self.normal_force_n)
+        return self
+
+
+class ErrorsInput(BoundaryModel):
+    """Errors of assembly: axes of the table when they hold more than one value."""
+
+    misalignment_um: Misalignments = Field(
+        default=(0.0,),
+        description="Gap growth in um over the common face width in the plane of action, zero at mid-face",
+        examples=[[0.0, 30.0]],
+    )
+    center_distance_change_mm: CenterDistanceChanges = Field(
+        default=(0.0,), description="Changes of the center distance in mm", examples=[[0.0]]
+    )
+
+    @model_validator(mode="after")
+    def _axes_increase(self) -> Self:
+        """Both are axes of a table."""
+        _increasing("misalignment_um", self.misalignment_um)
+        _increasing("center_distance_change_mm", self.center_distance_change_mm)
+        return self
+
+
+class AccuracyInput(BoundaryModel):
+    """The request to the planner: an accuracy, a time or a level; by default tolerance 0.01."""
+
+    model_config = ConfigDict(
+        json_schema_extra=stated(
+            at_most_one_of("level", "tolerance"), at_most_one_of("level", "time_budget_s")
+        )
+    )
+
+    tolerance: float | None = Field(
+        default=None,
+        ge=1e-4,
+        le=0.5,
+        description="Allowed relative error of mean and peak-to-peak STE",
+        examples=[0.01],
+    )
+    tolerance_floor_nm: float = Field(
+        default=20.0,
+        ge=0.0,
+        le=1e6,
+        description="Error in nm that a tolerance always allows, even if it is more than the relative error "
+        "of a small ripple",
+        examples=[20.0],
+    )
+    time_budget_s: float | None = Field(
+        default=None,
+        gt=0.0,
+        le=1e6,
+        description="Budget in CPU seconds; with a tolerance, refinement ends there",
+        examples=[10.0],
+    )
+    level: Literal["draft", "standard", "fine"] | None = Field(
+        default=None, description="A mesh by name", examples=["standard"]
+    )
+    model: Literal["auto", "plane_strain", "plane_stress", "3d"] = Field(
+        default="auto", description="The body model; auto lets the planner choose", examples=["auto"]
+    )
+    receipt: Literal["full", "minimal"] = Field(
+        default="full",
+        description="full: errors by source; minimal: no error estimates",
+        examples=["full"],
+    )
+    on_violation: Literal["repeat", "fail", "report"] = Field(
+        default="repeat",
+        description="If an assumption is violated: repeat with the effect it needs, fail, or report",
+        examples=["repeat"],
+    )
+    positions: int | None = Field(
+        default=None,
+        ge=8,
+        le=4096,
+        description="Positions in one base pitch; left out: chosen by the planner",
+        examples=[64],
+    )
+    pitches: int | None = Field(
+        default=None,
+        ge=1,
+        le=1_000_000,
+        description="Base pitches that the table covers if gears have pitch deviations; left out: the full "
+        "period, one revolution of one gear or the hunting cycle of both",
+        examples=[20],
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _default_wish(cls, data: Any) -> Any:
+        """Ask for the default tolerance when nothing is requested, so that the echo says so."""
+        if isinstance(data, dict) and all(data.get(name) is None for name in _WISHES):
+            return {**data, "tolerance": 0.01}
+        return data
+
+    @model_validator(mode="after")
+    def _one_wish(self) -> Self:
+        """Refuse a tolerance or a time budget beside a level, which is a mesh."""
+        wishes = [name for name in ("tolerance", "time_budget_s") if getattr(self, name) is not None]
+        if wishes and self.level is not None:
+            advice = "A level is a mesh, regardless of cost."
+            refuse("level", self.level, f"left out when {wishes[0]} is given", advice)
+        return self
+
+
+class Case(BoundaryModel):
+    """A gear pair and what is to be computed for it."""
+
+    pair: PairInput = Field(description="The gear pair")
+    material: MaterialInput = Field(
+        default=MaterialInput(),
+        description="Material of both gears",
+        examples=[{"youngs_modulus_gpa": 210.0}],
+    )
+    load: LoadInput = Field(description="The loads", examples=[{"torque_n_m": [10, 100, 400]}])
+    errors: ErrorsInput = Field(default=ErrorsInput(), description="Assembly errors", examples=[{}])
+    accuracy: AccuracyInput = Field(
+        default=AccuracyInput(), description="The accuracy requested", examples=[{}]
+    )
+    effects: dict[EffectName, Switch] = Field(
+        default={},
+        description="Switches of optional physics; left out = auto",
+        examples=[{"corner_contact": "auto"}],
+    )

@@ -1,0 +1,166 @@
+"""Boundary fields made from the fields that a library declares: the unit in the name, bounds in it, words."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import MISSING, dataclass, fields, replace
+from functools import cache
+from typing import Annotated, Any, Literal, TypeVar
+
+from pydantic import Field, create_model
+
+from bounds import Bound, Choice, Declared, Direction, Kind, Unit, declarations
+from lineofaction.gearbox.schemas.model import BoundaryModel
+from lineofaction.gearbox.units import BY_SUFFIX, as_typed, suffix_of
+
+Fields = Mapping[str, tuple[Any, Any]]
+Model = TypeVar("Model", bound=BoundaryModel)
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A declared number or name as the boundary has it.
+
+    Attributes
+    ----------
+    name : str
+        The field of the library.
+    what : Declared
+    default : object
+        In SI; `MISSING` where one has to be given, None where it may be left out.
+    """
+
+    name: str
+    what: Declared
+    default: Any
+
+    @property
+    def field(self) -> str:
+        """The field of the boundary: the name with its unit."""
+        return f"{self.name}{suffix_of(self.what)}"
+
+    @property
+    def unit(self) -> Unit:
+        """The unit of the boundary."""
+        return BY_SUFFIX.get(suffix_of(self.what), Unit())
+
+    @property
+    def words(self) -> str:
+        """The name in words."""
+        return self.name.replace("_", " ")
+
+    @property
+    def limits(self) -> dict[str, Any]:
+        """The ends of what is accepted by pydantic's names; none for a choice of names."""
+        bound = self.what.bound
+        if not isinstance(bound, Bound):
+            return {}
+        low = {"gt" if bound.low_open else "ge": bound.low}
+        ends = low | {"lt" if bound.high_open else "le": bound.high}
+        number = int if bound.integer else float
+        return {name: self.own(number(end)) for name, end in ends.items() if end is not None}
+
+    @property
+    def accepted(self) -> Any:
+        """The type with its bounds."""
+        if isinstance(self.what.bound, Choice):
+            return Literal[self.what.bound.names]
+        if self.what.kind is Kind.SWITCH:
+            return bool
+        plain: Any = int if self.what.kind is Kind.COUNT else float
+        number = Annotated[plain, Field(**self.limits)]
+        return number | None if self.default is None else number
+
+    def own(self, value: Any) -> Any:
+        """Return a value in SI in the unit of the boundary, without the noise of the conversion."""
+        return as_typed(value, self.unit.factor) if isinstance(value, float) else value
+
+    def with_unit(self, text: str) -> str:
+        """Return words with the unit before the first semicolon."""
+        head, semicolon, rest = text.partition(";")
+        unit = self.unit.name or self.what.unit
+        return f"{head}, in {unit}{semicolon}{rest}" if unit else text
+
+    def as_field(self) -> tuple[Any, Any]:
+        """Return type and field of a model that has it with its default."""
+        extra: Any = {"x-kind": self.what.kind.value, "x-along": _names(self.what.along)}
+        field = Field(
+            default=... if self.default is MISSING else self.own(self.default),
+            description=self.with_unit(self.what.description),
+            examples=[self.own(self.what.example)],
+            json_schema_extra=extra,
+            exclude_if=self._unsaid if self.what.later else None,
+        )
+        return self.accepted, field
+
+    def _unsaid(self, value: Any) -> bool:
+        """Whether a value of the boundary is the default."""
+        return bool(value == self.own(self.default))
+
+
+def figures(kind: type[Any], *kinds: Kind) -> tuple[Figure, ...]:
+    """Return the declared numbers and names of a dataclass, those of some kinds if any are given."""
+    defaults = {entry.name: entry.default for entry in fields(kind)}
+    return tuple(
+        Figure(name, fact, defaults[name])
+        for name, fact in declarations(kind).items()
+        if fact.kind not in (Kind.SURFACE, Kind.PART) and (not kinds or fact.kind in kinds)
+    )
+
+
+def declared_in(kind: type[Any], *, all_given: bool = False) -> Fields:
+    """Return the declared fields of a dataclass as those of a model; `all_given`: numbers have no default."""
+    own = (replace(each, default=MISSING) if all_given else each for each in figures(kind))
+    return {**as_fields(own), **parts_in(parts_of(kind))}
+
+
+def as_fields(own: Iterable[Figure]) -> Fields:
+    """Return figures as fields of a model."""
+    return {figure.field: figure.as_field() for figure in own}
+
+
+def parts_of(kind: type[Any]) -> Mapping[str, Declared]:
+    """Return the declared parts of a dataclass by name."""
+    return {name: fact for name, fact in declarations(kind).items() if fact.part is not None}
+
+
+def parts_in(parts: Mapping[str, Declared]) -> Fields:
+    """Return parts as fields of a model, tables that may be left out."""
+    return {
+        name: (
+            _model_of(fact.part) | None,
+            Field(default=None, description=fact.description, examples=[_example(fact.part)]),
+        )
+        for name, fact in parts.items()
+        if fact.part is not None
+    }
+
+
+@cache
+def _model_of(part: Any) -> Any:
+    """Return the model of a part."""
+    name, doc = f"{part.__name__}Input", str(part.__doc__).partition("\n")[0]
+    facts: Any = declared_in(part)
+    return create_model(name, __base__=BoundaryModel, __module__=__name__, __doc__=doc, **facts)
+
+
+def _example(part: type) -> dict[str, Any]:
+    """Return a usual part."""
+    return {figure.field: figure.own(figure.what.example) for figure in figures(part)}
+
+
+def with_fields(further: Fields) -> Callable[[type[Model]], type[Model]]:
+    """Return a decorator that adds fields, as (type, field) by name, to a model."""
+
+    def added(model: type[Model]) -> type[Model]:
+        facts: Any = dict(further)
+        return create_model(
+            model.__name__, __base__=model, __module__=model.__module__, __doc__=model.__doc__, **facts
+        )
+
+    return added
+
+
+def _names(along: Direction) -> list[str]:
+    """Return the names of directions."""
+    return [direction.name.lower() for direction in along if direction.name]

@@ -1,0 +1,193 @@
+"""From pydantic's errors to faults: field, value, bound, suggestion."""
+
+from __future__ import annotations
+
+import difflib
+import types
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import islice
+from typing import Annotated, Any, Union, get_args, get_origin
+
+import annotated_types
+from pydantic import BaseModel, ValidationError
+from pydantic.fields import FieldInfo
+
+from lineofaction.gearbox.problems import Fault
+from lineofaction.gearbox.schemas.few_faults import MOST_FAULTS
+
+Loc = Sequence[int | str]
+
+_LONGEST_NAME = 200
+_LONGEST_GUESS = 64
+
+_KINDS = {
+    "int_type": "an integer",
+    "int_from_float": "an integer",
+    "int_parsing_size": "an integer",
+    "float_type": "a number",
+    "finite_number": "a finite number",
+    "bool_type": "true or false",
+    "string_type": "a text in quotes",
+    "tuple_type": "a list in brackets",
+    "list_type": "a list in brackets",
+    "dict_type": "a table of fields",
+    "model_type": "a table of fields",
+    "model_attributes_type": "a table of fields",
+    "json_invalid": "valid JSON",
+}
+
+_LISTS = ("tuple_type", "list_type")
+
+
+def faults_of(error: ValidationError, model: type[BaseModel]) -> tuple[Fault, ...]:
+    """Return the faults of a validation of `model`."""
+    items = innermost(error.errors(include_url=False))
+    return tuple(fault_of(item, model, item["loc"]) for item in items)
+
+
+def innermost(items: Sequence[Any]) -> list[Any]:
+    """Return the errors without those of a list or table whose own parts are at fault already.
+
+    At most the first 50; see `lineofaction.gearbox.schemas.few_faults`.
+    """
+    locations = [tuple(item["loc"]) for item in items]
+    around = {location[:depth] for location in locations for depth in range(len(location))}
+    inner = (item for item, location in zip(items, locations, strict=True) if location not in around)
+    return list(islice(inner, MOST_FAULTS))
+
+
+def fault_of(item: Mapping[str, Any], model: type[BaseModel] | None, loc: Loc) -> Fault:
+    """Return one pydantic error as a fault; `loc` is its place relative to `model`."""
+    context = item.get("ctx", {})
+    if item["type"] == "refused":
+        field = _dotted([*loc, *str(context["field"]).split(".")])
+        return Fault(field, context["value"], context["bound"], context["suggestion"])
+    parent, info = _place(model, loc)
+    value = None if item["type"] == "missing" else item.get("input")
+    return Fault(_dotted(loc), value, _bound(item, info), _suggestion(item, parent, info, loc))
+
+
+def _dotted(loc: Loc) -> str:
+    """Place as the user writes it: pair.pinion.teeth, load.torque_n_m[2]."""
+    text = ""
+    for part in (part for part in loc if part not in ("[key]", "[one]", "[many]")):
+        name = str(part)[:_LONGEST_NAME]
+        text += f"[{name}]" if isinstance(part, int) else f".{name}" if text else name
+    return text or "input"
+
+
+def _place(model: type[BaseModel] | None, loc: Loc) -> tuple[type[BaseModel] | None, FieldInfo | None]:
+    """Model that holds the last named field of `loc`, and that field if it exists."""
+    current, info = model, None
+    for index, part in enumerate(loc):
+        if isinstance(part, int):
+            continue
+        if current is None:
+            return None, None
+        info = current.model_fields.get(part)
+        if index == len(loc) - 1 or info is None:
+            return current, info
+        inner = model_in(info.annotation)
+        if inner is None:
+            return current, info
+        current = inner
+    return current, info
+
+
+def model_in(annotation: object) -> type[BaseModel] | None:
+    """Return the model inside an annotation such as `Model | None` or `tuple[Model, ...]`."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return annotation
+    if get_origin(annotation) in (Union, types.UnionType, tuple, list, dict, Annotated):
+        models = (model_in(argument) for argument in get_args(annotation))
+        return next((inner for inner in models if inner is not None), None)
+    return None
+
+
+def _constraints(info: FieldInfo | None) -> dict[str, float]:
+    """Numeric bounds of a field: gt, ge, lt, le."""
+    limits: dict[str, float] = {}
+    for item in _metadata(info.metadata if info else (), info.annotation if info else None):
+        for name, kind in _LIMITS.items():
+            if isinstance(item, kind):
+                limits[name] = getattr(item, name)
+    return limits
+
+
+_LIMITS: dict[str, type] = {
+    "gt": annotated_types.Gt,
+    "ge": annotated_types.Ge,
+    "lt": annotated_types.Lt,
+    "le": annotated_types.Le,
+}
+
+
+def _metadata(own: Iterable[object], annotation: object) -> Iterable[object]:
+    """Metadata of a field, its `Annotated` parts unfolded, down to the elements of a list."""
+    for item in own:
+        yield from getattr(item, "metadata", None) or [item]
+    for argument in get_args(annotation):
+        yield from _metadata(getattr(argument, "__metadata__", ()), argument)
+
+
+def _range(limits: Mapping[str, float]) -> str:
+    """Bounds in words, empty if there are none."""
+    if "ge" in limits and "le" in limits:
+        return f"from {limits['ge']:g} to {limits['le']:g}"
+    words = {"gt": "above", "ge": "at least", "lt": "below", "le": "at most"}
+    return " and ".join(f"{words[name]} {limits[name]:g}" for name in words if name in limits)
+
+
+def _bound(item: Mapping[str, Any], info: FieldInfo | None) -> str:
+    """Say what would be accepted."""
+    kind, context = item["type"], item.get("ctx", {})
+    span = _range(_constraints(info))
+    if kind in _KINDS:
+        return f"{_KINDS[kind]}, each {span}" if kind in _LISTS and span else f"{_KINDS[kind]} {span}".strip()
+    if kind in ("greater_than", "greater_than_equal", "less_than", "less_than_equal"):
+        return span or _range({name: context[name] for name in _LIMITS if name in context})
+    return _other_bound(kind, context, str(item.get("msg", "")))
+
+
+def _other_bound(kind: str, context: Mapping[str, Any], message: str) -> str:
+    """Bound of the kinds that are neither types nor ranges."""
+    texts: dict[str, Callable[[], str]] = {
+        "missing": lambda: "given",
+        "extra_forbidden": lambda: "left out: there is no such field here",
+        "literal_error": lambda: f"one of {context['expected']}",
+        "too_short": lambda: f"a list of at least {context['min_length']}",
+        "too_long": lambda: f"a list of at most {context['max_length']}",
+        "string_too_short": lambda: f"a text of at least {context['min_length']} characters",
+        "string_too_long": lambda: f"a text of at most {context['max_length']} characters",
+        "string_pattern_mismatch": lambda: f"a text of the form {context['pattern']}",
+    }
+    return texts[kind]() if kind in texts else f"valid ({message})"
+
+
+def _suggestion(
+    item: Mapping[str, Any], parent: type[BaseModel] | None, info: FieldInfo | None, loc: Loc
+) -> str:
+    """Say what to try: the nearest known name, or the field's description with an example."""
+    if item["type"] == "extra_forbidden" and parent is not None:
+        return _nearest(str(loc[-1]), list(parent.model_fields))
+    return _described(info)
+
+
+def field_advice(model: type[BaseModel], field: str) -> str:
+    """Return what the model says about a field, e.g. ``"pair.pinion.bore_diameter_mm"``; empty if nothing."""
+    loc = [part for part in field.replace("[", ".").replace("]", "").split(".") if not part.isdigit()]
+    return _described(_place(model, loc)[1])
+
+
+def _described(info: FieldInfo | None) -> str:
+    """Describe a field, with an example."""
+    if info is None:
+        return ""
+    example = f"For example {info.examples[0]!r}" if info.examples else ""
+    return "".join(f"{part}. " for part in (info.description, example) if part).rstrip()
+
+
+def _nearest(name: str, known: Sequence[str]) -> str:
+    """Return the field that was probably meant."""
+    close = difflib.get_close_matches(name[:_LONGEST_GUESS], known, n=1)
+    return f"Did you mean {close[0]}?" if close else f"Known here: {', '.join(known)}."

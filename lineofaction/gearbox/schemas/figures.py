@@ -1,0 +1,77 @@
+"""Figures of results: the documents that verbs print by ``--json`` and the service answers with.
+
+Each kind declares its own: a study in its module ``answer``, a table and a run here. Units are in the names;
+what is not known is None.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Json = dict[str, Any]
+
+
+class Part(BaseModel):
+    """A part of figures. A service of a later version may add members, which are kept."""
+
+    model_config = ConfigDict(extra="allow", frozen=True)
+
+
+class Figures(Part):
+    """Figures of a result, and what is known of its file.
+
+    Attributes
+    ----------
+    hash : str
+        Content hash of the input, the name of the result.
+    sha256 : str
+        Digest of the file.
+    size : int
+        Bytes of the file.
+    warnings : list of dict
+        What is implausible: check, field, value, unit, message.
+    """
+
+    hash: str
+    sha256: str
+    size: int
+    warnings: list[Json] = Field(default_factory=list)
+
+    def __getitem__(self, name: str) -> Any:
+        """Return a member of the document by its name there, as version 0.2 had it."""
+        return self.model_dump(by_alias=True, exclude_unset=True)[name]
+
+
+class TableFigures(Figures):
+    """Figures of an STE database: its case, effects and receipt, and its axes."""
+
+    schema_version: int
+    content_hash: str
+    case: Json
+    effect_ledger: list[Json] | Json
+    receipt: Json
+    software_versions: dict[str, str]
+    failed_points: int
+    period: int
+    position: list[float]
+    torque_n_m: list[float]
+    normal_force_n: list[float]
+    misalignment_um: list[float]
+    center_distance_change_mm: list[float]
+
+
+class RunVariable(Part):
+    """A variable of the file of a run."""
+
+    dimensions: list[str]
+    units: str
+
+
+class RunFigures(Figures):
+    """What the file of a run holds, without its data."""
+
+    attributes: Json
+    dimensions: dict[str, int]
+    variables: dict[str, RunVariable]

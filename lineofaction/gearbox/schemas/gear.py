@@ -1,0 +1,117 @@
+"""Gear of the case file: toothing and flank modifications (ISO 21771 names, units in the names)."""
+
+from __future__ import annotations
+
+from typing import Annotated, Self
+
+from pydantic import Field, Strict, model_validator
+
+from fe_contact.flank.modification import FlankModification
+from fe_contact.geometry.gear import Gear
+from fe_contact.geometry.toothing import MATING, Toothing
+from lineofaction.gearbox.schemas.declared import (
+    Figure,
+    as_fields,
+    declared_in,
+    figures,
+    parts_in,
+    parts_of,
+    with_fields,
+)
+from lineofaction.gearbox.schemas.gear_body import GearShaftInput, MaterialInput
+from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
+
+GridAxis = Annotated[
+    tuple[Annotated[float, Field(ge=-10_000.0, le=10_000.0)], ...],
+    Strict(False),
+    Field(min_length=2, max_length=500),
+]
+GridRow = Annotated[
+    tuple[Annotated[float, Field(ge=-1000.0, le=1000.0)], ...],
+    Strict(False),
+    Field(min_length=2, max_length=500),
+]
+PitchDeviations = Annotated[
+    tuple[Annotated[float, Field(ge=-1000.0, le=1000.0)], ...], Strict(False), Field(max_length=4000)
+]
+
+
+class FlankGridInput(BoundaryModel):
+    """A free-form flank as a grid: one row of removed material per roll length."""
+
+    roll_length_mm: GridAxis = Field(
+        description="Roll lengths of the rows in mm, increasing", examples=[[4.0, 10.0, 16.0]]
+    )
+    face_position_mm: GridAxis = Field(
+        description="Distances of the columns from mid-face in mm, increasing", examples=[[-12.5, 12.5]]
+    )
+    removed_um: Annotated[tuple[GridRow, ...], Strict(False)] = Field(
+        min_length=2,
+        max_length=500,
+        description="Material removed in um, a row per roll length",
+        examples=[[[0.0, 2.0], [0.0, 0.0], [5.0, 7.0]]],
+    )
+
+
+SHARED = tuple(figure for figure in figures(Toothing) if figure.name in MATING)
+"""Figures that a case has once, for both gears."""
+
+
+def of_gear(kind: type[Toothing]) -> tuple[Figure, ...]:
+    """Return the figures of a kind of gear that a case has in the gear's table."""
+    return tuple(figure for figure in figures(kind) if figure not in SHARED)
+
+
+@with_fields(as_fields(of_gear(Toothing)))
+class _ToothingFigures(BoundaryModel):
+    """The figures of all gears."""
+
+    teeth: int
+    face_width_mm: float
+
+
+@with_fields({**declared_in(FlankModification), **parts_in(parts_of(Gear))})
+class ToothingInput(_ToothingFigures):
+    """Fields of all gears. Modifications: > 0 is material removed, normal to the involute, transverse."""
+
+    flank_grid: FlankGridInput | None = Field(
+        default=None,
+        description="Free-form flank: material removed in addition to the amounts above",
+        examples=[
+            {
+                "roll_length_mm": [4.0, 20.0],
+                "face_position_mm": [-12.5, 12.5],
+                "removed_um": [[0.0, 0.0], [5.0, 7.0]],
+            }
+        ],
+    )
+    pitch_deviation_um: PitchDeviations = Field(
+        default=(),
+        description="Cumulative pitch deviation F_pi (ISO 1328-1) of the loaded flank of every tooth in um, "
+        "in the order of meshing; > 0: towards the mate; left out: none",
+        examples=[[0.0, 3.0, 1.0, -4.0, -2.0]],
+    )
+    shaft: GearShaftInput | None = Field(
+        default=None,
+        description="Steel shaft that bends under the tooth forces; left out: rigid",
+        examples=[{"length_mm": 200.0, "diameter_mm": 40.0, "position_mm": 60.0}],
+    )
+    material: MaterialInput | None = Field(
+        default=None,
+        description="Material of this gear; left out: the case's",
+        examples=[{"youngs_modulus_gpa": 210.0}],
+    )
+
+    @model_validator(mode="after")
+    def _a_deviation_per_tooth(self) -> Self:
+        """Refuse a list that leaves teeth out."""
+        count = len(self.pitch_deviation_um)
+        if count not in (0, self.teeth):
+            bound = f"a list of {self.teeth} values, one per tooth"
+            refuse("pitch_deviation_um", f"{count} values", bound, "In the order in which the teeth mesh.")
+        return self
+
+
+@with_fields(as_fields(of_gear(Gear)))
+class GearInput(ToothingInput):
+    """One external gear."""

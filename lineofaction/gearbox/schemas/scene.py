@@ -1,0 +1,192 @@
+"""The scene file: shafts, gears, bushings, meshes, drives, loads, and the run to make with them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import Field, Strict, model_validator
+
+from dynamics.parts import KINDS, ON_A_SHAFT
+from dynamics.settings.integration import Integration
+from dynamics.settings.outputs import Outputs
+from lineofaction.gearbox.schemas.case import EffectName, Switch
+from lineofaction.gearbox.schemas.declared import declared_in, with_fields
+from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
+from lineofaction.gearbox.schemas.scene_bearings import RollingBearingInput
+from lineofaction.gearbox.schemas.scene_bodies import (
+    BushingInput,
+    CouplingInput,
+    GearBodyInput,
+    PlanetBearingInput,
+    PlanetsInput,
+)
+from lineofaction.gearbox.schemas.scene_discs import DiscInput
+from lineofaction.gearbox.schemas.scene_housings import HousingInput
+from lineofaction.gearbox.schemas.scene_loads import ForceInput, UnbalanceInput
+from lineofaction.gearbox.schemas.scene_meshes import MeshInput
+from lineofaction.gearbox.schemas.scene_motion import (
+    DriveInput,
+    FreeRotationInput,
+    LoadTorqueInput,
+    SpeedTorqueInput,
+)
+from lineofaction.gearbox.schemas.scene_shafts import ShaftInput
+from lineofaction.gearbox.schemas.scene_types import Acceleration
+
+
+class RunInput(BoundaryModel):
+    """Duration of a run, and its reaction to an assumption that does not hold."""
+
+    duration_s: float = Field(ge=0.0, le=1e6, description="Duration in s", examples=[5.0])
+    on_violation: Literal["repeat", "fail", "report"] = Field(
+        default="repeat",
+        description="If a run or study violates an assumption: repeat with the effect it needs (fail if the "
+        "result is invalid and no effect corrects it), fail at any, or report",
+        examples=["repeat"],
+    )
+
+
+class SceneAccuracyInput(BoundaryModel):
+    """The tolerance that decides automatic effects."""
+
+    tolerance: float | None = Field(
+        default=None,
+        ge=1e-6,
+        le=0.5,
+        description="Relative tolerance of mean and peak-to-peak transmission error and of bearing forces: "
+        "effects of less influence are neglected, others are on; left out: as the scene calls for "
+        "them",
+        examples=[0.01],
+    )
+
+
+@with_fields(declared_in(Outputs))
+class OutputsInput(BoundaryModel):
+    """The outputs to store."""
+
+
+@with_fields(declared_in(Integration))
+class IntegrationInput(BoundaryModel):
+    """Method and tolerances of the time integration."""
+
+
+class SceneInput(BoundaryModel):
+    """A geared system and the run to make with it."""
+
+    run: RunInput = Field(description="The run", examples=[{"duration_s": 5.0}])
+    gravity_m_per_s2: Annotated[tuple[Acceleration, ...], Strict(False)] = Field(
+        default=(0.0, 0.0, 0.0),
+        min_length=3,
+        max_length=3,
+        description="Acceleration of gravity in x, y, z in m/s^2",
+        examples=[[0.0, -9.81, 0.0]],
+    )
+    shafts: Annotated[tuple[ShaftInput, ...], Strict(False)] = Field(
+        min_length=1, max_length=1000, description="Shafts: a table [[shafts]] for each"
+    )
+    gears: Annotated[tuple[GearBodyInput, ...], Strict(False)] = Field(
+        default=(), max_length=1000, description="Gears on the shafts: a table [[gears]] for each"
+    )
+    discs: Annotated[tuple[DiscInput, ...], Strict(False)] = Field(default=(), max_length=1000)
+    bushings: Annotated[tuple[BushingInput, ...], Strict(False)] = Field(default=(), max_length=1000)
+    rolling_bearings: Annotated[tuple[RollingBearingInput, ...], Strict(False)] = Field(
+        default=(), max_length=1000
+    )
+    meshes: Annotated[tuple[MeshInput, ...], Strict(False)] = Field(
+        default=(), max_length=1000, description="Gear pairs in mesh: a table [[meshes]] for each"
+    )
+    drives: Annotated[tuple[DriveInput, ...], Strict(False)] = Field(default=(), max_length=1000)
+    free_rotations: Annotated[tuple[FreeRotationInput, ...], Strict(False)] = Field(
+        default=(), max_length=1000
+    )
+    planet_bearings: Annotated[tuple[PlanetBearingInput, ...], Strict(False)] = Field(
+        default=(), max_length=1000
+    )
+    couplings: Annotated[tuple[CouplingInput, ...], Strict(False)] = Field(default=(), max_length=1000)
+    speed_torques: Annotated[tuple[SpeedTorqueInput, ...], Strict(False)] = Field(default=(), max_length=1000)
+    housings: Annotated[tuple[HousingInput, ...], Strict(False)] = Field(default=(), max_length=100)
+    planets: Annotated[tuple[PlanetsInput, ...], Strict(False)] = Field(default=(), max_length=100)
+    loads: Annotated[tuple[LoadTorqueInput, ...], Strict(False)] = Field(default=(), max_length=1000)
+    forces: Annotated[tuple[ForceInput, ...], Strict(False)] = Field(default=(), max_length=1000)
+    unbalances: Annotated[tuple[UnbalanceInput, ...], Strict(False)] = Field(default=(), max_length=1000)
+    accuracy: SceneAccuracyInput = Field(
+        default=SceneAccuracyInput(), description="Tolerance that decides on automatic effects", examples=[{}]
+    )
+    outputs: OutputsInput = Field(default=OutputsInput(), description="Output of the run", examples=[{}])
+    integration: IntegrationInput = Field(
+        default=IntegrationInput(), description="Time integration", examples=[{}]
+    )
+    left_out: Annotated[tuple[Annotated[str, Field(max_length=4000)], ...], Strict(False)] = Field(
+        default=(),
+        max_length=1000,
+        exclude_if=lambda texts: not texts,
+        description="What the file that the scene was made from has and the scene has not; verbs repeat it",
+    )
+    effects: dict[EffectName, Switch] = Field(
+        default={}, description="Switches of optional physics; left out = auto"
+    )
+
+    @property
+    def with_database(self) -> list[tuple[int, MeshInput]]:
+        """The meshes that take their force from an STE database, with their numbers."""
+        return [(index, mesh) for index, mesh in enumerate(self.meshes) if mesh.stiffness is None]
+
+    @model_validator(mode="before")
+    @classmethod
+    def _tables(cls, data: Any) -> Any:
+        """Say how a part is written when a single table stands where a list is meant."""
+        if isinstance(data, dict):
+            for kind in (*KINDS, "planets"):
+                if isinstance(data.get(kind), dict):
+                    refuse(kind, data[kind], "a list of tables", f"Write [[{kind}]] with two brackets.")
+        return data
+
+    @model_validator(mode="after")
+    def _parts_exist(self) -> Self:
+        """Names are unique, and every part names parts that exist."""
+        for kind in KINDS:
+            _refuse_repeated(kind, [part.name for part in getattr(self, kind)])
+        shafts = [shaft.name for shaft in self.shafts]
+        for kind in ON_A_SHAFT:
+            for index, part in enumerate(getattr(self, kind)):
+                _refuse_unknown(f"{kind}[{index}].shaft", part.shaft, shafts)
+        for field, name in _further_shafts(self):
+            _refuse_unknown(field, name, shafts)
+        bushings = [*(part.name for part in self.bushings), *(part.name for part in self.rolling_bearings)]
+        for index, housing in enumerate(self.housings):
+            for number, name in enumerate(housing.bushings):
+                _refuse_unknown(f"housings[{index}].bushings[{number}]", name, bushings)
+        gears = [gear.name for gear in self.gears]
+        for index, mesh in enumerate(self.meshes):
+            _refuse_unknown(f"meshes[{index}].driver", mesh.driver, gears)
+            _refuse_unknown(f"meshes[{index}].driven", mesh.driven, [g for g in gears if g != mesh.driver])
+        return self
+
+
+def _further_shafts(scene: SceneInput) -> Iterator[tuple[str, str]]:
+    """Yield the fields by which parts name shafts beside that they are on, and the names."""
+    fields = {
+        "shafts": ("frame",),
+        "couplings": ("first", "second"),
+        "planets": ("planet",),
+        "forces": ("turns_with", "of_shaft"),
+    }
+    for kind, names in fields.items():
+        for index, part in enumerate(getattr(scene, kind)):
+            for name in names:
+                if getattr(part, name) is not None:
+                    yield f"{kind}[{index}].{name}", getattr(part, name)
+
+
+def _refuse_repeated(kind: str, names: list[str]) -> None:
+    """Names of one kind are unique."""
+    for index, name in enumerate(names):
+        if name in names[:index]:
+            refuse(f"{kind}[{index}].name", name, "a name that no other one of them has")
+
+
+def _refuse_unknown(field: str, name: str, known: list[str]) -> None:
+    """Refuse a part that names one that does not exist."""
+    if name not in known:
+        refuse(field, name, f"one of {', '.join(known)}", "Names are case-sensitive.")

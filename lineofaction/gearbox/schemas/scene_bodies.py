@@ -1,0 +1,265 @@
+"""The bodies of a scene and what joins them: shafts, gears, bearings, couplings, planets."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Annotated, Literal, Self
+
+from pydantic import ConfigDict, Field, Strict, model_validator
+
+from dynamics.bodies.gear_body import GearBody
+from dynamics.bodies.inertia import Inertia
+from dynamics.joints.bushing import Bushing
+from dynamics.joints.coupling import Coupling
+from dynamics.joints.planet_bearing import PlanetBearing
+from lineofaction.gearbox.schemas.declared import declared_in, figures, with_fields
+from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
+from lineofaction.gearbox.schemas.rules import both, given, left_out, stated
+from lineofaction.gearbox.schemas.scene_types import Coordinate, CouplingRows, Name, Number, SeatRows
+
+
+@with_fields(declared_in(Inertia, all_given=True))
+class InertiaInput(BoundaryModel):
+    """Inertia of a body of revolution about its own center of mass."""
+
+
+@with_fields(declared_in(GearBody))
+class GearBodyInput(BoundaryModel):
+    """A gear on a shaft; its teeth, base radius, helix and face width come from the mesh it takes part in."""
+
+    name: Name = Field(description="Name of the gear", examples=["pinion"])
+    shaft: Name = Field(description="The shaft that carries it", examples=["input"])
+    bore_diameter_mm: float = Field(
+        default=0.0,
+        ge=0.0,
+        le=1e5,
+        description="Bore in mm of the steel cylinder from which the inertia follows",
+        examples=[40.0],
+    )
+    inertia: InertiaInput | None = Field(
+        default=None,
+        description="Inertia; left out: a steel cylinder of pitch diameter and face width",
+        examples=[{"mass_kg": 0.7, "polar_kg_m2": 7e-4, "transverse_kg_m2": 4e-4}],
+    )
+
+
+class RollingContactInput(BoundaryModel):
+    """The radial force of a rolling bearing with clearance."""
+
+    stiffness_n_per_m_n: float = Field(
+        gt=0.0,
+        le=1e20,
+        description="Factor k of the force k (r - clearance)^exponent of the whole bearing, N and m",
+        examples=[5e8],
+    )
+    exponent: float = Field(
+        default=10.0 / 9.0,
+        ge=1.0,
+        le=3.0,
+        description="Exponent of that force: 10/9 for rollers, 1.5 for balls",
+        examples=[1.5],
+    )
+    radial_clearance_um: float = Field(
+        default=0.0,
+        ge=0.0,
+        le=1e4,
+        description="Radial displacement from the middle to contact in um",
+        examples=[20.0],
+    )
+    damping_n_s_per_m: float | None = Field(
+        default=None,
+        ge=0.0,
+        le=1e12,
+        description="Damping in full contact in N s/m; left out: from damping_ratio",
+        examples=[500.0],
+    )
+    damping_ratio: float = Field(
+        default=0.05, ge=0.0, le=10.0, description="Damping ratio in full contact", examples=[0.05]
+    )
+
+
+_TILTS_OR_NOT = {
+    "if": {"properties": {"direction": {"enum": ["x", "y", "z"]}}},
+    "then": both(given("displacement_um", "force_n"), left_out("tilt_mrad", "moment_n_m")),
+    "else": both(given("tilt_mrad", "moment_n_m"), left_out("displacement_um", "force_n")),
+}
+
+
+class SpringCurveInput(BoundaryModel):
+    """A bearing's force by displacement in one direction."""
+
+    model_config = ConfigDict(json_schema_extra=stated(_TILTS_OR_NOT))
+
+    direction: Literal["x", "y", "z", "tilt_x", "tilt_y"] = Field(
+        description="Direction of displacement and force", examples=["x"]
+    )
+    displacement_um: Annotated[tuple[Number, ...], Strict(False)] | None = Field(
+        default=None,
+        min_length=2,
+        max_length=1000,
+        description="Displacements in um, increasing; for x, y, z",
+        examples=[[-40.0, 0.0, 40.0]],
+    )
+    force_n: Annotated[tuple[Number, ...], Strict(False)] | None = Field(
+        default=None,
+        min_length=2,
+        max_length=1000,
+        description="Forces in N at these displacements, increasing",
+        examples=[[-6000.0, 0.0, 6000.0]],
+    )
+    tilt_mrad: Annotated[tuple[Number, ...], Strict(False)] | None = Field(
+        default=None,
+        min_length=2,
+        max_length=1000,
+        description="Tilts in mrad, increasing; for tilt_x, tilt_y",
+        examples=[[-1.0, 0.0, 1.0]],
+    )
+    moment_n_m: Annotated[tuple[Number, ...], Strict(False)] | None = Field(
+        default=None,
+        min_length=2,
+        max_length=1000,
+        description="Moments in N m at these tilts, increasing",
+        examples=[[-50.0, 0.0, 50.0]],
+    )
+
+    @model_validator(mode="after")
+    def _of_its_direction(self) -> Self:
+        """Displacement and force, or tilt and moment, as many of each."""
+        tilts = self.direction.startswith("tilt")
+        pair = ("tilt_mrad", "moment_n_m") if tilts else ("displacement_um", "force_n")
+        for field in ("displacement_um", "force_n", "tilt_mrad", "moment_n_m"):
+            value = getattr(self, field)
+            if (value is None) == (field in pair):
+                bound = "given" if field in pair else "left out"
+                refuse(field, value, f'{bound} for direction "{self.direction}"')
+        first, second = (getattr(self, field) for field in pair)
+        if len(first) != len(second):
+            refuse(pair[1], list(second), f"a list of {len(first)}, one for each of {pair[0]}")
+        for field, values in zip(pair, (first, second), strict=True):
+            if any(b <= a for a, b in pairwise(values)):
+                refuse(field, list(values), "strictly increasing")
+        return self
+
+
+class BearingInput(BoundaryModel):
+    """Springs and dampers of a bearing, and what it does that is not linear."""
+
+    name: Name = Field(description="Name of the bushing", examples=["input left"])
+    shaft: Name = Field(description="The shaft it carries", examples=["input"])
+    stiffness_matrix: SeatRows | None = Field(
+        default=None,
+        min_length=5,
+        max_length=6,
+        description="Added stiffness: 5 by 5 in x, y, z, tilt_x, tilt_y, or 6 by 6 with 0 for the rotation; "
+        "N, m, rad",
+    )
+    damping_matrix: SeatRows | None = Field(
+        default=None,
+        min_length=5,
+        max_length=6,
+        description="Added damping, likewise; N, m, rad, s; left out: proportional to the stiffness, from "
+        "damping_ratio",
+    )
+    rolling_contact: RollingContactInput | None = Field(
+        default=None,
+        description="Radial force of a rolling bearing with clearance, beside the linear stiffness",
+        examples=[{"stiffness_n_per_m_n": 5e8, "radial_clearance_um": 20.0}],
+    )
+    spring_curves: Annotated[tuple[SpringCurveInput, ...], Strict(False)] = Field(
+        default=(),
+        max_length=5,
+        description="Forces by displacement, one per direction, beside the linear ones",
+    )
+
+    @model_validator(mode="after")
+    def _holds(self) -> Self:
+        """Something holds the shaft."""
+        others = (self.stiffness_matrix, self.rolling_contact, self.spring_curves or None)
+        if "radial_stiffness_n_per_m" not in self.model_fields_set and all(part is None for part in others):
+            bound = "given, or stiffness_matrix, rolling_contact or spring_curves instead"
+            refuse("radial_stiffness_n_per_m", None, bound, "For example 1e8.")
+        directions = [curve.direction for curve in self.spring_curves]
+        for index, direction in enumerate(directions):
+            if direction in directions[:index]:
+                refuse(f"spring_curves[{index}].direction", direction, "a direction that no other curve has")
+        return self
+
+
+@with_fields(declared_in(Bushing))
+class BushingInput(BearingInput):
+    """A linear bearing between a shaft and the ground."""
+
+    position_mm: float
+    preload_force_n: Annotated[tuple[Number, ...], Strict(False)] | None = Field(
+        default=None,
+        min_length=3,
+        max_length=3,
+        description="Force x, y, z in N on the shaft at zero displacement",
+        examples=[[0.0, 0.0, 500.0]],
+    )
+    preload_moment_n_m: Annotated[tuple[Number, ...], Strict(False)] | None = Field(
+        default=None,
+        min_length=2,
+        max_length=2,
+        description="Moment about x, y in N m on the shaft at zero displacement",
+        examples=[[0.0, 0.0]],
+    )
+
+
+@with_fields(declared_in(PlanetBearing))
+class PlanetBearingInput(BearingInput):
+    """A linear bearing between a planet and its pin in the carrier."""
+
+    shaft: Name = Field(description="The planet's shaft", examples=["planet"])
+    carrier: Name = Field(description="The carrier's shaft", examples=["carrier"])
+
+
+@with_fields(declared_in(Coupling))
+class CouplingInput(BoundaryModel):
+    """A flexible coupling between two shafts of the same speed."""
+
+    name: Name = Field(description="Name of the coupling", examples=["joint"])
+    first: Name = Field(description="One shaft", examples=["output"])
+    second: Name = Field(description="The other shaft", examples=["machine"])
+    stiffness_matrix: CouplingRows | None = Field(
+        default=None,
+        min_length=6,
+        max_length=6,
+        description="Added stiffness: 6 by 6 in x, y, z, tilt_x, tilt_y, rotation; N, m, rad",
+    )
+    damping_matrix: CouplingRows | None = Field(
+        default=None, min_length=6, max_length=6, description="Added damping, likewise; N, m, rad, s"
+    )
+
+
+_PIN = next(figure for figure in figures(PlanetBearing) if figure.name == "radial_error")
+PinErrors = Annotated[tuple[Annotated[float, Field(**_PIN.limits)], ...], Strict(False)]
+
+
+class PlanetsInput(BoundaryModel):
+    """Several planets from one, whose shaft, gears, bearings and meshes are in the scene."""
+
+    planet: Name = Field(description="The shaft of the first planet", examples=["planet"])
+    number: int = Field(ge=1, le=100, description="Number of planets in all", examples=[3])
+    angles_deg: Annotated[tuple[Coordinate, ...], Strict(False)] | None = Field(
+        default=None,
+        description="Angles from the first planet about +z in degrees; left out: equally spaced",
+        examples=[[0.0, 120.0, 240.0]],
+    )
+    radial_errors_um: PinErrors | None = Field(
+        default=None, description="Position errors of all pins outwards in um", examples=[[0.0, 0.0, 0.0]]
+    )
+    tangential_errors_um: PinErrors | None = Field(
+        default=None, description="Position errors of all pins about +z in um", examples=[[20.0, 0.0, 0.0]]
+    )
+
+    @model_validator(mode="after")
+    def _one_each(self) -> Self:
+        """As many values as planets."""
+        for field in ("angles_deg", "radial_errors_um", "tangential_errors_um"):
+            values = getattr(self, field)
+            if values is not None and len(values) != self.number:
+                refuse(
+                    field, list(values), f"a list of {self.number}, one for each planet", "Or leave it out."
+                )
+        return self

@@ -1,0 +1,233 @@
+"""Housings of a scene: matrices over their bearings, or the file of their solid."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BeforeValidator, ConfigDict, Field, Strict, model_validator
+
+from dynamics.joints.housing import Housing
+from dynamics.solid_housing import MATERIALS, ReductionSettings
+from lineofaction.gearbox.schemas.declared import declared_in, figures, with_fields
+from lineofaction.gearbox.schemas.file_content import FileContentInput
+from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
+from lineofaction.gearbox.schemas.rules import exactly_one_of, stated
+from lineofaction.gearbox.schemas.scene_solids import (
+    Direction,
+    HousingFootInput,
+    HousingMaterialInput,
+    HousingPointInput,
+    HousingSeatInput,
+    material_by_name,
+)
+from lineofaction.gearbox.schemas.scene_types import Coordinate, HousingRows, Name, Point
+
+PERPENDICULAR = 1e-6
+"""Cosine of the angle between axes."""
+SOURCES = ("step_file", "mesh_file")
+"""Fields that name the file of a solid."""
+
+
+def _left_out(value: object) -> bool:
+    """Whether a field that came after results had been stored is not there."""
+    return value is None or value == ()
+
+
+@with_fields(declared_in(Housing))
+class _MatrixHousing(BoundaryModel):
+    """The fields of a housing by its matrices."""
+
+    damping_ratio: float
+    name: Name = Field(description="Name of the housing", examples=["gearbox"])
+    bushings: Annotated[tuple[Name, ...], Strict(False)] = Field(
+        default=(),
+        max_length=1000,
+        description="Bushings and rolling bearings in the order of the matrix; in a scene file with "
+        "modes_file, and with seats, by default those of the seats",
+        examples=[["a", "b"]],
+    )
+    stiffness_matrix: HousingRows | None = Field(
+        default=None,
+        min_length=3,
+        max_length=6000,
+        description="Stiffness over all seats: per bushing 3 rows x, y, z, or 5 with tilt_x, tilt_y, or 6 "
+        "with the rotation; then a row per modal coordinate; N, m, rad. A scene file may name a CSV or NPZ "
+        "file by stiffness_file instead, or a reduced housing (NetCDF) by modes_file",
+    )
+    damping_matrix: HousingRows | None = Field(
+        default=None,
+        min_length=3,
+        max_length=6000,
+        description="Damping over all seats, likewise; left out: none, with mass that of damping_ratio",
+    )
+    mass_matrix: HousingRows | None = Field(
+        default=None,
+        min_length=3,
+        max_length=6000,
+        description="Mass over all seats, likewise; kg, m, rad; left out: no mass",
+        exclude_if=_left_out,
+    )
+    seat_positions_mm: Annotated[tuple[Point, ...], Strict(False)] | None = Field(
+        default=None,
+        min_length=1,
+        max_length=1000,
+        description="Where the seats are in the fixed frame, x, y, z in mm; checked against the bearings",
+        exclude_if=_left_out,
+    )
+
+
+_MATRICES = ("stiffness_matrix", "damping_matrix", "mass_matrix", "seat_positions_mm", "modal_coordinates")
+_SOLID = ("material", "seats", "feet")
+_SETTINGS = (figure.field for figure in figures(ReductionSettings))
+_OF_SOLID = (*_SOLID, "points", "mesh_unit", "origin_mm", "x_axis", "z_axis", *_SETTINGS)
+
+
+@with_fields(declared_in(ReductionSettings))
+class HousingInput(_MatrixHousing):
+    """An elastic housing that several bearings share: by matrices, or by its solid, which is reduced."""
+
+    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of("stiffness_matrix", *SOURCES)))
+
+    modes: int
+    element_size_mm: float | None
+    loss_factor: float | None
+    modes_file: str | None = Field(
+        default=None,
+        max_length=1000,
+        description="File of the reduced housing that has the matrices, on the disk of who wrote the scene",
+        examples=["case.nc"],
+        exclude_if=_left_out,
+    )
+    step_file: FileContentInput | None = Field(
+        default=None,
+        description="STEP file of its solid; a scene file has the name of the file",
+        examples=[{"name": "case.step", "content": "eJwDAAAAAAE="}],
+        exclude_if=_left_out,
+    )
+    mesh_file: FileContentInput | None = Field(
+        default=None,
+        description="Mesh of its solid in tetrahedra: gmsh, Abaqus, Nastran, VTK; a scene file has the name "
+        "of the file",
+        examples=[{"name": "case.inp", "content": "eJwDAAAAAAE="}],
+        exclude_if=_left_out,
+    )
+    mesh_unit: Literal["mm", "m"] | None = Field(
+        default=None,
+        description="Unit of the coordinates in mesh_file, which does not say it",
+        examples=["mm"],
+        exclude_if=_left_out,
+    )
+    material: (
+        Annotated[
+            HousingMaterialInput,
+            BeforeValidator(material_by_name, Literal[tuple(MATERIALS)] | HousingMaterialInput),
+        ]
+        | None
+    ) = Field(
+        default=None,
+        description="Material of the solid: gray_cast_iron, spheroidal_cast_iron, cast_aluminum, or a table",
+        examples=["gray_cast_iron"],
+        exclude_if=_left_out,
+    )
+    seats: Annotated[tuple[HousingSeatInput, ...], Strict(False)] = Field(
+        default=(), max_length=100, description="Bearing seats of the solid", exclude_if=_left_out
+    )
+    feet: Annotated[tuple[HousingFootInput, ...], Strict(False)] = Field(
+        default=(), max_length=100, description="Faces that hold the solid", exclude_if=_left_out
+    )
+    points: Annotated[tuple[HousingPointInput, ...], Strict(False)] = Field(
+        default=(), max_length=1000, description="Points of interest of the solid", exclude_if=_left_out
+    )
+    origin_mm: Annotated[tuple[Coordinate, ...], Strict(False)] | None = Field(
+        default=None,
+        min_length=3,
+        max_length=3,
+        description="Where the origin of the file is in the scene, x, y, z in mm; left out: at its origin",
+        examples=[[0.0, 0.0, 60.0]],
+        exclude_if=_left_out,
+    )
+    x_axis: Direction | None = Field(
+        default=None,
+        description="Direction of the x axis of the file in the scene; left out: x",
+        examples=[[1.0, 0.0, 0.0]],
+        exclude_if=_left_out,
+    )
+    z_axis: Direction | None = Field(
+        default=None,
+        description="Direction of the z axis of the file in the scene; left out: z",
+        examples=[[0.0, 1.0, 0.0]],
+        exclude_if=_left_out,
+    )
+
+    @property
+    def is_solid(self) -> bool:
+        """Whether it is given by the file of its solid."""
+        return any(getattr(self, name) is not None for name in SOURCES)
+
+    @property
+    def own_x_axis(self) -> tuple[float, ...]:
+        """Direction of the x axis of the file in the scene."""
+        return self.x_axis or (1.0, 0.0, 0.0)
+
+    @property
+    def own_z_axis(self) -> tuple[float, ...]:
+        """Direction of the z axis of the file in the scene."""
+        return self.z_axis or (0.0, 0.0, 1.0)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _bearings_of_seats(cls, data: Any) -> Any:
+        """Fill in the bearings of the seats, so that the echo says them."""
+        seats = data.get("seats") if isinstance(data, dict) and not data.get("bushings") else None
+        if not isinstance(seats, list | tuple) or not seats:
+            return data
+        names = [seat.get("bearing") for seat in seats if isinstance(seat, dict)]
+        return data | {"bushings": names} if all(isinstance(name, str) for name in names) else data
+
+    @model_validator(mode="after")
+    def _one_source(self) -> Self:
+        """Refuse what is missing from one kind of housing, and what belongs to the other."""
+        sources = [name for name in ("stiffness_matrix", *SOURCES) if getattr(self, name) is not None]
+        if len(sources) != 1:
+            bound = "given, or step_file, mesh_file, stiffness_file or modes_file instead, one of them"
+            refuse("stiffness_matrix", sources or None, bound, "See docs/case-file.md.")
+        for name in _MATRICES if self.is_solid else _OF_SOLID:
+            if name in self.model_fields_set and getattr(self, name) not in (None, ()):
+                kind = "stiffness_matrix" if self.is_solid else "step_file or mesh_file"
+                refuse(name, "given", f"left out, or given with {kind}")
+        if self.is_solid:
+            self._check_solid()
+        elif not self.bushings:
+            refuse("bushings", [], "a list of at least 1", "The bearings in the order of the matrix.")
+        return self
+
+    def _check_solid(self) -> None:
+        """Refuse a solid that lacks something."""
+        advice = {
+            "material": 'For example "gray_cast_iron".',
+            "seats": 'For example [{bearing = "input left", bore_diameter_mm = 62, bore_length_mm = 18}].',
+            "feet": "A housing of a scene is held: name its underside, or mounts.",
+        }
+        for name in _SOLID:
+            if not getattr(self, name):
+                refuse(name, None, "given with step_file or mesh_file", advice[name])
+        if self.bushings != tuple(seat.bearing for seat in self.seats):
+            refuse("bushings", list(self.bushings), "left out with seats", "Seats name their bearings.")
+        if (self.mesh_unit is None) == (self.mesh_file is not None):
+            bound = "given with mesh_file" if self.mesh_unit is None else "left out with step_file"
+            refuse("mesh_unit", self.mesh_unit, bound, 'Unit of its coordinates: "mm" or "m".')
+        if self.mesh_file is not None and self.element_size_mm is not None:
+            refuse("element_size_mm", self.element_size_mm, "left out with mesh_file")
+        for axis in ("x_axis", "z_axis"):
+            if getattr(self, axis) is not None and not any(getattr(self, axis)):
+                refuse(axis, list(getattr(self, axis)), "a direction: not all zero")
+        across = sum(x * z for x, z in zip(self.own_x_axis, self.own_z_axis, strict=True))
+        if abs(across) > PERPENDICULAR * math.hypot(*self.own_x_axis) * math.hypot(*self.own_z_axis):
+            bound = f"perpendicular to z_axis, {list(self.own_z_axis)}"
+            refuse("x_axis", list(self.own_x_axis), bound, "Give both where the file is turned.")
+        for kind in ("feet", "points"):
+            names = [part.name for part in getattr(self, kind)]
+            repeated = next((i for i, name in enumerate(names) if name in names[:i]), None)
+            if repeated is not None:
+                refuse(f"{kind}[{repeated}].name", names[repeated], "a name that no other one of them has")

@@ -1,0 +1,82 @@
+"""Ablation of a case or a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from bounds.types import Json
+from dynamics.ablation import Ablation as SceneAblation
+from dynamics.ablation import ablate as ablate_scene
+from dynamics.effects import EFFECTS as SCENE_EFFECTS
+from fe_contact.analysis.studies.ablation import Ablation, ablate
+from fe_contact.checks import chosen
+from fe_contact.effects import EFFECTS
+from fe_contact.options import Run
+from lineofaction.gearbox.convert.case import analysis_options, boundary_errors, gear_pair, table_axes
+from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.studies.ablate import Inputs
+from lineofaction.gearbox.studies.computation import Computation, Means
+from lineofaction.gearbox.studies.result_file import record_file
+from lineofaction.gearbox.units import in_um
+
+
+def ablation_of(subject: Case | TabledScene, inputs: Inputs, means: Means) -> Ablation | SceneAblation:
+    """Toggle the effects of a case, at its nominal center distance, or of a scene.
+
+    Raises
+    ------
+    BadInput
+        No such pair or effect.
+    JobFailed
+        The case itself cannot be computed.
+    """
+    with boundary_errors():
+        if isinstance(subject, TabledScene):
+            return ablate_scene(subject.scene, inputs.only, means.report)
+        run = Run(cache=means.home / "compliance", progress=means.report)
+        axes, options = table_axes(subject), analysis_options(subject)
+        return ablate(gear_pair(subject), axes, options, run, only=inputs.only)
+
+
+def check(subject: Case | SceneInput, inputs: Inputs) -> None:
+    """Refuse a case that cannot be, and an effect that there is not."""
+    if isinstance(subject, Case):
+        check_case(subject)
+    requested(inputs.only, of_scene=not isinstance(subject, Case))
+
+
+def requested(only: Sequence[str] | None, *, of_scene: bool) -> list[str]:
+    """Return the effects to toggle, once each, in the order of their registry.
+
+    Raises
+    ------
+    BadInput
+        A name that no effect of a case, or of a scene, has.
+    """
+    known = [effect.name for effect in EFFECTS]
+    if of_scene:
+        known = [effect.name for effect in SCENE_EFFECTS]
+    with boundary_errors():
+        return chosen("only", only, known, "Or leave it out: all are toggled.")
+
+
+def normalized(subject: Case | SceneInput, inputs: Inputs) -> Json:
+    """Return the effects in the order of their registry."""
+    return {"only": requested(inputs.only, of_scene=not isinstance(subject, Case))}
+
+
+def facts(ablation: Ablation | SceneAblation) -> Json:
+    """Return an ablation with lengths in um."""
+    return {"of": "case" if isinstance(ablation, Ablation) else "scene", **in_um(ablation.to_json())}
+
+
+RUN = Computation(
+    ablation_of,
+    facts,
+    record_file(("ablation of a case", Ablation), ("ablation of a scene", SceneAblation)),
+    check=check,
+    normalized=normalized,
+)

@@ -1,0 +1,239 @@
+"""Deflection of a scene: bodies and meshes in agreement, and what happens on the flanks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from bounds import inside, leftover
+from bounds.types import Json
+from dynamics.deflection import CaseDeflection, MeshAlignment, deflect
+from dynamics.scene import Scene
+from dynamics.settings.case_force import CaseForce
+from dynamics.settings.load_case import LoadCase, check_forces
+from fe_contact.analysis import pressure_map
+from fe_contact.analysis.flanks.load_distribution import LoadDistribution
+from fe_contact.types import FloatArray
+from host import cpu_seconds
+from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.declared import in_si
+from lineofaction.gearbox.convert.errors import named
+from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.schemas.scene_meshes import MeshInput
+from lineofaction.gearbox.studies.computation import Computation, Means
+from lineofaction.gearbox.studies.deflect import CaseForceInput, Inputs
+from lineofaction.gearbox.studies.deflect.agreement import Agreement, in_agreement
+from lineofaction.gearbox.studies.deflect.figures import facts
+from lineofaction.gearbox.studies.deflect.mesh_contact import MeshContact, mesh_contact
+from lineofaction.gearbox.studies.deflect.outline import outline_of
+from lineofaction.gearbox.studies.deflect.result import HARMONICS, GearboxDeflection, MeshFlanks
+from lineofaction.gearbox.studies.deflect.spectrum import write_spectrum
+from lineofaction.gearbox.studies.result_file import record_file
+
+ALONG_FACE, ALONG_PROFILE = 41, 40
+
+
+def deflection_of(tabled: TabledScene, inputs: Inputs, means: Means) -> GearboxDeflection:
+    """Deflect a scene under its load cases.
+
+    Raises
+    ------
+    BadInput
+        A case that the scene cannot have.
+    JobFailed
+        The contact of a mesh was not solved.
+    """
+    began, scene = cpu_seconds() - tabled.seconds, tabled.scene
+    with boundary_errors():
+        cases = load_cases(inputs)
+        first = deflect(scene, cases, inputs.positions, lambda done: means.report("deflection", done))
+        contacts = _contacts(tabled, first.cases, means)
+        across = {name: contact for name, contact in contacts.items() if contact.across_face}
+        agreed = in_agreement(scene, cases, inputs.positions, across, first)
+        flanks = tuple(_flanks(scene, agreed, contacts, means))
+    written = {name: mesh.case.model_dump(mode="json") for name, mesh in _with_case(tabled) if mesh.case}
+    return GearboxDeflection(
+        agreed.deflection,
+        flanks,
+        agreed.passes,
+        agreed.change,
+        agreed.reached,
+        outline_of(scene),
+        written,
+        cpu_seconds() - began,
+        scene_of(tabled.inputs),
+    )
+
+
+def scene_of(inputs: SceneInput) -> Json:
+    """Return a scene as it is kept with its deflection: without the cases of its meshes."""
+    kept: Json = inputs.model_dump(mode="json", exclude={"meshes": {"__all__": {"case", "case_file"}}})
+    return kept
+
+
+def load_cases(inputs: Inputs) -> tuple[LoadCase, ...]:
+    """Return the load cases in SI."""
+    cases = []
+    for index, case in enumerate(inputs.load_cases):
+        with inside(f"load_cases[{index}]"):
+            forces = tuple(_force(k, force) for k, force in enumerate(case.forces))
+            cases.append(LoadCase(case.name, forces=forces, **in_si(LoadCase, case)))
+    return tuple(cases)
+
+
+def _force(index: int, force: CaseForceInput) -> CaseForce:
+    """Return a force under a load case."""
+    with inside(f"forces[{index}]"):
+        own: Any = {"force": force.force_n, "moment": force.moment_n_m}
+        return CaseForce(force.name, **own, **in_si(CaseForce, force))
+
+
+def check_cases(scene: SceneInput, inputs: Inputs) -> None:
+    """Refuse load cases that cannot be, or that ask for what the scene lacks, before tables are computed.
+
+    Raises
+    ------
+    BadInput
+        By the field of the load case.
+    """
+    with named(""):
+        cases = load_cases(inputs)
+        check_forces(cases, [force.name for force in scene.forces])
+    for index, case in enumerate(cases):
+        if case.torque is not None and not scene.loads:
+            raise BadInput.of(
+                f"load_cases[{index}].torque_n_m",
+                case.torque,
+                "left out: the scene has no loads",
+                "A load case scales them. Add [[loads]] where the torque leaves the gearbox.",
+            )
+
+
+def _with_case(tabled: TabledScene) -> Iterator[tuple[str, MeshInput]]:
+    """Yield the name and the input of every mesh whose case is known, copies of planets too."""
+    by_name = {mesh.name: mesh for mesh in tabled.inputs.meshes}
+    tables = {id(mesh.table): by_name[mesh.name] for mesh in tabled.scene.meshes if mesh.name in by_name}
+    for mesh in tabled.scene.meshes:
+        known = by_name.get(mesh.name) or tables.get(id(mesh.table))
+        if known is not None and known.case is not None:
+            yield mesh.name, known
+
+
+def _contacts(tabled: TabledScene, cases: tuple[CaseDeflection, ...], means: Means) -> dict[str, MeshContact]:
+    """Return the contacts of all meshes with a case, by name; equal ones are one."""
+    torques: dict[str, list[float]] = {}
+    inputs = dict(_with_case(tabled))
+    for case in cases:
+        for mesh in case.meshes:
+            if mesh.name in inputs:
+                torques.setdefault(inputs[mesh.name].name, []).append(_torque(tabled, inputs, mesh))
+    made: dict[str, MeshContact] = {}
+    for mesh_input in {known.name: known for known in inputs.values()}.values():
+        database, own = tabled.databases[mesh_input.name], torques[mesh_input.name]
+        assert isinstance(mesh_input.case, Case)
+        made[mesh_input.name] = mesh_contact(mesh_input.case, database, own, means.home, means.report)
+    return {name: made[known.name] for name, known in inputs.items()}
+
+
+def _torque(tabled: TabledScene, inputs: Mapping[str, MeshInput], mesh: MeshAlignment) -> float:
+    """Return the torque on the pinion of a mesh's case, N m."""
+    return mesh.force * tabled.databases[inputs[mesh.name].name].facts.base_radius[0]
+
+
+def _flanks(
+    scene: Scene, agreed: Agreement, contacts: Mapping[str, MeshContact], means: Means
+) -> Iterator[MeshFlanks]:
+    """Yield what happens on the flanks of every mesh with a contact, case by case."""
+    count = len(agreed.deflection.cases) * max(len(scene.meshes), 1)
+    done = 0
+    for case in agreed.deflection.cases:
+        for mesh in case.meshes:
+            if mesh.name in contacts:
+                yield _on_flanks(case.name, mesh, contacts[mesh.name])
+            done += 1
+            means.report("flanks", done / count)
+
+
+def _on_flanks(case: str, mesh: MeshAlignment, contact: MeshContact) -> MeshFlanks:
+    """Solve the contact of one mesh under one load case."""
+    across = contact.across_face
+    torque = mesh.force * contact.pair.pinion.base_radius
+    misalignment = mesh.misalignment if across else 0.0
+    table, flanks = contact.solved(torque, misalignment, mesh.center_distance_change)
+    at = {
+        "torque": torque,
+        "misalignment": misalignment,
+        "center_distance_change": mesh.center_distance_change,
+    }
+    mean, ripple = table.mean(**at), table.peak_to_peak(**at)
+    harmonics = table.harmonics(**at)[:HARMONICS]
+    roll, pressure = pressure_map(flanks, flanks.roll_length_1)
+    centroid = float(np.mean(table.face_centroid))
+    return MeshFlanks(
+        mesh.name,
+        case,
+        torque,
+        mean.value,
+        mean.error,
+        ripple.value,
+        ripple.error,
+        np.array([harmonic.value for harmonic in harmonics]),
+        np.array([harmonic.error for harmonic in harmonics]),
+        flanks.mean_face_load_factor if across else float("nan"),
+        centroid - mesh.face_centroid if across else float("nan"),
+        float(flanks.clear_pressure.max()),
+        *_along_face(flanks),
+        *_pattern(flanks, roll, pressure),
+    )
+
+
+def _along_face(flanks: LoadDistribution) -> tuple[FloatArray, FloatArray]:
+    """Return evenly spaced positions along the face, m, and the mean load there, N/m."""
+    half = 0.5 * flanks.slice_width
+    ends = flanks.face_position[0] - half, flanks.face_position[-1] + half
+    face = np.linspace(*ends, ALONG_FACE)
+    return face, np.interp(face, flanks.face_position, flanks.face_load.mean(axis=0))
+
+
+def _pattern(
+    flanks: LoadDistribution, roll: FloatArray, pressure: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the contact pattern in cells about evenly spaced roll lengths and face positions.
+
+    A cell has the largest pressure of what lies in it, of its nearest point where nothing does.
+    """
+    rows, face = np.linspace(roll[0], roll[-1], ALONG_PROFILE), _along_face(flanks)[0]
+    along, across = np.abs(roll[:, None] - rows), np.abs(flanks.face_position[:, None] - face)
+    pattern = pressure[np.ix_(along.argmin(axis=0), across.argmin(axis=0))]
+    np.maximum.at(pattern, np.ix_(along.argmin(axis=1), across.argmin(axis=1)), pressure)
+    return rows, pattern
+
+
+def failure(result: GearboxDeflection) -> str:
+    """Say which load cases were not found, or how far meshes and bodies disagree."""
+    lost = [case for case in result.deflection.cases if case.status != "converged"]
+    if lost:
+        names = ", ".join(f'"{case.name}" ({case.status.replace("_", " ")})' for case in lost)
+        return f"No equilibrium under load case {names}. Check that bearings hold every shaft that is loaded."
+    if not result.agreed:
+        change = leftover(result.change)
+        return (
+            f"Mesh loads and deflections disagree: misalignments still change by {change} of their size "
+            f"after {result.passes} passes."
+        )
+    return ""
+
+
+RUN = Computation(
+    deflection_of,
+    facts,
+    record_file(("deflection", GearboxDeflection)),
+    check=check_cases,
+    writers={".toml": write_spectrum},
+    failure=failure,
+)

@@ -1,0 +1,93 @@
+"""Accuracy study of a case or a scene."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from bounds.types import Json
+from dynamics.accuracy import Frontier as SceneFrontier
+from dynamics.accuracy import frontier as frontier_of_scene
+from dynamics.accuracy.registry import FIDELITIES as SCENE_FIDELITIES
+from fe_contact.analysis.studies.accuracy_study import FIDELITIES
+from fe_contact.analysis.studies.frontier import Frontier, frontier
+from fe_contact.checks import chosen
+from lineofaction.gearbox.convert.case import boundary_errors, gear_pair, study_options, table_axes
+from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.studies.computation import Computation, Means
+from lineofaction.gearbox.studies.frontier import Inputs
+from lineofaction.gearbox.studies.result_file import record_file
+
+LEAST = 2
+
+
+def frontier_of(subject: Case | TabledScene, inputs: Inputs, means: Means) -> Frontier | SceneFrontier:
+    """Study the accuracy of a case, over all pitches that differ and with the whole receipt, or of a scene.
+
+    Raises
+    ------
+    BadInput
+        No such pair or fidelity, or the run is too short.
+    JobFailed
+        Fewer than two fidelities came to their end.
+    """
+    names = requested(inputs, of_scene=not isinstance(subject, Case))
+    with boundary_errors():
+        if isinstance(subject, TabledScene):
+            return frontier_of_scene(subject.scene, fidelities=names, progress=means.report)
+        axes = replace(table_axes(subject), pitches=None)
+        return frontier(
+            gear_pair(subject),
+            axes,
+            study_options(subject),
+            fidelities=names,
+            full_contact=inputs.full_contact,
+            progress=means.report,
+        )
+
+
+def check(subject: Case | SceneInput, inputs: Inputs) -> None:
+    """Refuse a case that cannot be, a fidelity that there is not, and full contact of a scene."""
+    if isinstance(subject, Case):
+        check_case(subject)
+    else:
+        for name in ("full_contact", "up_to"):
+            if (value := getattr(inputs, name)) != Inputs.model_fields[name].default:
+                raise BadInput.of(name, value, "left out for a scene", "Give it with a case.")
+    requested(inputs, of_scene=not isinstance(subject, Case))
+
+
+def requested(inputs: Inputs, *, of_scene: bool) -> list[str]:
+    """Return the fidelities that are requested, once each, in the order of their cost.
+
+    Raises
+    ------
+    BadInput
+        A name that no fidelity of a case, or of a scene, has; or fewer than two of them.
+    """
+    known = [fidelity.name for fidelity in (SCENE_FIDELITIES if of_scene else FIDELITIES)]
+    with boundary_errors():
+        names = chosen("rungs", inputs.rungs, known, "Or leave it out: all are run.")
+    if not of_scene:
+        names = [name for name in names if known.index(name) <= known.index(inputs.up_to)]
+    if len(names) < LEAST:
+        raise BadInput.of("rungs", names, "at least two fidelities", "An error needs two to compare.")
+    return names
+
+
+def normalized(subject: Case | SceneInput, inputs: Inputs) -> Json:
+    """Return the fidelities in their order, and full contact if it is requested."""
+    beside = {} if inputs.full_contact is None else {"full_contact": inputs.full_contact}
+    return {"rungs": requested(inputs, of_scene=not isinstance(subject, Case)), **beside}
+
+
+RUN = Computation(
+    frontier_of,
+    lambda study: study.to_json(),
+    record_file(("accuracy study of a case", Frontier), ("accuracy study of a scene", SceneFrontier)),
+    check=check,
+    normalized=normalized,
+)

@@ -1,0 +1,46 @@
+"""A run that is heard through the housings of a scene, and where."""
+
+from __future__ import annotations
+
+from typing import Literal, Self
+
+from pydantic import ConfigDict, Field, model_validator
+
+from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
+from lineofaction.gearbox.schemas.rules import exactly_one_of, stated
+from lineofaction.gearbox.schemas.scene_types import Point
+from lineofaction.gearbox.schemas.speeds import RunHash
+
+_PLACES = ("microphone_mm", "point")
+
+
+class Inputs(BoundaryModel):
+    """A run that is heard through the housings of a scene, and where."""
+
+    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of(*_PLACES)))
+
+    run: RunHash = Field(
+        description="Run whose forces on bearings move the housings of the scene", examples=["0" * 64]
+    )
+    microphone_mm: Point | None = Field(
+        default=None,
+        description="Where the sound pressure is heard, in mm in the frame of the scene: free field",
+        examples=[[40.0, 60.0, 1000.0]],
+    )
+    point: str | None = Field(
+        default=None, min_length=1, max_length=255, description="Point of a housing whose velocity is heard"
+    )
+    direction: Literal["x", "y", "z", "principal"] | None = Field(
+        default=None, description="Direction at the point; default: in which it varies most"
+    )
+
+    @model_validator(mode="after")
+    def _one_place(self) -> Self:
+        """Refuse both places and none, and a direction of a sound pressure."""
+        names = [name for name in _PLACES if getattr(self, name) is not None]
+        if len(names) != 1:
+            advice = "A microphone hears the sound pressure, a point its velocity."
+            refuse("microphone_mm", names or None, "given, or point, one of both", advice)
+        if self.direction is not None and self.point is None:
+            refuse("direction", self.direction, "left out with microphone_mm", "A pressure has none.")
+        return self

@@ -1,0 +1,236 @@
+"""Inputs of a micro-geometry optimization: variables, scatter, objective."""
+
+from __future__ import annotations
+
+from itertools import cycle, pairwise
+from typing import Annotated, Any, Literal, Optional, Self
+
+from pydantic import Field, Strict, model_validator
+
+from bounds import DEPTHS, Kind
+from fe_contact.flank.modification import FlankModification
+from lineofaction.gearbox.schemas.case import Load
+from lineofaction.gearbox.schemas.declared import Figure, figures, with_fields
+from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
+from lineofaction.gearbox.schemas.one_or_many import MANY, ONE, ONE_OR_MANY
+
+Deviation = Annotated[float, Field(gt=0.0, le=1000.0)]
+_EACH = (Strict(False), Field(min_length=1, max_length=64))
+Torques = Annotated[tuple[Load, ...], *_EACH]
+Misalignment = Annotated[float, Field(ge=-10_000.0, le=10_000.0)]
+Misalignments = Annotated[
+    Annotated[Misalignment, ONE] | Annotated[tuple[Misalignment, ...], *_EACH, MANY], ONE_OR_MANY
+]
+
+
+def _ends(figure: Figure) -> tuple[Any, Any]:
+    """Return the field of a figure's lowest and highest value; no length may vanish."""
+    number: Any = figure.accepted
+    if figure.what.kind is Kind.LENGTH:
+        number = Annotated[float, Field(gt=0.0, le=figure.limits["le"])]
+    pair: Any = Annotated[tuple[number, ...], Strict(False), Field(min_length=2, max_length=2)]
+    text = figure.with_unit(f"Bounds of the {figure.words}")
+    example = [[0.0 if figure.what.kind in DEPTHS else 0.5, figure.own(2.0 * figure.what.example)]]
+    return Optional[pair], Field(default=None, description=text, examples=example)  # noqa: UP045
+
+
+def _deviation(figure: Figure) -> tuple[Any, Any]:
+    """Return the field of a figure's standard deviation."""
+    text = figure.with_unit(f"Standard deviation of the {figure.words}")
+    return Optional[Deviation], Field(default=None, description=text, examples=[3.0])  # noqa: UP045
+
+
+_FREE = figures(FlankModification, Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
+
+
+@with_fields({figure.field: _ends(figure) for figure in _FREE})
+class GearVariablesInput(BoundaryModel):
+    """Figures of one gear's modifications that are free, each between two bounds; all others stay."""
+
+    @model_validator(mode="after")
+    def _rising(self) -> Self:
+        """Refuse a lower bound that is not the lower one."""
+        for name in type(self).model_fields:
+            ends = getattr(self, name)
+            if ends is not None and ends[1] <= ends[0]:
+                refuse(name, list(ends), "a lower bound and a higher one", "For example [0, 30].")
+        return self
+
+
+class VariablesInput(BoundaryModel):
+    """Design variables of both gears."""
+
+    pinion: GearVariablesInput = Field(
+        default=GearVariablesInput(), description="Modifications of the driving gear"
+    )
+    wheel: GearVariablesInput = Field(
+        default=GearVariablesInput(), description="Modifications of the driven gear"
+    )
+    most_tip_relief_um: float = Field(
+        default=40.0,
+        title="Most tip relief, µm",
+        gt=0.0,
+        le=1000.0,
+        description="If no modification is named: tip relief of both gears up to this amount, 0.15 to 0.8 "
+        "modules long, and lead crowning of the driving gear up to 30 um unless the model is "
+        "plane",
+        examples=[40.0],
+    )
+
+
+@with_fields({figure.field: _deviation(figure) for figure in _FREE})
+class GearScatterInput(BoundaryModel):
+    """Standard deviations of one gear's modifications as manufactured; what is left out does not scatter."""
+
+
+class ScatterInput(BoundaryModel):
+    """Independent normal deviations from what is designed, and the rule that takes their expectation."""
+
+    misalignment_um: float = Field(
+        default=0.0,
+        title="Misalignment, standard deviation, µm",
+        ge=0.0,
+        le=1000.0,
+        description="Standard deviation of the misalignment in um",
+        examples=[8.0],
+    )
+    pinion: GearScatterInput = Field(
+        default=GearScatterInput(), description="Modifications of the driving gear"
+    )
+    wheel: GearScatterInput = Field(
+        default=GearScatterInput(), description="Modifications of the driven gear"
+    )
+    rule: Literal["gauss_hermite", "sobol_sample"] = Field(
+        default="gauss_hermite",
+        description="Method of averaging: Gauss-Hermite points in each deviation, or one fixed Sobol sample",
+        examples=["gauss_hermite"],
+    )
+    points: int = Field(
+        default=5, ge=1, le=33, description="Number of Gauss-Hermite points in each deviation", examples=[5]
+    )
+    log2_size: int = Field(
+        default=4, ge=0, le=10, description="Binary logarithm of the size of the Sobol sample", examples=[4]
+    )
+
+
+class ObjectiveInput(BoundaryModel):
+    """What is made of the expected peak-to-peak at the torques."""
+
+    kind: Literal["weighted_mean", "worst"] = Field(
+        default="weighted_mean", description="Mean over the torques, or the largest", examples=["worst"]
+    )
+    weights: Annotated[tuple[Annotated[float, Field(ge=0.0, le=1e6)], ...], Strict(False)] = Field(
+        default=(),
+        max_length=64,
+        description="Weights of weighted_mean, one for each torque",
+        examples=[[1.0, 2.0]],
+    )
+
+
+class LimitsInput(BoundaryModel):
+    """What a design has to keep at every torque and deviation."""
+
+    max_pressure_mpa: float | None = Field(
+        default=None, gt=0.0, le=1e5, description="Largest Hertzian pressure in MPa", examples=[1500.0]
+    )
+    face_load_factor: float | None = Field(
+        default=None, gt=1.0, le=100.0, description="Largest K_Hbeta of the mesh cycle", examples=[1.5]
+    )
+    edge_load_share: float | None = Field(
+        default=None,
+        ge=0.0,
+        lt=1.0,
+        description="Largest share of the load on tip edges; 0 forbids their contact",
+        examples=[0.0],
+    )
+
+
+class SearchInput(BoundaryModel):
+    """How the best design is searched."""
+
+    method: Literal["sequential_linear_programming", "differential_evolution", "nelder_mead"] = Field(
+        default="sequential_linear_programming",
+        description="Search with derivatives from the best start designs, or without derivatives, global or "
+        "local",
+        examples=["differential_evolution"],
+    )
+    sample: int = Field(
+        default=64,
+        ge=0,
+        le=4096,
+        description="Number of start designs that sequential_linear_programming ranks",
+        examples=[64],
+    )
+    trials: int = Field(
+        default=3,
+        ge=0,
+        le=64,
+        description="Number of best start designs from which a search begins",
+        examples=[3],
+    )
+    population: int = Field(
+        default=5, ge=3, le=50, description="Population of differential_evolution per variable", examples=[5]
+    )
+    seed: int = Field(
+        default=0, ge=0, le=2**32 - 1, description="Equal seeds give equal results", examples=[0]
+    )
+    starts: int = Field(default=1, ge=1, le=256, description="Independent searches", examples=[1])
+    evaluations: int = Field(
+        default=1000,
+        title="Largest number of designs",
+        ge=1,
+        le=1_000_000,
+        description="Largest number of designs per search",
+        examples=[1000],
+    )
+    positions: int = Field(
+        default=64, ge=8, le=4096, description="Positions in a base pitch during the search", examples=[64]
+    )
+    exploration: int = Field(
+        default=16,
+        ge=8,
+        le=4096,
+        description="Positions for the ranking of start designs and of evolution",
+        examples=[16],
+    )
+
+
+class Inputs(BoundaryModel):
+    """An optimization of a case's flank modifications."""
+
+    torque_n_m: Torques | None = Field(
+        default=None,
+        description="Design torques in N m on the driving gear, increasing, and equal only at different "
+        "misalignments; default: those of the case",
+        examples=[[100.0, 200.0, 300.0]],
+    )
+    misalignment_um: Misalignments = Field(
+        default=0.0,
+        description="Misalignment in um, one value or one for each torque",
+        examples=[0.0],
+    )
+    variables: VariablesInput = Field(
+        default=VariablesInput(),
+        description="Modifications to vary, with bounds; default: those of most_tip_relief_um",
+        examples=[{"pinion": {"tip_relief_um": [0.0, 60.0], "tip_relief_length_mm": [0.5, 3.0]}}],
+    )
+    scatter: ScatterInput = Field(default=ScatterInput(), description="Assembly and manufacturing deviations")
+    objective: ObjectiveInput = Field(default=ObjectiveInput(), description="Objective to minimize")
+    limits: LimitsInput = Field(default=LimitsInput(), description="Limits to meet")
+    search: SearchInput = Field(default=SearchInput(), description="Search method and its settings")
+
+    @model_validator(mode="after")
+    def _loads(self) -> Self:
+        """Refuse misalignments of other loads, torques that fall, and a load twice."""
+        torques, given = self.torque_n_m, self.misalignment_um
+        if torques is None:
+            return self
+        misalignments = given if isinstance(given, tuple) else (given,)
+        if len(misalignments) not in (1, len(torques)):
+            bound = f"one value, or {len(torques)}, one for each torque"
+            refuse("misalignment_um", f"{len(misalignments)} values", bound)
+        loads = {*zip(torques, cycle(misalignments), strict=False)}
+        if any(b < a for a, b in pairwise(torques)) or len(loads) < len(torques):
+            bound = "increasing, and equal only at different misalignments"
+            refuse("torque_n_m", list(torques), bound, "Sort the list and drop repeats.")
+        return self

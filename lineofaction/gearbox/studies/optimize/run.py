@@ -1,0 +1,281 @@
+"""Micro-geometry optimization of a case."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bounds import engineering
+from fe_contact.microgeometry import (
+    DesignVariable,
+    DifferentialEvolution,
+    GaussHermite,
+    Limits,
+    Method,
+    NelderMead,
+    Optimization,
+    OptimizationRequest,
+    Scatter,
+    Search,
+    SequentialLinearProgramming,
+    SobolSample,
+    WeightedMean,
+    Worst,
+    optimize,
+)
+from fe_contact.microgeometry.confirmation import ConfirmedDesign
+from fe_contact.microgeometry.harris_map import HarrisMap
+from fe_contact.microgeometry.search import never
+from fe_contact.options import Run
+from lineofaction.gearbox.convert.case import analysis_options, boundary_errors, gear_pair
+from lineofaction.gearbox.convert.toml import toml_text
+from lineofaction.gearbox.convert.vocabulary import boundary_name
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.studies.computation import Computation, Means, with_defaults
+from lineofaction.gearbox.studies.optimize import (
+    GearScatterInput,
+    GearVariablesInput,
+    Inputs,
+    ScatterInput,
+    SearchInput,
+)
+from lineofaction.gearbox.studies.result_file import record_file
+from lineofaction.gearbox.units import UM, factor, in_um
+
+Json = dict[str, Any]
+MPA = 1e6
+
+
+def optimization_of(case: Case, study: Inputs, means: Means) -> Optimization:
+    """Optimize the modifications of a case; when it is cancelled, end with the best so far.
+
+    Designs are remembered: another attempt, or another deadline, goes on from them.
+
+    Raises
+    ------
+    BadInput
+        No such pair, or something that cannot be varied so.
+    JobFailed
+        The case cannot be computed.
+    """
+    with boundary_errors():
+        run = Run(means.workers, means.home / "compliance", means.report)
+        return optimize(
+            _request(case, study), run, cancel=means.cancel or never, memory=means.home / "searches"
+        )
+
+
+def check(case: Case, study: Inputs) -> None:
+    """Raise `BadInput` for what `optimization_of` would, without computing anything."""
+    with boundary_errors():
+        _request(case, study).check()
+
+
+def with_variables(case: Case, study: Inputs) -> Inputs:
+    """Return a study with the usual variables of a case, if it names none."""
+    variables = study.variables
+    if any(gear.model_dump(exclude_none=True) for gear in (variables.pinion, variables.wheel)):
+        return study
+    module = case.pair.normal_module_mm
+    relief = {
+        "tip_relief_um": (0.0, variables.most_tip_relief_um),
+        "tip_relief_length_mm": (0.15 * module, 0.8 * module),
+    }
+    in_plane = case.accuracy.model in ("plane_strain", "plane_stress")
+    crowning = {} if in_plane else {"helix_crowning_um": (0.0, 30.0)}
+    gears = {"pinion": GearVariablesInput(**relief, **crowning), "wheel": GearVariablesInput(**relief)}
+    return study.model_copy(update={"variables": variables.model_copy(update=gears)})
+
+
+def _request(case: Case, study: Inputs) -> OptimizationRequest:
+    """Return what is requested of the library, in SI."""
+    pair, study = gear_pair(case), with_variables(case, study)
+    torques = study.torque_n_m or case.load.torque_n_m
+    if torques is None:
+        torques = tuple(float(pair.torque(force)) for force in case.load.normal_force_n or ())
+    objective = WeightedMean(study.objective.weights) if study.objective.kind == "weighted_mean" else Worst()
+    return OptimizationRequest(
+        pair,
+        list(torques),
+        tuple(_variables(study)),
+        scatter_of(study.scatter, study.search.seed),
+        np.asarray(study.misalignment_um) * UM,
+        objective,
+        _limits(study),
+        _search(study.search),
+        analysis_options(case),
+    )
+
+
+def _variables(study: Inputs) -> list[DesignVariable]:
+    """Return the design variables of both gears, in SI."""
+    gears = {"pinion": study.variables.pinion, "wheel": study.variables.wheel}
+    return [
+        DesignVariable(name, *(end * unit for end in ends))
+        for gear, fields in gears.items()
+        for name, ends, unit in _given(gear, fields)
+    ]
+
+
+def scatter_of(scatter: ScatterInput, seed: int) -> Scatter:
+    """Return the scatter in SI."""
+    hermite = scatter.rule == "gauss_hermite"
+    rule = GaussHermite(scatter.points) if hermite else SobolSample(scatter.log2_size, seed)
+    gears = {"pinion": scatter.pinion, "wheel": scatter.wheel}
+    deviations = {
+        name: value * unit for gear, fields in gears.items() for name, value, unit in _given(gear, fields)
+    }
+    return Scatter(scatter.misalignment_um * UM, deviations, rule)
+
+
+def _given(gear: str, inputs: GearVariablesInput | GearScatterInput) -> list[tuple[str, Any, float]]:
+    """Return name in the library, value and unit of the fields that are given."""
+    return [
+        (f"{gear}.{field.rpartition('_')[0]}", value, factor(field))
+        for field in type(inputs).model_fields
+        if (value := getattr(inputs, field)) is not None
+    ]
+
+
+def _limits(study: Inputs) -> Limits:
+    """Return the limits in SI."""
+    pressure = study.limits.max_pressure_mpa
+    return Limits(
+        None if pressure is None else pressure * MPA,
+        study.limits.face_load_factor,
+        study.limits.edge_load_share,
+    )
+
+
+def _search(search: SearchInput) -> Search:
+    """Return how it is searched."""
+    methods: dict[str, Method] = {
+        "sequential_linear_programming": SequentialLinearProgramming(search.sample, search.trials),
+        "differential_evolution": DifferentialEvolution(search.population),
+        "nelder_mead": NelderMead(),
+    }
+    counts = search.starts, search.evaluations, search.positions, search.exploration
+    return Search(methods[search.method], search.seed, *counts)
+
+
+def optimization_json(result: Optimization) -> Json:
+    """Return an optimization in the units of a case file, other lengths in um."""
+    plain = result.to_json()
+    variables = [
+        {"name": boundary_name(var.name), "bounds": [_typed(var.name, var.low), _typed(var.name, var.high)]}
+        for var in result.variables
+    ]
+    steps = [
+        {
+            "name": boundary_name(step.name),
+            "values": [_typed(step.name, step.low), _typed(step.name, step.high)],
+            "change_um": [step.change_low / UM, step.change_high / UM],
+        }
+        for step in result.sensitivity
+    ]
+    designs = {name: _design_json(getattr(result, name)) for name in ("start", "optimum")}
+    converted: Json = in_um(plain)
+    converted["asked"] |= {"scatter": _scatter_json(result), "limits": _limits_json(result)}
+    return converted | designs | {"variables": variables, "sensitivity": steps, "nodes": _nodes_json(result)}
+
+
+def _scatter_json(result: Optimization) -> Json:
+    """Return what scatters, by the fields of a case file."""
+    scatter = result.asked["scatter"]
+    rule = {name: value for name, value in scatter.items() if not name.endswith("_m")}
+    spread = {"misalignment_um": scatter["misalignment_m"] / UM, **boundary_values(scatter["modification_m"])}
+    return {**spread, **rule}
+
+
+def _limits_json(result: Optimization) -> Json:
+    """Return the limits that were requested."""
+    limits = dict(result.asked["limits"])
+    pressure = limits.pop("max_pressure_pa")
+    return {"max_pressure_mpa": None if pressure is None else pressure / MPA, **limits}
+
+
+def _nodes_json(result: Optimization) -> Json:
+    """Return the nodes of the scatter."""
+    names = result.nodes.names
+    return {
+        "names": [boundary_name(name) for name in names],
+        "deviation": [
+            [_typed(name, float(x)) for name, x in zip(names, row, strict=True)]
+            for row in result.nodes.deviation
+        ],
+        "weight": result.nodes.weight.tolist(),
+    }
+
+
+def _design_json(design: ConfirmedDesign) -> Json:
+    """Return one design: its values by the fields of a case file."""
+    plain: Json = in_um(design.to_json())
+    pressure = [value / MPA for value in plain.pop("max_pressure_pa")]
+    plain.pop("values_um")
+    return {"values": boundary_values(design.values), **plain, "max_pressure_mpa": pressure}
+
+
+def boundary_values(values: Mapping[str, float]) -> dict[str, dict[str, float]]:
+    """Return the values of a design by gear and field, as a case file has them."""
+    out: dict[str, dict[str, float]] = {}
+    for name, value in values.items():
+        gear, _, field = boundary_name(name).partition(".")
+        out.setdefault(gear, {})[field] = _typed(name, value)
+    return out
+
+
+def _typed(name: str, value: float) -> float:
+    """Return a figure in the unit of its field, without the noise of the conversion."""
+    return float(f"{value / factor(boundary_name(name)):.12g}")
+
+
+def worse_loads(result: Optimization) -> list[Json]:
+    """Return the torques at which the best design ripples more than the start, as warnings."""
+    before, after = result.start.harris_map, result.optimum.harris_map
+    return [_worse(before, after, int(index)) for index in result.rising]
+
+
+def _worse(before: HarrisMap, after: HarrisMap, index: int) -> Json:
+    """Return the warning of one torque."""
+    first, second = (float(design.expected[index]) / UM for design in (before, after))
+    error = float(before.expected_error[index] + after.expected_error[index]) / UM
+    torque, reason = (
+        float(before.torque[index]),
+        "the search makes another load better at the cost of this one",
+    )
+    words = f"from {first:.3g} to {second:.3g} um, errors {engineering(error, 2)} um: {reason}"
+    return {
+        "check": "worse_load",
+        "field": f"torque_n_m = {torque:.6g}",
+        "value": second,
+        "unit": "um",
+        "low": None,
+        "high": first + error,
+        "reason": reason,
+        "source": "the design from which the search starts",
+        "whole": "",
+        "message": f"expected peak-to-peak rises at {torque:.6g} N m {words}",
+    }
+
+
+def write_case(result: Optimization, case: Case, target: Path) -> None:
+    """Write the case with the best design as a case file: what was given of the case, and the best flanks."""
+    content = case.model_dump(mode="json", exclude_unset=True)
+    for gear, fields in boundary_values(result.optimum.values).items():
+        content["pair"][gear] |= {name: float(f"{value:.6g}") for name, value in fields.items()}
+    target.write_text(f"# {result.reason}\n\n{toml_text(content)}", encoding="utf-8")
+
+
+RUN = Computation(
+    optimization_of,
+    optimization_json,
+    record_file(("optimization", Optimization)),
+    check=check,
+    normalized=lambda case, study: with_defaults(with_variables(case, study)),
+    warnings=worse_loads,
+    interruptible=True,
+    writers={".toml": write_case},
+)

@@ -1,0 +1,156 @@
+"""Tooth-root stress of a case of one load and one alignment: the roots of both gears, and their figures."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+from fe_contact.analysis import RootStressHistory, root_stress
+from fe_contact.analysis.flanks.root_stress_history import ROOTS, RootPassage, RootPeak
+from fe_contact.options import Run
+from fe_contact.plausibility.nominal_load import nominal_root_stresses
+from lineofaction.gearbox.convert.case import (
+    analysis_options,
+    boundary_errors,
+    case_at,
+    gear_pair,
+    operating_point,
+)
+from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.plausibility import phrased_for
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.studies.computation import Computation, Means
+from lineofaction.gearbox.studies.result_file import record_file
+from lineofaction.gearbox.studies.root_stress import Inputs
+from lineofaction.gearbox.units import MM, UM
+from model_studies import in_unit
+
+Json = dict[str, Any]
+GEARS = ("pinion", "wheel")
+MPA = 1e6
+
+
+@dataclass(frozen=True)
+class GearRoots:
+    """The roots of one gear: their peaks, where ISO 6336-3 takes its section (m), a tooth's passage.
+
+    `nominal` is the stress of ISO 6336-3 in Pa: method B without its load factors, of spur gears.
+    """
+
+    tension: RootPeak
+    compression: RootPeak
+    critical_coordinate: float = field(metadata=in_unit("m"))
+    passage: RootPassage
+    nominal: float | None = field(default=None, metadata=in_unit("pa"))
+
+
+@dataclass(frozen=True)
+class Roots:
+    """Tooth-root stress of both gears at one load and one alignment, in SI units.
+
+    Attributes
+    ----------
+    pinion, wheel : GearRoots
+    torque, normal_force : float
+        On the driving gear, N m; F_bn, N.
+    misalignment, center_distance_change : float
+        m.
+    receipt : dict
+    warnings : list of dict
+        In the fields and units of the case.
+    """
+
+    pinion: GearRoots
+    wheel: GearRoots
+    torque: float = field(metadata=in_unit("n_m"))
+    normal_force: float = field(metadata=in_unit("n"))
+    misalignment: float = field(metadata=in_unit("m"))
+    center_distance_change: float = field(metadata=in_unit("m"))
+    receipt: Json
+    warnings: list[Json]
+
+
+def root_stress_of(case: Case, _inputs: Inputs, means: Means) -> Roots:
+    """Return the peaks over a mesh cycle, what one tooth of each gear meets, the receipt and the warnings.
+
+    Raises
+    ------
+    BadInput
+        No such pair, or a request that no plan can meet.
+    JobFailed
+        No mesh, or positions without a solution.
+    """
+    run, pair = Run(cache=means.home / "compliance", progress=means.report), gear_pair(case)
+    with boundary_errors():
+        stress = root_stress(pair, operating_point(case), analysis_options(case), run)
+    nominal = (None, None) if pair.pinion.helix_angle else nominal_root_stresses(pair, stress.normal_force)
+    return Roots(
+        _roots(stress.pinion, nominal[0]),
+        _roots(stress.wheel, nominal[1]),
+        stress.torque,
+        stress.normal_force,
+        stress.misalignment,
+        stress.center_distance_change,
+        stress.receipt,
+        phrased_for(case, stress.warnings),
+    )
+
+
+def _roots(history: RootStressHistory, nominal: float | None) -> GearRoots:
+    """One gear."""
+    tension, compression = (history.peak(root) for root in ROOTS)
+    return GearRoots(tension, compression, history.critical_coordinate, history.passage(), nominal)
+
+
+def root_stress_json(roots: Roots) -> Json:
+    """Return the stresses in MPa, places in mm and degrees."""
+    return {
+        "torque_n_m": roots.torque,
+        "normal_force_n": roots.normal_force,
+        "misalignment_um": roots.misalignment / UM,
+        "center_distance_change_mm": roots.center_distance_change / MM,
+        **{gear: _gear_json(getattr(roots, gear)) for gear in GEARS},
+        "receipt": roots.receipt,
+        "warnings": roots.warnings,
+    }
+
+
+def _gear_json(roots: GearRoots) -> Json:
+    """One gear."""
+    passage = roots.passage
+    return {
+        **{root: _peak_json(getattr(roots, root)) for root in ROOTS},
+        "critical_section_mm": roots.critical_coordinate / MM,
+        "iso_6336_3_mpa": None if roots.nominal is None else roots.nominal / MPA,
+        "passage": {
+            "position": passage.position.tolist(),
+            "tension_mpa": (passage.tension / MPA).tolist(),
+            "compression_mpa": (passage.compression / MPA).tolist(),
+            "at_tension_peak_mpa": (passage.at_tension_peak / MPA).tolist(),
+            "at_compression_peak_mpa": (passage.at_compression_peak / MPA).tolist(),
+        },
+    }
+
+
+def _peak_json(peak: RootPeak) -> Json:
+    """One root; the position is that of the tooth's own pair."""
+    return {
+        "stress_mpa": peak.stress.value / MPA,
+        "error_mpa": peak.stress.error / MPA,
+        "position": peak.position % 1.0 + peak.pair,
+        "flank_coordinate_mm": peak.flank_coordinate / MM,
+        "tangent_angle_deg": math.degrees(peak.tangent_angle),
+        "face_position_mm": peak.face_position / MM,
+    }
+
+
+RUN = Computation(
+    root_stress_of,
+    root_stress_json,
+    record_file(("tooth-root stress", Roots)),
+    narrowed=case_at,
+    check=lambda case, _inputs: check_case(case),
+    normalized=lambda _case, _inputs: {},
+    warnings=lambda roots: roots.warnings,
+)

@@ -1,0 +1,190 @@
+"""Inputs of a study of scenes: factors, responses, sample."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+from pydantic import ConfigDict, Field, Strict, model_validator
+
+from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
+from lineofaction.gearbox.schemas.rules import exactly_one_of, stated
+from lineofaction.gearbox.schemas.scene_types import Name
+
+Value = Annotated[float, Field(ge=-1e20, le=1e20)]
+Values = Annotated[tuple[Value, ...], Strict(False)]
+Path = Annotated[str, Field(min_length=1, max_length=500)]
+
+QuantityName = Literal[
+    "bearing_force",
+    "dte_order",
+    "dte_rms",
+    "dte_peak_to_peak",
+    "peak_mesh_force",
+    "dynamic_factor",
+    "contact_loss",
+    "mesh_load_factor",
+]
+"""Of `dynamics.study.QUANTITIES`, which takes longer to load than a service to start."""
+_KINDS = ("levels", "values", "normal", "uniform", "iso1328_class")
+SAMPLED = _KINDS[2:]
+MOST_POINTS = 100_000
+"""Of a job: its result holds every run's figures."""
+
+
+class NormalInput(BoundaryModel):
+    """A truncated normal distribution."""
+
+    mean: Value = Field(description="Mean before truncation", examples=[1e8])
+    standard_deviation: float = Field(
+        gt=0.0, le=1e20, description="Standard deviation before truncation", examples=[5e6]
+    )
+    low: Value | None = Field(
+        default=None, description="Lower limit; values below are rejected", examples=[8e7]
+    )
+    high: Value | None = Field(
+        default=None, description="Upper limit; values above are rejected", examples=[1.2e8]
+    )
+
+
+class UniformInput(BoundaryModel):
+    """A uniform distribution."""
+
+    low: Value = Field(description="Lowest value", examples=[0.05])
+    high: Value = Field(description="Highest value", examples=[0.15])
+
+
+class FactorInput(BoundaryModel):
+    """Something that the scene file declares, and the values it takes; in the unit of its name."""
+
+    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of(*_KINDS)))
+
+    path: Path = Field(
+        description="Field of the scene as a path KIND.NAME.FIELD; * is every part, [0] an entry of a list",
+        examples=["loads.brake.torque_n_m"],
+    )
+    levels: Values | None = Field(
+        default=None,
+        min_length=1,
+        max_length=10_000,
+        description="Levels of a grid, combined with every level of the other factors",
+        examples=[[50.0, 100.0, 150.0]],
+    )
+    values: Values | None = Field(
+        default=None,
+        min_length=1,
+        max_length=MOST_POINTS,
+        description="Values of a list, which change together with those of other lists",
+        examples=[[50.0, 100.0]],
+    )
+    normal: NormalInput | None = Field(default=None, description="Normal distribution")
+    uniform: UniformInput | None = Field(default=None, description="Uniform distribution")
+    iso1328_class: int | None = Field(
+        default=None,
+        ge=1,
+        le=11,
+        description="Tolerance class of ISO 1328-1:2013 of a profile or helix slope: normal about the design "
+        "value with three standard deviations at the tolerance, truncated there",
+        examples=[6],
+    )
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> Self:
+        """Exactly one kind of values."""
+        names = [name for name in _KINDS if getattr(self, name) is not None]
+        if len(names) != 1:
+            bound = f"given once, as one of {', '.join(_KINDS)}"
+            refuse("levels", names or None, bound, "Keep one of them.")
+        return self
+
+    @property
+    def sampled(self) -> bool:
+        """Whether it has a distribution."""
+        return any(getattr(self, name) is not None for name in SAMPLED)
+
+
+class ResponseInput(BoundaryModel):
+    """A figure that is taken from every run."""
+
+    quantity: QuantityName = Field(description="Name of the response", examples=["bearing_force"])
+    part: Name | None = Field(
+        default=None,
+        description="Its mesh or bearing; left out: the largest over all",
+        examples=["input left"],
+    )
+    order: int | None = Field(
+        default=None,
+        ge=1,
+        le=1000,
+        description="Mesh order, for bearing_force and dte_order",
+        examples=[1],
+    )
+    mesh: Name | None = Field(
+        default=None,
+        description="Mesh whose orders a bearing force has; left out: the first mesh",
+        examples=["mesh"],
+    )
+
+
+class Inputs(BoundaryModel):
+    """A study of a scene: what is varied, and what is taken from every run."""
+
+    factors: Annotated[tuple[FactorInput, ...], Strict(False)] = Field(
+        min_length=1,
+        max_length=100,
+        description="Factors to vary: a table [[factors]] for each",
+        examples=[[{"path": "loads.brake.torque_n_m", "levels": [50.0, 100.0]}]],
+    )
+    responses: Annotated[tuple[ResponseInput, ...], Strict(False)] = Field(
+        min_length=1,
+        max_length=100,
+        description="Responses of every run: a table [[responses]] for each",
+        examples=[[{"quantity": "dte_rms"}]],
+    )
+    samples: int = Field(
+        default=1,
+        ge=1,
+        le=MOST_POINTS,
+        description="Number of samples of the distributions, the same for every combination of levels",
+        examples=[1],
+    )
+    seed: int = Field(
+        default=0,
+        ge=0,
+        le=2**32 - 1,
+        description="Seed of the samples; equal seeds give equal samples",
+        examples=[0],
+    )
+    start_s: float = Field(
+        default=0.0, ge=0.0, le=1e6, description="Start time of the responses in s", examples=[0.5]
+    )
+    receipt: Literal["minimal", "full"] = Field(
+        default="minimal",
+        description="minimal: state the tolerance of the steps; full: measure the errors of every run",
+        examples=["minimal"],
+    )
+    confidence: float = Field(
+        default=0.95,
+        ge=0.5,
+        le=0.9999,
+        description="Confidence level of the bounds of quantiles",
+        examples=[0.95],
+    )
+    keep_worst: int = Field(
+        default=0,
+        ge=0,
+        le=100,
+        description="Number of runs with the largest first response to store in full",
+        examples=[3],
+    )
+
+    @model_validator(mode="after")
+    def _sampled(self) -> Self:
+        """Refuse samples of no distribution, and a factor named twice."""
+        if any(factor.sampled for factor in self.factors) != (self.samples > 1):
+            bound = "above 1 where a factor has a distribution, else left out"
+            refuse("samples", self.samples, bound, "For example samples = 50.")
+        paths = [factor.path for factor in self.factors]
+        for index, path in enumerate(paths):
+            if path in paths[:index]:
+                refuse(f"factors[{index}].path", path, "a path that no other factor has")
+        return self

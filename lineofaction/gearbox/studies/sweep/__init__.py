@@ -1,0 +1,43 @@
+"""Inputs of a sweep: one or two things that a case declares, and which figures are shown over them."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, Strict
+
+from lineofaction.gearbox.schemas.model import BoundaryModel
+
+Axis = Annotated[str, Field(min_length=1, max_length=1000)]
+Shown = Literal["peak_to_peak", "harmonic_1", "harmonic_2", "harmonic_3", "max_pressure", "face_load_factor"]
+"""Of `fe_contact.microgeometry.sweep.SWEPT`, which takes longer to load than a service to start."""
+
+
+class Inputs(BoundaryModel):
+    """What is swept, and what is shown of it."""
+
+    over: Annotated[tuple[Axis, ...], Strict(False)] = Field(
+        default=("torque", "tip_relief"),
+        title="Over",
+        min_length=1,
+        max_length=2,
+        description="One or two of torque, misalignment, center_distance_change and the flank modifications: "
+        "NAME, or NAME=FIRST:LAST:STEP in the unit of the case file; without a gear a modification is that "
+        "of both",
+        examples=[["torque", "pinion.profile_crowning=0:10:2"]],
+    )
+    show: Annotated[tuple[Shown, ...], Strict(False)] = Field(
+        default=(
+            "peak_to_peak",
+            "harmonic_1",
+            "harmonic_2",
+            "harmonic_3",
+            "max_pressure",
+            "face_load_factor",
+        ),
+        min_length=1,
+        max_length=6,
+        description="What is drawn, the first in the table of the terminal too: peak_to_peak, harmonic_1, "
+        "harmonic_2, harmonic_3, max_pressure, face_load_factor (K_Hbeta; not in the plane)",
+        examples=[["peak_to_peak", "max_pressure"]],
+    )

@@ -1,0 +1,213 @@
+"""A sweep of a case, and its figures in the units of the boundary."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fe_contact.microgeometry.sweep import Sweep, SweptQuantity, sweep
+from fe_contact.microgeometry.sweep_request import TORQUE, SweepRequest
+from fe_contact.options import Run
+from fe_contact.types import BoolArray, FloatArray
+from lineofaction.gearbox.convert.case import (
+    analysis_options,
+    boundary_errors,
+    case_at,
+    gear_pair,
+    operating_point,
+)
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.flank import FlankPoint
+from lineofaction.gearbox.studies.computation import Computation, Means
+from lineofaction.gearbox.studies.result_file import record_file
+from lineofaction.gearbox.studies.sweep import Inputs
+from lineofaction.gearbox.studies.sweep.axes import SWEEPABLE, Swept, axis_of
+from lineofaction.gearbox.units import UM
+from model_studies import Record
+
+Json = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A quantity at the boundary.
+
+    Attributes
+    ----------
+    words, unit : str
+        As drawn.
+    one : float
+        The SI value of one unit.
+    field : str
+        In JSON and CSV, with ``{}`` where ``_error`` stands in the name of the error.
+    """
+
+    words: str
+    unit: str
+    one: float
+    field: str
+
+    @property
+    def label(self) -> str:
+        """The words with the unit, as on an axis."""
+        return f"{self.words}, {self.unit}" if self.unit else self.words
+
+
+QUANTITIES = {
+    "peak_to_peak": Shown("peak-to-peak STE", "µm", UM, "peak_to_peak{}_um"),
+    **{
+        f"harmonic_{n}": Shown(f"mesh harmonic {n} of STE", "µm", UM, f"harmonic_{n}{{}}_um")
+        for n in (1, 2, 3)
+    },
+    "max_pressure": Shown("largest flank pressure", "MPa", 1e6, "max_pressure{}_mpa"),
+    "face_load_factor": Shown("K_Hbeta of the cycle", "", 1.0, "k_h_beta{}"),
+}
+"""By name in `fe_contact.microgeometry.sweep.SWEPT`."""
+
+
+@dataclass(frozen=True)
+class SweepResult(Record):
+    """A sweep, and which of its quantities are shown.
+
+    Attributes
+    ----------
+    sweep : Sweep
+    shown : tuple of str
+        Of `QUANTITIES`, those that there are.
+    """
+
+    sweep: Sweep
+    shown: tuple[str, ...]
+
+    @property
+    def axes(self) -> tuple[Swept, ...]:
+        """What is swept."""
+        return tuple(SWEEPABLE[name] for name in self.sweep.axes)
+
+    @property
+    def across(self) -> int:
+        """The axis that runs across in plots and tables: the torque if it is swept, else the first."""
+        return self.sweep.axes.index(TORQUE) if TORQUE in self.sweep.axes else 0
+
+    @property
+    def quantities(self) -> tuple[SweptQuantity, ...]:
+        """The quantities that are shown, in their order."""
+        by_name = {quantity.name: quantity for quantity in self.sweep.quantities}
+        return tuple(by_name[name] for name in self.shown)
+
+    def grid(self, values: Any) -> Any:
+        """Return values (N,) by the axes (down, across), of one axis as they are."""
+        grid = values.reshape(self.sweep.shape)
+        return np.asarray(grid.T if grid.ndim == 2 and self.across == 0 else grid)
+
+    def like_least(self, quantity: SweptQuantity) -> BoolArray:
+        """Return which points of the grid are as low as the least within both errors.
+
+        Of a map over the torque the least at the same torque.
+        """
+        value, error = self.grid(quantity.value), self.grid(quantity.error)
+        if not (value.ndim == 2 and TORQUE in self.sweep.axes):
+            return np.asarray(self.grid(quantity.like_least))
+        rows, columns = np.where(np.isnan(value), np.inf, value).argmin(axis=0), np.arange(value.shape[1])
+        return np.asarray(value - value[rows, columns] <= error + error[rows, columns])
+
+    def levels(self, axis: int) -> FloatArray:
+        """Return the values of an axis in the unit of the boundary, increasing."""
+        return np.unique(self.sweep.point[:, axis]) / self.axes[axis].factor
+
+
+def sweep_of(case: Case, inputs: Inputs, means: Means) -> SweepResult:
+    """Sweep a case; what is not swept is at its highest load, its deviations nearest to zero.
+
+    Raises
+    ------
+    BadInput
+        No such pair or axis, or values that the pair does not take.
+    JobFailed
+        The case cannot be computed.
+    """
+    with boundary_errors():
+        result = sweep(_request(case, inputs), Run(means.workers, means.home / "compliance", means.report))
+    known = {quantity.name for quantity in result.quantities}
+    return SweepResult(result, tuple(name for name in inputs.show if name in known))
+
+
+def check(case: Case, inputs: Inputs) -> None:
+    """Raise `BadInput` for what `sweep_of` would, without computing anything."""
+    with boundary_errors():
+        _request(case, inputs).check()
+
+
+def _request(case: Case, inputs: Inputs) -> SweepRequest:
+    """Return what is requested of the library, in SI."""
+    axes = tuple(axis_of(case, text) for text in inputs.over)
+    point = operating_point(case_at(case, FlankPoint()))
+    return SweepRequest(gear_pair(case), axes, point, analysis_options(case))
+
+
+def facts(result: SweepResult) -> Json:
+    """Return axes, points with values and errors, and points without, in the units of the boundary."""
+    swept, axes = result.sweep, result.axes
+    return {
+        "over": [
+            {"path": axis.path, "unit": axis.unit, "values": result.levels(k).tolist()}
+            for k, axis in enumerate(axes)
+        ],
+        "held": dict(_held(swept)),
+        "shown": list(result.shown),
+        "points": [_at(result, k) | _figures(swept, k) for k, why in enumerate(swept.reason) if not why],
+        "least": {
+            QUANTITIES[quantity.name].field.format(""): _least(result, quantity)
+            for quantity in swept.quantities
+            if swept.usable
+        },
+        "failed": [_at(result, k) | {"reason": why} for k, why in enumerate(swept.reason) if why],
+        "cost": swept.cost,
+    }
+
+
+def _held(swept: Sweep) -> Iterator[tuple[str, float]]:
+    """Yield what is not swept."""
+    for name, value in swept.held.items():
+        axis = SWEEPABLE[name]
+        yield axis.path.rpartition(".")[2], value / axis.factor
+
+
+def _at(result: SweepResult, point: int) -> Json:
+    """Return the place of a point by the paths of the axes."""
+    return {
+        axis.path: float(f"{result.sweep.point[point, k] / axis.factor:.12g}")
+        for k, axis in enumerate(result.axes)
+    }
+
+
+def _figures(swept: Sweep, point: int) -> Json:
+    """Return the figures of a point, each with its error."""
+    return {
+        QUANTITIES[quantity.name].field.format(suffix): float(values[point]) / QUANTITIES[quantity.name].one
+        for quantity in swept.quantities
+        for suffix, values in (("", quantity.value), ("_error", quantity.error))
+    }
+
+
+def _least(result: SweepResult, quantity: SweptQuantity) -> Json:
+    """Return where a quantity is least, and at how many points it is as low within the errors."""
+    return _at(result, quantity.least) | {"points_within_error": int(quantity.like_least.sum())}
+
+
+def missing(result: SweepResult) -> str:
+    """Say that no point has figures."""
+    return "" if result.sweep.usable else f"No point has figures: {result.sweep.reason[0]}."
+
+
+RUN = Computation(
+    sweep_of,
+    facts,
+    record_file(("sweep", SweepResult)),
+    check=check,
+    resumed=True,
+    failure=missing,
+)

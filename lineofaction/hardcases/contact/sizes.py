@@ -1,0 +1,154 @@
+"""Very small and very large gears, narrow and wide faces, helix angles near zero and steep."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from fe_contact.geometry import Gear, GearPair
+from lineofaction.hardcases.posed import (
+    NOMINAL_TORQUE,
+    Posed,
+    even_positions,
+    nominal_gear,
+    nominal_pair,
+    posed,
+)
+from lineofaction.hardcases.scene import HardScene, Measured
+from lineofaction.hardcases.soundness import soundness
+
+_MODULE = 4e-3
+_WIDTH = 25e-3
+
+
+def module_of(module: float) -> Sequence[Measured]:
+    """Scale the nominal pair to another module, in the plane and in three dimensions."""
+    scale = module / _MODULE
+    figures = []
+    for model in ("plane_strain", "3d"):
+        plain, scaled = (_scaled(factor, model) for factor in (1.0, scale))
+        position = even_positions(40)
+        problem, solution = scaled.solve(position, scaled.plan.load)
+        expected = scale * plain.solve(position, plain.plan.load)[1].deflection
+        figures += [
+            *(replace(figure, name=f"{figure.name}, {model}") for figure in soundness(problem, solution)),
+            Measured(
+                f"STE over the scaled one, off by, {model}",
+                float(np.abs(solution.deflection / expected - 1.0).max()),
+                most=1e-7,
+            ),
+        ]
+    return figures
+
+
+def faces() -> Sequence[Measured]:
+    """Compare gears of 0.3 and of 30 modules face width with the plane between them."""
+    plane = posed(nominal_pair())
+    position = even_positions(24)
+    strain = plane.solve(position, plane.plan.load)[1].deflection[:, 0].mean()
+    ratios, figures = [], []
+    for width in (0.3 * _MODULE, 30.0 * _MODULE):
+        case = posed(nominal_pair(face_width=width), [NOMINAL_TORQUE * width / _WIDTH], model="3d")
+        problem, solution = case.solve(position, case.plan.load)
+        ratios.append(float(solution.deflection[:, 0].mean() / strain))
+        figures += [
+            replace(figure, name=f"{figure.name}, {width / _MODULE:g} modules")
+            for figure in soundness(problem, solution, 6)
+        ]
+    return (
+        *figures,
+        Measured("0.3 modules: mean STE over plane strain", ratios[0], 1.0 / (1.0 - 0.3**2), 1.0),
+        Measured("30 modules: mean STE over plane strain", ratios[1], 1.0 / (1.0 - 0.3**2), 1.0),
+        Measured("narrow over wide", ratios[0] / ratios[1], least=1.0),
+    )
+
+
+def slight_helix() -> Sequence[Measured]:
+    """Turn a spur pair by a tenth of a degree, to either hand."""
+    position = even_positions(48)
+    spur, right, left = (_helical(degrees) for degrees in (0.0, 0.1, -0.1))
+    plain = spur.solve(position, spur.plan.load)[1].deflection[:, 0]
+    problem, solution = right.solve(position, right.plan.load)
+    mirrored = left.solve(position, left.plan.load)[1].deflection[:, 0]
+    curve = solution.deflection[:, 0]
+    return (
+        *soundness(problem, solution, 8),
+        Measured(
+            "mean STE against the spur pair's", abs(float(curve.mean() / plain.mean()) - 1.0), most=2e-3
+        ),
+        Measured("least slip below the spur pair's curve, m", float(np.max(plain.min() - curve)), most=5e-8),
+        Measured("left hand against right hand", float(np.abs(mirrored / curve - 1.0).max()), most=1e-9),
+    )
+
+
+def steep_helix() -> Sequence[Measured]:
+    """Turn the teeth by 40 degrees."""
+    position = even_positions(48)
+    right, left = _helical(40.0), _helical(-40.0)
+    problem, solution = right.solve(position, right.plan.load)
+    mirrored = left.solve(position, left.plan.load)[1].deflection
+    further = right.contact.solve(right.model, position + 1.0, right.plan.load)[1].deflection
+    shares = (solution.force * problem.candidates.torque_share[:, None, :]).sum(axis=2) / right.plan.load
+    curve = solution.deflection
+    return (
+        *soundness(problem, solution, 8),
+        Measured("total contact ratio", right.pair.total_contact_ratio, least=2.0),
+        Measured("left hand against right hand", float(np.abs(mirrored / curve - 1.0).max()), most=1e-9),
+        Measured("STE one pitch further", float(np.abs(further / curve - 1.0).max()), most=1e-9),
+        Measured("load shares off one", float(np.abs(shares - 1.0).max()), most=1e-12),
+    )
+
+
+def _scaled(scale: float, model: str) -> Posed:
+    """Return the nominal pair with all lengths scaled, under the same strain."""
+    gear = Gear(
+        teeth=20, normal_module=scale * _MODULE, face_width=scale * _WIDTH, bore_diameter=scale * 40e-3
+    )
+    torques = NOMINAL_TORQUE * scale**3 * np.array([0.1, 1.0])
+    return posed(GearPair(gear, gear, scale * 80e-3), torques, model=model)
+
+
+def _helical(degrees: float) -> Posed:
+    """Return gears of the nominal teeth and another helix, at their own center distance."""
+    helix = math.radians(degrees)
+    pair = GearPair(nominal_gear(helix_angle=helix), nominal_gear(helix_angle=-helix))
+    return posed(pair, model="3d")
+
+
+def _module_scene(module: float, hard_because: str) -> HardScene:
+    """Return the scene of one module."""
+    criterion = "All lengths by s and forces by s^2: STE by s, in the plane and in three dimensions."
+    name = f"module_{1e3 * module:g}_mm"
+    return HardScene(name, "contact", hard_because, criterion, partial(module_of, module))
+
+
+MODULE_0_2 = _module_scene(
+    0.2e-3, "Elements of 1 um: any length written into the mesher or the solver shows."
+)
+MODULE_40 = _module_scene(40e-3, "Gears of 0.8 m: any length written into the mesher or the solver shows.")
+FACES = HardScene(
+    "face_0.3_and_30_modules",
+    "contact",
+    "A disc thinner than its teeth are thick, and a roller six times as long as its diameter is thick.",
+    "The mean STE per unit of line load lies between plane strain and plane stress, the narrow one's higher.",
+    faces,
+)
+HELIX_0_1 = HardScene(
+    "helix_0.1_deg",
+    "contact",
+    "A tenth of a degree: contact lines enter the mesh nearly all at once, where a spur pair's do so "
+    "exactly.",
+    "The spur pair's mean within 0.2 %, no value below the spur pair's least, both hands alike.",
+    slight_helix,
+)
+HELIX_40 = HardScene(
+    "helix_40_deg",
+    "contact",
+    "At 40 degrees contact lines cross three teeth, and layers of elements are turned against each other.",
+    "Both hands alike, periodic, load shares sum to one, two solvers agree.",
+    steep_helix,
+)

@@ -1,0 +1,156 @@
+"""A job that cannot end well, with jobs behind it: what became of all of them."""
+
+from __future__ import annotations
+
+import sqlite3
+import time
+from collections.abc import Callable
+from contextlib import closing
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from fe_contact.types import FloatArray
+from lineofaction.hardcases.jobs.job_service import Disturb, JobService, fresh_service
+from lineofaction.hardcases.scene import Measured
+from service.queue.job import Job
+from service.store import DATABASE_FILE
+
+Json = dict[str, Any]
+Settle = Callable[[float], Json]
+"""Settings of the service for the job, from the elapsed seconds that the small one took."""
+
+_SETTLING_S = 2.0
+
+_GEAR = {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0, "thickness_allowance_um": 90.0}
+
+
+def case_of(model: str, level: str, torques: tuple[float, ...] = (40.0,), positions: int = 16) -> Json:
+    """Return the nominal pair with this model, level, torques in N m and number of positions."""
+    return {
+        "pair": {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": _GEAR, "wheel": _GEAR},
+        "load": {"torque_n_m": list(torques)},
+        "accuracy": {"level": level, "positions": positions, "model": model},
+    }
+
+
+SMALL = case_of("plane_strain", "draft")
+"""Done in a second, of which half is the start of its worker."""
+MEDIUM = case_of("plane_strain", "standard")
+"""Other meshes than those of the small one."""
+LARGE = case_of("3d", "fine")
+"""Needs 1.1 GB where the small one needs 270 MB."""
+LONG = case_of("3d", "fine", tuple(float(torque) for torque in range(10, 40)), 1000)
+"""Needs fifty times as long as the small one."""
+
+
+@dataclass(frozen=True)
+class Aftermath:
+    """The end of a disturbed job, and what it left behind.
+
+    Attributes
+    ----------
+    job : Job
+        Ended.
+    errors : ndarray or None
+        Its transmission errors, if it has succeeded all the same, or at last.
+    figures : tuple of Measured
+        What every such job must leave behind.
+    """
+
+    job: Job
+    errors: FloatArray | None
+    figures: tuple[Measured, ...]
+
+    def ended_as(self, status: str, attempts: int) -> bool:
+        """Whether the job ended in this status at this attempt."""
+        return (self.job.status, self.job.attempts) == (status, attempts)
+
+
+def aftermath(
+    case: Json,
+    disturb: Disturb | None = None,
+    settle: Settle = lambda _seconds: {},
+    *,
+    resubmit: bool = False,
+) -> Aftermath:
+    """Run a job that is disturbed, another that is dismissed behind it, and the small one after both.
+
+    With `resubmit` the first is submitted once more at the end, undisturbed.
+    """
+    before = undisturbed()
+    with fresh_service(**settle(before.seconds)) as service:
+        jobs = [service.submit(case), service.submit(case_of("plane_strain", "draft", (30.0,)))]
+        service.submissions.dismiss(jobs[1].id)
+        jobs.append(service.submit(SMALL))
+        ended = [service.ended(job, disturb if job is jobs[0] else None) for job in jobs]
+        figures = (*_left(service), *_others(service, ended, before.errors))
+        last = service.ended(service.submit(case)) if resubmit else ended[0]
+        errors = service.errors(last) if last.status == "successful" else None
+        service.end_processes()
+        return Aftermath(ended[0], errors, figures)
+
+
+@dataclass(frozen=True)
+class Undisturbed:
+    """The small job in a service that nothing disturbs: elapsed seconds, transmission errors."""
+
+    seconds: float
+    errors: FloatArray
+
+
+@cache
+def undisturbed() -> Undisturbed:
+    """Run the small job, once for all scenes of a process."""
+    with fresh_service() as service:
+        began = time.perf_counter()
+        ended = service.ended(service.submit(SMALL))
+        return Undisturbed(time.perf_counter() - began, service.errors(ended))
+
+
+def _left(service: JobService) -> tuple[Measured, ...]:
+    """Nothing may be left of jobs that have ended."""
+    waiting = sum(service.submissions.counts().get(state, 0) for state in ("accepted", "running"))
+    with closing(sqlite3.connect(service.directory / DATABASE_FILE)) as table:
+        sound = table.execute("PRAGMA integrity_check").fetchone()[0] == "ok"
+    return (
+        Measured("processes left", float(len(service.processes())), most=0.0),
+        Measured("workspaces left", float(_workspaces_left(service)), most=0.0),
+        Measured("jobs that never end", float(waiting), most=0.0),
+        Measured("job table sound", float(sound), least=1.0),
+        Measured("turns of the scheduler that failed", float(_failed_turns(service)), most=0.0),
+    )
+
+
+def _workspaces_left(service: JobService) -> int:
+    """Count workspaces; a job is reported as ended just before its own is removed."""
+    end = time.monotonic() + _SETTLING_S
+    while (left := len(list((service.directory / "work").iterdir()))) and time.monotonic() < end:
+        time.sleep(0.05)
+    return left
+
+
+def _failed_turns(service: JobService) -> int:
+    """Count what the scheduler did not foresee."""
+    return sum("exception" in entry or entry["log_level"] == "error" for entry in service.log)
+
+
+def _others(service: JobService, ended: list[Job], before: FloatArray) -> tuple[Measured, ...]:
+    """Return how the jobs behind the disturbed one fared, and whether the small one is as ever."""
+    disturbed, dismissed, after = ended
+    as_wished = (dismissed.status, dismissed.attempts, after.status) == ("dismissed", 0, "successful")
+    served = disturbed.status != "successful" and service.store.find(disturbed.key, "database") is not None
+    in_turn = str(after.started) >= str(disturbed.finished)
+    off = largest_difference(service.errors(after), before) if after.status == "successful" else np.inf
+    return (
+        Measured("results served of a job that failed", float(served), most=0.0),
+        Measured("jobs behind it end as they should, in their turn", float(as_wished and in_turn), least=1.0),
+        Measured("next job off the same undisturbed, m", off, most=0.0),
+    )
+
+
+def largest_difference(first: FloatArray, second: FloatArray) -> float:
+    """Return the largest difference of two tables, infinite if they differ in shape."""
+    return float(np.max(np.abs(first - second))) if first.shape == second.shape else np.inf

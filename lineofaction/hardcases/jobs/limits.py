@@ -1,0 +1,64 @@
+"""Jobs that need more memory, or more time, than the service lets them have."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from lineofaction.hardcases.jobs.aftermath import LARGE, LONG, aftermath
+from lineofaction.hardcases.scene import HardScene, Measured
+
+MEMORY_MB = 384
+"""Half-way, in proportion, between what the small job needs and what the large one does."""
+
+
+def out_of_memory() -> Sequence[Measured]:
+    """Run the large job with little memory."""
+    outcome = aftermath(LARGE, settle=lambda _seconds: {"memory_limit_mb": MEMORY_MB})
+    job = outcome.job
+    stated = f"{MEMORY_MB} MB (LOA_MEMORY_LIMIT_MB)" in job.message and "coarser level" in job.message
+    return (
+        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), least=1.0),
+        Measured("names the limit and what to try", float(stated), least=1.0),
+        *outcome.figures,
+    )
+
+
+def past_the_deadline() -> Sequence[Measured]:
+    """Run the large job with a deadline of a few times what the small one takes."""
+    allowed = []
+
+    def settle(seconds: float) -> dict[str, float]:
+        allowed.append(round(2.5 * seconds, 1))
+        return {"deadline_s": allowed[0]}
+
+    outcome = aftermath(LONG, settle=settle)
+    job = outcome.job
+    stated = f"The deadline of {allowed[0]:g} s (LOA_DEADLINE_S) passed" in job.message
+    return (
+        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), least=1.0),
+        Measured("names the deadline and what to try", float(stated and "coarser" in job.message), least=1.0),
+        Measured("deadline, s", allowed[0]),
+        *outcome.figures,
+    )
+
+
+AFTER = (
+    "nothing of it is left, and the jobs behind it end as they should, in their turn, with results that are "
+    "those of an undisturbed service to the last bit."
+)
+
+OUT_OF_MEMORY = HardScene(
+    "job_out_of_memory",
+    "service",
+    "A three-dimensional analysis that needs three times the memory a worker may have: an allocation fails "
+    "somewhere in numerical libraries.",
+    f"The job fails at its first attempt, with the limit and what to try; {AFTER}",
+    out_of_memory,
+)
+DEADLINE = HardScene(
+    "job_past_deadline",
+    "service",
+    "A job that is inside compiled code when its deadline passes, and hears of nothing.",
+    f"The job fails at its first attempt, with the deadline and what to try; {AFTER}",
+    past_the_deadline,
+)

@@ -1,0 +1,61 @@
+"""Laws of every contact scene: the conditions of contact, and a second solver that agrees."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fe_contact.contact import ContactProblem, ContactSolution
+from fe_contact.contact.interior_point import GapAbout, Problem, solve
+from lineofaction.hardcases.scene import Measured
+
+LARGEST_RESIDUAL = 1e-9
+MOST_ITERATIONS = 40
+LARGEST_DISAGREEMENT = 1e-8
+COMPARED = 12
+"""Points that the second solver solves too: it is ten thousand times as slow."""
+
+
+def soundness(
+    problem: ContactProblem, solution: ContactSolution, compared: int = COMPARED
+) -> tuple[Measured, ...]:
+    """Return failed points, worst residual, most iterations, and the disagreement of two solvers.
+
+    The second one (`fe_contact.contact.interior_point`) shares no line with the first, not even the local
+    law. `compared` points are spread evenly over positions and loads.
+    """
+    total = solution.status.size
+    chosen = np.unique(np.linspace(0, total - 1, min(compared, total)).astype(int))
+    points = [tuple(map(int, np.unravel_index(i, solution.status.shape))) for i in chosen]
+    apart = [disagreement(problem, solution, position, load) for position, load in points]
+    return (
+        Measured("failed points", float(np.count_nonzero(solution.status)), most=0.0),
+        Measured("largest residual", float(solution.residuals.max()), most=LARGEST_RESIDUAL),
+        Measured("most iterations", float(solution.iterations.max()), most=MOST_ITERATIONS),
+        Measured("two solvers apart", max(apart), most=LARGEST_DISAGREEMENT),
+    )
+
+
+def disagreement(problem: ContactProblem, solution: ContactSolution, position: int, load: int) -> float:
+    """Return the difference of both solvers' deflection over the elastic deflection."""
+    answer = solve(_plain(problem, position), float(solution.load[load]))
+    here = float(solution.deflection[position, load])
+    return abs(answer.deflection - here) / (here - float(solution.no_load[position]))
+
+
+def _plain(problem: ContactProblem, position: int) -> Problem:
+    """Write one position as the second solver takes it; candidates that are none are left out."""
+    c = problem.candidates
+    real = np.isfinite(c.gap[position])
+    motion = c.motion_arm[position, real]
+    row = position % len(problem.compliance)
+    everywhere = c.at_points(c.at_points(problem.bodies[row]).T)
+    return Problem(
+        compliance=everywhere[np.ix_(real, real)],
+        gap=c.gap[position, real] * motion,
+        motion_arm=motion,
+        torque_arm=c.torque_share[position, real],
+        gap_about=GapAbout(*(part[position, real] for part in c.gap_about)),
+        width=c.width[position, real],
+        length=c.slices.law_length,
+        modulus=2.0 / (np.pi * sum(k[row, real] for k in problem.half_planes)),
+    )

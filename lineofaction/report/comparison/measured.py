@@ -1,0 +1,169 @@
+"""Measured transmission errors and order spectra, read from CSV."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.report.drawing.figure import FloatArray
+
+POSITIONS = ("position", "angle_deg")
+ORDERS = ("mesh_order", "order")
+"""Names of the first column: base pitches, degrees of the driving gear; mesh orders, orders of its shaft."""
+VALUES = {
+    "transmission_error_um": "µm",
+    "amplitude_um": "µm",
+    "amplitude_n": "N",
+    "amplitude_m_per_s2": "m/s²",
+}
+PER_PITCH = 256
+NEAR = 0.1  # of an order
+_FEWEST = 8  # samples in a base pitch
+_ADVICE = (
+    "The first line names two columns: position (base pitches) or angle_deg (of the driving gear) and "
+    "transmission_error_um; or mesh_order or order (of the driving shaft) and amplitude_um, amplitude_n or "
+    "amplitude_m_per_s2."
+)
+
+
+@dataclass(frozen=True)
+class MeasuredCurve:
+    """A measured transmission error, averaged over its base pitches.
+
+    Attributes
+    ----------
+    ripple : (PER_PITCH,) array
+        Mean of all base pitches at equal steps of one, less the mean of all, µm.
+    spread : float
+        Standard deviation of single base pitches about it, µm: pitch errors, run-out and noise.
+    pitches : int
+        Base pitches averaged.
+    """
+
+    ripple: FloatArray
+    spread: float
+    pitches: int
+
+
+@dataclass(frozen=True)
+class MeasuredOrders:
+    """A measured order spectrum: mesh orders (K,) and amplitudes (K,) in `unit`."""
+
+    order: FloatArray
+    amplitude: FloatArray
+    unit: str
+
+    def require(self, unit: str) -> None:
+        """Refuse to be shown beside amplitudes in another unit."""
+        if self.unit != unit:
+            raise BadInput.of("measured", f"amplitudes in {self.unit}", f"amplitudes in {unit}")
+
+    def near(self, order: float) -> float:
+        """Return the largest line within a tenth of an order; NaN if there is none."""
+        lines = self.amplitude[np.abs(self.order - order) <= NEAR]
+        return float(lines.max()) if lines.size else float("nan")
+
+
+def read_measured(path: Path, teeth: int) -> MeasuredCurve | MeasuredOrders:
+    """Read a CSV file with a line of names; `teeth` are those of the driving gear.
+
+    Raises
+    ------
+    BadInput
+        The columns are not known, a cell is no number, or less than one base pitch is sampled.
+    """
+    names, rows = _rows(path)
+    if len(names) != 2 or names[0] not in (*POSITIONS, *ORDERS) or names[1] not in VALUES:
+        raise BadInput.of("measured", ", ".join(names), "columns of a known name", _ADVICE)
+    over, values = rows.T
+    if names[0] in ORDERS:
+        mesh = over if names[0] == "mesh_order" else over / teeth
+        return MeasuredOrders(mesh, values, VALUES[names[1]])
+    if names[1] != "transmission_error_um":
+        raise BadInput.of("measured", names[1], '"transmission_error_um" over a position', _ADVICE)
+    return averaged(path, over if names[0] == "position" else over * teeth / 360.0, values)
+
+
+def _rows(path: Path) -> tuple[list[str], FloatArray]:
+    """Return the names and the numbers (n, 2) of a file."""
+    if not path.is_file():
+        raise BadInput.of("measured", str(path), "a CSV file", "Check the path.")
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as file:
+            lines = [line for line in csv.reader(file) if line and not line[0].startswith("#")]
+        names = [name.strip() for name in lines[0]]
+        rows = np.array([[float(cell) for cell in line] for line in lines[1:]])
+    except (ValueError, IndexError):
+        raise BadInput.of("measured", str(path), "a line of names, then numbers", _ADVICE) from None
+    if rows.ndim != 2 or not np.all(np.isfinite(rows)):
+        raise BadInput.of("measured", str(path), "as many finite numbers in each line as names", _ADVICE)
+    return names, rows
+
+
+def averaged(path: Path, position: FloatArray, values: FloatArray) -> MeasuredCurve:
+    """Average the whole base pitches of a curve over positions (n,) in base pitches, values (n,) in µm.
+
+    Raises
+    ------
+    BadInput
+        Less than one base pitch is sampled, or too roughly; `path` is named.
+    """
+    order = np.argsort(position, kind="stable")
+    position, values = position[order], values[order]
+    pitches = int(np.floor(position[-1] - position[0]))
+    if pitches < 1 or position.size < _FEWEST * (position[-1] - position[0]):
+        bound = f"at least one base pitch with {_FEWEST} samples in each"
+        found = f"{position.size} samples over {position[-1] - position[0]:.3g} base pitches"
+        raise BadInput.of("measured", found, bound, f"Check the first column of {path}.")
+    grid = np.ceil(position[0] * PER_PITCH) + np.arange(pitches * PER_PITCH)
+    folded = np.interp(grid / PER_PITCH, position, values).reshape(pitches, PER_PITCH)
+    folded = np.roll(folded, int(grid[0]) % PER_PITCH, axis=1)
+    single = folded - folded.mean(axis=1, keepdims=True)
+    ripple = single.mean(axis=0)
+    spread = float(np.sqrt(np.mean((single - ripple) ** 2)))
+    return MeasuredCurve(ripple, spread, pitches)
+
+
+@dataclass(frozen=True)
+class Aligned:
+    """A measured curve moved onto a computed one.
+
+    Attributes
+    ----------
+    measured : MeasuredCurve
+        As it was read.
+    ripple : (PER_PITCH,) array
+        Measured, from position 0, µm.
+    shift : float
+        By which it was moved towards larger positions, base pitches in [0, 1).
+    rms : float
+        Of what is left between both, µm.
+    correlation : float
+        Of both, at most 1.
+    """
+
+    measured: MeasuredCurve
+    ripple: FloatArray
+    shift: float
+    rms: float
+    correlation: float
+
+
+def aligned_to(measured: MeasuredCurve, computed: FloatArray) -> Aligned:
+    """Move a measured ripple by the phase at which it is most like `computed` (PER_PITCH,), µm.
+
+    The zero of a measured position is that of an encoder; the phase is taken from the circular correlation.
+    """
+    other = computed - computed.mean()
+    products = np.fft.irfft(np.fft.rfft(other) * np.conj(np.fft.rfft(measured.ripple)), PER_PITCH)
+    steps = int(np.argmax(products))
+    ripple = np.roll(measured.ripple, steps)
+    sizes = float(np.linalg.norm(ripple) * np.linalg.norm(other))
+    correlation = float(np.dot(ripple, other)) / sizes if sizes > 0.0 else 0.0
+    return Aligned(
+        measured, ripple, steps / PER_PITCH, float(np.sqrt(np.mean((ripple - other) ** 2))), correlation
+    )

@@ -1,0 +1,258 @@
+"""STE databases against each other, and against a measured transmission error."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from fe_contact.ste import Curve, SteDatabase
+from fe_contact.types import Estimate, FloatArray
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.report.comparison.difference import COLORS, Difference, changed_fields, differences_table
+from lineofaction.report.comparison.measured import (
+    PER_PITCH,
+    Aligned,
+    MeasuredCurve,
+    MeasuredOrders,
+    aligned_to,
+)
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Table, number
+from lineofaction.report.drawing.page import Headline, Page, Section
+from lineofaction.report.tables.aligned import aligned
+from lineofaction.report.tables.pair import pair_title
+
+HARMONICS = 3  # in the table of differences
+SHOWN_HARMONICS = 8
+_UM = 1e6
+
+Named = dict[str, SteDatabase]
+"""One or two tables by the names they are shown under."""
+
+
+def compare_tables(
+    tables: Named, measured: MeasuredCurve | MeasuredOrders | None, torque: float | None = None
+) -> Page:
+    """Put the comparison of tables together.
+
+    Parameters
+    ----------
+    tables : dict of str to SteDatabase
+        Two, or one with what was measured.
+    measured : MeasuredCurve, MeasuredOrders or None
+    torque : float, optional
+        On the driving gear, N m, at which ripples are drawn; left out: the middle one that all tables hold.
+
+    Raises
+    ------
+    BadInput
+        The tables have no torque in common, or not that one, or the measured orders are in another unit.
+    """
+    torques = _common(tuple(tables.values()))
+    shown = torques[len(torques) // 2] if torque is None else _inside(torque, tables)
+    curves = {load: _curves(tables, load) for load in torques}
+    found = tuple(_differences(curves))
+    orders = measured if isinstance(measured, MeasuredOrders) else None
+    figures = [
+        _ripples(_curves(tables, shown), shown, measured if isinstance(measured, MeasuredCurve) else None),
+        *([_over_torque(curves)] if len(torques) > 1 else []),
+        _harmonics(_curves(tables, shown), shown, orders),
+    ]
+    listed = (differences_table(found, tuple(tables)),) if found else ()
+    sections = [Section("Transmission errors", figures=tuple(figures), tables=listed)]
+    differing = changed_fields({name: table.metadata.case for name, table in tables.items()})
+    if differing.rows:
+        sections.append(Section("Cases", tables=(differing,)))
+    headlines = tuple(
+        Headline(f"{one.name} at {one.where}", one.written, one.finding)
+        for one in found
+        if one.name == "peak to peak"
+    )
+    titles = dict.fromkeys(pair_title(table.facts) for table in tables.values())
+    return Page(f"{' and '.join(tables)} compared", "; ".join(titles), headlines, tuple(sections))
+
+
+def _common(tables: Sequence[SteDatabase]) -> list[float]:
+    """Return the torques of the first table that all cover."""
+    low, high = _limits(tables)
+    torques = [float(t) for t in tables[0].torque if low * (1 - 1e-9) <= t <= high * (1 + 1e-9)]
+    if not torques:
+        found = f"{tables[0].torque[0]:g} to {tables[0].torque[-1]:g} N m of the first"
+        bound = f"within {tables[-1].torque[0]:g} to {tables[-1].torque[-1]:g} N m of the second"
+        raise BadInput.of("torques", found, bound, "Compute both for the same torques.")
+    return [min(max(torque, low), high) for torque in torques]
+
+
+def _limits(tables: Sequence[SteDatabase]) -> tuple[float, float]:
+    """Return the torques between which all tables hold curves."""
+    low = max(float(table.torque[0]) for table in tables)
+    return low, min(float(table.torque[-1]) for table in tables)
+
+
+def _inside(torque: float, tables: Named) -> float:
+    """Return a torque that all tables hold."""
+    low, high = _limits(tuple(tables.values()))
+    if not low <= torque <= high:
+        raise BadInput.of("--torque", torque, f"{low:g} to {high:g} N m, which all tables hold")
+    return torque
+
+
+def _curves(tables: Named, torque: float) -> dict[str, Curve]:
+    """Return the curves at a torque, aligned, at equal steps of a base pitch."""
+    at = np.arange(PER_PITCH) / PER_PITCH
+    curves = {}
+    for name, table in tables.items():
+        misalignment, change = aligned(table)
+        curves[name] = table.curve(
+            torque=torque, at=at, misalignment=misalignment, center_distance_change=change
+        )
+    return curves
+
+
+def _ripple(curve: Curve) -> FloatArray:
+    """STE less its mean over one base pitch, µm."""
+    return np.asarray(_UM * (curve.ste - curve.ste.mean()))
+
+
+def _differences(curves: dict[float, dict[str, Curve]]) -> Iterator[Difference]:
+    """Yield mean, peak-to-peak and harmonics at every torque, of two tables."""
+    for torque, by_name in curves.items():
+        if len(by_name) < 2:
+            return
+        first, second = by_name.values()
+        where = f"{torque:g} N m"
+        yield Difference("mean", where, _um(first.mean), _um(second.mean))
+        yield _peak_to_peak(by_name, torque)
+        for order in range(HARMONICS):
+            pair = _um(first.harmonics[order]), _um(second.harmonics[order])
+            yield Difference(f"mesh harmonic {order + 1}", where, *pair)
+
+
+def _peak_to_peak(curves: dict[str, Curve], torque: float) -> Difference:
+    """Return the difference of peak-to-peak."""
+    first, second = (_um(curve.peak_to_peak) for curve in curves.values())
+    return Difference("peak to peak", f"{torque:g} N m", first, second)
+
+
+def _um(estimate: Estimate) -> Estimate:
+    """Write an estimate in micrometers."""
+    return Estimate(_UM * estimate.value, _UM * estimate.error, "µm")
+
+
+def _ripples(curves: dict[str, Curve], torque: float, measured: MeasuredCurve | None) -> Figure:
+    """Draw the curves less their means over two base pitches."""
+    position = np.arange(2 * PER_PITCH + 1) / PER_PITCH
+    lines = [
+        Line(name, position, _twice(_ripple(curve)), color, band=0.5 * _UM * curve.peak_to_peak.error)
+        for (name, curve), color in zip(curves.items(), COLORS, strict=False)
+    ]
+    caption = "STE less its mean. Bands: half the error of peak-to-peak on either side."
+    words = [f"Peak to peak: {_peak_to_peak(curves, torque)}."] if len(curves) == 2 else []
+    if measured is not None:
+        name = next(iter(curves))
+        moved = aligned_to(measured, _ripple(curves[name]))
+        lines.append(
+            Line("measured", position, _twice(moved.ripple), palette.INK, "dash", band=measured.spread)
+        )
+        caption += f" {_how_aligned(moved)}"
+        words.append(_how_alike(name, curves[name], moved))
+    across = Axis("position of the driving gear, base pitches", limits=(0.0, 2.0))
+    return Figure(
+        key="ripples",
+        title=f"Ripple at {torque:g} N m",
+        caption=caption,
+        alternative=" ".join(words),
+        content=(Panel(across, Axis("STE less its mean, µm"), tuple(lines)),),
+    )
+
+
+def _twice(ripple: FloatArray) -> FloatArray:
+    """Repeat one base pitch and close it."""
+    return np.concatenate([ripple, ripple, ripple[:1]])
+
+
+def _how_aligned(moved: Aligned) -> str:
+    """Say what was done to a measured curve."""
+    return (
+        f"Measured: mean of {moved.measured.pitches} base pitches, less its mean, moved by {moved.shift:.3f} "
+        "base pitches to where it is most like the first curve. Its band is the standard deviation of single "
+        "base pitches."
+    )
+
+
+def _how_alike(name: str, curve: Curve, moved: Aligned) -> str:
+    """Say how far a measured curve lies from a computed one."""
+    own, other = _um(curve.peak_to_peak), float(np.ptp(moved.ripple))
+    return (
+        f"Measured {number(other, 3)} µm peak to peak, {name} {number(own.value, 3)} ± "
+        f"{number(own.error, 2)} µm; {number(moved.rms, 2)} µm rms between them, "
+        f"correlation {moved.correlation:.2f}."
+    )
+
+
+def _over_torque(curves: dict[float, dict[str, Curve]]) -> Figure:
+    """Draw peak-to-peak over torque."""
+    torque = np.array(list(curves))
+    names = tuple(next(iter(curves.values())))
+    lines = []
+    for name, color in zip(names, COLORS, strict=False):
+        found = [_um(by_name[name].peak_to_peak) for by_name in curves.values()]
+        value, error = np.array([[one.value, one.error] for one in found]).T
+        lines.append(Line(name, torque, value, color, markers=True, band=error))
+    top = 1.05 * max(float(np.nanmax(line.y + np.nan_to_num(line.band))) for line in lines)
+    return Figure(
+        key="ripple_over_torque",
+        title="Peak-to-peak STE over torque",
+        caption="Bands: the errors.",
+        alternative=_where_shown(curves) if len(names) == 2 else "",
+        content=(
+            Panel(
+                Axis("torque on the driving gear, N m"),
+                Axis("peak to peak, µm", limits=(0.0, top)),
+                tuple(lines),
+            ),
+        ),
+    )
+
+
+def _where_shown(curves: dict[float, dict[str, Curve]]) -> str:
+    """Say at which torques two tables are shown to differ."""
+    shown = [one for load, by_name in curves.items() if (one := _peak_to_peak(by_name, load)).is_shown]
+    where = f": {', '.join(one.where for one in shown)}" if shown else ""
+    return (
+        f"The difference is larger than its error at {len(shown)} of {len(curves)} torques{where}. Its error "
+        "is the root of the sum of both errors squared."
+    )
+
+
+def _harmonics(curves: dict[str, Curve], torque: float, measured: MeasuredOrders | None) -> Figure:
+    """Draw the mesh harmonics as points with their errors, and a measured order spectrum."""
+    order = np.arange(1.0, SHOWN_HARMONICS + 1.0)
+    lines, columns = [], {}
+    for index, (name, curve) in enumerate(curves.items()):
+        found = [_um(one) for one in curve.harmonics[:SHOWN_HARMONICS]]
+        value = np.array([one.value for one in found])
+        lines.append(Line(name, order + 0.16 * index - 0.08, value, COLORS[index], width=0.0, markers=True))
+        columns[f"{name}, µm"] = [f"{one.value:.3f} ± {one.error:.3f}" for one in found]
+    caption = "Amplitudes of the mesh harmonics of STE."
+    if measured is not None:
+        measured.require("µm")
+        inside = measured.order <= SHOWN_HARMONICS + 0.5
+        drawn = measured.order[inside], measured.amplitude[inside]
+        lines.append(Line("measured", *drawn, palette.INK, width=1.2))
+        columns["measured, µm"] = [number(measured.near(float(k)), 3) for k in order]
+        caption += " Measured: as read; the table has its largest line within a tenth of each order."
+    rows = tuple((f"{k:g}", *cells) for k, *cells in zip(order, *columns.values(), strict=True))
+    largest = [
+        f"harmonic {int(np.argmax([one.value for one in curve.harmonics])) + 1} of {name}"
+        for name, curve in curves.items()
+    ]
+    return Figure(
+        key="harmonics",
+        title=f"Mesh harmonics at {torque:g} N m",
+        caption=caption,
+        alternative=f"Largest: {', '.join(largest)}.",
+        content=(Panel(Axis("mesh order"), Axis("amplitude, µm"), tuple(lines)),),
+        table=Table("Mesh harmonics", ("mesh harmonic", *columns), rows),
+    )

@@ -1,0 +1,321 @@
+"""The content of a plot: one description for plotly and matplotlib."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bounds import engineering
+from lineofaction.report.drawing import palette
+
+FloatArray = NDArray[np.float64]
+Dash = Literal["solid", "dash", "dot"]
+BLANK = 0.01
+"""Part of the largest value of a map with isolines below which it has no color."""
+
+
+@dataclass(frozen=True)
+class Axis:
+    """An axis: its label with the unit, its scale, and its limits where the data should not decide.
+
+    `names` stand at values in place of numbers.
+    """
+
+    label: str
+    scale: Literal["linear", "log"] = "linear"
+    limits: tuple[float, float] | None = None
+    names: tuple[tuple[float, str], ...] = ()
+
+    def __post_init__(self) -> None:
+        """Let the data decide where nothing lies between the limits, as those of a spectrum of zeros."""
+        low, high = self.limits or (0.0, 0.0)
+        if not (low < high and self.shows(low) and self.shows(high)):
+            object.__setattr__(self, "limits", None)
+
+    def shows(self, value: float) -> bool:
+        """Whether a value has a place on it."""
+        return bool(np.isfinite(value)) and (self.scale == "linear" or value > 0.0)
+
+    def fraction(self, values: FloatArray, ends: tuple[float, float]) -> FloatArray:
+        """Return where values lie on an axis with these ends: 0 at the first, 1 at the last."""
+        low, high = ends
+        if self.scale == "log":
+            values, low, high = np.log10(values), float(np.log10(low)), float(np.log10(high))
+        return np.asarray((values - low) / max(high - low, 1e-12))
+
+
+@dataclass(frozen=True)
+class Line:
+    """A curve, or points if `width` is 0. NaN breaks it. `x` and `y` have the shape (n,).
+
+    `band` is the half-height of an error band about it, one number or (n,); 0 or NaN: none. `label` stands
+    at its right end, in place of `name` in the legend; its rows are parted by line feeds.
+    """
+
+    name: str
+    x: FloatArray
+    y: FloatArray
+    color: str
+    dash: Dash = "solid"
+    width: float = 1.8
+    markers: bool = False
+    band: float | FloatArray = 0.0
+    label: str = ""
+
+    @property
+    def has_band(self) -> bool:
+        """Whether an error band is drawn."""
+        return bool(np.any(np.asarray(self.band) > 0.0))
+
+
+@dataclass(frozen=True)
+class Bars:
+    """Upright bars about `x` (n,), each `width` wide, from `base` (one number or (n,)) up to `top` (n,).
+
+    NaN leaves one out. What is `veiled` covers what lies below it and lets it be seen.
+    """
+
+    name: str
+    x: FloatArray
+    top: FloatArray
+    base: float | FloatArray
+    width: float
+    color: str
+    veiled: bool = False
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A straight line across a panel at one value, with a short label beside it.
+
+    The label of a horizontal line is centered at the fraction `at` of the width, or ends there if it is above
+    one half.
+    """
+
+    label: str
+    value: float
+    direction: Literal["horizontal", "vertical"] = "vertical"
+    at: float = 0.5
+
+
+@dataclass(frozen=True)
+class Note:
+    """A short text above right of a point, moved up by text heights (`row`), or to its left."""
+
+    x: float
+    y: float
+    text: str
+    row: int = 0
+    left: bool = False
+
+
+@dataclass(frozen=True)
+class HeatMap:
+    """Cells colored by a value; NaN stays blank.
+
+    `x` (n,) and `y` (m,) are the middles of the cells, `z` (m, n); colors run from `least` to `largest`;
+    `label` has the unit after its last comma. With `isolines`, values at which curves are drawn, `x` and `y`
+    are evenly spaced, colors change smoothly from cell to cell, and what is below `BLANK` of the largest is
+    left blank.
+    """
+
+    x: FloatArray
+    y: FloatArray
+    z: FloatArray
+    label: str
+    largest: float
+    least: float = 0.0
+    isolines: tuple[float, ...] = ()
+
+    @property
+    def colors(self) -> tuple[str, ...]:
+        """Return the palette from the least to the largest: ordered, or of either sign about 0."""
+        return palette.SIGNED if self.least == -self.largest < 0.0 else palette.CIVIDIS
+
+
+@dataclass(frozen=True)
+class Strokes:
+    """Straight strokes colored and widened by a value.
+
+    `x` and `y` (n, 2) are their ends, `value` (n,); where it is 0 the stroke is thin and gray. Colors run
+    from 0 to `largest`; `label` has the unit after its last comma.
+    """
+
+    x: FloatArray
+    y: FloatArray
+    value: FloatArray
+    label: str
+    largest: float
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One pair of axes with its curves, or with values as colors; `title` tells it from its neighbors.
+
+    `equal`: one unit is as long in both directions, as in a drawing.
+    """
+
+    x: Axis
+    y: Axis
+    lines: tuple[Line, ...] = ()
+    references: tuple[Reference, ...] = ()
+    title: str = ""
+    shade: HeatMap | Strokes | None = None
+    notes: tuple[Note, ...] = ()
+    bars: tuple[Bars, ...] = ()
+    equal: bool = False
+
+    def __post_init__(self) -> None:
+        """Leave out references and notes that have no place on the axes."""
+        on = {"vertical": self.x, "horizontal": self.y}
+        references = tuple(one for one in self.references if on[one.direction].shows(one.value))
+        notes = tuple(one for one in self.notes if self.x.shows(one.x) and self.y.shows(one.y))
+        object.__setattr__(self, "references", references)
+        object.__setattr__(self, "notes", notes)
+
+
+@dataclass(frozen=True)
+class Table:
+    """Numbers in words: what a screen reader, a printout or a spreadsheet takes instead of a plot."""
+
+    caption: str
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True)
+class Track:
+    """One of the sounds of a plot, and where on the horizontal axis of its first panel it is as it plays.
+
+    Attributes
+    ----------
+    name : str
+        Tells it from others of the plot.
+    time, along : (n,) arrays
+        s, increasing; values on the axis.
+    query : dict of str to str
+        What names it to the service's path of the sound of a result.
+    """
+
+    name: str
+    time: FloatArray
+    along: FloatArray
+    query: dict[str, str]
+
+
+@dataclass(frozen=True)
+class Sound:
+    """What a plot shows, to listen to.
+
+    Attributes
+    ----------
+    caption : str
+        Its quantity, and what it is not.
+    tracks : tuple of Track
+    files : tuple of bytes
+        A WAV file for each track, all of one full scale; none if they would be too large for a page.
+    """
+
+    caption: str
+    tracks: tuple[Track, ...]
+    files: tuple[bytes, ...]
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A plot of one or more panels, from top to bottom.
+
+    Attributes
+    ----------
+    key : str
+        Name of the image file and anchor of the page.
+    title, caption : str
+        What is shown, and how to read it (signs, conventions).
+    alternative : str
+        The finding in words: the first sentences under the plot, and what stands for it where it is not seen.
+    content : tuple of Panel
+    table : Table or None
+        The main numbers behind the plot.
+    sound : Sound or None
+        The plot to listen to.
+    """
+
+    key: str
+    title: str
+    caption: str
+    alternative: str
+    content: tuple[Panel, ...]
+    table: Table | None = None
+    sound: Sound | None = None
+
+
+DRAWING_WIDTH, TALLEST = 3.3, 2.0
+"""Width of a panel over its usual height, and the height of the tallest drawing over that."""
+
+
+def panel_height(panel: Panel) -> float:
+    """Return the height of a panel over the usual one; a drawing is as tall as it needs to fill the width."""
+    if not panel.equal:
+        return 1.0
+    across, along = (_extent(panel, axis) for axis in ("x", "y"))
+    return min(max(DRAWING_WIDTH * along / max(across, 1e-12), 1.0), TALLEST)
+
+
+def _extent(panel: Panel, axis: Literal["x", "y"]) -> float:
+    """Return what an axis covers."""
+    own: Axis = getattr(panel, axis)
+    values = own.limits or np.concatenate([getattr(line, axis) for line in panel.lines])
+    return float(np.nanmax(values) - np.nanmin(values))
+
+
+def legend_names(panels: Sequence[Panel]) -> list[str]:
+    """Return the names that a legend lists: of what neither labels nor notes nor axes of its panel name."""
+    named = [
+        {note.text for note in panel.notes}
+        | {name for axis in (panel.x, panel.y) for _, name in axis.names}
+        | {line.name for line in panel.lines if line.label}
+        for panel in panels
+    ]
+    return list(
+        dict.fromkeys(
+            name
+            for panel, notes in zip(panels, named, strict=True)
+            for name in [line.name for line in panel.lines] + [bars.name for bars in panel.bars]
+            if name not in notes
+        )
+    )
+
+
+def repeats_below(panels: Sequence[Panel], index: int) -> bool:
+    """Whether the next panel has the same horizontal axis, so that one label serves both."""
+    return index + 1 < len(panels) and panels[index + 1].x == panels[index].x
+
+
+def unit_of(label: str) -> str:
+    """Return the unit of a label, which stands after its last comma."""
+    return label.rpartition(",")[2].strip()
+
+
+def number(value: float, digits: int = 4) -> str:
+    """Write `value` with `digits` significant digits, zeros at the end too where it has no exponent."""
+    if not np.isfinite(value):
+        return "none"
+    if value == 0.0:
+        return "0"
+    size = int(np.floor(np.log10(abs(value))))
+    plain = -4 <= size < 7
+    return f"{value:.{max(digits - 1 - size, 0)}f}" if plain else engineering(value, digits)
+
+
+def thousands(values: Sequence[float]) -> tuple[str, ...]:
+    """Label loads: whole numbers without a decimal point, others with up to four digits."""
+    return tuple(f"{v:.0f}" if float(v).is_integer() or v >= 1e4 else f"{v:.4g}" for v in values)
+
+
+def numbers(values: FloatArray) -> list[float | None]:
+    """Numbers for JSON: seven digits, NaN as null (a gap)."""
+    return [float(f"{v:.7g}") if np.isfinite(v) else None for v in values]

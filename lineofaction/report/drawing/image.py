@@ -1,0 +1,245 @@
+"""Figure descriptions as images, by matplotlib without a display."""
+
+from __future__ import annotations
+
+import math
+import re
+from functools import cache
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure as Sheet
+from matplotlib.font_manager import FontProperties, findfont, get_font
+from matplotlib.ticker import (
+    FuncFormatter,
+    LogLocator,
+    MaxNLocator,
+    NullFormatter,
+    NullLocator,
+    ScalarFormatter,
+)
+
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import (
+    Axis,
+    Bars,
+    Figure,
+    Line,
+    Panel,
+    Reference,
+    legend_names,
+    panel_height,
+    repeats_below,
+)
+from lineofaction.report.drawing.image_shade import draw_shade
+from lineofaction.report.drawing.line_labels import line_labels, vertical_limits
+from lineofaction.report.drawing.words import rewritten
+
+_WIDTH, _PANEL_HEIGHT, _DPI = 9.0, 2.7, 150
+_LEGEND_CHARACTERS, _HANDLE_CHARACTERS = 120, 9  # of the legend's type: across the sheet, beside a name
+_NOTE_ROW = 10  # points
+_LONGEST_WORD = 26  # characters; longer ones would leave panels no width
+_LABEL_ROW = 0.075  # of a row of a label at a line, in parts of the panel's height
+_LEADER = 0.02  # of the panel's width, from the end of a line to its label
+_NARROW = 100.0  # largest over smallest value of a logarithmic axis with plain numbers
+_DECADE = (1.0, 10.0)  # of a logarithmic axis that has nothing to show
+_MOST_WHOLE = 30  # an axis of whole numbers up to here has no ticks between them
+_BOX = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.0}  # under a text on colors
+_DASH = {"solid": "-", "dash": "--", "dot": ":"}
+
+
+def png(figure: Figure) -> bytes:
+    """Draw `figure` and return the PNG file's bytes."""
+    return _image(figure, "png", {"Title": figure.title, "Description": figure.alternative})
+
+
+def svg(figure: Figure) -> bytes:
+    """Draw `figure` and return the SVG file's bytes."""
+    return _image(figure, "svg", {"Title": figure.title, "Description": figure.alternative, "Date": None})
+
+
+def _image(figure: Figure, form: str, metadata: dict[str, str | None]) -> bytes:
+    """Draw `figure` and return the bytes of a file of the form "png" or "svg"."""
+    sheet = _panel_sheet(rewritten(figure.content, _drawable))
+    sheet.suptitle(
+        _drawable(figure.title), x=0.01, ha="left", fontsize=12, fontweight="bold", color=palette.INK
+    )
+    FigureCanvasAgg(sheet)
+    buffer = BytesIO()
+    sheet.savefig(buffer, format=form, dpi=_DPI, metadata=metadata)
+    return buffer.getvalue()
+
+
+def _drawable(text: str) -> str:
+    """Write a text so that it is no formula to matplotlib and has no endless words.
+
+    Characters that the font lacks are written by their numbers.
+    """
+    known = "".join(
+        c if c == "\n" or ord(c) in _glyphs() else c.encode("unicode_escape").decode() for c in text
+    )
+    return re.sub(rf"\S{{{_LONGEST_WORD},}}", _shortened, known).replace("$", r"\$")
+
+
+def _shortened(word: re.Match[str]) -> str:
+    """Return the beginning of a word."""
+    return f"{word[0][: _LONGEST_WORD - 1]}\N{HORIZONTAL ELLIPSIS}"
+
+
+@cache
+def _glyphs() -> frozenset[int]:
+    """Return the characters of the font."""
+    return frozenset(get_font(findfont(FontProperties())).get_charmap())
+
+
+def _panel_sheet(panels: tuple[Panel, ...]) -> Sheet:
+    """Stack panels; curves of one name share one entry in the legend on top."""
+    heights = [panel_height(panel) for panel in panels]
+    sheet = Sheet(figsize=(_WIDTH, _PANEL_HEIGHT * sum(heights) + 1.2), layout="constrained")
+    axes: list[Axes] = list(sheet.subplots(len(panels), 1, squeeze=False, height_ratios=heights)[:, 0])
+    handles: dict[str, Any] = {}
+    names = legend_names(panels)
+    for index, (panel, ax) in enumerate(zip(panels, axes, strict=True)):
+        if panel.shade is not None:
+            draw_shade(ax, panel.shade)
+        drawn = [(line.name, _draw(ax, line)) for line in panel.lines]
+        drawn += [(bars.name, _draw_bars(ax, bars)) for bars in panel.bars]
+        for name, handle in drawn:
+            if name in names:
+                handles.setdefault(name, handle)
+        _finish(ax, panel)
+        if repeats_below(panels, index):
+            ax.set_xlabel("")
+    if len(handles) > 1:
+        sheet.legend(
+            handles.values(),
+            handles.keys(),
+            loc="outside lower left",
+            ncols=_legend_columns(list(handles)),
+            frameon=False,
+            fontsize=9,
+        )
+    return sheet
+
+
+def _legend_columns(names: list[str]) -> int:
+    """As many columns as the width holds, at most six, in rows of equal length."""
+    fit = max(_LEGEND_CHARACTERS // (max(map(len, names)) + _HANDLE_CHARACTERS), 1)
+    rows = math.ceil(len(names) / min(fit, 6))
+    return math.ceil(len(names) / rows)
+
+
+def _draw(ax: Axes, line: Line) -> Any:
+    """Draw one curve and return its handle."""
+    stroke: dict[str, Any] = {"color": line.color, "ls": _DASH[line.dash], "lw": line.width * 0.8}
+    if line.markers:
+        stroke |= {"marker": "o", "ms": 6}
+    (handle,) = ax.plot(line.x, line.y, solid_capstyle="butt", **stroke)
+    if line.has_band:
+        ax.fill_between(line.x, line.y - line.band, line.y + line.band, color=line.color, alpha=0.2, lw=0)
+    return handle
+
+
+def _draw_bars(ax: Axes, bars: Bars) -> Any:
+    """Draw bars and return their handle."""
+    look: dict[str, Any] = {"color": bars.color, "alpha": 0.35 if bars.veiled else 1.0, "lw": 0}
+    return ax.bar(bars.x, bars.top - bars.base, bars.width, bars.base, **look)
+
+
+def _label_lines(ax: Axes, panel: Panel) -> None:
+    """Write the labels at the right ends of lines, each led to from its line."""
+    for label in line_labels(panel, _LABEL_ROW):
+        ax.annotate(
+            label.text,
+            (1.0, label.end),
+            (1.0 + _LEADER, label.middle),
+            xycoords="axes fraction",
+            va="center",
+            fontsize=8,
+            linespacing=1.05,
+            arrowprops={
+                "arrowstyle": "-",
+                "color": label.color,
+                "lw": 1.2,
+                "relpos": (0, 0.5),
+                "shrinkA": 1,
+                "shrinkB": 0,
+            },
+            annotation_clip=False,
+        )
+
+
+def _finish(ax: Axes, panel: Panel) -> None:
+    """Label, scale and dress one panel."""
+    for axis, name in ((panel.x, "x"), (panel.y, "y")):
+        _scale(ax, axis, name)
+    if any(line.label for line in panel.lines):
+        ax.set_ylim(vertical_limits(panel))
+        _label_lines(ax, panel)
+    if panel.lines and _is_whole(np.concatenate([line.x for line in panel.lines])):
+        ax.xaxis.set_major_locator(MaxNLocator(integer=True))
+    for reference in panel.references:
+        _refer(ax, reference, boxed=panel.shade is not None)
+    for note in panel.notes:
+        offset = (-5 if note.left else 5, 4 + _NOTE_ROW * note.row - (8 if note.row < 0 else 0))
+        side = "right" if note.left else "left"
+        box = None if panel.shade is None else _BOX
+        text = ax.annotate(note.text, (note.x, note.y), offset, textcoords="offset points", ha=side, bbox=box)
+        text.set_fontsize(8)
+    if panel.title:
+        ax.set_title(panel.title, loc="left", fontsize=10, fontweight="bold")
+    ax.grid(color=palette.GRID, lw=0.6)
+    ax.spines[["top", "right"]].set_visible(False)
+    ax.set_axisbelow(True)
+    if panel.equal:
+        ax.set_aspect("equal")
+
+
+def _is_whole(values: Any) -> bool:
+    """Whether all values are whole numbers and few, as orders are."""
+    return bool(np.all(values == np.round(values)) and np.ptp(values) <= _MOST_WHOLE)
+
+
+def _scale(ax: Axes, axis: Axis, name: str) -> None:
+    """Give one axis its label, scale and limits."""
+    empty = axis.scale == "log" and not np.isfinite(getattr(ax.dataLim, f"minpos{name}"))
+    limits = axis.limits or (_DECADE if empty else None)
+    if limits:
+        ax.set(**{f"{name}lim": limits})
+    ax.set(**{f"{name}label": axis.label, f"{name}scale": axis.scale})
+    drawn = getattr(ax, f"{name}axis")
+    if axis.names:
+        drawn.set_ticks([value for value, _ in axis.names], labels=[text for _, text in axis.names])
+        drawn.set_minor_locator(NullLocator())
+        return
+    if axis.scale == "linear":
+        drawn.set_major_formatter(ScalarFormatter(useOffset=False))
+        return
+    low, high = getattr(ax, f"get_{name}lim")()
+    if high <= _NARROW * low:  # powers of ten would stand alone, or not at all
+        drawn.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        drawn.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        drawn.set_minor_formatter(NullFormatter())
+
+
+def _refer(ax: Axes, reference: Reference, *, boxed: bool) -> None:
+    """Draw a reference line with its label, in a white box where colors lie under it."""
+    text = f" {reference.label}"
+    stroke: dict[str, Any] = {"color": palette.MUTED, "ls": "--", "lw": 0.8, "zorder": 2.5 if boxed else 0.5}
+    if reference.direction == "vertical":
+        ax.axvline(reference.value, **stroke)
+        written = ax.text(
+            reference.value, 0.98, text, ha="left", va="top", transform=ax.get_xaxis_transform()
+        )
+    else:
+        ax.axhline(reference.value, **stroke)
+        anchor = "center" if reference.at == 0.5 else "right"
+        written = ax.text(
+            reference.at, reference.value, text, ha=anchor, va="bottom", transform=ax.get_yaxis_transform()
+        )
+    written.set(fontsize=8, color=palette.MUTED)
+    if boxed:
+        written.set(color=palette.INK, bbox=_BOX)

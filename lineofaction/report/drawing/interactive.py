@@ -1,0 +1,243 @@
+"""Figure descriptions as plotly.js data and layout: plain JSON, made without the plotly package."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import (
+    Axis,
+    Bars,
+    Figure,
+    Line,
+    Panel,
+    Reference,
+    legend_names,
+    numbers,
+    panel_height,
+    repeats_below,
+)
+from lineofaction.report.drawing.interactive_shade import shade_traces
+from lineofaction.report.drawing.line_labels import line_labels, vertical_limits
+from lineofaction.report.drawing.words import rewritten
+
+Json = dict[str, Any]
+
+_PANEL_HEIGHT, _BELOW, _BETWEEN = 280, 60, 62  # pixels
+_LABEL = 26  # pixels of an axis label between panels
+_LEGEND_ROW = 22  # pixels
+_NOTE_ROW = 15  # pixels
+_LABEL_ROW, _LEADER, _LABEL_CHARACTER = 15, 18, 6.6  # pixels of a label at a line: row, way to it, character
+_BAND_ALPHA = "33"  # of an error band, after the six digits of its color
+_ROW_CHARACTERS, _HANDLE_CHARACTERS = 120, 7  # of the legend's type: across the page, beside a name
+_BOX = "rgba(255,255,255,0.8)"  # under a text on colors
+_FONT = {"family": "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', sans-serif", "size": 14}
+
+
+def plotly_figure(figure: Figure) -> Json:
+    """Return ``{"data": [...], "layout": {...}}`` for ``Plotly.newPlot``."""
+    panels = rewritten(figure.content, _plain)
+    names = legend_names(figure.content)
+    above = (62 if panels[0].title else 44) + _LEGEND_ROW * (_legend_rows(names) - 1)
+    gaps = [_BETWEEN if repeats_below(panels, i) else _BETWEEN + _LABEL for i in range(len(panels) - 1)]
+    heights = [round(_PANEL_HEIGHT * panel_height(panel)) for panel in panels]
+    inner = sum(heights) + sum(gaps)
+    layout: Json = _layout(inner + above + _BELOW)
+    layout |= {"shapes": [], "annotations": [], "showlegend": len(names) > 1}
+    layout["margin"] = layout["margin"] | {"t": above, "r": _margin(figure.content)}
+    layout["barmode"] = "overlay"
+    data: list[Json] = []
+    unnamed = set(map(_plain, names))
+    for index, panel in enumerate(panels):
+        suffix = str(index + 1) if index else ""
+        domain = _domain(sum(heights[:index]) + sum(gaps[:index]), heights[index], inner)
+        frame = {"domain": domain, "anchor": "x" + suffix}
+        layout["xaxis" + suffix] = _axis(panel.x) | {"anchor": "y" + suffix}
+        if repeats_below(panels, index):
+            layout["xaxis" + suffix] |= {"title": {"text": ""}}
+        layout["yaxis" + suffix] = _axis(_upright(panel)) | frame
+        if panel.equal:
+            layout["xaxis" + suffix] |= {"scaleanchor": "y" + suffix, "constrain": "domain"}
+        layout["annotations"] += _panel_title(panel, suffix) + _notes(panel, suffix)
+        layout["annotations"] += _line_labels(panel, suffix)
+        if panel.shade is not None:
+            data += shade_traces(panel.shade, suffix, domain)
+        for line in panel.lines:
+            data += _band(line, suffix)
+            data.append(_line(line, suffix, show=line.name in unnamed))
+            unnamed.discard(line.name)
+        for bars in panel.bars:
+            data.append(_bars(bars, suffix, show=bars.name in unnamed))
+            unnamed.discard(bars.name)
+        for reference in panel.references:
+            _add_reference(layout, reference, panel, suffix)
+    return {"data": data, "layout": layout}
+
+
+def _plain(text: str) -> str:
+    """Write a text so that plotly.js, which takes its texts for HTML, shows it as it is."""
+    return escape(text, quote=False)
+
+
+def _legend_rows(names: list[str]) -> int:
+    """Rows that the legend takes on a page of full width."""
+    return max(math.ceil(sum(len(name) + _HANDLE_CHARACTERS for name in names) / _ROW_CHARACTERS), 1)
+
+
+def _margin(panels: tuple[Panel, ...]) -> int:
+    """Return the pixels right of the panels, for the labels at lines."""
+    rows = [row for panel in panels for line in panel.lines for row in line.label.split("\n")]
+    return 24 + math.ceil(_LABEL_CHARACTER * max(map(len, rows), default=0))
+
+
+def _upright(panel: Panel) -> Axis:
+    """Return the vertical axis; beside labels at lines with limits, so that their places are known."""
+    if not any(line.label for line in panel.lines):
+        return panel.y
+    return replace(panel.y, limits=vertical_limits(panel))
+
+
+def _line_labels(panel: Panel, suffix: str) -> list[Json]:
+    """Put labels at the right ends of lines, each led to from its line."""
+    found = []
+    for label in line_labels(panel, _LABEL_ROW / _PANEL_HEIGHT):
+        at = {"xref": f"x{suffix} domain", "yref": f"y{suffix} domain", "x": 1, "y": label.end}
+        tail = {"ax": _LEADER, "ay": round((label.end - label.middle) * _PANEL_HEIGHT, 1)}
+        look = {"arrowhead": 0, "arrowwidth": 1.4, "arrowcolor": label.color, "font": {"size": 12}}
+        text = {"text": label.text.replace("\n", "<br>"), "align": "left", "xanchor": "left"}
+        found.append({"showarrow": True} | at | tail | look | text)
+    return found
+
+
+def _bars(bars: Bars, suffix: str, *, show: bool) -> Json:
+    """Draw bars; `show` a line of the legend that names them."""
+    return {
+        "type": "bar",
+        "name": bars.name,
+        "showlegend": show,
+        "x": numbers(bars.x),
+        "y": numbers(bars.top - bars.base),
+        "customdata": numbers(bars.top),
+        "base": numbers(np.broadcast_to(bars.base, bars.top.shape)),
+        "width": bars.width,
+        "xaxis": "x" + suffix,
+        "yaxis": "y" + suffix,
+        "marker": {"color": bars.color, "opacity": 0.35 if bars.veiled else 1.0},
+        "hovertemplate": "%{fullData.name}<br>%{x}: %{customdata:.4g}<extra></extra>",
+    }
+
+
+def _domain(above: int, height: int, inner: int) -> list[float]:
+    """Vertical extent of a panel as a fraction of the plot, with `above` pixels of it over the panel."""
+    top = inner - above
+    return [round((top - height) / inner, 6), round(top / inner, 6)]
+
+
+def _layout(height: int) -> Json:
+    """Return what all figures share."""
+    return {
+        "height": height,
+        "font": _FONT | {"color": palette.INK},
+        "margin": {"l": 76, "r": 24, "t": 16, "b": _BELOW},
+        "paper_bgcolor": "#FFFFFF",
+        "plot_bgcolor": "#FFFFFF",
+        "hovermode": "closest",
+        "legend": {"orientation": "h", "x": 0, "y": 1, "yref": "container", "yanchor": "top"},
+    }
+
+
+def _axis(axis: Axis) -> Json:
+    """One axis of a panel."""
+    made: Json = {
+        "title": {"text": axis.label, "standoff": 10, "font": {"size": 14}},
+        "type": axis.scale,
+        "gridcolor": palette.GRID,
+        "linecolor": palette.MUTED,
+        "zeroline": False,
+        "ticks": "outside",
+        "tickcolor": palette.MUTED,
+        "automargin": True,
+    }
+    if axis.scale == "log":
+        made |= {"exponentformat": "power", "dtick": 1}
+    if axis.names:
+        made |= {"tickvals": [value for value, _ in axis.names], "ticktext": [name for _, name in axis.names]}
+    if axis.limits:
+        made["range"] = [float(v) for v in (np.log10(axis.limits) if axis.scale == "log" else axis.limits)]
+    return made
+
+
+def _line(line: Line, suffix: str, show: bool) -> Json:
+    """One curve; curves of one name share a legend entry."""
+    return {
+        "type": "scatter",
+        "mode": "lines" if not line.markers else "lines+markers" if line.width else "markers",
+        "name": line.name,
+        "x": numbers(line.x),
+        "y": numbers(line.y),
+        "xaxis": "x" + suffix,
+        "yaxis": "y" + suffix,
+        "line": {"color": line.color, "dash": line.dash, "width": line.width},
+        "legendgroup": line.name,
+        "showlegend": show,
+    }
+
+
+def _band(line: Line, suffix: str) -> list[Json]:
+    """Shade the error band of a curve, without its own entry in the legend."""
+    if not line.has_band:
+        return []
+    edge: Json = {"type": "scatter", "mode": "lines", "line": {"width": 0}, "hoverinfo": "skip"}
+    edge |= {"x": numbers(line.x), "xaxis": "x" + suffix, "yaxis": "y" + suffix}
+    edge |= {"legendgroup": line.name, "showlegend": False}
+    filled = {"fill": "tonexty", "fillcolor": line.color + _BAND_ALPHA}
+    return [edge | {"y": numbers(line.y - line.band)}, edge | filled | {"y": numbers(line.y + line.band)}]
+
+
+def _panel_title(panel: Panel, suffix: str) -> list[Json]:
+    """Put the panel's title at its upper left, inside the plot's frame of reference."""
+    if not panel.title:
+        return []
+    frame = {"xref": f"x{suffix} domain", "yref": f"y{suffix} domain", "x": 0, "y": 1}
+    anchor = {"xanchor": "left", "yanchor": "bottom", "showarrow": False}
+    return [frame | anchor | {"text": f"<b>{panel.title}</b>"}]
+
+
+def _notes(panel: Panel, suffix: str) -> list[Json]:
+    """Put short texts beside their points; annotations count decades on a logarithmic axis."""
+    notes = []
+    for note in panel.notes:
+        annotation = {"xref": "x" + suffix, "yref": "y" + suffix, "showarrow": False, "text": note.text}
+        for name, axis, value in (("x", panel.x, note.x), ("y", panel.y, note.y)):
+            annotation[name] = float(np.log10(value)) if axis.scale == "log" else value
+        shifts = {"xshift": -4 if note.left else 4, "yshift": _NOTE_ROW * note.row}
+        side = {"xanchor": "right" if note.left else "left", "yanchor": "bottom"}
+        box = {} if panel.shade is None else {"bgcolor": _BOX}
+        notes.append(annotation | shifts | side | box | {"font": {"size": 12}})
+    return notes
+
+
+def _add_reference(layout: Json, reference: Reference, panel: Panel, suffix: str) -> None:
+    """Draw a reference line and its label."""
+    upright = reference.direction == "vertical"
+    x, y = "x" + suffix, "y" + suffix
+    along = {"xref": x, "yref": f"{y} domain"} if upright else {"xref": f"{x} domain", "yref": y}
+    ends = ("x0", "x1", "y0", "y1") if upright else ("y0", "y1", "x0", "x1")
+    extent = dict(zip(ends, (reference.value, reference.value, 0, 1), strict=True))
+    stroke = {"line": {"color": palette.MUTED, "dash": "dash", "width": 1}}
+    layer = "below" if panel.shade is None else "above"
+    layout["shapes"].append({"type": "line", "layer": layer} | along | extent | stroke)
+    scale = panel.x.scale if upright else panel.y.scale
+    value = float(np.log10(reference.value)) if scale == "log" else reference.value
+    position = {"x": value, "y": 1} if upright else {"x": reference.at, "y": value}
+    across = "left" if upright else "center" if reference.at == 0.5 else "right"
+    anchor = {"xanchor": across, "yanchor": "top" if upright else "bottom"}
+    text: Json = {"text": reference.label, "showarrow": False, "font": {"size": 12, "color": palette.MUTED}}
+    if panel.shade is not None:
+        text |= {"bgcolor": _BOX, "font": {"size": 12, "color": palette.INK}}
+    layout["annotations"].append(along | position | anchor | text)

@@ -1,0 +1,184 @@
+"""Figures and tables as one HTML page that needs nothing but itself."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from html import escape
+
+from lineofaction.report.drawing.figure import Figure, Table
+from lineofaction.report.drawing.interactive import plotly_figure
+from lineofaction.report.drawing.player import player, player_script, player_style
+from lineofaction.report.drawing.plotly_script import plotly_script
+from lineofaction.report.drawing.style import STYLE
+
+
+class Part(IntEnum):
+    """Parts of a report, in their order."""
+
+    RESULTS = 1
+    EFFECTS = 2
+    ACCURACY = 3
+    INPUT = 4
+    RECEIPT = 5
+
+
+@dataclass(frozen=True)
+class Section:
+    """A heading with the figures and tables under it.
+
+    `text` introduces them in a sentence; `folded` tables are shown when requested, and in print; `part` is
+    where in a report it belongs.
+    """
+
+    title: str
+    text: str = ""
+    figures: tuple[Figure, ...] = ()
+    tables: tuple[Table, ...] = ()
+    folded: tuple[Table, ...] = ()
+    part: Part = Part.RESULTS
+
+
+@dataclass(frozen=True)
+class Headline:
+    """A main result: what, its value and its error or remark."""
+
+    name: str
+    value: str
+    remark: str = ""
+
+
+@dataclass(frozen=True)
+class Page:
+    """All of a report; `alarms` are what the reader must know before any number."""
+
+    title: str
+    lead: str
+    headlines: tuple[Headline, ...]
+    sections: tuple[Section, ...]
+    alarms: tuple[str, ...] = ()
+
+
+# Each plot stands beside its still image, which prints and which takes over where the browser cannot draw.
+_SCRIPT = """
+const drawn = [];
+for (const node of document.querySelectorAll(".plot")) {
+  const figure = JSON.parse(document.getElementById(node.dataset.figure).textContent);
+  const config = {responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d"]};
+  const fall = () => { node.hidden = true; node.nextElementSibling.style.display = "block"; };
+  drawn.push(Plotly.newPlot(node, figure.data, figure.layout, config).catch(fall));
+}
+addEventListener("beforeprint", () => {
+  for (const folded of document.querySelectorAll("details")) folded.open = true;
+});
+Promise.all(drawn).then(() => { document.documentElement.dataset.drawn = "yes"; });
+"""
+
+
+def html(page: Page, images: dict[str, bytes]) -> str:
+    """Write `page`; `images` are the PNG bytes of every figure by its key."""
+    body = "\n".join(_section(section, index, images) for index, section in enumerate(page.sections, start=1))
+    heard = any(figure.sound for section in page.sections for figure in section.figures)
+    style = STYLE + player_style() if heard else STYLE
+    return "\n".join(
+        [
+            '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
+            '<meta name="viewport" content="width=device-width, initial-scale=1">',
+            f'<title>{escape(page.title)}</title>\n<link rel="icon" href="data:,">\n<style>{style}</style>',
+            "<noscript><style>.plot { display: none; } .still { display: block; }</style></noscript>",
+            f"<script>{plotly_script()}</script>\n</head>\n<body>",
+            '<a class="skip" href="#main">Skip to the results</a>',
+            _header(page),
+            f'<main id="main">\n{body}\n</main>',
+            "<footer>Written by lineofaction. This page needs no network.</footer>",
+            f"<script>{_SCRIPT}</script>",
+            player_script() if heard else "",
+            "</body>\n</html>\n",
+        ]
+    )
+
+
+def _header(page: Page) -> str:
+    """Title, warnings, main results and contents."""
+    alarms = "".join(
+        f'<p class="alarm" role="alert"><strong>{escape(text)}</strong></p>' for text in page.alarms
+    )
+    results = "".join(
+        f"<div><dt>{escape(h.name)}</dt><dd>{escape(h.value)} <small>{escape(h.remark)}</small></dd></div>"
+        for h in page.headlines
+    )
+    entries = "".join(
+        f'<li><a href="#part-{i}">{escape(section.title)}</a></li>'
+        for i, section in enumerate(page.sections, start=1)
+    )
+    return (
+        f'<header>\n<h1>{escape(page.title)}</h1>\n<p class="lead">{escape(page.lead)}</p>\n{alarms}'
+        f'<dl class="headline">{results}</dl>\n<nav aria-label="Contents"><ol>{entries}</ol></nav>\n</header>'
+    )
+
+
+def _section(section: Section, index: int, images: dict[str, bytes]) -> str:
+    """One numbered part of the page."""
+    text = f"<p>{escape(section.text)}</p>" if section.text else ""
+    figures = "\n".join(_figure(figure, images[figure.key]) for figure in section.figures)
+    tables = "\n".join([*map(_table, section.tables), *map(_folded, section.folded)])
+    title = escape(section.title)
+    head = f'<section aria-labelledby="part-{index}">\n<h2 id="part-{index}">{title}</h2>'
+    return f"{head}\n{text}{figures}{tables}</section>"
+
+
+def _figure(figure: Figure, image: bytes) -> str:
+    """One plot with its caption, its still image and its numbers."""
+    still = base64.b64encode(image).decode("ascii")
+    alternative = escape(f"{figure.title}. {figure.alternative}", quote=True)
+    numbers = _folded(figure.table, "Numbers") if figure.table else ""
+    return (
+        f'<figure id="{figure.key}">\n<h3>{escape(figure.title)}</h3>\n'
+        f'<div class="plot" role="img" aria-label="{alternative}" data-figure="{figure.key}-data"></div>'
+        f'<img class="still" alt="{alternative}" src="data:image/png;base64,{still}">\n'
+        f"<figcaption><strong>{escape(figure.alternative)}</strong> {escape(figure.caption)}</figcaption>\n"
+        f"{player(figure)}{numbers}"
+        f'<script type="application/json" id="{figure.key}-data">{_embedded(figure)}</script>\n</figure>'
+    )
+
+
+def _embedded(figure: Figure) -> str:
+    """JSON that cannot close the script element it stands in."""
+    text = json.dumps(plotly_figure(figure), separators=(",", ":"), allow_nan=False)
+    return text.replace("<", "\\u003c")
+
+
+def _folded(table: Table, name: str = "") -> str:
+    """Write a table that opens when requested."""
+    return f"<details><summary>{escape(name or table.caption)}</summary>{_table(table)}</details>"
+
+
+def _table(table: Table) -> str:
+    """Write a table; its first column names the row, columns of numbers stand to the right."""
+    columns = list(zip(*table.rows, strict=True)) or [("text",)] * len(table.head)
+    numeric = [all(map(_is_number, column)) for column in columns]
+    marks = [' class="n"' if right else "" for right in numeric]
+    head = "".join(
+        f'<th scope="col"{m}>{escape(cell)}</th>' for m, cell in zip(marks, table.head, strict=True)
+    )
+    rows = "".join(_row(row, marks) for row in table.rows)
+    return (
+        f'<div class="scroll" tabindex="0" role="region" aria-label="{escape(table.caption, quote=True)}">'
+        f"<table>\n<caption>{escape(table.caption)}</caption>\n<thead><tr>{head}</tr></thead>\n"
+        f"<tbody>{rows}</tbody></table></div>"
+    )
+
+
+def _row(row: Sequence[str], marks: Sequence[str]) -> str:
+    """Write one row."""
+    cells = "".join(f"<td{m}>{escape(cell)}</td>" for m, cell in zip(marks[1:], row[1:], strict=True))
+    return f'<tr><th scope="row"{marks[0]}>{escape(row[0])}</th>{cells}</tr>'
+
+
+def _is_number(text: str) -> bool:
+    """Whether a cell holds a number, alone or with unit or error; empty cells count for either."""
+    return re.fullmatch(r"|[-+]?[\d.]+(e[-+]?\d+)?( (N m|µm|%|± .*))?", text) is not None

@@ -1,0 +1,170 @@
+"""A surface seen from a far eye: the value of the facet in front at every pixel, and edges in sight."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from bounds.types import FloatArray, IntArray
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import Axis, HeatMap, Line, Panel
+
+ACROSS = 360
+"""Pixels along the longer side."""
+FOLD = 30.0
+"""Degrees between two triangles from which on their edge is drawn."""
+BEHIND = 3.0
+"""Pixels in depth by which an edge may lie behind what hides nothing: facets are flat, pixels coarse."""
+EYE = (1.0, 0.55, 0.65)
+"""Direction to the eye: seen from there y points up, as across a gearbox."""
+SIDES = {"From the front": EYE, "From behind and below": (-EYE[0], -EYE[1], -EYE[2])}
+"""Opposite eyes: each facet that nothing hides is seen from one of them."""
+
+
+@dataclass(frozen=True)
+class View:
+    """Axes of the picture in space, columns right, up, to the eye, and its pixels: corner, step, shape."""
+
+    axes: FloatArray
+    low: FloatArray
+    step: float
+    shape: tuple[int, int]
+
+    def pixels(self, points: FloatArray) -> FloatArray:
+        """Return points (..., 3) in pixels: column, row, depth."""
+        return np.asarray((points @ self.axes - self.low) / self.step)
+
+
+def view_of(points: FloatArray, eye: tuple[float, float, float] = EYE) -> View:
+    """Return the view that holds all points, (p, 3)."""
+    ahead = np.array(eye) / np.linalg.norm(eye)
+    right = np.cross([0.0, 1.0, 0.0], ahead)
+    right /= np.linalg.norm(right)
+    axes = np.stack([right, np.cross(ahead, right), ahead], axis=1)
+    seen = points @ axes
+    low, span = seen.min(axis=0), np.ptp(seen, axis=0)[:2]
+    step = float(span.max()) / (ACROSS - 3)
+    columns, rows = (int(np.ceil(side / step)) + 3 for side in span)
+    return View(axes, low - step, step, (rows, columns))
+
+
+def rendered(view: View, corners: FloatArray, value: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return value and depth of the facet in front at each pixel, (rows, columns); NaN and -inf at none.
+
+    Parameters
+    ----------
+    view : View
+    corners : (n, 3, 3) array
+        Of the facets, counter-clockwise as seen from outside; those turned away are not seen.
+    value : (n,) array
+    """
+    flat = view.pixels(corners)
+    span = np.ceil(np.ptp(flat[..., :2], axis=1).max(axis=1)).astype(int) + 1
+    size = 2 ** np.ceil(np.log2(span)).astype(int)
+    depth = np.full(view.shape[0] * view.shape[1], -np.inf)
+    hits = [_covered(view, flat, np.flatnonzero(size == side), side) for side in np.unique(size)]
+    for _, pixel, ahead in hits:
+        np.maximum.at(depth, pixel, ahead)
+    image = np.full(depth.size, np.nan)
+    for facet, pixel, ahead in hits:
+        front = ahead == depth[pixel]
+        image[pixel[front]] = value[facet[front]]
+    return image.reshape(view.shape), depth.reshape(view.shape)
+
+
+def _covered(
+    view: View, flat: FloatArray, facets: IntArray, side: int
+) -> tuple[IntArray, IntArray, FloatArray]:
+    """Return facets, pixels and depths of all pixels that facets of a size cover."""
+    corner = flat[facets]
+    first = np.floor(corner[..., :2].min(axis=1)).astype(int)
+    offset = np.stack(np.meshgrid(np.arange(side + 1), np.arange(side + 1)), axis=-1).reshape(-1, 2)
+    pixel = first[:, None] + offset
+    a, edge, other = corner[:, 0], corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
+    area = edge[:, 0] * other[:, 1] - edge[:, 1] * other[:, 0]
+    area = np.where(area > 1e-9, area, np.inf)  # the others are turned away
+    x, y = np.moveaxis(pixel - a[:, None, :2], 2, 0)
+    second = (x * other[:, None, 1] - y * other[:, None, 0]) / area[:, None]
+    third = (y * edge[:, None, 0] - x * edge[:, None, 1]) / area[:, None]
+    inside = (
+        (second >= -1e-9) & (third >= -1e-9) & (second + third <= 1.0 + 1e-9) & np.isfinite(area)[:, None]
+    )
+    inside &= np.all((pixel >= 0) & (pixel < view.shape[::-1]), axis=2)
+    row, place = np.nonzero(inside)
+    ahead = a[row, 2] + second[row, place] * edge[row, 2] + third[row, place] * other[row, 2]
+    number = pixel[row, place, 1] * view.shape[1] + pixel[row, place, 0]
+    return facets[row], number, ahead
+
+
+def folds(points: FloatArray, triangles: IntArray) -> IntArray:
+    """Return the sharp edges of triangles (t, 3) as pairs of nodes, (e, 2)."""
+    corner = points[triangles]
+    normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    edges = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    unique, index = np.unique(edges, axis=0, return_inverse=True)
+    order = np.argsort(index.ravel(), kind="stable")
+    pairs = np.flatnonzero(np.diff(index.ravel()[order]) == 0)
+    one, two = order[pairs], order[pairs + 1]
+    sharp = np.sum(normal[one // 3] * normal[two // 3], axis=1) < np.cos(np.radians(FOLD))
+    return np.asarray(unique[index.ravel()[one[sharp]]])
+
+
+def surface_panels(
+    points: FloatArray, triangles: IntArray, offset: FloatArray, value: FloatArray, label: str, words: str
+) -> tuple[Panel, ...]:
+    """Draw a moved surface in the colors of a value, with the edges of where it was, from two sides.
+
+    Parameters
+    ----------
+    points : (p, 3) array
+        m, at rest.
+    triangles : (t, 3) int array
+    offset : (p, 3) array
+        How far points are drawn off, m.
+    value : (t,) array
+        Where some is negative, colors are even about 0.
+    label, words : str
+        Of the colors, with the unit after the last comma, and in the titles of the panels.
+    """
+    return tuple(
+        _panel(points, triangles, offset, value, label, f"{side}: {words}", eye)
+        for side, eye in SIDES.items()
+    )
+
+
+def _panel(
+    points: FloatArray,
+    triangles: IntArray,
+    offset: FloatArray,
+    value: FloatArray,
+    label: str,
+    title: str,
+    eye: tuple[float, float, float],
+) -> Panel:
+    """Draw one side."""
+    moved = points + offset
+    view = view_of(np.concatenate([points, moved]), eye)
+    image, _ = rendered(view, moved[triangles], value)
+    _, depth = rendered(view, points[triangles], value)
+    x, y = (1e3 * view.step * np.arange(count, dtype=np.float64) for count in view.shape[::-1])
+    largest = float(np.max(np.abs(value), initial=0.0)) or 1.0
+    least = -largest if np.any(value < 0.0) else 0.0
+    edges = _in_sight(view, points[folds(points, triangles)], depth)
+    outline = Line(
+        "edges at rest", 1e3 * view.step * edges[:, 0], 1e3 * view.step * edges[:, 1], palette.INK, width=0.6
+    )
+    across, up = (Axis("mm", limits=(0.0, float(along[-1]))) for along in (x, y))
+    shade = HeatMap(x, y, image, label, largest, least)
+    return Panel(across, up, (outline,), title=title, shade=shade, equal=True)
+
+
+def _in_sight(view: View, ends: FloatArray, depth: FloatArray) -> FloatArray:
+    """Return edges (e, 2, 3) that nothing hides as points of a line with breaks, (n, 2) in pixels."""
+    flat = view.pixels(ends)
+    middle = flat.mean(axis=1)
+    column, row = np.rint(middle[:, :2]).astype(int).T
+    seen = flat[middle[:, 2] >= depth[row, column] - BEHIND, :, :2]
+    gap = np.full((len(seen), 1, 2), np.nan)
+    return np.concatenate([seen, gap], axis=1).reshape(-1, 2)

@@ -1,0 +1,206 @@
+"""A run on the page: main results, figures, accuracy, cost, effects and scene."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from bounds import leftover
+from dynamics.results import RunResult
+from dynamics.results.contact_state import contact_shares
+from lineofaction.report.drawing.effects_section import EffectRow, effects_section
+from lineofaction.report.drawing.facts import facts
+from lineofaction.report.drawing.figure import Table, number
+from lineofaction.report.drawing.page import Headline, Part, Section
+from lineofaction.report.drawing.sampling import peak_table, sampling_table
+from lineofaction.report.runs.campbell import campbell, frequency_blocks
+from lineofaction.report.runs.dynamic_error import dynamic_error
+from lineofaction.report.runs.dynamic_factor import dynamic_factor_figure
+from lineofaction.report.runs.levels_over_speed import levels_over_speed, order_blocks
+from lineofaction.report.runs.loudest import has_orders
+from lineofaction.report.runs.mode_shares import mode_shares
+from lineofaction.report.runs.octave_bands import octave_bands
+from lineofaction.report.runs.order_map import order_map
+from lineofaction.report.runs.planet_sharing import planet_sharing
+from lineofaction.report.runs.run_series import run_series
+from lineofaction.report.runs.run_view import RunView, Signal, shown_signal
+from lineofaction.report.runs.sideband_table import sideband_tables
+from lineofaction.report.runs.signal_over_time import signal_over_time
+from lineofaction.report.runs.signal_recording import along_direction
+from lineofaction.report.runs.signal_spectrum import TOO_SHORT, has_spectrum, signal_spectrum
+from lineofaction.report.runs.sound import Heard, sound_of
+
+ROUNDING = 1e-15
+"""m, of the static displacement of an effect."""
+_ERRORS = {
+    "time_step": ("step error", "nm rms"),
+    "table_interpolation": ("table error", "nm rms"),
+    "left_out_effects": ("neglected effects", "nm at rest"),
+}
+"""Sources of error, and the unit of what they do to transmission errors."""
+
+
+def dynamic_headlines(run: RunResult) -> tuple[Headline, ...]:
+    """Mean mesh force, and the balance of energy."""
+    headlines = []
+    if run.mesh:
+        force, nominal = (number(float(v)) for v in (np.mean(run.mesh_force[0]), run.nominal_force[0]))
+        headlines.append(Headline("mean mesh force", f"{force} N", f"nominal {nominal} N"))
+    if run.energy is not None:
+        headlines.append(
+            Headline("energy balance", f"{leftover(100 * run.energy.relative, 2)} %", "unaccounted for")
+        )
+    return tuple(headlines)
+
+
+def dynamic_alarms(run: RunResult) -> tuple[str, ...]:
+    """Say loudly that a run ended early, or what makes its result wrong."""
+    wrong = [check for check in run.effect_ledger.get("checks", ()) if check.get("valid") is False]
+    alarms = [f"Not valid: {check['assumption']} ({check['part']}); {check['reason']}." for check in wrong]
+    if not run.status.usable:
+        ended = run.status.name.lower().replace("_", " ")
+        alarms.insert(0, f"The run ended early at {run.time[-1]:g} s: {ended}.")
+    return tuple(alarms)
+
+
+def dynamic_results(run: RunResult, view: RunView) -> tuple[Section, ...]:
+    """Show the motion of one run, and the quantity that the view names.
+
+    Raises
+    ------
+    BadInput
+        The run does not hold what the view names.
+    """
+    signal = shown_signal(run, view)
+    series = run_series(run, signal.mesh)
+    seen = along_direction(run, signal)
+    over_time = signal_over_time(run, series, signal)
+    spectrum = (signal_spectrum(seen, signal),) if has_spectrum(run) else ()
+    section = Section(signal.heading, "" if spectrum else TOO_SHORT, figures=(over_time, *spectrum))
+    if not run.mesh:
+        return (section,)
+    text = "" if len(run.mesh) == 1 else f"Of {len(run.mesh)} meshes, {run.mesh[signal.mesh]} is shown."
+    motion = Section("Dynamic transmission error", text, figures=(dynamic_error(series),))
+    return motion, section, *_orders(run, signal), *_forces(run)
+
+
+def dynamic_making(run: RunResult) -> tuple[Section, ...]:
+    """Show how exact the run is, what it cost, and what it was made from."""
+    accuracy = Section(
+        "Accuracy of the run",
+        tables=(_accuracy(run), sampling_table(run), peak_table(run)),
+        folded=(_energy(run),),
+        part=Part.ACCURACY,
+    )
+    text = "The scene with all defaults, in SI."
+    scene = Section("Scene", text, folded=(facts("Scene", run.case),), part=Part.INPUT)
+    steps = facts("Step statistics", run.statistics.to_json())
+    receipt = Section("Receipt of the run", tables=(_seconds(run),), folded=(steps,), part=Part.RECEIPT)
+    return ledger_section(run.effect_ledger), accuracy, scene, receipt
+
+
+def _orders(run: RunResult, signal: Signal) -> tuple[Section, ...]:
+    """Show levels, bands and mesh orders over the run, for runs long enough to have them."""
+    if not has_orders(run, signal.mesh):
+        return ()
+    seen = along_direction(run, signal)
+    orders, frequencies = order_blocks(seen, signal), frequency_blocks(seen, signal)
+    of_orders = order_map(run, signal, orders)
+    figures = (
+        levels_over_speed(run, signal, orders),
+        replace(of_orders, sound=sound_of((Heard(signal.name, run, signal),), of_orders.content[0].x)),
+        campbell(run, signal, frequencies),
+        mode_shares(run, signal, frequencies),
+        octave_bands(run, signal, frequencies),
+    )
+    shown = tuple(figure for figure in figures if figure is not None)
+    return (Section("Levels and orders", figures=shown, tables=sideband_tables(run, signal)),)
+
+
+def _forces(run: RunResult) -> tuple[Section, ...]:
+    """Show how dynamic the mesh force is, and how planets share it."""
+    figures = [] if planet_sharing(run) is None else [planet_sharing(run)]
+    if run.nominal_force[0] > 0.0 and has_orders(run):
+        figures.insert(0, dynamic_factor_figure(run))
+    shown = tuple(figure for figure in figures if figure is not None)
+    return (Section("Mesh forces", figures=shown, tables=(_contact(run),)),)
+
+
+def _contact(run: RunResult) -> Table:
+    """Tabulate how long which flanks carry."""
+    shares = contact_shares(run)
+    states = tuple(shares[0])
+    rows = tuple(
+        (mesh, *(number(100.0 * share[state], 3) for state in states))
+        for mesh, share in zip(run.mesh, shares, strict=True)
+    )
+    head = (
+        "mesh",
+        *(
+            f"{state} flank{'s' if state == 'both' else ''}, %" if state != "off" else "apart, %"
+            for state in states
+        ),
+    )
+    return Table("Contact state, share of the samples", head, rows)
+
+
+def ledger_section(ledger: Mapping[str, Any]) -> Section:
+    """Tabulate what was simulated and what the model leaves out, by the effect ledger of a scene."""
+    rows = [
+        EffectRow(
+            entry["effect"],
+            entry["part"],
+            entry["on"],
+            _displacement(float(entry["worth"])),
+            entry["reason"],
+        )
+        for entry in ledger.get("entries", ())
+    ]
+    left_out = ledger.get("left_out", {})
+    return effects_section("", rows, (facts("Not in the model", left_out),))
+
+
+def _displacement(influence: float) -> str:
+    """Write a static displacement in m; what is left by rounding is none."""
+    return f"{number(1e6 * influence, 3)} µm at the line of action" if influence > ROUNDING else "nothing"
+
+
+def _accuracy(run: RunResult) -> Table:
+    """Tabulate status, errors by source and balance."""
+    rows = [("status", run.status.name.lower().replace("_", " "))]
+    for name, (title, unit) in _ERRORS.items():
+        rows += _errors(title, unit, run.receipt.get("error", {}).get(name, {}))
+    if run.energy is not None:
+        rows.append(
+            ("energy unaccounted for, % of the turnover of vibration", leftover(100 * run.energy.relative, 2))
+        )
+        through = run.energy.relative_to_throughput
+        rows.append(("energy unaccounted for, % of the drive's work", leftover(100 * through, 2)))
+    return Table("Accuracy of the run", ("quantity", "value"), tuple(rows))
+
+
+def _errors(title: str, unit: str, error: dict[str, Any]) -> list[tuple[str, str]]:
+    """Write the error of one source: of transmission errors, and of the worst order of a bearing force."""
+    rows = []
+    if "rms" in error:
+        rows.append((f"{title}, {unit} ({error.get('source', '')})", number(1e9 * float(error["rms"]), 3)))
+    if error.get("bearing_force_orders"):
+        worst = max(float(value) for value in error["bearing_force_orders"])
+        rows.append((f"{title}, N at the worst mesh order of a bearing force", number(worst, 2)))
+    return rows
+
+
+def _seconds(run: RunResult) -> Table:
+    """Tabulate wall time by stage."""
+    stages = run.receipt.get("seconds", {})
+    rows = tuple((name.replace("_", " "), number(float(value), 3)) for name, value in stages.items())
+    return Table("Time of the run by stage", ("stage", "wall s"), rows)
+
+
+def _energy(run: RunResult) -> Table:
+    """Tabulate the energy audit."""
+    audit = {} if run.energy is None else run.energy.to_json()
+    return facts("Energy audit, J", {name: value for name, value in audit.items() if "relative" not in name})

@@ -1,0 +1,120 @@
+"""Runs to listen to: recordings of what is shown of them, on one full scale, beside a plot over the run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.acoustics import Recording, common_full_scale, wav_file
+from dynamics.acoustics.recording import PASSED, SAMPLE_RATE
+from dynamics.errors import InputError
+from dynamics.results import RunResult
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.studies.listen.sound_figures import driving_shaft
+from lineofaction.report.drawing.figure import Axis, Sound, Track, number, unit_of
+from lineofaction.report.runs.run_view import QUANTITIES, RunView, Signal, same_view, shown_signal
+from lineofaction.report.runs.signal_recording import signal_recording
+
+PAGE_RATE, PAGE_BYTES, SAMPLE_BYTES = 24_000, 2_000_000, 4
+"""Hz of a sound in a page if it passes what the run holds; bytes of the sounds of a plot; of a sample."""
+POINTS = 200  # of the way along an axis
+
+
+@dataclass(frozen=True)
+class Heard:
+    """A run to listen to: its name, the run, and what is shown of it."""
+
+    name: str
+    run: RunResult
+    signal: Signal
+
+    def recording(self, sample_rate: int = SAMPLE_RATE) -> Recording:
+        """Return it as a recording; raises as `signal_recording`."""
+        return signal_recording(self.run, self.signal, sample_rate)
+
+    @property
+    def query(self) -> dict[str, str]:
+        """Return what names the signal to the service."""
+        name = next(key for key, value in QUANTITIES.items() if value is self.signal.quantity)
+        part: dict[str, str] = {self.signal.quantity.part: self.signal.part}
+        along = {"direction": self.signal.direction} if self.signal.direction else {}
+        return {"quantity": name, **part, **along}
+
+
+def heard_runs(runs: dict[str, RunResult], view: RunView) -> tuple[Heard, ...]:
+    """Return runs by their names as they are heard; the others are heard as the first one is.
+
+    Raises
+    ------
+    BadInput
+        A run does not hold what the view names.
+    """
+    heard = []
+    for name, run in runs.items():
+        try:
+            signal = shown_signal(run, view)
+        except BadInput as error:
+            raise error.within(name) from None
+        heard.append(Heard(name, run, signal))
+        view = same_view(view, signal)
+    return tuple(heard)
+
+
+def full_scale_of(recordings: list[Recording]) -> float:
+    """Return the common full scale.
+
+    Raises
+    ------
+    BadInput
+        Their units differ.
+    """
+    try:
+        return common_full_scale(*recordings)
+    except InputError as error:
+        raise BadInput.of(
+            "files", "runs of several units", "runs that hold one quantity", f"{error}"
+        ) from None
+
+
+def sound_of(heard: tuple[Heard, ...], axis: Axis) -> Sound | None:
+    """Return the sound of runs beside a plot over `axis`, their speed or time; None if one is silent."""
+    passed = max(_passed(one) for one in heard)
+    rate = PAGE_RATE if passed <= PASSED * PAGE_RATE else SAMPLE_RATE
+    try:
+        recordings = [one.recording(rate) for one in heard]
+    except BadInput:
+        return None
+    scale = full_scale_of(recordings)
+    fits = SAMPLE_BYTES * sum(one.samples.size for one in recordings) <= PAGE_BYTES
+    return Sound(
+        _caption(heard, recordings, scale),
+        tuple(_track(one, axis) for one in heard),
+        tuple(wav_file(one, scale) for one in recordings) if fits else (),
+    )
+
+
+def _passed(heard: Heard) -> float:
+    """Return the highest frequency that a run holds, Hz."""
+    return float(heard.run.receipt["sampling"]["pass_frequency"])
+
+
+def _track(heard: Heard, axis: Axis) -> Track:
+    """Return where a run is on the axis as it plays."""
+    run = heard.run
+    time = np.linspace(float(run.time[0]), float(run.time[-1]), POINTS)
+    along = time
+    if unit_of(axis.label) == "rpm":
+        speed = run.speed[run.shaft.index(driving_shaft(run, heard.signal.mesh))]
+        along = np.interp(time, run.time, np.abs(speed)) * 30.0 / np.pi
+    return Track(heard.name, time - time[0], along, heard.query)
+
+
+def _caption(heard: tuple[Heard, ...], recordings: list[Recording], scale: float) -> str:
+    """Say what is heard, and at which level."""
+    what = ". ".join(dict.fromkeys(one.quantity for one in recordings))
+    together = " of all, which play at their true relative level" if len(heard) > 1 else ""
+    return (
+        f"Sound: {what}. From 20 Hz to {number(min(map(_passed, heard)), 3)} Hz, which the run holds. Full "
+        f"scale{together}: {number(scale, 2)} {recordings[0].unit}."
+    )

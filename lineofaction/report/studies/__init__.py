@@ -1,0 +1,1 @@
+"""What the studies show: a module for each."""

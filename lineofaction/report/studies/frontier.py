@@ -1,0 +1,142 @@
+"""An accuracy study: what was chosen, the knee, the plot, every fidelity, and what was not run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from lineofaction.report.drawing.figure import Axis, Figure, Line, Note, Panel, Table, number
+from lineofaction.report.drawing.note_places import placed
+from lineofaction.report.drawing.page import Headline, Page, Section
+from lineofaction.report.presentation import Presentation
+from lineofaction.report.studies.frontier_look import Look, Study, look_of
+from lineofaction.report.studies.frontier_peer import Peer
+
+
+def frontier_figure(study: Study) -> Figure:
+    """Draw the errors of every fidelity over its time, log-log."""
+    look = look_of(study)
+    peers = look.peers(study)
+    times = [
+        *(result.cpu_seconds for result in study.results),
+        *(time for peer in peers for time in peer.time),
+    ]
+    across = Axis(look.time, "log", (0.5 * min(times), 3.0 * max(times)))
+    return Figure(
+        key=look.key,
+        title=look.title,
+        caption=look.caption(study),
+        alternative=_quickest(study),
+        content=tuple(_panel(study, look, peers, across, *panel[:3]) for panel in look.panels),
+        table=frontier_table(study),
+    )
+
+
+def frontier_table(study: Study) -> Table:
+    """Return every fidelity, and what stands beside them."""
+    look = look_of(study)
+    figures = [figure for figure, *_ in look.panels]
+    rows = [
+        (
+            result.title,
+            number(result.cpu_seconds, 3),
+            *(_per_cent(getattr(result, figure)) for figure in figures),
+            *(cell(result) for _, cell in look.further),
+            _mark(study, result.name),
+        )
+        for result in study.results
+    ]
+    rows += [
+        (
+            title,
+            number(peer.time[k], 3),
+            *(_per_cent(peer.errors[figure][k]) if figure in peer.errors else "" for figure in figures),
+            *("" for _ in look.further),
+            peer.mark,
+        )
+        for peer in look.peers(study)
+        for k, title in enumerate(peer.titles)
+    ]
+    heads = [*(head for *_, head in look.panels), *(head for head, _ in look.further)]
+    return Table(look.table, ("fidelity", "CPU time, s", *heads, "mark"), tuple(rows))
+
+
+def frontier_page(study: Study) -> Page:
+    """Return the page of an accuracy study."""
+    look, table, figure = look_of(study), frontier_table(study), frontier_figure(study)
+    by_name = {result.name: result for result in study.results}
+    heads = [
+        Headline(text, by_name[name].title, f"{number(by_name[name].cpu_seconds, 2)} CPU s")
+        for text, name in ((look.chosen, study.chosen), ("knee", study.knee))
+        if name in by_name and name is not None
+    ]
+    left = Table("Fidelities that were not run", ("fidelity", "because"), tuple(study.left_out.items()))
+    tables = (table, *([left] if study.left_out else []))
+    section = Section(table.caption, "", (replace(figure, table=None),), tables)
+    return Page("Error over CPU time", look.lead(study), tuple(heads), (section,))
+
+
+def _panel(
+    study: Study, look: Look, peers: Sequence[Peer], across: Axis, figure: str, title: str, label: str
+) -> Panel:
+    """One panel: points by family, what stands beside them, and the marks."""
+    drawn = [(result, 100.0 * getattr(result, figure)) for result in study.results]
+    drawn = [(result, error) for result, error in drawn if error > 0.0]
+    lines = []
+    for name, members, color in look.families:
+        points = [(r.cpu_seconds, error) for r, error in drawn if getattr(r, look.member) in members]
+        if points:
+            time, errors = np.array(points).T
+            lines.append(Line(name, time, errors, color, width=0, markers=True))
+    notes = [Note(r.cpu_seconds, error, _marked_name(study, r.name)) for r, error in drawn]
+    for peer in peers:
+        errors = 100.0 * peer.errors.get(figure, np.zeros(0))
+        if np.any(errors > 0.0):
+            lines.append(Line(peer.name, peer.time, errors, peer.color, width=peer.width, markers=True))
+            notes += [Note(*point, peer.note) for point in zip(peer.time, errors, strict=True) if peer.note]
+    if not lines:
+        return Panel(across, Axis(label, "log"), title=title)
+    values = np.concatenate([line.y for line in lines])
+    limits = 0.6 * float(values.min()), 1.7 * float(values.max())  # room for the outermost points' texts
+    along = Axis(label, "log", limits)
+    return Panel(across, along, tuple(lines), title=title, notes=placed(notes, across, along, limits))
+
+
+def _mark(study: Study, name: str) -> str:
+    """Return what a fidelity is: knee, chosen, reference."""
+    marks = (("knee", study.knee), ("chosen", study.chosen), ("reference", study.reference.name))
+    return ", ".join(mark for mark, marked in marks if marked == name)
+
+
+def _marked_name(study: Study, name: str) -> str:
+    """Return the name of a fidelity with its marks."""
+    marks, words = _mark(study, name), name.replace("_", " ")
+    return f"{words} ({marks})" if marks else words
+
+
+def _per_cent(value: float) -> str:
+    """Write a relative error in per cent; nothing if it is not known."""
+    return number(100.0 * value, 2) if np.isfinite(value) else ""
+
+
+def _quickest(study: Study) -> str:
+    """Say the quickest fidelities below one per cent and one per mille."""
+    parts = []
+    for limit, text in ((0.01, "1 %"), (0.001, "0.1 %")):
+        good = [result for result in study.results[:-1] if result.error <= limit]
+        if good:
+            best = min(good, key=lambda result: result.cpu_seconds)
+            parts.append(f"within {text}: {best.title}, {number(best.cpu_seconds, 2)} CPU s")
+    return f"Fastest fidelity {'; '.join(parts)}." if parts else "No fidelity comes within 1 % of the finest."
+
+
+def _text(study: Study) -> Iterator[Table | str]:
+    """Every fidelity, and what was not run."""
+    yield frontier_table(study)
+    for name, reason in study.left_out.items():
+        yield f"not run: {name}: {reason}"
+
+
+PAGE = Presentation(frontier_figure, frontier_page, _text)

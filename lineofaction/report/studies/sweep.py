@@ -1,0 +1,130 @@
+"""A sweep as people see it: maps, curves, the least values with what is as low within the errors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from bounds import engineering
+from fe_contact.microgeometry.sweep import SweptQuantity
+from fe_contact.microgeometry.sweep_request import TORQUE
+from lineofaction.gearbox.studies.sweep.run import QUANTITIES, SweepResult
+from lineofaction.report.drawing.figure import Figure, Table, number
+from lineofaction.report.drawing.page import Headline, Page, Section
+from lineofaction.report.presentation import Presentation
+from lineofaction.report.studies.sweep_plots import curves, maps
+
+BEYOND = "by more than the errors"
+
+
+def figure(result: SweepResult) -> Figure:
+    """Draw maps over two axes, curves over one."""
+    return figures(result)[0]
+
+
+def figures(result: SweepResult) -> tuple[Figure, ...]:
+    """Draw all: of two axes maps, and curves of the first quantity."""
+    words = " ".join(f"{h.name[0].upper()}{h.name[1:]}: {h.value} {h.remark}." for h in headlines(result))
+    drawn = (maps(result), curves(result)) if len(result.axes) == 2 else (curves(result),)
+    return tuple(replace(each, alternative=words) for each in drawn)
+
+
+def table(result: SweepResult, quantity: SweptQuantity) -> Table:
+    """Return a quantity with its errors: over two axes a row for each value of the one that runs down."""
+    shown, across = QUANTITIES[quantity.name], result.across
+    texts = [
+        f"{number(value / shown.one, 3)} ±{engineering(error / shown.one, 1)}"
+        if np.isfinite(value)
+        else "none"
+        for value, error in zip(quantity.value, quantity.error, strict=True)
+    ]
+    x = result.axes[across]
+    levels = [f"{level:.6g}" for level in result.levels(across)]
+    if len(result.axes) == 1:
+        return Table(shown.label, (x.label, shown.label), tuple(zip(levels, texts, strict=True)))
+    grid = result.grid(np.array(texts))
+    head = (result.axes[1 - across].label, *(f"{level} {x.unit}" for level in levels))
+    rows = tuple((f"{level:.6g}", *row) for level, row in zip(result.levels(1 - across), grid, strict=True))
+    return Table(f"{shown.label} over {x.words}", head, rows)
+
+
+def series(result: SweepResult) -> Table:
+    """Return every point with all quantities and errors."""
+    swept = result.sweep
+    head = [axis.path for axis in result.axes]
+    columns = [swept.point[:, k] / axis.factor for k, axis in enumerate(result.axes)]
+    for quantity in swept.quantities:
+        shown = QUANTITIES[quantity.name]
+        head += [shown.field.format(""), shown.field.format("_error")]
+        columns += [quantity.value / shown.one, quantity.error / shown.one]
+    rows = tuple(tuple(f"{value:.9g}" for value in row) for row in zip(*columns, strict=True))
+    return Table("All points", tuple(head), rows)
+
+
+def headlines(result: SweepResult) -> tuple[Headline, ...]:
+    """Return the best of the first quantity with what is as low within the errors, and its largest."""
+    if not result.sweep.usable:
+        return ()
+    quantity = result.quantities[0]
+    shown = QUANTITIES[quantity.name]
+    worst = int(np.nanargmax(quantity.value))
+    largest = Headline(f"largest {shown.words}", *_figure(result, quantity, worst))
+    if len(result.axes) == 2 and TORQUE in result.sweep.axes:
+        return (_best_level(result, quantity), largest)
+    best = Headline(f"least {shown.words}", *_figure(result, quantity, quantity.least))
+    like = int(quantity.like_least.sum()) - 1
+    others = f"as low within the errors: {like} others" if like else f"below all others {BEYOND}"
+    return (replace(best, remark=f"{best.remark}; {others}"), largest)
+
+
+def _figure(result: SweepResult, quantity: SweptQuantity, point: int) -> tuple[str, str]:
+    """Write a value with its error and where it is."""
+    shown = QUANTITIES[quantity.name]
+    where = " and ".join(
+        f"{axis.words} {result.sweep.point[point, k] / axis.factor:.6g} {axis.unit}"
+        for k, axis in enumerate(result.axes)
+    )
+    error = engineering(float(quantity.error[point]) / shown.one, 2)
+    value = f"{number(float(quantity.value[point]) / shown.one, 3)} {shown.unit}".strip()
+    return value, f"± {error} {shown.unit}".strip() + f" at {where}"
+
+
+def _best_level(result: SweepResult, quantity: SweptQuantity) -> Headline:
+    """Say which value of the axis that is no torque has the least mean over the torques."""
+    down, shown = 1 - result.across, QUANTITIES[quantity.name]
+    axis, levels = result.axes[down], result.levels(down)
+    value, error = (
+        result.grid(values).mean(axis=1) / shown.one for values in (quantity.value, quantity.error)
+    )
+    best = int(np.nanargmin(value))
+    alike = value - value[best] <= error + error[best]
+    alike[best] = False
+    others = ", ".join(f"{level:.6g}" for level in levels[alike])
+    also = f"as low within the errors: {others} {axis.unit}" if others else f"below all others {BEYOND}"
+    text = f"{number(float(value[best]), 3)} {shown.unit}".strip()
+    band = f"± {engineering(float(error[best]), 2)} {shown.unit}".strip()
+    where = f"at {axis.words} {levels[best]:.6g} {axis.unit}"
+    return Headline(f"least mean {shown.words} over the torques", text, f"{band} {where}; {also}")
+
+
+def page(result: SweepResult) -> Page:
+    """Return the page of a sweep."""
+    over = " and ".join(axis.words for axis in result.axes)
+    failed = len(result.sweep.reason) - result.sweep.usable
+    lead = f"{len(result.sweep.reason)} points over {over}"
+    alarms = (f"{failed} points have no figures: the contact was not solved.",) if failed else ()
+    tables = tuple(table(result, quantity) for quantity in result.quantities)
+    section = Section(f"Over {over}", "", figures(result), folded=tables)
+    return Page(f"Map over {over}", lead, headlines(result), (section,), alarms)
+
+
+def _text(result: SweepResult) -> Iterator[Table | str]:
+    """Yield the table of the first quantity."""
+    yield table(result, result.quantities[0])
+    points, usable = len(result.sweep.reason), result.sweep.usable
+    yield f"{points} points, {points - usable} without figures"
+
+
+PAGE = Presentation(figure, page, _text, series=series)

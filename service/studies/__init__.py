@@ -1,1 +1,0 @@
-"""The studies, a package each: what is varied, the work, the page. Their rows are in `service.registry`."""

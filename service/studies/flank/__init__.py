@@ -1,9 +1,0 @@
-"""Load and alignment at which the flanks are looked at."""
-
-from __future__ import annotations
-
-from service.schemas.flank import FlankPoint
-
-
-class Inputs(FlankPoint):
-    """One load and one alignment; what is left out is taken from the case."""
