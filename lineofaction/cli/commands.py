@@ -53,7 +53,7 @@ def main() -> None:
         file: TextIO | None = None,
         line: str | None = None,
     ) -> None:
-        if category.__module__.startswith("service."):
+        if category.__module__.startswith(("lineofaction.", "service.")):
             typer.echo(f"note: {message}", err=True)
         else:
             foreign(message, category, filename, lineno, file, line)

@@ -22,28 +22,28 @@ from lineofaction.client.portable import CaseLike, SceneLike, StudyLike
 from lineofaction.client.process import Offered
 from lineofaction.client.surface import Surface
 from lineofaction.gearbox.schemas.figures import Figures, RunFigures, TableFigures
-from lineofaction.gearbox.studies.ablate.answer import AblationFigures as ServiceAblationFigures
-from lineofaction.gearbox.studies.deflect.answer import DeflectionFigures as ServiceDeflectionFigures
-from lineofaction.gearbox.studies.deflect.result import GearboxDeflection as ServiceGearboxDeflection
-from lineofaction.gearbox.studies.flank.answer import FlankFigures as ServiceFlankFigures
-from lineofaction.gearbox.studies.frontier.answer import FrontierFigures as ServiceFrontierFigures
-from lineofaction.gearbox.studies.listen.answer import RecordingFigures as ServiceRecordingFigures
-from lineofaction.gearbox.studies.listen.heard_run import HeardRun as ServiceHeardRun
-from lineofaction.gearbox.studies.modes.answer import ModesFigures as ServiceModesFigures
-from lineofaction.gearbox.studies.noise.answer import NoiseFigures as ServiceNoiseFigures
-from lineofaction.gearbox.studies.optimize.answer import OptimizationFigures as ServiceOptimizationFigures
-from lineofaction.gearbox.studies.response.answer import ResponseFigures as ServiceResponseFigures
-from lineofaction.gearbox.studies.root_stress.answer import RootStressFigures as ServiceRootStressFigures
-from lineofaction.gearbox.studies.root_stress.run import Roots as ServiceRoots
-from lineofaction.gearbox.studies.scatter.answer import ScatterFigures as ServiceScatterFigures
-from lineofaction.gearbox.studies.sensitivity.answer import SensitivityFigures as ServiceSensitivityFigures
-from lineofaction.gearbox.studies.sensitivity.stored import PairStudy as ServicePairStudy
-from lineofaction.gearbox.studies.steady.answer import SteadyFigures as ServiceSteadyFigures
-from lineofaction.gearbox.studies.study.answer import StudyFigures as ServiceStudyFigures
-from lineofaction.gearbox.studies.sweep.answer import SweepFigures as ServiceSweepFigures
-from lineofaction.gearbox.studies.sweep.run import SweepResult as ServiceSweepResult
-from lineofaction.gearbox.studies.vibration.answer import VibrationFigures as ServiceVibrationFigures
-from lineofaction.gearbox.studies.vibration.run import HousingVibrationResult as ServiceHousingVibrationResult
+from lineofaction.gearbox.studies.ablate.answer import AblationFigures as LineofactionAblationFigures
+from lineofaction.gearbox.studies.deflect.answer import DeflectionFigures as LineofactionDeflectionFigures
+from lineofaction.gearbox.studies.deflect.result import GearboxDeflection as LineofactionGearboxDeflection
+from lineofaction.gearbox.studies.flank.answer import FlankFigures as LineofactionFlankFigures
+from lineofaction.gearbox.studies.frontier.answer import FrontierFigures as LineofactionFrontierFigures
+from lineofaction.gearbox.studies.listen.answer import RecordingFigures as LineofactionRecordingFigures
+from lineofaction.gearbox.studies.listen.heard_run import HeardRun as LineofactionHeardRun
+from lineofaction.gearbox.studies.modes.answer import ModesFigures as LineofactionModesFigures
+from lineofaction.gearbox.studies.noise.answer import NoiseFigures as LineofactionNoiseFigures
+from lineofaction.gearbox.studies.optimize.answer import OptimizationFigures as LineofactionOptimizationFigures
+from lineofaction.gearbox.studies.response.answer import ResponseFigures as LineofactionResponseFigures
+from lineofaction.gearbox.studies.root_stress.answer import RootStressFigures as LineofactionRootStressFigures
+from lineofaction.gearbox.studies.root_stress.run import Roots as LineofactionRoots
+from lineofaction.gearbox.studies.scatter.answer import ScatterFigures as LineofactionScatterFigures
+from lineofaction.gearbox.studies.sensitivity.answer import SensitivityFigures as LineofactionSensitivityFigures
+from lineofaction.gearbox.studies.sensitivity.stored import PairStudy as LineofactionPairStudy
+from lineofaction.gearbox.studies.steady.answer import SteadyFigures as LineofactionSteadyFigures
+from lineofaction.gearbox.studies.study.answer import StudyFigures as LineofactionStudyFigures
+from lineofaction.gearbox.studies.sweep.answer import SweepFigures as LineofactionSweepFigures
+from lineofaction.gearbox.studies.sweep.run import SweepResult as LineofactionSweepResult
+from lineofaction.gearbox.studies.vibration.answer import VibrationFigures as LineofactionVibrationFigures
+from lineofaction.gearbox.studies.vibration.run import HousingVibrationResult as LineofactionHousingVibrationResult
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -56,7 +56,7 @@ class Processes(Surface):
     def analyze(self, case: CaseLike) -> SteDatabase: ...
     @_offered(RunFigures)
     def simulate(self, scene: SceneLike) -> RunResult: ...
-    @_offered(ServiceFlankFigures)
+    @_offered(LineofactionFlankFigures)
     def flank(
         self,
         case: CaseLike,
@@ -66,14 +66,14 @@ class Processes(Surface):
         misalignment_um: float | None = ...,
         center_distance_change_mm: float | None = ...,
     ) -> FeContactLoadDistribution: ...
-    @_offered(ServiceAblationFigures)
+    @_offered(LineofactionAblationFigures)
     def ablate(
         self,
         given: CaseLike | SceneLike,
         *,
         only: Sequence[str] | None = ...,
     ) -> FeContactAblation | DynamicsAblation: ...
-    @_offered(ServiceFrontierFigures)
+    @_offered(LineofactionFrontierFigures)
     def frontier(
         self,
         given: CaseLike | SceneLike,
@@ -82,15 +82,15 @@ class Processes(Surface):
         up_to: Literal["corrected_fine", "3d_draft", "3d_standard", "3d_fine"] = ...,
         full_contact: int | None = ...,
     ) -> FeContactFrontier | DynamicsFrontier: ...
-    @_offered(ServiceSensitivityFigures)
+    @_offered(LineofactionSensitivityFigures)
     def sensitivity(
         self,
         case: CaseLike,
         *,
         misalignment_um: Sequence[float] = ...,
         center_distance_change_percent: Sequence[float] = ...,
-    ) -> tuple[ServicePairStudy, ...]: ...
-    @_offered(ServiceRootStressFigures)
+    ) -> tuple[LineofactionPairStudy, ...]: ...
+    @_offered(LineofactionRootStressFigures)
     def root_stress(
         self,
         case: CaseLike,
@@ -99,14 +99,14 @@ class Processes(Surface):
         normal_force_n: float | None = ...,
         misalignment_um: float | None = ...,
         center_distance_change_mm: float | None = ...,
-    ) -> ServiceRoots: ...
-    @_offered(ServiceOptimizationFigures)
+    ) -> LineofactionRoots: ...
+    @_offered(LineofactionOptimizationFigures)
     def optimize(
         self,
         case: CaseLike,
         study: StudyLike,
     ) -> FeContactOptimization: ...
-    @_offered(ServiceScatterFigures)
+    @_offered(LineofactionScatterFigures)
     def scatter(
         self,
         case: CaseLike,
@@ -117,15 +117,15 @@ class Processes(Surface):
         samples: int = ...,
         seed: int = ...,
     ) -> FeContactToleranceStudy: ...
-    @_offered(ServiceSweepFigures)
+    @_offered(LineofactionSweepFigures)
     def sweep(
         self,
         case: CaseLike,
         *,
         over: Sequence[str] = ...,
         show: Sequence[Literal["peak_to_peak", "harmonic_1", "harmonic_2", "harmonic_3", "max_pressure", "face_load_factor"]] = ...,
-    ) -> ServiceSweepResult: ...
-    @_offered(ServiceModesFigures)
+    ) -> LineofactionSweepResult: ...
+    @_offered(LineofactionModesFigures)
     def modes(
         self,
         scene: SceneLike,
@@ -134,7 +134,7 @@ class Processes(Surface):
         orders: int = ...,
         highest_frequency_hz: float | None = ...,
     ) -> DynamicsModalAnalysis: ...
-    @_offered(ServiceResponseFigures)
+    @_offered(LineofactionResponseFigures)
     def response(
         self,
         scene: SceneLike,
@@ -142,7 +142,7 @@ class Processes(Surface):
         speed_rpm: Sequence[float],
         orders: int = ...,
     ) -> DynamicsForcedResponse: ...
-    @_offered(ServiceNoiseFigures)
+    @_offered(LineofactionNoiseFigures)
     def noise(
         self,
         scene: SceneLike,
@@ -160,7 +160,7 @@ class Processes(Surface):
         radiation: Literal["monopoles", "equivalent_radiated_power"] = ...,
         boundary_elements: bool = ...,
     ) -> DynamicsRadiatedSound: ...
-    @_offered(ServiceVibrationFigures)
+    @_offered(LineofactionVibrationFigures)
     def vibration(
         self,
         scene: SceneLike,
@@ -172,8 +172,8 @@ class Processes(Surface):
         at_rpm: float | None = ...,
         at_order: float | None = ...,
         mode: int | None = ...,
-    ) -> ServiceHousingVibrationResult: ...
-    @_offered(ServiceRecordingFigures)
+    ) -> LineofactionHousingVibrationResult: ...
+    @_offered(LineofactionRecordingFigures)
     def listen(
         self,
         scene: SceneLike,
@@ -182,8 +182,8 @@ class Processes(Surface):
         microphone_mm: Sequence[float] | None = ...,
         point: str | None = ...,
         direction: Literal["x", "y", "z", "principal"] | None = ...,
-    ) -> ServiceHeardRun: ...
-    @_offered(ServiceSteadyFigures)
+    ) -> LineofactionHeardRun: ...
+    @_offered(LineofactionSteadyFigures)
     def steady(
         self,
         scene: SceneLike,
@@ -193,13 +193,13 @@ class Processes(Surface):
         repeat: int = ...,
         settling_periods: int = ...,
     ) -> DynamicsSteadyStates: ...
-    @_offered(ServiceDeflectionFigures)
+    @_offered(LineofactionDeflectionFigures)
     def deflect(
         self,
         scene: SceneLike,
         study: StudyLike = ...,
-    ) -> ServiceGearboxDeflection: ...
-    @_offered(ServiceStudyFigures)
+    ) -> LineofactionGearboxDeflection: ...
+    @_offered(LineofactionStudyFigures)
     def study(
         self,
         scene: SceneLike,

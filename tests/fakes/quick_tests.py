@@ -16,7 +16,8 @@ LONG = (
     "dynamics.integrators", "dynamics.periodic", "dynamics.simulation", "service.app",
     "lineofaction.cli", "lineofaction.client", "lineofaction.report.document", "lineofaction.report.drawing",
     "lineofaction.report.runs", "lineofaction.report.tables",
-    "service.live", "service.queue", "service.store", "service.worker", "benchmarks", "concurrent", "fastapi", "multiprocessing", "subprocess", "typer",
+    "service.live", "service.queue", "service.store", "service.worker", "benchmarks", "concurrent",
+    "fastapi", "multiprocessing", "subprocess", "typer",
 )  # fmt: skip
 PROCESSES = {"postgres", "database_url", "s3_objects"}
 """Fixtures that start one."""

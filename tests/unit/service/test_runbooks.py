@@ -24,7 +24,9 @@ from service.store.results import results
 ROOT = Path(__file__).resolve().parents[3]
 PAGE = (ROOT / "docs" / "runbooks.md").read_text("utf-8")
 SECTIONS = {part.partition("\n")[0]: part for part in PAGE.split("\n## ")[1:]}
-SOURCE = "\n".join(file.read_text("utf-8") for file in (ROOT / "service").rglob("*.py"))
+SOURCE = "\n".join(
+    file.read_text("utf-8") for house in ("service", "lineofaction") for file in (ROOT / house).rglob("*.py")
+)
 LONG_AGO = "2020-01-01T00:00:00.000000Z"
 KINDS = re.findall(r"urn:lineofaction:problem:([a-z-]+)", SOURCE)
 
