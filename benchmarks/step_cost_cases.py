@@ -13,12 +13,12 @@ from dynamics.assembly.assemble import assemble
 from dynamics.forces.compiled import compiled
 from dynamics.forces.element_laws import evaluate
 from dynamics.integrators import integrate, static_equilibrium
+from dynamics.integrators.advance import add_table_work
 from dynamics.integrators.explicit_step import accelerate
 from dynamics.integrators.march import march_on, start_march
 from dynamics.integrators.powers import write_powers
 from dynamics.integrators.stage import set_motion
 from dynamics.integrators.state_sink import MemorySink
-from dynamics.integrators.table_work import add_table_work
 from dynamics.integrators.workspace import Count, Workspace
 from dynamics.motion.motion import add_motion
 from dynamics.scene import Scene

@@ -9,8 +9,7 @@ from __future__ import annotations
 
 from model_studies.ablation import Ablation, EffectAblation, Figures
 from model_studies.fidelity import Fidelity, Outcome, against_finest, run_fidelities
-from model_studies.frontier import FidelityResult, Frontier, knee_above
-from model_studies.pareto import front_of, knee_of
+from model_studies.frontier import FidelityResult, Frontier, front_of, knee_above, knee_of
 from model_studies.progress import Progress, silent
 from model_studies.record import NOT_STORED, Record, called, in_unit
 from model_studies.variants import LeftOut, run_variants

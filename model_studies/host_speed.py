@@ -1,8 +1,8 @@
 """Speeds of this host that predictions of cost go by; measured once and kept, so that they agree.
 
 A short factorisation of a sparse matrix stands for all work but dense algebra, which has a measurement of its
-own (`fe_contact.compliance.cost_3d.dense_rate`). Processors are shared: measured again, either differs by
-tens of per cent.
+own (`cyclic_compliance.dense_rate` of fe_contact). Processors are shared: measured again, either differs
+by tens of per cent.
 """
 
 from __future__ import annotations

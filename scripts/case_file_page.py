@@ -14,10 +14,9 @@ from textwrap import fill
 from bounds import Choice
 from fe_contact.geometry import Gear, GearPair, RingGear
 from lineofaction.gearbox.convert.vocabulary import DECLARED
-from lineofaction.gearbox.schemas.case import OF_PAIR
+from lineofaction.gearbox.schemas.case import OF_PAIR, RING
 from lineofaction.gearbox.schemas.declared import Figure, figures
 from lineofaction.gearbox.schemas.gear import of_gear
-from lineofaction.gearbox.schemas.wheel import RING
 
 LISTS = {kind: figures(kind) for kind in DECLARED} | {GearPair: OF_PAIR, Gear: of_gear(Gear), RingGear: RING}
 BY_NAME = {f"{kind.__module__.partition('.')[0]}.{kind.__name__}": own for kind, own in LISTS.items()}

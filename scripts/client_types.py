@@ -57,7 +57,7 @@ def stub() -> str:
 
 def alias(kind: type) -> str:
     """Return the name of a class among those of all packages."""
-    package = kind.__module__.partition(".")[0]
+    package = kind.__module__.removeprefix("lineofaction.").partition(".")[0]
     return f"{package.title().replace('_', '')}{kind.__name__}"
 
 

@@ -2,16 +2,18 @@
 
 from dynamics.acoustics.air import Air
 from dynamics.acoustics.boundary_elements import BoundaryElements, SurfacePressure, surface_pressure
-from dynamics.acoustics.elemental_radiators import ElementalRadiators
-from dynamics.acoustics.equivalent_radiated_power import EquivalentRadiatedPower
+from dynamics.acoustics.equivalent_radiated_power import (
+    EquivalentRadiatedPower,
+    errors_db,
+    monopoles_efficiency,
+    sphere_efficiency,
+)
 from dynamics.acoustics.exterior_pressure import exterior_pressure
 from dynamics.acoustics.hull import Hull
 from dynamics.acoustics.level_band import LevelBand, Range, level_band, level_bands
 from dynamics.acoustics.levels import a_weighting, free_field_pressure, level_sum, sound_power_level
-from dynamics.acoustics.modal_resistance import ModalResistance, modal_resistance
-from dynamics.acoustics.model_ladder import ModelLadder, ModelResult, compare_models
-from dynamics.acoustics.multipoles import errors_db, monopoles_efficiency, sphere_efficiency
-from dynamics.acoustics.order_power import OrderPower, order_power
+from dynamics.acoustics.model_ladder import ElementalRadiators, ModelLadder, ModelResult, compare_models
+from dynamics.acoustics.order_power import ModalResistance, OrderPower, modal_resistance, order_power
 from dynamics.acoustics.outer_hull import OuterHull, outer_hull
 from dynamics.acoustics.radiation import (
     PanelModel,

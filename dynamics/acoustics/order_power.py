@@ -2,16 +2,167 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.acoustics.hull import ComplexArray
+from bounds import between
+from dynamics.acoustics.air import Air
+from dynamics.acoustics.hull import ComplexArray, Hull
 from dynamics.acoustics.levels import a_weighting, sound_power_level
-from dynamics.acoustics.modal_resistance import ModalResistance
+from dynamics.acoustics.radiation import RadiationModel, resistance
+from dynamics.checks import increasing
 from dynamics.errors import InputError
 from dynamics.orders.third_octaves import band_number, nominal_center
-from dynamics.types import FloatArray
+from dynamics.types import BoolArray, FloatArray
+
+# Radiation resistance of vibration modes, computed at a few frequencies and interpolated between them.
+
+
+@dataclass(frozen=True)
+class ModalResistance:
+    """Radiation resistance matrices of M shapes over frequency.
+
+    Between two frequencies R/f^2 is linear in f: that of a pulsation is constant at low frequency, and the
+    sum of positive semidefinite matrices is one.
+
+    Attributes
+    ----------
+    frequency : (F,) array
+        Hz, increasing.
+    matrix : (F, M, M) array
+        Hermitian, kg/s for shapes of amplitude in m/s.
+    """
+
+    frequency: FloatArray
+    matrix: ComplexArray
+
+    def power(self, frequency: FloatArray, velocity: ComplexArray) -> FloatArray:
+        """Return the sound power v^H R v / 2 at every sample, (B,), W.
+
+        Parameters
+        ----------
+        frequency : (B,) array
+            Hz.
+        velocity : (B, M) array
+            Complex peak amplitudes of the shapes, m/s.
+
+        Raises
+        ------
+        InputError
+            A frequency lies outside of those computed, or the shapes of arrays differ.
+        """
+        velocity = np.asarray(velocity)
+        flow = np.sum(velocity.conj() * self.reaction(frequency, velocity), axis=1)
+        return np.asarray(0.5 * flow.real)
+
+    def reaction(self, frequency: FloatArray, velocity: ComplexArray) -> ComplexArray:
+        """Return the part R v of the air's force that takes power from the shapes, (B, M), N.
+
+        Re(u^H R v) / 2 is the power that goes by a part u of the velocity; parts of v add up to the whole.
+
+        Parameters
+        ----------
+        frequency, velocity : arrays
+            As of `power`.
+
+        Raises
+        ------
+        InputError
+            As `power` does.
+        """
+        frequency, velocity = np.atleast_1d(np.asarray(frequency, dtype=float)), np.asarray(velocity)
+        if velocity.shape != (frequency.size, self.matrix.shape[1]):
+            raise InputError("velocity", velocity.shape, f"({frequency.size}, {self.matrix.shape[1]})")
+        force = np.zeros(velocity.shape, dtype=complex)
+        for knot, near, share in self._hats(frequency):
+            force[near] += share[:, None] * (velocity[near] @ self.matrix[knot].T)
+        return force
+
+    def alone(self, frequency: FloatArray, shapes: FloatArray) -> FloatArray:
+        """Return the resistance of each of K vectors of shapes (M, K) by itself, (B, K), at frequencies (B,).
+
+        Raises
+        ------
+        InputError
+            A frequency lies outside of those computed.
+        """
+        frequency = np.atleast_1d(np.asarray(frequency, dtype=float))
+        own = np.einsum("mk,fmn,nk->fk", shapes.conj(), self.matrix, shapes, optimize=True).real
+        found = np.zeros((frequency.size, shapes.shape[1]))
+        for knot, near, share in self._hats(frequency):
+            found[near] += share[:, None] * own[knot]
+        return found
+
+    def _hats(self, frequency: FloatArray) -> Iterator[tuple[int, BoolArray, FloatArray]]:
+        """Yield each computed frequency, the samples near it, and what part of its matrix they take."""
+        low, high = float(self.frequency[0]), float(self.frequency[-1])
+        if not np.all((frequency >= low) & (frequency <= high)):
+            outside = frequency[(frequency < low) | (frequency > high)][0]
+            raise InputError("frequency", float(outside), between(low, high, "Hz", "the computed"))
+        interval = np.searchsorted(self.frequency[1:-1], frequency, "right")
+        for knot in np.unique(np.concatenate([interval, interval + 1])):
+            near = (interval == knot) | (interval + 1 == knot)
+            weight = _hat(frequency[near], self.frequency[interval[near]], self.frequency[interval[near] + 1])
+            share = np.where(interval[near] == knot, 1.0 - weight, weight)
+            yield int(knot), near, share * (frequency[near] / self.frequency[knot]) ** 2
+
+    def weights(self, frequency: float) -> tuple[tuple[float, float], ...]:
+        """Return the computed frequencies, Hz, and by how much each enters the matrix at another one.
+
+        Raises
+        ------
+        InputError
+            The frequency lies outside of those computed.
+        """
+        hats = (
+            (float(self.frequency[knot]), float(share[0]))
+            for knot, _, share in self._hats(np.array([frequency]))
+        )
+        return tuple((knot, share) for knot, share in hats if share != 0.0)
+
+    def interpolation_error(self, velocity: ComplexArray) -> float:
+        """Return how far every second matrix is missed by those beside it, dB, for a velocity (M,).
+
+        The largest difference of level; the interpolation's own error is about a quarter of it.
+
+        Raises
+        ------
+        InputError
+            With fewer than three frequencies.
+        """
+        if self.frequency.size < 3:
+            raise InputError("frequency", self.frequency.size, "at least three frequencies")
+        coarse = ModalResistance(self.frequency[::2], self.matrix[::2])
+        between_them = self.frequency[1:-1:2] if self.frequency.size % 2 else self.frequency[1:-2:2]
+        repeated = np.broadcast_to(velocity, (between_them.size, np.size(velocity)))
+        ratio = coarse.power(between_them, repeated) / self.power(between_them, repeated)
+        return float(np.max(np.abs(10.0 * np.log10(ratio))))
+
+
+def modal_resistance(
+    model: RadiationModel, hull: Hull, frequency: FloatArray, shapes: ComplexArray, air: Air
+) -> ModalResistance:
+    """Compute the radiation resistance of shapes (T, M) at at least two increasing frequencies (F,), Hz.
+
+    Raises
+    ------
+    InputError
+        Fewer than two frequencies, or not increasing; or as `radiation.resistance` does.
+    """
+    knots = np.asarray(frequency, dtype=float)
+    if knots.ndim != 1 or knots.size < 2:
+        raise InputError("frequency", knots.shape, "at least two frequencies, (F,)")
+    increasing("frequency", knots)
+    return ModalResistance(
+        knots, np.stack([resistance(model, hull, float(knot), shapes, air) for knot in knots])
+    )
+
+
+def _hat(frequency: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
+    """Return the part of the way from `low` to `high`."""
+    return np.asarray((frequency - low) / (high - low))
 
 
 @dataclass(frozen=True)

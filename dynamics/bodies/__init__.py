@@ -1,11 +1,10 @@
 """Bodies: shafts rigid and elastic, the gears on them, their inertia, laws of time that move or load them."""
 
 from dynamics.bodies.angle_law import AngleLaw
-from dynamics.bodies.beam_families import Disc, PointOfApplication
 from dynamics.bodies.beam_section import BeamSection
-from dynamics.bodies.craig_bampton import ReducedBody, craig_bampton
 from dynamics.bodies.disc_body import DiscBody
-from dynamics.bodies.elastic_shaft import ElasticShaft, elastic_shaft
+from dynamics.bodies.elastic_modes import ReducedBody, craig_bampton
+from dynamics.bodies.elastic_shaft import Disc, ElasticShaft, PointOfApplication, elastic_shaft
 from dynamics.bodies.gear_body import GearBody
 from dynamics.bodies.inertia import Inertia, hollow_cylinder
 from dynamics.bodies.load_course import BySpeed, Orders

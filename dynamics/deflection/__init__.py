@@ -1,14 +1,18 @@
 """Static deflection of a geared system under load cases, and the alignment of its meshes by cause."""
 
 import host.analysis  # noqa: F401 (says what to install)
-from dynamics.deflection.bearing_life import life_duration
-from dynamics.deflection.bearing_load import BearingLoad, equivalent_load
 from dynamics.deflection.case_forces import ForceUnderCase
-from dynamics.deflection.causes import CAUSES
-from dynamics.deflection.deflect import CaseDeflection, Deflection, deflect
+from dynamics.deflection.deflect import (
+    BearingLoad,
+    CaseDeflection,
+    Deflection,
+    ShaftLines,
+    deflect,
+    equivalent_load,
+    life_duration,
+)
 from dynamics.deflection.loaded_scene import loaded_scene
-from dynamics.deflection.mesh_alignment import MeshAlignment
-from dynamics.deflection.shaft_line import ShaftLines
+from dynamics.deflection.mesh_alignment import CAUSES, MeshAlignment
 from dynamics.settings.case_force import CaseForce
 from dynamics.settings.load_case import LoadCase
 

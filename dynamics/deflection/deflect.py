@@ -2,23 +2,236 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from bounds import inside
-from dynamics.assembly.assemble import assemble
+from dynamics.assembly.assemble import System, assemble
 from dynamics.checks import distinct, integer
-from dynamics.deflection.bearing_load import BearingLoad, bearing_loads
-from dynamics.deflection.bearing_strain import bearing_strain
+from dynamics.deflection.bearing_strain import BearingStrain, bearing_strain
 from dynamics.deflection.case_forces import ForceUnderCase, as_records
 from dynamics.deflection.loaded_scene import leader_of, leading_torque, loaded_scene
 from dynamics.deflection.mesh_alignment import MeshAlignment, mesh_alignment
-from dynamics.deflection.mesh_cycle import cycle_times
-from dynamics.deflection.rest import rest_over
-from dynamics.deflection.shaft_line import ShaftLines, shaft_lines
+from dynamics.deflection.rest import Rest, rest_over
+from dynamics.joints import PlanetBearing, RollingBearing
+from dynamics.linearize.common_period import common_period
+from dynamics.mechanism.bearing_elements import supports_by_name
+from dynamics.mechanism.columns import section_rows
+from dynamics.rolling_bearings import rating_life
+from dynamics.rolling_bearings.row_law import row_law
 from dynamics.scene.scene import Scene
 from dynamics.settings.load_case import LoadCase, check_forces
+from dynamics.types import FloatArray, IntArray
 from model_studies import Record, in_unit
+
+# Loads of bearings under load cases, and the load that stands for all of them.
+
+
+# Basic reference rating life of rolling bearings under load cases, and over all of them.
+
+
+def life_of(bearing: RollingBearing, displacement: FloatArray) -> float:
+    """Return L_10r of a row in revolutions; NaN without a capacity, infinite where no element is loaded.
+
+    The inner ring turns against a load that stands still. Loads of the elements are averaged over their
+    passing.
+
+    Parameters
+    ----------
+    bearing : RollingBearing
+    displacement : (5,) array
+        Of the inner ring against the outer, x, y, z, tilt_x, tilt_y, m and rad, without what makes the axial
+        preload.
+    """
+    if bearing.dynamic_capacity is None:
+        return math.nan
+    law = row_law(bearing)
+    moved = np.array(displacement, dtype=float)
+    moved[2] += law.shift
+    return rating_life(bearing.row, law.loaded.evaluate(moved).load, bearing.dynamic_capacity).revolutions
+
+
+def life_duration(revolutions: Sequence[float], speed: Sequence[float], share: Sequence[float]) -> float:
+    """Return the life under C load cases by linear damage, s: 1 / sum (q n / L) [2]_.
+
+    Parameters
+    ----------
+    revolutions : (C,) sequence
+        Life L under each case alone; may be infinite, NaN if not known.
+    speed : (C,) sequence
+        rad/s, >= 0.
+    share : (C,) sequence
+        Shares q of the duration, in any unit, not all 0.
+    """
+    part = np.asarray(share, dtype=float) / float(np.sum(share))
+    turned = part * np.asarray(speed, dtype=float) / (2.0 * math.pi)  # revolutions per s
+    damage = float(np.sum(turned / np.asarray(revolutions, dtype=float)))
+    return math.inf if damage == 0.0 else 1.0 / damage
+
+
+LIFE_EXPONENT = 10.0 / 3.0
+"""Of roller bearings; ball bearings have 3."""
+
+
+@dataclass(frozen=True)
+class BearingLoad(Record):
+    """The load of a bearing under a load case, mean over the mesh cycle; x, y, z, tilt_x, tilt_y.
+
+    Attributes
+    ----------
+    name, shaft : str
+    speed : float
+        Of the shaft against what holds the bearing, rad/s, >= 0.
+    force : (5,) array
+        On the housing, of a planet bearing on the pin, N and N m.
+    largest_radial : float
+        Over the cycle, N.
+    elastic, clearance, seat : (5,) arrays
+        Parts of the displacement of the shaft there, m and rad.
+    rating_life : float
+        Basic reference rating life L_10r at the mean displacement, revolutions; infinite where no element is
+        loaded, NaN if the bearing has no dynamic capacity.
+    """
+
+    name: str
+    shaft: str
+    speed: float = field(metadata=in_unit("rad_s"))
+    force: FloatArray = field(metadata=in_unit("n", "direction"))
+    largest_radial: float = field(metadata=in_unit("n"))
+    elastic: FloatArray = field(metadata=in_unit("m", "direction"))
+    clearance: FloatArray = field(metadata=in_unit("m", "direction"))
+    seat: FloatArray = field(metadata=in_unit("m", "direction"))
+    rating_life: float = math.nan
+
+    @property
+    def radial(self) -> float:
+        """Radial force, N."""
+        return float(np.hypot(self.force[0], self.force[1]))
+
+    @property
+    def axial(self) -> float:
+        """Axial force, N, positive towards +z."""
+        return float(self.force[2])
+
+
+def bearing_loads(system: System, rest: Rest, strain: BearingStrain) -> tuple[BearingLoad, ...]:
+    """Return the loads of all bearings in the rest positions, `strain` that of their mean."""
+    places, force = supports_by_name(system.rotors), rest.bearing_force
+    speed = system.kinematics.float_ratio @ [drive.speed.extreme for drive in system.scene.drives]
+    rows = {bearing.name: bearing for bearing in system.scene.rolling_bearings}
+    loads = []
+    for k, name in enumerate(system.supports.name):
+        index, part = places[name]
+        carrier = system.rotors[index].carrier if isinstance(part, PlanetBearing) else None
+        held = 0.0 if carrier is None else speed[carrier]
+        loads.append(
+            BearingLoad(
+                name,
+                part.shaft,
+                abs(float(speed[index] - held)),
+                force[:, k].mean(axis=0),
+                float(np.max(np.hypot(force[:, k, 0], force[:, k, 1]))),
+                strain.elastic[k],
+                strain.clearance[k],
+                strain.seat[k],
+                life_of(rows[name], strain.elastic[k] + strain.clearance[k]) if name in rows else math.nan,
+            )
+        )
+    return tuple(loads)
+
+
+def equivalent_load(
+    load: Sequence[float],
+    speed: Sequence[float],
+    share: Sequence[float],
+    exponent: float = LIFE_EXPONENT,
+) -> float:
+    """Return the constant load of the same life in revolutions as all load cases, N.
+
+    P = (sum q n P^p / sum q n)^(1/p) with the shares q of the duration and the speeds n: linear damage, as in
+    ISO 281. 0 where nothing turns.
+
+    Parameters
+    ----------
+    load, speed, share : (C,) sequences
+        N, rad/s, and any unit; >= 0.
+    exponent : float
+        p: 3 of ball bearings, 10/3 of roller bearings.
+    """
+    revolutions = np.asarray(share, dtype=float) * np.asarray(speed, dtype=float)
+    total, largest = float(np.sum(revolutions)), float(np.max(load, initial=0.0))
+    if total <= 0.0 or largest == 0.0:
+        return 0.0
+    relative = np.asarray(load, dtype=float) / largest
+    mean = float(revolutions @ relative**exponent / total)
+    return largest * float(mean ** (1.0 / exponent))
+
+
+# Deflection lines of shafts.
+
+
+@dataclass(frozen=True)
+class ShaftLines(Record):
+    """The axes of all shafts under a load case, mean over the mesh cycle, P points of all shafts in a row.
+
+    Attributes
+    ----------
+    shaft : (P,) int array
+        Index of the shaft in the scene.
+    position : (P,) array
+        Along it from its left end, m, increasing within a shaft.
+    motion : (P, 6) array
+        x, y, z (m), tilt_x, tilt_y, rotation (rad): du_x/dz = tilt_y and du_y/dz = -tilt_x but for shear.
+    """
+
+    shaft: IntArray = field(metadata={"dimensions": ("point",)})
+    position: FloatArray = field(metadata=in_unit("m", "point"))
+    motion: FloatArray = field(metadata=in_unit("m", "point", "freedom"))
+
+
+def shaft_lines(system: System, motion: FloatArray) -> ShaftLines:
+    """Return the lines at `motion` (N,): at the nodes of an elastic shaft, at what is on a rigid one."""
+    shaft, position, moved = [], [], []
+    for index, rotor in enumerate(system.rotors):
+        for along in _points(system, index):
+            z = rotor.shaft.origin[2] + along
+            shaft.append(index)
+            position.append(along)
+            moved.append(section_rows(system.rotors, index, z) @ motion)
+    return ShaftLines(np.array(shaft, dtype=np.int64), np.array(position), np.array(moved).reshape(-1, 6))
+
+
+def _points(system: System, index: int) -> list[float]:
+    """Return positions along the shaft `index`, m."""
+    rotor, scene = system.rotors[index], system.scene
+    if rotor.elastic is not None:
+        return [float(position) for position in rotor.elastic.position]
+    on = [gear.position for gear in scene.gears if gear.shaft == rotor.shaft.name]
+    on += [support.position for support in rotor.supports]
+    return sorted({0.0, rotor.shaft.length, *map(float, on)})
+
+
+# Times at which all meshes of a system stand evenly spread over their cycles.
+
+
+def cycle_times(system: System, positions: int) -> FloatArray:
+    """Return the times (K,), s, at which every mesh takes K evenly spaced positions of its cycle, each once.
+
+    K evenly spaced moments of the common period of all meshes are a lattice: a mesh of C base pitches in that
+    period stands at k C / K, all different modulo 1 if C and K share no divisor. K is the least number of at
+    least `positions` for which that is so of all meshes, so that their phases towards each other vary too.
+    """
+    period = common_period(system)
+    cycles = [abs(pitches) for pitches in period.pitches if pitches]
+    count = positions
+    while any(math.gcd(cycle, count) > 1 for cycle in cycles):
+        count += 1
+    drive = system.scene.drives[period.law]
+    return np.arange(count) / count * period.duration(drive.speed.extreme)
+
 
 MOST_POSITIONS = 512
 

@@ -8,16 +8,121 @@ import numpy as np
 
 from dynamics.assembly.assemble import System
 from dynamics.deflection.bearing_strain import BearingStrain
-from dynamics.deflection.causes import CAUSES, SET, gear_tilt
 from dynamics.deflection.rest import Rest
-from dynamics.deflection.twist import lead_torsion
+from dynamics.joints import PlanetBearing
+from dynamics.mechanism.bearing_elements import supports_by_name
+from dynamics.mechanism.bodies import Bodies
+from dynamics.mechanism.columns import elastic_columns, section_rows
 from dynamics.mechanism.flank_gradients import (
+    common_face_width,
     distance_gradient,
     misalignment_gradient,
     misalignment_per_tilt,
+    table_sense,
 )
 from dynamics.types import FloatArray
 from model_studies import Record, in_unit
+
+# Tilts of shafts split by their causes: a linear functional of the displacements for each cause.
+
+
+CAUSES = ("shaft", "bearing", "clearance", "housing", "coupling", "set")
+"""Elastic shafts, elastic bearings, their clearance, the motion of their seats, shafts that couplings alone
+hold, and what the scene itself sets."""
+SHAFT, BEARING, CLEARANCE, HOUSING, COUPLING, SET = range(len(CAUSES))
+TILT = slice(3, 5)
+
+
+def gear_tilt(system: System, gear: str, motion: FloatArray, strain: BearingStrain) -> FloatArray:
+    """Return tilt_x and tilt_y (rad) of a gear's section by cause, (causes, 2); their sum is the whole.
+
+    The shaft's part is the tilt against the straight line through its bearing seats.
+    """
+    part = system.scene.gear(gear)
+    index = system.scene.shaft_index(part.shaft)
+    z = system.scene.shafts[index].origin[2] + part.position
+    tilts = axis_tilt(system, index, motion, strain)
+    tilts[SHAFT] += section_rows(system.rotors, index, z)[TILT] @ motion - tilts.sum(axis=0)
+    return tilts
+
+
+def axis_tilt(system: System, index: int, motion: FloatArray, strain: BearingStrain) -> FloatArray:
+    """Return the tilt of the line through the bearing seats of the rotor `index` by cause, (causes, 2).
+
+    The displaced centers of two bearings make the line, of more of them the line of least squares, of a
+    single one the tilt of the shaft in it. A rotor without bearings has the tilt of its rigid motion. A
+    planet's line goes with its carrier's.
+    """
+    rotor, tilts = system.rotors[index], np.zeros((len(CAUSES), 2))
+    carried = [part for part in rotor.supports if isinstance(part, PlanetBearing)]
+    if carried and rotor.carrier is not None:
+        tilts += axis_tilt(system, rotor.carrier, motion, strain)
+    names = _radial(system, index)
+    if not names:
+        tilts[COUPLING] += motion[6 * index + 3 : 6 * index + 5]
+        return tilts
+    places = supports_by_name(system.rotors)
+    z = np.array([places[name][1].position for name in names])
+    at = [system.supports.name.index(name) for name in names]
+    for cause, moved in ((BEARING, strain.elastic), (CLEARANCE, strain.clearance), (HOUSING, strain.seat)):
+        tilts[cause] += line_tilt(z, moved[at])
+    return tilts
+
+
+def line_tilt(z: FloatArray, moved: FloatArray) -> FloatArray:
+    """Return tilt_x and tilt_y (rad) of the line through points at z (S,), m, moved by `moved` (S, 5).
+
+    u_x = tilt_y z and u_y = -tilt_x z.
+    """
+    away = z - z.mean()
+    if float(np.max(np.abs(away))) == 0.0:
+        return np.asarray(moved[:, TILT].mean(axis=0))
+    slope = away @ moved[:, :2] / (away @ away)
+    return np.array([-slope[1], slope[0]])
+
+
+def _radial(system: System, index: int) -> list[str]:
+    """Return the bearings of a rotor that hold it across its axis."""
+    lawful = {system.supports.name[at.support] for at in system.bearings if at.way[:, :2].any()}
+    return [
+        part.name
+        for part in system.rotors[index].supports
+        if part.name in lawful or part.seat_stiffness[0, 0] + part.seat_stiffness[1, 1] > 0.0
+    ]
+
+
+# The twist of gears along their faces, as a deviation of the lead.
+
+
+def twist(rotors: Bodies, index: int, position: FloatArray, motion: FloatArray) -> FloatArray:
+    """Return the elastic rotation (P,) of sections at `position` (P,) along a shaft, rad.
+
+    Linear between nodes: exact where torques act at nodes alone.
+    """
+    elastic = rotors[index].elastic
+    if elastic is None:
+        return np.zeros_like(position)
+    turned = elastic.torsion.shape @ motion[elastic_columns(rotors, index)][elastic.twists]
+    return np.asarray(np.interp(position, elastic.position, turned))
+
+
+def lead_torsion(system: System, index: int, motion: FloatArray) -> float:
+    """Return how the gap of mesh `index` grows over its common face by the twist of both shafts, m.
+
+    Towards positive z of the table's driving gear, as misalignment. The shafts as they are under the gears;
+    a torque that enters evenly along the face twists its ends as one that enters in its middle.
+    """
+    scene, line, mesh = system.scene, system.lines[index], system.scene.meshes[index]
+    towards = -table_sense(scene, index, system.kinematics.mesh_sense[index])
+    half, grown = 0.5 * common_face_width(scene, index), 0.0
+    for name, side in ((mesh.driver, 1.0), (mesh.driven, -1.0)):
+        shaft = scene.shaft_index(scene.gear(name).shaft)
+        rotor = system.rotors[shaft]
+        middle = float(line.point[2]) - rotor.shaft.origin[2]
+        ends = twist(system.rotors, shaft, np.array([middle - half, middle + half]), motion)
+        lever = side * float(line.gradient(rotor.center)[5])
+        grown -= towards * lever * float(ends[1] - ends[0])
+    return grown
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import host.analysis  # noqa: F401 (says what to install)
 from dynamics.housing_modes.damping import USUAL_DAMPING, MaterialDamping, ModalDamping
 from dynamics.housing_modes.faces import Bore, BoundedPlane, Box, Group, Plane
 from dynamics.housing_modes.feet import Foot, Mount
-from dynamics.housing_modes.kept import meshed_step, reduced_housing
+from dynamics.housing_modes.kept import CostLimit, meshed_step, reduced_housing, reduction_cost
 from dynamics.housing_modes.mesh_file import read_mesh
 from dynamics.housing_modes.meshed_housing import MeshedHousing
 from dynamics.housing_modes.reduced_housing import ReducedHousing
@@ -17,7 +17,6 @@ from dynamics.housing_modes.reduced_matrices import (
     read_matrix_market,
     read_reduced_matrices,
 )
-from dynamics.housing_modes.reduction_cost import CostLimit, reduction_cost
 from dynamics.housing_modes.response import receptance
 from dynamics.housing_modes.scene_housing import scene_housing
 from dynamics.housing_modes.seats import SeatBore, SeatFrame

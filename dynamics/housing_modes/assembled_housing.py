@@ -8,12 +8,11 @@ import numpy as np
 import scipy.sparse as sp
 
 from bounds import inside
-from dynamics.housing_modes.elasticity import mass_and_stiffness
+from dynamics.errors import InputError
 from dynamics.housing_modes.feet import Foot
 from dynamics.housing_modes.meshed_housing import MeshedHousing
-from dynamics.housing_modes.quadrature import over_surface
-from dynamics.housing_modes.rigid_faces import Freedoms, RigidFace, independent_freedoms
-from dynamics.housing_modes.rigid_motion import RigidBody, rigid_body
+from dynamics.housing_modes.quadrature import over_surface, over_volume, tetrahedron
+from dynamics.housing_modes.rigid_motion import RigidBody, rigid_body, rigid_motions
 from dynamics.housing_modes.seats import (
     SeatBore,
     SeatFrame,
@@ -23,8 +22,143 @@ from dynamics.housing_modes.seats import (
     wall_nodes,
 )
 from dynamics.housing_modes.tetrahedral_mesh import TetrahedralMesh
-from dynamics.solid_housing import Ring
-from dynamics.types import FloatArray
+from dynamics.solid_housing import Material, Ring
+from dynamics.types import FloatArray, IntArray
+
+# Freedoms of a mesh some of whose faces are rigid or fixed.
+
+
+@dataclass(frozen=True)
+class RigidFace:
+    """Nodes that move as one body about a point (m); `fixed` ones do not move."""
+
+    name: str
+    nodes: IntArray
+    about: FloatArray
+    fixed: bool = False
+
+
+@dataclass(frozen=True)
+class Freedoms:
+    """Independent freedoms: three of each free node, then six of each rigid face.
+
+    Attributes
+    ----------
+    motion : (3 n, f) sparse array
+        Displacements of all nodes per freedom.
+    free : int array
+        The free nodes.
+    faces : tuple of RigidFace
+        Those that move. Six freedoms each: x, y, z, rotations about x, y, z through its point.
+    """
+
+    motion: sp.csr_array
+    free: IntArray
+    faces: tuple[RigidFace, ...]
+
+    def face(self, name: str) -> IntArray:
+        """Return the six freedoms of a rigid face."""
+        number = [face.name for face in self.faces].index(name)
+        return 3 * len(self.free) + 6 * number + np.arange(6)
+
+    def rigid(self, points: FloatArray, about: FloatArray) -> FloatArray:
+        """Return the freedoms by rigid motions of all nodes, (f, 6), see `rigid_motions`."""
+        parts = [rigid_motions(points[self.free], about)]
+        for face in self.faces:
+            turned = np.hstack([np.zeros((3, 3)), np.eye(3)])
+            parts += [rigid_motions(face.about[None], about), turned]
+        return np.vstack(parts)
+
+
+def independent_freedoms(points: FloatArray, faces: tuple[RigidFace, ...]) -> Freedoms:
+    """Eliminate the nodes of rigid faces.
+
+    Raises
+    ------
+    InputError
+        Two faces share nodes.
+    """
+    owner = np.full(len(points), -1)
+    for number, face in enumerate(faces):
+        shared = owner[face.nodes]
+        if np.any(shared >= 0):
+            bound = f'apart from "{faces[int(shared.max())].name}"'
+            raise InputError(face.name, "rigid", bound, "They share nodes: move one, or make them one face.")
+        owner[face.nodes] = number
+    free = np.flatnonzero(owner < 0)
+    rows = (3 * free[:, None] + np.arange(3)).ravel()
+    blocks = [(np.ones(rows.size), rows, np.arange(rows.size))]
+    moving = tuple(face for face in faces if not face.fixed)
+    for number, face in enumerate(moving):
+        values = rigid_motions(points[face.nodes], face.about)
+        at = (3 * face.nodes[:, None] + np.arange(3)).ravel()
+        row, column = np.broadcast_arrays(at[:, None], rows.size + 6 * number + np.arange(6))
+        blocks.append((values.ravel(), row.ravel(), column.ravel()))
+    value, row, column = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
+    motion = sp.coo_array(
+        (value, (row, column)), shape=(3 * len(points), rows.size + 6 * len(moving))
+    ).tocsr()
+    motion.eliminate_zeros()
+    return Freedoms(motion, free, moving)
+
+
+# Mass and stiffness matrices of quadratic tetrahedra.
+
+
+BATCH = 2000
+"""Elements at a time: bounds the memory of what is dense."""
+
+
+def mass_and_stiffness(mesh: TetrahedralMesh, material: Material) -> tuple[sp.csr_array, sp.csr_array]:
+    """Return the consistent mass matrix per direction and the stiffness matrix.
+
+    Parameters
+    ----------
+    mesh : TetrahedralMesh
+    material : Material
+
+    Returns
+    -------
+    mass : (n, n) sparse array
+        kg, between nodes; it is the same for x, y and z.
+    stiffness : (3 n, 3 n) sparse array
+        N/m; freedom 3 i + k is the displacement of node i along axis k.
+    """
+    count = len(mesh.points)
+    numbers = mesh.tetrahedra
+    freedoms = np.reshape(3 * numbers[:, :, None] + np.arange(3), (len(numbers), 30))
+    masses = np.empty((len(numbers), 10, 10))
+    stiffnesses = np.empty((len(numbers), 30, 30))
+    for first in range(0, len(numbers), BATCH):
+        part = slice(first, first + BATCH)
+        masses[part], stiffnesses[part] = _element_matrices(mesh.points, numbers[part], material)
+    return _assembled(masses, numbers, count), _assembled(stiffnesses, freedoms, 3 * count)
+
+
+def _element_matrices(
+    points: FloatArray, tetrahedra: IntArray, material: Material
+) -> tuple[FloatArray, FloatArray]:
+    """Return the matrices of some elements: (e, 10, 10) and (e, 30, 30)."""
+    volume, gradient = over_volume(points, tetrahedra)
+    shape, (lame, shear) = tetrahedron().shape, material.lame
+    mass = material.density * np.einsum("ap,bp,ep->eab", shape, shape, volume, optimize=True)
+    flat = gradient.reshape(len(volume), 30, -1)
+    # product[e, a, i, b, j]: integral of the slope of a along i times that of b along j
+    product = ((flat * volume[:, None]) @ flat.transpose(0, 2, 1)).reshape(-1, 10, 3, 10, 3)
+    stiffness = lame * product + shear * product.transpose(0, 1, 4, 3, 2)
+    trace = shear * np.einsum("eakbk->eab", product)
+    for axis in range(3):
+        stiffness[:, :, axis, :, axis] += trace
+    return mass, stiffness.reshape(-1, 30, 30)
+
+
+def _assembled(matrices: FloatArray, freedoms: IntArray, size: int) -> sp.csr_array:
+    """Add element matrices."""
+    short = freedoms.astype(np.int32)  # half the memory
+    rows, columns = np.broadcast_arrays(short[:, :, None], short[:, None, :])
+    entries = (matrices.ravel(), (rows.ravel(), columns.ravel()))
+    return sp.coo_array(entries, shape=(size, size)).tocsr()
+
 
 HELD = 1e-12
 """Stiffness against a rigid motion below which mounts do not hold it, relative to the stiffest."""

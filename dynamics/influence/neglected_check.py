@@ -2,14 +2,274 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from bounds import engineering
-from dynamics.influence.decide import Decided
-from dynamics.influence.estimate import Influence
+from dynamics.assembly.assemble import System, assemble
+from dynamics.effects import EFFECTS
+from dynamics.errors import InputError, SolveError
+from dynamics.influence.linear_figures import COMPARED, LinearFigures, linear_figures
+from dynamics.influence.operating_conditions import operating_conditions
+from dynamics.linearize.speeds import leading_law
+from dynamics.scene import Scene
 from dynamics.types import FloatArray, Json
+from host import cpu_seconds
+from model_studies import Record, in_unit
+
+# The change by leaving an effect out, by linear theory: an ablation before integration.
+
+
+ROUNDING = 1e-8
+"""Relative change below which an estimate says nothing."""
+
+
+def _no_orders() -> FloatArray:
+    """Of estimates that older versions wrote."""
+    return np.zeros((0, COMPARED))
+
+
+@dataclass(frozen=True)
+class Influence(Record):
+    """Estimated change by leaving one effect out in all parts of a scene; m meshes, b bearings.
+
+    Attributes
+    ----------
+    mean, peak_to_peak : (m,) arrays
+        Change of the dynamic transmission error, m.
+    bearing_force : (b,) array
+        Change of the mesh orders 1 to 5 of each bearing's force and what loads excite, together, N.
+    relative_mean, relative_peak_to_peak : float
+        The largest of them over the value with the effect.
+    relative_bearing_force : float
+        The largest over the largest of all bearings.
+    freedoms, rows : int
+        That it adds: freedoms, and local coordinates of force elements.
+    on : bool
+        Whether the scene has it on anywhere.
+    orders : (m, 5) array
+        Change of the largest amplitudes along the run of mesh orders 1 to 5 of the transmission error, m.
+    bearing_orders : (b, 5) array
+        Of the bearing forces, N.
+    relative_orders, relative_bearing_orders : (5,) arrays
+        The largest of each order over the largest amplitude of that order with the effect.
+    """
+
+    mean: FloatArray = field(metadata=in_unit("m", "curve"))
+    peak_to_peak: FloatArray = field(metadata=in_unit("m", "curve"))
+    bearing_force: FloatArray = field(metadata=in_unit("n", "bearing"))
+    relative_mean: float
+    relative_peak_to_peak: float
+    relative_bearing_force: float
+    freedoms: int
+    rows: int
+    on: bool
+    orders: FloatArray = field(default_factory=_no_orders, metadata=in_unit("m", "curve", "order"))
+    bearing_orders: FloatArray = field(default_factory=_no_orders, metadata=in_unit("n", "bearing", "order"))
+    relative_orders: FloatArray = field(default_factory=_no_orders)
+    relative_bearing_orders: FloatArray = field(default_factory=_no_orders)
+
+    @property
+    def largest(self) -> float:
+        """The largest relative change of all."""
+        return max(self.relative_mean, self.relative_peak_to_peak, self.relative_bearing_force)
+
+    @property
+    def words(self) -> str:
+        """The relative changes, in words."""
+        parts = (self.relative_mean, self.relative_peak_to_peak, self.relative_bearing_force)
+        shares = (100 * part if part > ROUNDING else 0.0 for part in parts)
+        mean, ripple, force = (f"{engineering(share, 2)} %" for share in shares)
+        words = (
+            f"{mean} of the mean, {ripple} of the peak-to-peak transmission error, {force} of bearing forces"
+        )
+        if not self.relative_bearing_orders.size or self.relative_bearing_force <= ROUNDING:
+            return words
+        order = int(np.argmax(self.relative_bearing_orders))
+        most = engineering(100.0 * float(self.relative_bearing_orders[order]), 2)
+        return f"{words} ({most} % of their order {order + 1})"
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        facts = super().to_json()
+        del facts["on"]  # whoever shows an estimate says it beside it
+        return {"words": self.words, **facts}
+
+
+def estimate_influences(
+    scene: Scene, settled: float = 0.0, system: System | None = None
+) -> dict[str, Influence]:
+    """Estimate the influence of each effect: toggle it in linear theory, all others as they are.
+
+    Parameters
+    ----------
+    scene : Scene
+    settled : float
+        Part of the run from which on it is looked at, 0..1.
+    system : System, optional
+        The scene assembled.
+
+    Returns
+    -------
+    dict of str to Influence
+        Without an effect that has no part in the scene, or without which there is no system that can be
+        linearized; empty where linear theory says nothing: torques alone move a train, nothing turns, the
+        drives' speeds are in no proportion of small integers.
+
+    Notes
+    -----
+    The response is that of `parametric_response`: flanks that part, impacts and transients are left out.
+    """
+    system = assemble(scene) if system is None else system
+    try:
+        conditions = operating_conditions(scene, leading_law(system), settled)
+        whole = linear_figures(system, conditions)
+    except (InputError, SolveError):
+        return {}
+    influences = {}
+    for name, on in switchable(system).items():
+        try:
+            other = assemble(replace(scene, effects={**scene.effects, name: "off" if on else "on"}))
+            figures = linear_figures(other, conditions)
+        except (InputError, SolveError):
+            continue
+        both = (whole, figures) if on else (figures, whole)
+        influences[name] = influence_of(system, on, *both)
+    return influences
+
+
+def switchable(system: System) -> dict[str, bool]:
+    """Return the effects that a part of a system can have and would feel, and whether any has them on."""
+    states: dict[str, bool] = {}
+    for name in dict.fromkeys(entry.effect for entry in system.ledger.entries):
+        able = [entry for entry in system.ledger.of(name) if entry.possible]
+        if any(entry.on or entry.influence > 0.0 for entry in able):
+            states[name] = any(entry.on for entry in able)
+    return states
+
+
+def influence_of(system: System, on: bool, whole: LinearFigures, without: LinearFigures) -> Influence:
+    """Return what a system loses without an effect: `whole` are the figures with it.
+
+    Flanks that linear theory pulls apart by more than the backlash would go on that far without a coast
+    flank.
+    """
+    mean, ripple = without.mean - whole.mean, without.peak_to_peak - whole.peak_to_peak
+    force = without.bearing_force - whole.bearing_force
+    orders = without.orders - whole.orders
+    bearing_orders = without.bearing_orders - whole.bearing_orders
+    if whole.coasting and not without.coasting:
+        ripple = np.maximum(ripple, _through(system, whole.parted))
+    return Influence(
+        mean,
+        ripple,
+        force,
+        _largest(mean, whole.mean),
+        _largest(ripple, whole.peak_to_peak),
+        _largest(force, np.max(whole.bearing_force, initial=0.0)),
+        whole.freedoms - without.freedoms,
+        whole.rows - without.rows,
+        on,
+        orders,
+        bearing_orders,
+        _by_order(orders, whole.orders),
+        _by_order(bearing_orders, whole.bearing_orders),
+    )
+
+
+def _through(system: System, parted: FloatArray) -> FloatArray:
+    """Travel of flanks beyond the backlash (m,), m; 0 where none is given."""
+    room = [np.inf if mesh.coast is None else mesh.coast.backlash for mesh in system.scene.meshes]
+    return np.asarray(np.maximum(parted - np.array(room), 0.0))
+
+
+def _by_order(change: FloatArray, value: FloatArray) -> FloatArray:
+    """Return the largest change of each order over its largest amplitude, (5,); 0 of orders not there."""
+    size = np.max(value, axis=0, initial=0.0)
+    most = np.max(np.abs(change), axis=0, initial=0.0)
+    there = size > ROUNDING * np.max(size, initial=0.0)
+    return np.asarray(np.divide(most, size, out=np.zeros(most.shape), where=there))
+
+
+def _largest(change: FloatArray, value: FloatArray | float) -> float:
+    """Return the largest relative change; of nothing, nothing."""
+    size = np.broadcast_to(np.abs(np.asarray(value, dtype=float)), change.shape)
+    part = np.divide(np.abs(change), size, out=np.zeros(change.shape), where=size > 0.0)
+    return float(np.max(part, initial=0.0))
+
+
+# The decision of "auto" by a tolerance: effects too small to be seen are neglected, larger ones are on.
+
+
+SHARE = 0.1
+"""Of the tolerance, for all neglected effects together: estimates may be wrong by a factor of two and
+more, and neglected effects must stay invisible."""
+
+
+@dataclass(frozen=True)
+class Decided:
+    """A scene with what its tolerance decided.
+
+    Attributes
+    ----------
+    scene : Scene
+        Its `effects` say what to do.
+    automatic : mapping of str to str
+        Effects that the tolerance decided against what the scene calls for, and why.
+    influences : mapping of str to Influence
+        Estimates; empty where there was no tolerance to decide by.
+    seconds : float
+        CPU time that deciding took, s.
+    """
+
+    scene: Scene
+    automatic: Mapping[str, str] = field(default_factory=dict)
+    influences: Mapping[str, Influence] = field(default_factory=dict)
+    seconds: float = 0.0
+
+    @property
+    def neglected(self) -> dict[str, Influence]:
+        """Effects that the scene calls for and are off, with their influence."""
+        off = [name for name in self.automatic if self.scene.effects[name] == "off"]
+        return {name: self.influences[name] for name in off}
+
+
+def decide_effects(scene: Scene) -> Decided:
+    """Decide the effects that are left to "auto" by the scene's tolerance; without one, as the scene calls.
+
+    Influences, relative to mean and peak-to-peak transmission error and to the largest bearing force,
+    may sum up to a tenth of the tolerance in neglected effects, the smallest first. An effect that the scene
+    does not call for is on if its influence exceeds that by itself.
+    """
+    if scene.tolerance is None:
+        return Decided(scene)
+    began = cpu_seconds()
+    influences = estimate_influences(scene)
+    allowed = SHARE * scene.tolerance
+    free = {
+        name: influence for name, influence in influences.items() if scene.effects.get(name, "auto") == "auto"
+    }
+    automatic = {
+        name: f"on for the tolerance of {scene.tolerance:g}: influence {influence.words}"
+        for name, influence in free.items()
+        if not influence.on and influence.largest > allowed
+    }
+    choices, total = dict.fromkeys(automatic, "on"), 0.0
+    linear = {effect.name for effect in EFFECTS if effect.linear}
+    candidates = {name: influence for name, influence in free.items() if influence.on and name in linear}
+    for name, influence in sorted(candidates.items(), key=lambda item: item[1].largest):
+        total += influence.largest
+        if total <= allowed:
+            choices[name] = "off"
+            automatic[name] = (
+                f"neglected for the tolerance of {scene.tolerance:g}: influence {influence.words}"
+            )
+    chosen = replace(scene, effects={**scene.effects, **choices})
+    return Decided(chosen, automatic, influences, cpu_seconds() - began)
+
 
 ANY_PART = ""
 

@@ -12,10 +12,11 @@ import numpy as np
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.assembly.assemble import System
 from dynamics.forces.by_address import by_address, by_value
+from dynamics.forces.compiled import compiled
+from dynamics.forces.element_laws import FLANK, SPATIAL_FLANK, Elements, potential
+from dynamics.forces.local_state import LocalState
 from dynamics.integrators.advance import advance, prepare_samples, prepare_steps
-from dynamics.integrators.energy import stored_energy
 from dynamics.integrators.method_choice import choose_method
-from dynamics.integrators.sample_figures import SampleFigures, sample_figures
 from dynamics.integrators.sample_ring import Sampler, SampleRing, make_ring, make_sampler
 from dynamics.integrators.sampler import continue_past_the_end, sample_start
 from dynamics.integrators.state_sink import BLOCK, StateSink
@@ -23,9 +24,133 @@ from dynamics.integrators.static import StaticSolution
 from dynamics.integrators.step_control import Control
 from dynamics.integrators.tableaus import EXPLICIT_EMBEDDED_ORDER, IMPLICIT_EMBEDDED_ORDER
 from dynamics.integrators.workspace import Count, Workspace, geometric_steps, make_workspace
+from dynamics.motion.observation import local_state, observe_laws
 from dynamics.motion.sampled_states import Widths
 from dynamics.scene import Integration
-from dynamics.types import FloatArray, IntArray, RunStatus
+from dynamics.types import FloatArray, IntArray, Json, RunStatus
+
+# Peaks and rms of forces over a run, and what its anti-alias filter took away.
+
+
+@dataclass(frozen=True)
+class SampleFigures:
+    """Figures over the inner grid of a run: m meshes, c coast flanks, b supports, N.
+
+    Attributes
+    ----------
+    mesh_peak, mesh_rms : (m,) arrays
+        Largest magnitude and rms of the driving flanks' forces.
+    coast_peak, coast_rms : (m,) arrays
+        Of the coast flanks; zero where there is none.
+    bearing_peak, bearing_rms : (b, 3 or 6) arrays
+        Of forces (and moments, N m) in the frame of each support.
+    removed, folded : (m,) arrays
+        Rms of what the filter took away from the mesh force; of its content near half the inner rate, a
+        bound on what may have folded into the output.
+    """
+
+    mesh_peak: FloatArray
+    mesh_rms: FloatArray
+    coast_peak: FloatArray
+    coast_rms: FloatArray
+    bearing_peak: FloatArray
+    bearing_rms: FloatArray
+    removed: FloatArray
+    folded: FloatArray
+
+    def to_json(self, system: System) -> Json:
+        """Return peaks and rms by part, and the sampling error of the mesh forces."""
+        meshes = [mesh.name for mesh in system.scene.meshes]
+        coast = [meshes[mesh] for mesh in system.flanks.coast]
+        stored = system.supports.name if system.scene.outputs.bearing_forces else ()
+        return {
+            "mesh_force": _by_part(meshes, self.mesh_peak, self.mesh_rms),
+            "coast_force": {
+                name: part
+                for name, part in _by_part(meshes, self.coast_peak, self.coast_rms).items()
+                if name in coast
+            },
+            "bearing_force": _by_part(stored, self.bearing_peak[:, :3], self.bearing_rms[:, :3]),
+        }
+
+    def error(self, system: System) -> Json:
+        """Return the sampling error of the mesh forces, N rms."""
+        names = (mesh.name for mesh in system.scene.meshes)
+        return {
+            "unit": "N",
+            "source": "removed: above the pass band, not in the output; folded: bound on content above the "
+            "inner grid, which the output may hold at a wrong frequency",
+            "mesh_force": {
+                name: {"removed": float(removed), "folded": float(folded)}
+                for name, removed, folded in zip(names, self.removed, self.folded, strict=True)
+            },
+        }
+
+
+def sample_figures(system: System, ring: SampleRing, points: int, samples: int) -> SampleFigures:
+    """Read the figures off a ring after `points` of the inner grid and `samples` of the output."""
+    rows, supports = ring.local.force.size, system.bearing_stiffness.shape[:2]
+    largest, rms = ring.peaks.largest, np.sqrt(ring.peaks.square / max(points, 1))
+    driving = system.driving_rows
+    coast = np.zeros((2, driving.size))
+    for element, mesh in enumerate(system.flanks.coast, start=driving.size):
+        row = system.arrays.elements.first[element]
+        coast[:, mesh] = largest[row], rms[row]
+    removed, folded = (np.sqrt(part[driving] / max(samples, 1)) for part in (ring.removed, ring.folded))
+    return SampleFigures(
+        largest[driving],
+        rms[driving],
+        coast[0],
+        coast[1],
+        largest[rows:].reshape(supports),
+        rms[rows:].reshape(supports),
+        removed,
+        folded,
+    )
+
+
+def _by_part(names: list[str] | tuple[str, ...], peak: FloatArray, rms: FloatArray) -> Json:
+    """Peak and rms of each part."""
+    return {
+        name: {"peak": np.asarray(p).tolist(), "rms": np.asarray(r).tolist()}
+        for name, p, r in zip(names, peak, rms, strict=False)
+    }
+
+
+# Energy stored in a system at one instant.
+
+
+def stored_energy(
+    system: SystemArrays, time: float, q: FloatArray, v: FloatArray, moved: IntArray
+) -> FloatArray:
+    """Return kinetic, bushing and mesh energy, J, (3,).
+
+    Bodies move with the laws' speeds W_k times their kinematic vectors r_k, and their rate in `v` on top:
+    T = v M v/2 + sum_k W_k r_k M v + sum_kl W_k W_l r_k M r_l/2.
+    """
+    at = np.array([time])
+    speed = observe_laws(system, at)[2, :, 0]
+    kinetic = (
+        0.5 * v @ system.mass @ v - speed @ system.inertial @ v + 0.5 * speed @ system.total_inertia @ speed
+    )
+    mesh, bearing = _in_elements(
+        by_address(system.elements), by_address(local_state(system, time, q, v, moved))
+    )
+    linear = 0.5 * q @ system.stiffness @ q - system.constant @ q
+    return np.array([kinetic, linear + bearing, mesh])
+
+
+@compiled
+def _in_elements(elements: Elements, local: LocalState) -> tuple[float, float]:
+    """Energies that flanks and that bearings store."""
+    mesh, bearing = 0.0, 0.0
+    for e in range(elements.law.size):
+        if elements.law[e] == FLANK or elements.law[e] == SPATIAL_FLANK:
+            mesh += potential(elements, local, e)[0]
+        else:
+            bearing += potential(elements, local, e)[0]
+    return mesh, bearing
+
 
 Progress = Callable[[float, str], None]
 Cancel = Callable[[], bool]

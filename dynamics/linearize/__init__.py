@@ -1,12 +1,18 @@
 """The system linearized about its static equilibrium: modes at rest and over speed, forced response."""
 
 from dynamics.linearize.common_period import CommonPeriod, common_period
-from dynamics.linearize.forced_response import ForcedResponse, Peak, forced_response, peaks
+from dynamics.linearize.forced_response import (
+    ForcedResponse,
+    Peak,
+    PowerBalance,
+    forced_response,
+    peaks,
+    power_balance,
+)
 from dynamics.linearize.harmonic_response import HarmonicResponse, harmonic_response
 from dynamics.linearize.linear_system import LinearSystem, linearize
 from dynamics.linearize.modal_analysis import ModalAnalysis, modal_analysis
 from dynamics.linearize.modes import Modes, natural_modes
-from dynamics.linearize.power_balance import PowerBalance, power_balance
 from dynamics.linearize.whirl import WhirlModes, whirl_modes
 
 __all__ = [

@@ -3,25 +3,54 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from dynamics.assembly.assemble import System
-from dynamics.checks import integer
+from dynamics.assembly.assemble import System, assemble
+from dynamics.checks import integer, positive
 from dynamics.linearize.campbell import WhirlBranches, whirl_branches
 from dynamics.linearize.critical_speeds import CriticalSpeeds, critical_speeds
 from dynamics.linearize.energy_shares import freedom_parts, spring_parts
 from dynamics.linearize.flank_cycles import averaged, flank_cycles
 from dynamics.linearize.linear_system import LinearSystem, about_running, linearize, require_freedoms
 from dynamics.linearize.modes import Modes, natural_modes
-from dynamics.linearize.resolution import resolved_to, with_shafts_to
 from dynamics.linearize.speeds import checked_speeds, leading_law, mesh_frequencies
 from dynamics.linearize.whirl import ComplexArray
 from dynamics.results.array_file import ArrayFile, Stored
 from dynamics.results.force_check import checked_ledger
 from dynamics.types import FloatArray, IntArray, Json
 from host import cpu_seconds
+
+# To which frequency the shafts of a modal analysis are resolved.
+
+
+def resolved_to(system: System, speed: FloatArray, orders: int, highest: float | None) -> float:
+    """Return the frequency to resolve, Hz: `highest`, else the highest of the orders at the highest speed.
+
+    Raises
+    ------
+    InputError
+        If `highest` is not positive.
+    """
+    if highest is not None:
+        return positive("highest_frequency", highest)
+    if system.scene.highest_frequency is not None:
+        return system.scene.highest_frequency
+    if speed.size and speed[-1] > 0.0:
+        top = float(np.max(mesh_frequencies(system, speed[-1:]), initial=0.0))
+    else:
+        top = system.sampling.mesh_frequency
+    return orders * top
+
+
+def with_shafts_to(system: System, highest: float) -> System:
+    """Return `system`, its shafts that bend and twist resolved to `highest`, Hz; 0: as they are."""
+    elastic = [rotor.elastic.highest for rotor in system.rotors if rotor.elastic is not None]
+    if highest == 0.0 or all(frequency == highest for frequency in elastic):
+        return system
+    return assemble(replace(system.scene, highest_frequency=highest))
+
 
 MOST_ORDERS = 100
 LARGE = 1.0 / 3.0  # share of the energy from which a motion or a spring gives a mode its name

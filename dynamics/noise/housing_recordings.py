@@ -2,20 +2,252 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
+from scipy import sparse
+from scipy.fft import irfft, next_fast_len, rfft
 
-from dynamics.acoustics import Air, ElementalRadiators, Recording, principal_direction, series_recording
+from bounds import at_least
+from dynamics.acoustics import (
+    Air,
+    ElementalRadiators,
+    Hull,
+    Recording,
+    outer_hull,
+    principal_direction,
+    series_recording,
+)
+from dynamics.acoustics.hull import ComplexArray
 from dynamics.acoustics.recording import SAMPLE_RATE
 from dynamics.acoustics.run_recording import unit_vector
 from dynamics.checks import positive
+from dynamics.errors import InputError
 from dynamics.housing_modes.reduced_housing import ReducedHousing
-from dynamics.noise.sound_pressure import MONOPOLES, pressure_signal, sound_limit
+from dynamics.noise.housing_radiation import resolved_frequency
 from dynamics.orders.resampling import low_passed
 from dynamics.results import RunResult
 from dynamics.types import FloatArray
-from dynamics.vibration import finer_seat_forces, point_signal
+from dynamics.vibration import MotionQuantity, finer_seat_forces, point_signal
+from dynamics.vibration.modal_amplitudes import modal_amplitudes
+from dynamics.vibration.time_signal import PIECE, motion_pieces
+
+# Sound pressure of a housing at a microphone in the free field, under the forces of its bearings.
+
+
+# Paths of sound from the panels of a hull to a microphone in the air: a delay and a gain each.
+
+
+NEAREST = 2.0
+"""Least distance of a microphone over the longest edge of a panel: nearer it is no point source."""
+HALF_LENGTH, KAISER = 12, 8.0
+"""Of the interpolation between samples: up to a quarter of their rate delays are exact within 1e-4."""
+BLOCK = 4_000_000  # phases that are held at a time
+
+
+@dataclass(frozen=True)
+class SoundPaths:
+    """Paths from T panels to a microphone.
+
+    Attributes
+    ----------
+    delay : (T,) array
+        Travel time r/c, s.
+    gain : (T, r) array
+        Sound pressure per acceleration of each coordinate, Pa s^2/m (per m/s^2 of a coordinate in m).
+    """
+
+    delay: FloatArray
+    gain: FloatArray
+
+    def transfer(self, frequency: FloatArray) -> ComplexArray:
+        """Return the sound pressure per acceleration of each coordinate, (N, r), at (N,) in Hz."""
+        omega = 2.0 * np.pi * np.asarray(frequency, dtype=float)
+        pressure = np.empty((omega.size, self.gain.shape[1]), dtype=complex)
+        step = max(BLOCK // self.delay.size, 1)
+        for first in range(0, omega.size, step):
+            part = slice(first, first + step)
+            pressure[part] = np.exp(-1j * np.outer(omega[part], self.delay)) @ self.gain
+        return pressure
+
+    def impulse_response(self, rate: float) -> tuple[FloatArray, int]:
+        """Return the sound pressure after an acceleration of one sample, (L, r), and its first sample.
+
+        Each delay is spread over samples by a windowed sinc. The response is finite: it ends with the longest
+        path. `rate` in Hz.
+        """
+        at = self.delay * rate
+        nearest = np.floor(at).astype(int) + np.arange(1 - HALF_LENGTH, HALF_LENGTH + 1)[:, None]
+        off = (nearest - at) / HALF_LENGTH
+        window = np.i0(KAISER * np.sqrt(np.maximum(1.0 - off**2, 0.0))) / np.i0(KAISER)
+        weight = window * np.sinc(nearest - at)
+        first, last = int(nearest.min()), int(nearest.max())
+        panel = np.broadcast_to(np.arange(at.size), nearest.shape)
+        entries = weight.ravel(), ((nearest - first).ravel(), panel.ravel())
+        spread = sparse.csr_array(entries, shape=(last - first + 1, at.size))
+        return np.asarray(spread @ self.gain), first
+
+
+def sound_paths(
+    hull: Hull, shapes: FloatArray, microphone: FloatArray, model: ElementalRadiators, air: Air
+) -> SoundPaths:
+    """Return the paths from a hull that moves in shapes to a microphone.
+
+    Parameters
+    ----------
+    hull : Hull
+    shapes : (T, r) array
+        Mean outward displacement of the panels per coordinate.
+    microphone : (3,) array
+        m, in the frame of the hull.
+
+    Raises
+    ------
+    InputError
+        The microphone is no point of the air: inside a closed hull, or too near to a panel.
+    """
+    at = np.asarray(microphone, dtype=float)
+    if at.shape != (3,) or not np.all(np.isfinite(at)):
+        raise InputError("microphone", np.shape(microphone), "three finite coordinates")
+    distance = np.linalg.norm(hull.centers - at, axis=1)
+    _require_in_air(hull, at, float(distance.min()))
+    volume = air.density / model.solid_angle * hull.areas / distance
+    return SoundPaths(distance / air.sound_speed, volume[:, None] * shapes)
+
+
+def _require_in_air(hull: Hull, microphone: FloatArray, distance: float) -> None:
+    """Refuse a microphone inside of the hull or near to a panel."""
+    if hull.closed and _solid_angle(hull, microphone) > 2.0 * np.pi:
+        raise InputError("microphone", microphone.tolist(), "a point outside of the housing")
+    least = NEAREST * hull.longest_edge
+    if distance < least:
+        bound = at_least(least, "m", note=" from the surface, two of its longest edges")
+        raise InputError("microphone", distance, bound, "Move it away, or use smaller elements.")
+
+
+def _solid_angle(hull: Hull, point: FloatArray) -> float:
+    """Return the solid angle under which a closed hull is seen, sr: 4 pi from inside, 0 from outside.
+
+    A. van Oosterom, J. Strackee, IEEE Transactions on Biomedical Engineering 30 (1983) 125-126.
+    """
+    a, b, c = np.moveaxis(hull.corners - point, 1, 0)
+    la, lb, lc = (np.linalg.norm(corner, axis=1) for corner in (a, b, c))
+    volume = np.sum(a * np.cross(b, c), axis=1)
+    cosines = la * lb * lc + np.sum(a * b, 1) * lc + np.sum(a * c, 1) * lb + np.sum(b * c, 1) * la
+    return float(2.0 * np.arctan2(volume, cosines).sum())
+
+
+MONOPOLES = ElementalRadiators()
+
+
+def pressure_transfer(
+    housing: ReducedHousing,
+    microphone: FloatArray,
+    frequency: FloatArray,
+    model: ElementalRadiators = MONOPOLES,
+    air: Air | None = None,
+) -> ComplexArray:
+    """Return the sound pressure at a microphone per force on the seats.
+
+    Parameters
+    ----------
+    housing : ReducedHousing
+        With mass and a surface.
+    microphone : (3,) array
+        In the frame of the housing's mesh, m.
+    frequency : (N,) array
+        Hz; `sound_limit` says up to where the result is valid.
+    model : ElementalRadiators
+        Monopoles in free space, or in a rigid baffle.
+    air : Air, optional
+
+    Returns
+    -------
+    (N, s) complex array
+        By the seats' motions, Pa/N and Pa/(N m).
+
+    Raises
+    ------
+    InputError
+        As `outer_hull`, `sound_paths` and `modal_amplitudes` do.
+    """
+    hertz = np.asarray(frequency, dtype=float)
+    paths = _paths(housing, microphone, model, air)
+    amplitude = modal_amplitudes(housing, hertz, np.eye(housing.motions, dtype=complex)[None])
+    per_mode = paths.transfer(hertz) @ housing.modes[1]
+    return np.asarray(-((2.0 * np.pi * hertz[:, None]) ** 2) * np.einsum("nsm,nm->ns", amplitude, per_mode))
+
+
+def pressure_signal(
+    housing: ReducedHousing,
+    time: FloatArray,
+    force: FloatArray,
+    microphone: FloatArray,
+    model: ElementalRadiators = MONOPOLES,
+    air: Air | None = None,
+) -> FloatArray:
+    """Return the sound pressure at a microphone under forces over time, (T,), Pa.
+
+    The modes follow the forces as in `motion_signal`, and each panel is heard r/c later. Nothing wraps: the
+    modes are integrated, and the paths are a finite impulse response. The housing starts at rest: silence
+    comes before the first sound.
+
+    Parameters
+    ----------
+    housing, microphone, model, air
+        As in `pressure_transfer`.
+    time : (T,) array
+        s, uniform. Delays are exact within 1e-4 up to a quarter of its rate.
+    force : (T, s) array
+        On the motions of the seats, N and N m (`run_seat_forces`).
+
+    Raises
+    ------
+    InputError
+        As `outer_hull`, `sound_paths` and `motion_signal` do.
+    """
+    paths = _paths(housing, microphone, model, air)
+    rows = np.eye(len(housing.mass))
+    acceleration = motion_pieces(housing, time, force, rows, MotionQuantity.ACCELERATION)
+    times = np.asarray(time, dtype=float)
+    response, first = paths.impulse_response((times.size - 1) / float(times[-1] - times[0]))
+    return _convolved(acceleration, response, first, times.size)
+
+
+def sound_limit(housing: ReducedHousing, air: Air | None = None) -> float:
+    """Return the frequency in Hz up to which modes carry the motion and panels resolve the sound.
+
+    Raises
+    ------
+    InputError
+        As `outer_hull` does.
+    """
+    return min(housing.valid_frequency, resolved_frequency(outer_hull(housing), air or Air()))
+
+
+def _paths(
+    housing: ReducedHousing, microphone: FloatArray, model: ElementalRadiators, air: Air | None
+) -> SoundPaths:
+    """Return the paths from all panels of the outer hull."""
+    outer = outer_hull(housing)
+    return sound_paths(outer.hull, outer.shapes, microphone, model, air or Air())
+
+
+def _convolved(pieces: Iterator[FloatArray], response: FloatArray, first: int, samples: int) -> FloatArray:
+    """Return the sum of all columns through their impulse responses, (samples,), by overlap-add.
+
+    `first` is the sample of the first value of the responses.
+    """
+    count = next_fast_len(PIECE + len(response) - 1, real=True)
+    filters = rfft(response, count, axis=0)
+    total, begin = np.zeros(samples + count), 0
+    for piece in pieces:
+        total[begin : begin + count] += irfft(np.sum(rfft(piece, count, axis=0) * filters, axis=1), count)
+        begin += len(piece)
+    heard = total[max(-first, 0) :][: max(samples - max(first, 0), 0)]
+    return np.concatenate([np.zeros(samples - heard.size), heard])
+
 
 FINER = 4
 """Times the run's rate, at which the force is a cubic spline."""

@@ -7,9 +7,19 @@ from dynamics.orders.peaks import Peak, find_peaks
 from dynamics.orders.position_grid import resample_to_position
 from dynamics.orders.sidebands import Sideband, sidebands
 from dynamics.orders.spectrum import MeshOrder, Spectrum, mesh_orders, spectrum, window_spectrum
-from dynamics.orders.third_octaves import ThirdOctaves, band_number, band_sums, nominal_center, third_octaves
+from dynamics.orders.third_octaves import (
+    OrderTrack,
+    ThirdOctaves,
+    Waterfall,
+    band_number,
+    band_sums,
+    frequency_waterfall,
+    nominal_center,
+    order_track,
+    order_waterfall,
+    third_octaves,
+)
 from dynamics.orders.valid_orders import highest_valid_order
-from dynamics.orders.waterfall import OrderTrack, Waterfall, frequency_waterfall, order_track, order_waterfall
 
 __all__ = [
     "BearingOrders",

@@ -12,13 +12,124 @@ from bounds import at_least
 from dynamics.checks import integer
 from dynamics.errors import InputError
 from dynamics.orders.bearing_signals import bearing_signals
-from dynamics.orders.mesh_harmonics import MeshHarmonics, counting_mesh, mesh_harmonics
 from dynamics.orders.order_frequency import leading_shaft
-from dynamics.orders.smearing import smearing
 from dynamics.orders.valid_orders import checked_order
 from dynamics.results import RunResult
-from dynamics.results.order_fit import ComplexArray, order_phasors
-from dynamics.types import BoolArray, FloatArray, Json
+from dynamics.results.order_fit import ComplexArray, order_phasors, unwrapped
+from dynamics.types import BoolArray, FloatArray, IntArray, Json
+
+# Harmonics of all meshes of a run, counted by the frequency of one of them.
+
+
+SAME = 1e-6
+"""Orders closer than this are one: frequencies of meshes in a train are ratios of teeth."""
+
+
+@dataclass(frozen=True)
+class MeshHarmonics:
+    """Harmonics of meshes, in rising order; one that several meshes share is that of the first of them.
+
+    Attributes
+    ----------
+    order : (H,) array
+        Multiples of the frequency of the mesh that counts.
+    mesh : (H,) int array
+        Whose harmonic each is.
+    multiple : (H,) int array
+        Of the frequency of that mesh.
+    """
+
+    order: FloatArray
+    mesh: IntArray
+    multiple: IntArray
+
+    @property
+    def closest(self) -> float:
+        """Smallest distance of two orders, or of the first from the mean."""
+        return float(np.min(np.diff(self.order, prepend=0.0)))
+
+    def cycles(self, result: RunResult) -> FloatArray:
+        """Return how often each has repeated since the start of the run, (H, T).
+
+        They rise, whichever way a mesh turns; where it reverses for a while they fall.
+        """
+        turned = unwrapped(result.position)
+        turned = (turned - turned[:, :1]) * np.where(turned[:, -1:] < turned[:, :1], -1.0, 1.0)
+        return np.asarray(self.multiple[:, None] * turned[self.mesh])
+
+
+def counting_mesh(result: RunResult) -> int:
+    """Return the first mesh that turns.
+
+    Raises
+    ------
+    InputError
+        There is none.
+    """
+    turning: BoolArray = np.any(result.mesh_frequency > 0.0, axis=-1)
+    if not np.any(turning):
+        raise InputError("mesh_frequency", 0.0, "a run with a mesh that turns")
+    return int(np.argmax(turning))
+
+
+def mesh_harmonics(result: RunResult, highest: int) -> MeshHarmonics:
+    """Return the harmonics of all meshes that turn up to order `highest` of the `counting_mesh`.
+
+    Raises
+    ------
+    InputError
+        No mesh turns.
+    """
+    mean = result.mesh_frequency.mean(axis=-1)
+    ratio = mean / mean[counting_mesh(result)]
+    rows = [
+        (multiple * ratio[mesh], mesh, multiple)
+        for mesh in np.flatnonzero(ratio > 0.0)
+        for multiple in range(1, int(highest / ratio[mesh] * (1.0 + SAME)) + 1)
+    ]
+    rows.sort(key=lambda row: row[0])
+    kept = rows[:1]
+    for row in rows[1:]:
+        if row[0] - kept[-1][0] > SAME * row[0]:
+            kept.append(row)
+    order, mesh, multiple = (np.array(column) for column in zip(*kept, strict=True))
+    return MeshHarmonics(order, mesh, multiple)
+
+
+# What the window of an order analysis rounds off resonances that a run sweeps through.
+
+
+SECOND_MOMENT = 1.0 / 12.0 - 0.5 / np.pi**2
+"""Of Hann weights about their middle, over the square of the window's length."""
+
+
+def smearing(modes: Json, frequency: FloatArray, sweep: FloatArray) -> FloatArray:
+    """Return the leading error of amplitudes under Hann windows, of the amplitude near each mode, (S, H).
+
+    An amplitude that passes a mode of frequency f_n and damping ratio z goes with 1/(1 + i x), where
+    x = (f - f_n)/(z f_n). Weights of the second moment m over a window in which f changes by d average it to
+    (1 - m (d/(z f_n))^2/(1 + i x)^2) of itself; stated is the largest of all modes. Where it is above 0.1
+    the amplitude is not resolved: take shorter windows, or run up more slowly.
+
+    Parameters
+    ----------
+    modes : dict
+        `frequency` in Hz and `damping_ratio`, as `RunResult.modes` has them.
+    frequency : (S, H) array
+        Hz.
+    sweep : (S,) array
+        Change of the frequency within the window, of its mean.
+    """
+    natural = np.asarray(modes.get("frequency", ()), dtype=float)
+    ratio = np.asarray(modes.get("damping_ratio", ()), dtype=float)
+    swept = sweep[:, None] * frequency
+    largest = np.full(frequency.shape, 0.0 if natural.size else np.nan)
+    for width, center in zip(natural * ratio, natural, strict=True):
+        if width > 0.0:
+            off = (frequency - center) / width
+            largest = np.maximum(largest, SECOND_MOMENT * (swept / width) ** 2 / (1.0 + off**2))
+    return largest
+
 
 PITCHES = 16
 """Base pitches of a window, if orders lie no closer than an eighth."""

@@ -6,10 +6,189 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bounds import at_least
+from bounds import Bound, at_least, at_most, between
+from dynamics.checks import integer
 from dynamics.errors import InputError
-from dynamics.orders.waterfall import Waterfall
+from dynamics.orders.position_grid import check_series, resample_to_position
+from dynamics.orders.spectrum import Spectrum, spectrum
+from dynamics.orders.valid_orders import checked_order
+from dynamics.results import RunResult
 from dynamics.types import FloatArray, IntArray
+
+# Waterfalls: amplitude over speed and frequency, or over speed and mesh order, and cuts through them.
+
+
+ON_LINE = 1e-6  # of a line's distance
+
+
+@dataclass(frozen=True)
+class Waterfall:
+    """Spectra of B blocks along a run.
+
+    Attributes
+    ----------
+    line : (K,) array
+        Frequencies in Hz, or orders in multiples of the mesh frequency, from 0, equally spaced.
+    time, mesh_frequency : (B,) arrays
+        Means of each block, s and Hz.
+    amplitude : (..., B, K) array
+        Peak amplitude under the window, in `unit`; the mean at line 0.
+    rms : (..., B) array
+        Of each block about its mean, of all that the signal holds, in `unit`.
+    unit : str
+    noise_bandwidth : float
+        Of the window, in lines.
+    """
+
+    line: FloatArray
+    time: FloatArray
+    mesh_frequency: FloatArray
+    amplitude: FloatArray
+    rms: FloatArray
+    unit: str
+    noise_bandwidth: float
+
+    def cut(self, line: float) -> FloatArray:
+        """Return the amplitude over the run at one line, (..., B): an order cut where lines are orders.
+
+        Raises
+        ------
+        InputError
+            If there is no such line.
+        """
+        fraction = line / self.line[1]
+        nearest = round(fraction)
+        if abs(fraction - nearest) > ON_LINE or not 0 <= nearest < self.line.size:
+            bound = f"a multiple of {self.line[1]:g} up to {self.line[-1]:g}"
+            raise InputError("line", line, bound, "Longer blocks have more lines.")
+        return np.asarray(self.amplitude[..., nearest])
+
+
+@dataclass(frozen=True)
+class OrderTrack:
+    """Amplitudes of mesh orders along a run.
+
+    Attributes
+    ----------
+    order : (K,) array
+        Multiples of the mesh frequency, from 0.
+    time, mesh_frequency : (B,) arrays
+        Middle of each block, s and Hz.
+    amplitude : (..., B, K) array
+        Peak amplitude in the series' unit.
+    """
+
+    order: FloatArray
+    time: FloatArray
+    mesh_frequency: FloatArray
+    amplitude: FloatArray
+
+
+def order_waterfall(
+    result: RunResult,
+    series: str,
+    pitches: int = 16,
+    highest: int | None = None,
+    mesh: int = 0,
+    window: str = "hann",
+    overlap: float = 0.0,
+) -> Waterfall:
+    """Return the spectra over mesh orders, up to `highest`, of blocks of `pitches` base pitches.
+
+    Blocks overlap by that share of their length. Orders are 1/`pitches` apart. A multiple of a gear's teeth
+    puts the orders of its shaft on lines. Without `highest` they reach to the tenth mesh order, or as far as
+    the output holds.
+
+    Raises
+    ------
+    InputError
+        If the run is shorter than one block, has no such series, or its output does not hold the order.
+    """
+    unit = check_series(result, series)
+    integer("pitches", pitches, 1, 1_000_000)
+    if not result.mesh:
+        raise InputError("mesh", mesh, "one of the run, which has none: orders are those of a mesh")
+    highest = checked_order(result, "highest", highest, mesh)
+    per_pitch = max(64, 8 * highest)
+    _, time, values = resample_to_position(result, getattr(result, series), per_pitch, mesh)
+    if time.size < pitches * per_pitch:
+        bound = at_most(time.size // per_pitch, note=", the run's length")
+        raise InputError("pitches", pitches, bound)
+    blocks = _blocks(time.size, pitches * per_pitch, overlap)
+    frequency = np.interp(time, result.time, result.mesh_frequency[mesh])
+    made = [spectrum(values[..., block], float(per_pitch), unit, window) for block in blocks]
+    return _waterfall(made, values, blocks, (time, frequency), highest * pitches + 1)
+
+
+def order_track(
+    result: RunResult, series: str, pitches: int = 16, highest: int | None = None, mesh: int = 0
+) -> OrderTrack:
+    """Return the amplitudes of the mesh orders 0 to `highest` in blocks of `pitches` base pitches.
+
+    Raises
+    ------
+    InputError
+        If the run is shorter than one block, or its output does not hold the order.
+    """
+    whole = order_waterfall(result, series, pitches, highest, mesh)
+    orders = np.arange((whole.line.size - 1) // pitches + 1)
+    amplitude = whole.amplitude[..., orders * pitches]
+    return OrderTrack(orders.astype(float), whole.time, whole.mesh_frequency, amplitude)
+
+
+def frequency_waterfall(
+    result: RunResult,
+    series: str,
+    block: float,
+    overlap: float = 0.5,
+    mesh: int = 0,
+    window: str = "hann",
+) -> Waterfall:
+    """Return the spectra over frequency of blocks of `block` seconds that overlap by that share.
+
+    Raises
+    ------
+    InputError
+        If the run is shorter than one block, or has no such series.
+    """
+    unit = check_series(result, series)
+    length = round(block * result.sample_rate)
+    if not 4 <= length <= result.time.size:
+        bound = between(4.0 / result.sample_rate, float(result.time[-1]), "s", "the run's")
+        raise InputError("block", block, bound)
+    blocks = _blocks(result.time.size, length, overlap)
+    values = getattr(result, series)
+    made = [spectrum(values[..., block], result.sample_rate, unit, window) for block in blocks]
+    return _waterfall(made, values, blocks, (result.time, result.mesh_frequency[mesh]))
+
+
+def _blocks(samples: int, length: int, overlap: float) -> list[slice]:
+    """Return the samples of every block."""
+    if not 0.0 <= overlap < 1.0:
+        raise InputError("overlap", overlap, Bound(0.0, 1.0, high_open=True))
+    step = max(round(length * (1.0 - overlap)), 1)
+    return [slice(first, first + length) for first in range(0, samples - length + 1, step)]
+
+
+def _waterfall(
+    made: list[Spectrum],
+    values: FloatArray,
+    blocks: list[slice],
+    over: tuple[FloatArray, FloatArray],
+    lines: int | None = None,
+) -> Waterfall:
+    """Put the spectra of blocks of `values` (..., T) together, the first `lines`; `over` (T,) are means."""
+    time, frequency = (np.array([series[block].mean() for block in blocks]) for series in over)
+    return Waterfall(
+        made[0].frequency[:lines],
+        time,
+        frequency,
+        np.stack([one.amplitude[..., :lines] for one in made], axis=-2),
+        np.stack([values[..., block].std(axis=-1) for block in blocks], axis=-1),
+        made[0].unit,
+        made[0].noise_bandwidth,
+    )
+
 
 LEAST_LINES = 3.0
 """Lines in the narrowest band: below, a band holds what leaks from its neighbors."""

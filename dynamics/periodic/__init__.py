@@ -5,8 +5,7 @@ from dynamics.periodic.floquet import Instability, floquet_multipliers
 from dynamics.periodic.motion import PeriodicMotion, motion, spectrum
 from dynamics.periodic.period_map import PeriodicProblem, PeriodMap, periodic_problem
 from dynamics.periodic.shooting import Orbit, OrbitStatus, find_orbit
-from dynamics.periodic.steady_states import SteadyStates, steady_states
-from dynamics.periodic.sweep import settled, sweep
+from dynamics.periodic.steady_states import SteadyStates, settled, steady_states, sweep
 
 __all__ = [
     "Bifurcation",

@@ -7,25 +7,175 @@ from functools import cached_property
 
 import numpy as np
 
-from dynamics.arrays.arrays import SystemArrays
+from bounds import above, below
+from dynamics.arrays.arrays import LawArrays, SystemArrays
 from dynamics.assembly.assemble import System
 from dynamics.assembly.static_reference import with_static_reference
 from dynamics.checks import integer
 from dynamics.errors import InputError, SolveError
 from dynamics.forces.by_address import by_address
+from dynamics.forces.law import Law
 from dynamics.integrators import static_equilibrium
 from dynamics.integrators.advance import prepare_steps
 from dynamics.integrators.workspace import Workspace, make_workspace
-from dynamics.linearize import natural_modes
+from dynamics.linearize import Modes, natural_modes
 from dynamics.linearize.common_period import CommonPeriod, common_period
 from dynamics.linearize.linear_system import about_running, require_freedoms
 from dynamics.linearize.load_harmonics import load_cycles
 from dynamics.mechanism.additions import ELEMENT_PASSING
-from dynamics.periodic.constant_speed import at_constant_speed
 from dynamics.periodic.march import HALVINGS, march
-from dynamics.periodic.period_grid import PeriodGrid, period_grid, refined
-from dynamics.periodic.typical_size import largest_force, resonant_gain, stiffest
-from dynamics.types import FloatArray
+from dynamics.types import FloatArray, IntArray
+
+# Steps over one common period, which end wherever a table has a knot.
+
+
+SAME = 1e-11  # of the period: nearer knots count as one, nearer step sizes as equal
+MOST_STEPS = 1_000_000
+
+
+@dataclass(frozen=True)
+class PeriodGrid:
+    """N steps of U different sizes, in common periods; the same at all speeds.
+
+    Attributes
+    ----------
+    phase : (N + 1,) array
+        Ends of the steps, from 0 to 1.
+    size : (U,) array
+        Of the steps, and 0 after them.
+    level : (N,) int array
+        Which size each step has.
+    """
+
+    phase: FloatArray
+    size: FloatArray
+    level: IntArray
+
+
+def period_grid(system: System, period: CommonPeriod, largest: float) -> PeriodGrid:
+    """Return steps of at most `largest` common periods, an equal number of them between any two knots.
+
+    Tables have a kink in their second derivative at each knot (a jump of stiffness is a narrow interval
+    between two of them): steps that end there keep the method's order.
+
+    Raises
+    ------
+    InputError
+        If that takes more than a million steps.
+    """
+    knots = _knots(system, period)
+    counts = np.maximum(np.ceil(np.diff(knots) / largest * (1.0 - 1e-9)), 1.0)
+    if np.sum(counts) > MOST_STEPS:
+        bound = f"such that a period takes at most {MOST_STEPS} steps"
+        suggestion = "Look at one stage or fewer different teeth, or at higher speeds."
+        raise InputError("period", f"{period.revolutions} revolutions", bound, suggestion)
+    inner = [
+        np.linspace(start, end, int(count), endpoint=False)
+        for start, end, count in zip(knots[:-1], knots[1:], counts, strict=True)
+    ]
+    phase = np.append(np.concatenate(inner), 1.0)
+    key, level = np.unique(np.rint(np.diff(phase) / SAME), return_inverse=True)
+    size = np.array([np.mean(np.diff(phase)[level == k]) for k in range(key.size)])
+    return PeriodGrid(phase, np.append(size, 0.0), np.asarray(level, dtype=np.int64))
+
+
+def refined(grid: PeriodGrid) -> PeriodGrid:
+    """Return the grid with every step halved."""
+    middle = 0.5 * (grid.phase[1:] + grid.phase[:-1])
+    phase = np.sort(np.concatenate([grid.phase, middle]))
+    return PeriodGrid(phase, 0.5 * grid.size, np.repeat(grid.level, 2))
+
+
+def _knots(system: System, period: CommonPeriod) -> FloatArray:
+    """Phases at which any flank passes a knot of its table, with 0 and 1."""
+    elements, reference = system.arrays.elements, system.arrays.reference
+    table = elements.laws.flank.table
+    phases = [np.array([0.0, 1.0])]
+    for law, entry, mesh in zip(elements.law, elements.entry, elements.mesh, strict=True):
+        pitches = period.pitches[mesh] if law == Law.FLANK else 0
+        if pitches == 0:
+            continue
+        first, span = table.offset[entry, 0], table.period[entry]
+        last = int(np.searchsorted(table.knot[first:], span))
+        knot = table.knot[first : first + last] + table.shift[entry] - reference.offset[mesh]
+        cycles = abs(pitches) // round(span)
+        passed = (knot[:, None] + span * np.arange(cycles)) / pitches
+        phases.append(np.ravel(passed) % 1.0)
+    phase = np.sort(np.concatenate(phases))
+    kept = np.diff(phase, prepend=-1.0) > SAME
+    phase = phase[kept]
+    phase[-1] = 1.0
+    return phase
+
+
+# A system at one constant speed under constant loads: what has a period.
+
+
+def at_constant_speed(system: System, period: CommonPeriod, speed: float, time: float) -> SystemArrays:
+    """Return the arrays with the drives at `speed` (rad/s, of the leading law) for ever.
+
+    Loads by time keep the values that they have at `time`.
+
+    Raises
+    ------
+    InputError
+        If the speed is 0 or of the other sense, in which other flanks carry.
+    """
+    extreme = system.scene.drives[period.law].speed.extreme
+    if not np.isfinite(speed) or speed * extreme <= 0.0:
+        bound = (above if extreme > 0.0 else below)(0.0, note=", the sense in which the scene turns")
+        raise InputError("speed", speed, bound, "Reverse the scene's drive for the other flanks.")
+    speeds = _constant(speed * period.proportion)
+    none = np.zeros(period.proportion.size)
+    torque = np.array([float(load.torque(time)) for load in system.scene.loads])
+    arrays = system.arrays
+    laws = arrays.elements.laws
+    laws = laws._replace(applied_force=laws.applied_force.held_at(time))
+    changed = arrays._replace(
+        reference=arrays.reference._replace(speed=speeds, whole=none, fraction=none),
+        load=arrays.load._replace(torque=_constant(torque)),
+        elements=arrays.elements._replace(laws=laws),
+    )
+    return by_address(changed)
+
+
+def _constant(values: FloatArray) -> LawArrays:
+    """Lay out laws that never change."""
+    coefficient = np.zeros((values.size, 4))
+    coefficient[:, 0] = values
+    return LawArrays(np.arange(values.size + 1), np.zeros(values.size), coefficient)
+
+
+# The typical sizes of forces and motions, by which a search for periodic motions measures its steps.
+
+
+MOST_GAIN = 100.0
+
+
+def largest_force(system: System, mesh_force: FloatArray) -> float:
+    """Return the largest force of meshes and loads at the largest speed, N."""
+    laws, extreme = system.arrays.elements.laws, [part.speed.extreme for part in system.scene.references]
+    speed = float(np.max(np.abs(system.kinematics.float_ratio @ np.array(extreme))))
+    turning = laws.applied_force.size, laws.unbalance.amount * speed**2
+    forces = (mesh_force, system.flanks.nominal_force, *turning)
+    return max(float(np.max(np.abs(force), initial=0.0)) for force in forces)
+
+
+def stiffest(system: System) -> float:
+    """Return the stiffness of the stiffest mesh; without one that of the stiffest freedom, N/m."""
+    arrays, meshes = system.arrays, system.flanks.mean_stiffness
+    if meshes.size:
+        return float(np.max(meshes))
+    return float(np.max(np.diag(arrays.stiffness) / arrays.scale**2)) or 1.0
+
+
+def resonant_gain(system: System, modes: Modes) -> float:
+    """Return by how much loads move a system without meshes more at a resonance than at rest; with them 1."""
+    held = modes.damping_ratio[modes.frequency > 0.0]
+    if system.scene.meshes or not held.size:
+        return 1.0
+    return min(MOST_GAIN, 0.5 / max(float(np.min(held)), 0.5 / MOST_GAIN))
+
 
 STEPS_PER_CYCLE = 24  # of the highest natural frequency
 STEPS_PER_PITCH = 64  # of the mesh with the most pitches, or cycle of a load's highest order

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dynamics.plausibility.check import CHECKS
-from dynamics.plausibility.scene_checks import scene_findings
+from dynamics.plausibility.scene_checks import CHECKS, scene_findings
 
 __all__ = ["CHECKS", "scene_findings"]

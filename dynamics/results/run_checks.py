@@ -3,16 +3,304 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any, Protocol
 
+import numpy as np
+
+from bounds import engineering
 from dynamics.assembly.assemble import System
+from dynamics.forces import GearMesh
+from dynamics.forces.operating_point_table import table_at_operating_point
+from dynamics.mechanism.additions import BEARING_LAWS, COAST_FLANKS, MISALIGNMENT
+from dynamics.mechanism.flank_gradients import distance_gradient, misalignment_gradient
+from dynamics.motion.observation import static_deflections
 from dynamics.motion.sampled_states import States
-from dynamics.results.axis_checks import AxisChecks
-from dynamics.results.bearing_load_check import BearingLoadChecks
-from dynamics.results.contact_check import ContactChecks
+from dynamics.results.axis_series import FIELDS, axis_rows
 from dynamics.results.force_check import ForceChecks
-from dynamics.results.held_operating_point_check import HeldOperatingPointChecks
-from dynamics.types import Json
+from dynamics.types import FloatArray, Json
+
+# Whether a run stayed on the axes of its mesh-force tables.
+
+
+WHAT = ("tilt", "center distance")
+
+
+class AxisChecks:
+    """Gathers, block by block, how far misalignment and center distance left the tables' axes."""
+
+    def __init__(self, system: System) -> None:
+        self._system, self._samples = system, 0
+        self._watched = [(axis, mesh) for axis in (0, 1) for mesh in axis_rows(system, axis, follows=True)]
+        self._beyond = dict.fromkeys(self._watched, 0)
+        self._range = dict.fromkeys(self._watched, (np.inf, -np.inf))
+
+    def see(self, series: dict[str, Any]) -> None:
+        """Take a block of series."""
+        self._samples += series["time"].size
+        for axis, mesh in self._watched:
+            values, (low, high) = series[FIELDS[axis]][mesh], self._range[axis, mesh]
+            first, last = self._ends(axis, mesh)
+            self._beyond[axis, mesh] += int(np.count_nonzero((values < first) | (values > last)))
+            self._range[axis, mesh] = (
+                float(np.min(values, initial=low)),
+                float(np.max(values, initial=high)),
+            )
+
+    def found(self) -> list[Json]:
+        """Return one entry per mesh and axis in use.
+
+        ``beyond`` is the share of the samples off the axis, where the table's last value holds, ``farthest``
+        in m how far off.
+        """
+        return [self._entry(axis, mesh) for axis, mesh in self._watched if self._samples]
+
+    def _entry(self, axis: int, mesh: int) -> Json:
+        """One mesh and axis."""
+        (low, high), (first, last) = self._range[axis, mesh], self._ends(axis, mesh)
+        farthest = max(first - low, high - last, 0.0)
+        span = f"{low:.4g} to {high:.4g} m of {first:.4g} to {last:.4g} m"
+        reason = f"{WHAT[axis]} inside the table's axis: {span}"
+        if farthest > 0.0:
+            reason = f"{WHAT[axis]} beyond the axis: {span}; the last value was held. Compute a wider axis"
+        return {
+            "effect": self._system.ledger.effect_adding(FIELDS[axis]),
+            "assumption": f"{WHAT[axis]} inside the table",
+            "part": self._system.scene.meshes[mesh].name,
+            "holds": farthest <= 0.0,
+            "beyond": self._beyond[axis, mesh] / self._samples,
+            "farthest": farthest,
+            "reason": reason,
+        }
+
+    def _ends(self, axis: int, mesh: int) -> tuple[float, float]:
+        """First and last knot of the table's axis, m."""
+        knots = np.ravel(getattr(self._system.scene.meshes[mesh].table, FIELDS[axis]))
+        return float(knots[0]), float(knots[-1])
+
+
+# Whether tables that are read at one misalignment or center distance were right to: how far bodies moved.
+
+
+USUAL_TOLERANCE = 0.01
+"""Relative change of the mean transmission error that may pass where no tolerance was requested."""
+
+
+@dataclass(frozen=True)
+class _Watched:
+    """A mesh whose table has an axis that is not followed: its derivative in the freedoms (n,)."""
+
+    axis: int
+    mesh: int
+    gradient: FloatArray
+
+
+class HeldOperatingPointChecks:
+    """Gathers, block by block, how far bodies moved along axes of tables that did not follow them."""
+
+    def __init__(self, system: System) -> None:
+        self._system = system
+        self._watched = [
+            _Watched(axis, index, _gradient(system, axis, index))
+            for axis, field in enumerate(FIELDS)
+            for index, mesh in enumerate(system.scene.meshes)
+            if any(
+                row.possible and not row.on for row in system.ledger.adding(field) if row.part == mesh.name
+            )
+        ]
+        self._range = [(0.0, 0.0)] * len(self._watched)
+
+    def see(self, q: FloatArray) -> None:
+        """Take the displacements (T, n)."""
+        for k, watched in enumerate(self._watched):
+            moved = q @ watched.gradient
+            low, high = self._range[k]
+            self._range[k] = (float(np.min(moved, initial=low)), float(np.max(moved, initial=high)))
+
+    def found(self) -> list[Json]:
+        """Return one entry per mesh and axis.
+
+        ``farthest`` is how far the bodies moved in m, ``change`` how much that changes the mean transmission
+        error of the nominal force, of its value.
+        """
+        pairs = zip(self._watched, self._range, strict=True)
+        return [self._entry(watched, max(span, key=abs)) for watched, span in pairs]
+
+    def _entry(self, watched: _Watched, farthest: float) -> Json:
+        """One mesh and axis."""
+        system, quantity = self._system, WHAT[watched.axis]
+        mesh, force = system.scene.meshes[watched.mesh], float(system.flanks.nominal_force[watched.mesh])
+        change = _change(mesh, force, watched.axis, farthest)
+        reported = (
+            f"bodies moved by up to {farthest:.3g} m, which "
+            f"changes the mean by {engineering(100.0 * change, 2)} %"
+        )
+        return {
+            "effect": system.ledger.effect_adding(FIELDS[watched.axis]),
+            "assumption": f"{quantity} stays at the operating point",
+            "part": mesh.name,
+            "holds": abs(change) <= (system.scene.tolerance or USUAL_TOLERANCE),
+            "farthest": farthest,
+            "change": change,
+            "reason": reported,
+        }
+
+
+def _change(mesh: GearMesh, force: float, axis: int, moved: float) -> float:
+    """Return the relative change of the mean transmission error at `force` by `moved` (m) along an axis."""
+    level = int(np.argmin(np.abs(np.asarray(mesh.table.level) - force)))
+    point = np.array([mesh.misalignment, mesh.center_distance_change])
+    means = [
+        float(np.mean(table_at_operating_point(mesh.table, *at).deflection[..., level]))
+        for at in (point, point + moved * np.eye(2)[axis])
+    ]
+    return means[1] / means[0] - 1.0 if means[0] != 0.0 else 0.0
+
+
+def _gradient(system: System, axis: int, index: int) -> FloatArray:
+    """Return the derivative of a mesh's operating point on an axis in the free freedoms, (n,)."""
+    scene, rotors, line = system.scene, system.rotors, system.lines[index]
+    if FIELDS[axis] == MISALIGNMENT:
+        sense = system.kinematics.mesh_sense[index]
+        return system.freedoms.keep(misalignment_gradient(scene, rotors, index, line, sense))
+    return system.freedoms.keep(distance_gradient(scene, rotors, index, line))
+
+
+# Whether what a run left out about contact would have mattered: flanks that parted without a coast flank.
+
+
+class ContactChecks:
+    """Gathers, block by block, how far the driving flanks of meshes without backlash parted."""
+
+    def __init__(self, system: System) -> None:
+        meshes = system.scene.meshes
+        self._system, self._samples = system, 0
+        self._watched = [
+            i for i, mesh in enumerate(meshes) if not system.ledger.adds(COAST_FLANKS, mesh.name)
+        ]
+        self._parted = np.zeros(len(meshes), dtype=np.int64)
+        self._gap = np.zeros(len(meshes))
+        self._first = np.full(len(meshes), -1, dtype=np.int64)
+
+    def see(self, position: FloatArray, deflection: FloatArray, force: FloatArray, least: FloatArray) -> None:
+        """Take series (m, T) of the driving flanks; `least` is what the force falls to between samples."""
+        before = self._samples
+        self._samples += position.shape[1]
+        for index in self._watched:
+            apart = least[index] <= 0.0
+            if self._first[index] < 0 and np.any(apart):
+                self._first[index] = before + int(np.argmax(apart))
+            touch = np.empty(position.shape[1])
+            table = self._system.arrays.elements.laws.flank.table
+            static_deflections(table, index, position[index], 0.0, touch)
+            self._parted[index] += np.count_nonzero(force[index] <= 0.0)
+            gap = float(np.max((touch - deflection[index])[apart], initial=0.0))
+            self._gap[index] = max(self._gap[index], gap)
+
+    def found(self) -> list[Json]:
+        """Return one entry per mesh that ran without backlash.
+
+        ``parted`` is the share of the samples out of contact, ``widest_gap`` in m how far flanks were apart
+        along the line of action, ``holds`` whether leaving the coast flank out changed nothing: none parted,
+        or the gap stayed below a backlash that is given. ``since`` is the time of the last sample before they
+        parted first, s; None if they never did, or from the start: without effect on what came before.
+        """
+        return [self._entry(index) for index in self._watched]
+
+    def _entry(self, index: int) -> Json:
+        """One mesh."""
+        mesh, gap = self._system.scene.meshes[index], float(self._gap[index])
+        first = int(self._first[index])
+        room = mesh.coast.backlash if mesh.coast is not None else 0.0
+        return {
+            "effect": self._system.ledger.effect_adding(COAST_FLANKS),
+            "assumption": "coast flanks are not reached",
+            "part": mesh.name,
+            "holds": bool(gap <= room),
+            "parted": float(self._parted[index] / max(self._samples, 1)),
+            "widest_gap": gap,
+            "since": (first - 1) / self._system.sampling.rate if first > 0 else None,
+            "reason": _reason(gap, mesh.coast is not None, room),
+        }
+
+
+def _reason(gap: float, known: bool, room: float) -> str:
+    """In words."""
+    if gap == 0.0:
+        return "the driving flanks stayed in contact"
+    if known and gap <= room:
+        return "the flanks lifted off by less than the backlash: the coast flank was not reached"
+    if known:
+        return "the flanks lifted off by more than the backlash: enable the effect"
+    return "the flanks lifted off: valid only if the backlash is larger; give the mesh its coast flank"
+
+
+# Whether linear bearings stayed loaded: a real one has clearance and lets an unloaded shaft float.
+
+
+LIGHT = 1e-3
+"""Part of the largest bearing force at the start below which a bearing counts as unloaded from the start."""
+
+
+class BearingLoadChecks:
+    """Gathers, block by block, how long radial forces pointed away from the static load."""
+
+    def __init__(self, system: System) -> None:
+        scene = system.scene
+        laws = {law.bushing for law in scene.bearing_laws}
+        self._effect = system.ledger.effect_adding(BEARING_LAWS)
+        off = scene.effects.get(self._effect) == "off"
+        self._name = system.supports.name
+        self._watched = [i for i, name in enumerate(self._name) if off or name not in laws]
+        self._has_law = [self._name[i] in laws for i in self._watched]
+        self._direction: FloatArray | None = None
+        self._samples = 0
+        self._unloaded = np.zeros(len(self._watched), dtype=np.int64)
+
+    def see(self, force: FloatArray) -> None:
+        """Take the bearing forces (b, 3, T), N; none where they are not stored."""
+        if force.shape[0] != len(self._name) or force.shape[2] == 0:
+            return
+        radial = force[self._watched, :2]
+        if self._direction is None:
+            self._direction = _directions(radial[:, :, 0])
+        along = np.einsum("bct,bc->bt", radial, self._direction)
+        loaded = np.any(self._direction != 0.0, axis=1)
+        self._unloaded += np.where(loaded, np.count_nonzero(along <= 0.0, axis=1), 0)
+        self._samples += force.shape[2]
+
+    def found(self) -> list[Json]:
+        """Return one entry per linear bearing that carries load at the start.
+
+        ``unloaded`` is the share of the samples in which the force along the static load was not positive.
+        """
+        if self._direction is None:
+            return []
+        loaded = np.any(self._direction != 0.0, axis=1)
+        return [self._entry(row, index) for row, index in enumerate(self._watched) if loaded[row]]
+
+    def _entry(self, row: int, index: int) -> Json:
+        """One bearing."""
+        share = float(self._unloaded[row] / max(self._samples, 1))
+        reason = "the bearing stayed loaded"
+        if share > 0.0:
+            advice = "enable the effect" if self._has_law[row] else "give the bearing its clearance"
+            reason = f"the load reversed in {100.0 * share:.3g} % of the run: {advice}"
+        return {
+            "effect": self._effect,
+            "assumption": "linear bearing stays loaded",
+            "part": self._name[index],
+            "holds": share == 0.0,
+            "unloaded": share,
+            "reason": reason,
+        }
+
+
+def _directions(force: FloatArray) -> FloatArray:
+    """Return unit vectors (b, 2) of the forces at the start, zero where a bearing hardly carries."""
+    size = np.linalg.norm(force, axis=1)
+    carries = size > LIGHT * np.max(size, initial=0.0)
+    return np.asarray(np.where(carries[:, None], force / np.where(carries, size, 1.0)[:, None], 0.0))
 
 
 class SeriesCheck(Protocol):

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from bounds import at_most
+from bounds import Text, at_most, between
 from dynamics.bodies import AngleLaw, DiscBody, GearBody, Shaft, TimeLaw
+from dynamics.bodies.shaft_position import OnShaft, on_length
 from dynamics.checks import distinct, not_negative, one_of, positive, within
-from dynamics.errors import InputError
+from dynamics.errors import InputError, SolveError
 from dynamics.forces import (
     AppliedForce,
     GearMesh,
@@ -31,12 +32,67 @@ from dynamics.joints import (
 )
 from dynamics.parts import KINDS, ON_A_SHAFT
 from dynamics.rolling_bearings.row_law import row_law
-from dynamics.scene.bearing_check import check_bearing_laws
 from dynamics.scene.force_check import check_force_shafts
 from dynamics.scene.frame_check import check_couplings, check_frames, check_gravity, check_on_axis
 from dynamics.scene.housing_check import check_housings
-from dynamics.scene.position_check import check_positions
 from dynamics.settings import Integration, Outputs
+
+# Laws of bearings that are not linear: what they can act on.
+
+
+def check_bearing_laws(
+    bearings: Sequence[str],
+    contacts: Sequence[RollingContact],
+    curves: Sequence[SpringCurve],
+    rolling: Sequence[RollingBearing],
+    rotating: frozenset[str],
+) -> None:
+    """Every law has its own direction of one of `bearings`.
+
+    `rotating` names the bearings of shafts described in a rotating frame.
+    """
+    fields = [
+        *((f"rolling_contacts[{index}].bushing", part.bushing) for index, part in enumerate(contacts)),
+        *((f"spring_curves[{index}].bushing", part.bushing) for index, part in enumerate(curves)),
+    ]
+    for place, name in fields:
+        one_of(place, name, bearings)
+    distinct("rolling_contacts", [part.bushing for part in contacts])
+    distinct("spring_curves", [f"{part.bushing}.{part.direction}" for part in curves])
+    for index, curve in enumerate(curves):
+        if curve.bushing in rotating and curve.direction != "z":
+            bound = '"z" on a shaft described in a carrier\'s frame, which turns against the bushing'
+            raise InputError(f"spring_curves[{index}].direction", curve.direction, bound)
+    for index, bearing in enumerate(rolling):
+        _check_preload(f"rolling_bearings[{index}].axial_preload", bearing)
+
+
+def _check_preload(field: str, bearing: RollingBearing) -> None:
+    """Refuse an axial preload that no displacement of the rings makes."""
+    try:
+        row_law(bearing).shift  # noqa: B018 (computed and kept)
+    except SolveError as error:
+        raise InputError(field, bearing.axial_preload, "a force that the row carries", "Lower it.") from error
+
+
+# Check of the positions of gears and bearings on their shafts.
+
+
+def check_positions(shafts: Sequence[Shaft], kind: str, parts: Sequence[OnShaft]) -> None:
+    """Refuse a part of a `kind` ("gears", "bushings", "planet_bearings") that is off its shaft.
+
+    Raises
+    ------
+    InputError
+    """
+    length = {shaft.name: shaft.length for shaft in shafts}
+    for index, part in enumerate(parts):
+        if not on_length(part.position, length[part.shaft]):
+            ends = between(0.0, length[part.shaft], "m")
+            bound = Text.of(f'on the shaft "{part.shaft}", ', ends, " from its left end")
+            advice = "Lengthen the shaft, or move what sits on it."
+            raise InputError(f"{kind}[{index}].position", part.position, bound, advice)
+
 
 ON_VIOLATION = ("repeat", "fail", "report")
 TOLERANCES = (1e-6, 0.5)

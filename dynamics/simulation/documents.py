@@ -2,18 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from dynamics.assembly.assemble import System
+from dynamics.errors import SolveError
+from dynamics.forces.element_laws import Elements
+from dynamics.forces.law import Law
+from dynamics.forces.local_state import LocalState
 from dynamics.influence import Decided, Influence, estimate_influences
+from dynamics.integrators import static_equilibrium
 from dynamics.integrators.march import Ending
 from dynamics.integrators.method_choice import MethodChoice
 from dynamics.integrators.workspace import Count
-from dynamics.motion.observation import observe
+from dynamics.joints import RollingBearing
+from dynamics.linearize import natural_modes
+from dynamics.linearize.campbell import whirl_branches
+from dynamics.linearize.energy_shares import freedom_parts
+from dynamics.linearize.linear_system import LinearSystem, linearize
+from dynamics.linearize.speeds import leading_law, mesh_frequencies
+from dynamics.mechanism.additions import SPEED_DEPENDENCE
+from dynamics.mechanism.bearing_elements import BearingElement
+from dynamics.motion.observation import local_state, observe
 from dynamics.motion.sampled_states import States
 from dynamics.plausibility import scene_findings
 from dynamics.results import EnergyAudit, StepStatistics
@@ -22,12 +35,116 @@ from dynamics.results.effect_ledger import effect_ledger
 from dynamics.results.energy_check import energy_check
 from dynamics.results.histories import checked_series, filtered, histories, unfiltered
 from dynamics.results.run_checks import RunChecks
+from dynamics.rolling_bearings import LoadedBearing
+from dynamics.rolling_bearings.row_law import row_law
 from dynamics.scene import Integration
-from dynamics.simulation.bearings_at_rest import bearings_at_rest
-from dynamics.simulation.run_modes import modes_of_run
 from dynamics.simulation.violations import FIRST, EarlierRun
 from dynamics.types import FloatArray, Json
 from host import cpu_seconds
+
+# The modes that a run keeps: natural modes at rest, and whirl modes over its speeds.
+
+
+WHIRL_SPEEDS = 33
+LEAST_SHARE = 0.05  # of a part in the kinetic energy of a mode
+
+
+def modes_of_run(system: System) -> Json:
+    """Return the `modes` of `RunResult`; nothing where there is no equilibrium."""
+    try:
+        linear = linearize(system)
+    except SolveError:
+        return {}
+    modes = natural_modes(linear)
+    most = np.argmax(modes.kinetic_energy, axis=1) if modes.frequency.size else []
+    turning = any(part.speed.extreme != 0.0 for part in system.scene.references)
+    rotating = turning and linear.freedom and system.ledger.adds(SPEED_DEPENDENCE)
+    return {
+        "frequency": [float(value) for value in modes.frequency],
+        "damping_ratio": [float(value) for value in modes.damping_ratio],
+        "freedom": [modes.freedom[index] for index in most],
+        "moves": [_moves(modes.freedom, shares) for shares in modes.kinetic_energy],
+        **({"over_speed": _over_speed(system, linear)} if rotating else {}),
+    }
+
+
+def _over_speed(system: System, linear: LinearSystem) -> Json:
+    """Return the whirl modes up to the largest speeds of the run, those that oscillate at all of them."""
+    law = leading_law(system)
+    extreme = system.scene.references[law].speed.extreme
+    speed = np.linspace(0.0, abs(extreme), WHIRL_SPEEDS)
+    branches = whirl_branches(system, linear, speed)
+    whole = np.all(np.isfinite(branches.frequency), axis=0)
+    most = np.argmax(branches.kinetic_energy[-1], axis=1)
+    return {
+        "shaft": system.scene.references[law].shaft,
+        "speed": speed.tolist(),
+        "mesh_frequency": mesh_frequencies(system, speed).tolist(),
+        "frequency": branches.frequency[:, whole].T.tolist(),
+        "damping_ratio": branches.damping_ratio[:, whole].T.tolist(),
+        "whirl": branches.whirl[:, whole].T.tolist(),
+        "freedom": [linear.freedom[index] for index in most[whole]],
+        "moves": [_moves(linear.freedom, shares) for shares in branches.kinetic_energy[-1][whole]],
+    }
+
+
+def _moves(freedom: Sequence[str], shares: FloatArray) -> Json:
+    """Return what moves in a mode, "shaft, how", with its share of the kinetic energy; the largest first."""
+    summed: dict[str, float] = {}
+    for (shaft, how), share in zip(freedom_parts(freedom), shares, strict=True):
+        name = f"{shaft}, {how}"
+        summed[name] = summed.get(name, 0.0) + float(share)
+    most = sorted(summed.items(), key=lambda part: -part[1])
+    return {name: share for name, share in most if share >= LEAST_SHARE}
+
+
+# What rolling bearings carry where a run starts: force, and the heaviest of their elements.
+
+
+ROWS = (Law.BALLS, Law.ROLLERS)
+
+
+def bearings_at_rest(system: System) -> Json:
+    """Return ``{"rolling_bearings": {name: ...}}`` in the equilibrium under the loads at t = 0.
+
+    Of each: ``displacement`` of the inner ring against the outer (m, rad), ``force`` of the shaft on the
+    ground (N, N m), ``element_load`` of the heaviest element (N) and ``peak_pressure`` on it (Pa). Nothing
+    without such bearings or without an equilibrium.
+    """
+    elements = system.arrays.elements
+    rows = np.flatnonzero(np.isin(elements.law, ROWS))
+    rest = static_equilibrium(system) if rows.size else None
+    if rest is None or not rest.status.usable:
+        return {}
+    local = local_state(system.arrays, 0.0, rest.displacement, 0.0 * rest.displacement)
+    bearings = {bearing.name: bearing for bearing in system.scene.rolling_bearings}
+    first = elements.law.size - len(system.bearings)
+    return {
+        "rolling_bearings": {
+            at.name: _carried(elements, local, e, at, bearings[at.name])
+            for e, at in enumerate(system.bearings, start=first)
+            if e in rows
+        }
+    }
+
+
+def _carried(
+    elements: Elements, local: LocalState, e: int, at: BearingElement, bearing: RollingBearing
+) -> Json:
+    """Return what the bearing of element `e` carries."""
+    own, law, turned = slice(elements.first[e], elements.first[e + 1]), row_law(bearing), elements.mesh[e]
+    moved = local.coordinate[own] / np.diag(at.own)
+    moved[2] += law.shift
+    angle = 2.0 * np.pi * float(local.position[turned]) if turned >= 0 else 0.0
+    loaded = LoadedBearing(bearing.row, 1, bearing.locating) if turned >= 0 else law.loaded
+    load = loaded.evaluate(moved, angle).load
+    return {
+        "displacement": moved.tolist(),
+        "force": (local.force[own] @ at.own).tolist(),
+        "element_load": float(np.max(load.sum(axis=1))),
+        "peak_pressure": bearing.row.peak_pressure(float(np.max(load))),
+    }
+
 
 ERROR_CHECK_FACTOR = 0.1
 IMPLICIT_STAGES_PER_STEP = 5

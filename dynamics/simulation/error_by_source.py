@@ -2,22 +2,146 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from dynamics.assembly.assemble import System
 from dynamics.assembly.decimated_tables import with_decimated_tables
+from dynamics.assembly.later_start import starting_at
+from dynamics.forces.by_address import by_address
+from dynamics.integrators import StaticSolution, integrate
+from dynamics.motion.observation import observe
+from dynamics.motion.sampled_states import States
+from dynamics.results.order_fit import order_amplitudes, orders_seen, unwrapped
+from dynamics.scene import Integration
 from dynamics.simulation.documents import ERROR_CHECK_FACTOR, finer, requested_error
-from dynamics.simulation.error_windows import (
-    Difference,
-    StatesOf,
-    Window,
-    run_again,
-    windows,
-)
-from dynamics.types import Json
+from dynamics.types import FloatArray, Json, StaticStatus
 from host import cpu_seconds
+
+# Stretches of a run that are integrated again: with finer steps, and on decimated tables.
+
+
+WINDOWS = 3
+SHARE = 0.045
+"""Of the samples of a run, in all windows: integrating them three times takes some 15 % of the run."""
+LEAST_SAMPLES = 24
+ORDERS = 5
+
+StatesOf = Callable[[int, int], States]
+
+
+@dataclass(frozen=True)
+class Window:
+    """A stretch of a run from a sample on; T samples, m meshes, b bearings.
+
+    Attributes
+    ----------
+    first, stop : int
+        Samples.
+    time : (T,) array
+        s from its start.
+    system : System
+        Whose clock starts there.
+    states : States
+        Of the run.
+    position : (m, T) array
+        Unwrapped base pitches.
+    error : (m, T) array
+        Transmission errors, m.
+    force : (b, c, T) array
+        Bearing forces in their own frames, N.
+    """
+
+    first: int
+    stop: int
+    time: FloatArray
+    system: System
+    states: States
+    position: FloatArray
+    error: FloatArray
+    force: FloatArray
+
+    def on_laws_of(self, other: System) -> System:
+        """Return its system with the force laws of `other`, the run's system but for these."""
+        own, laws = self.system.arrays.elements.laws, other.arrays.elements.laws
+        laws = laws._replace(applied_force=own.applied_force)  # whose clock starts here
+        arrays = self.system.arrays._replace(elements=other.arrays.elements._replace(laws=laws))
+        return replace(self.system, arrays=by_address(arrays))
+
+
+@dataclass(frozen=True)
+class Difference:
+    """The difference of another run of a window.
+
+    Attributes
+    ----------
+    rms : float
+        Of the transmission errors, m.
+    error_orders, force_orders : (ORDERS or fewer,) arrays
+        Largest amplitude among the meshes (m) and among the bearings (N) at each order of the first mesh.
+    """
+
+    rms: float
+    error_orders: FloatArray
+    force_orders: FloatArray
+
+
+def windows(system: System, states_of: StatesOf, samples: int) -> list[Window]:
+    """Return windows at the ends of equal parts of the run; none where it is too short or has no mesh."""
+    count = WINDOWS if SHARE * samples >= WINDOWS * LEAST_SAMPLES else 1
+    size = int(SHARE * samples / count)
+    if size < LEAST_SAMPLES or not system.scene.meshes:
+        return []
+    ends = [round((k + 1) * samples / count) for k in range(count)]
+    return [_window(system, states_of, end - size, end) for end in ends]
+
+
+def _window(system: System, states_of: StatesOf, first: int, stop: int) -> Window:
+    """Look at the run from sample `first` to `stop` - 1."""
+    rate = system.sampling.rate
+    states, time = states_of(first, stop), np.arange(stop - first) / rate
+    later = starting_at(system, first / rate, states.moved[0])
+    outputs = replace(system.scene.outputs, energy_audit=False)
+    scene = replace(system.scene, duration=float(time[-1]), outputs=outputs)
+    later = replace(later, scene=scene, sampling=system.sampling.points())
+    counted = states._replace(moved=states.moved - states.moved[0])
+    position, error, force = _seen(later, time, counted)
+    return Window(first, stop, time, later, counted, position, error, force)
+
+
+def _seen(system: System, time: FloatArray, states: States) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return positions, transmission errors and bearing forces."""
+    seen = observe(system.arrays, time, states.q, states.v, states.moved)
+    force = system.bearing_force(seen.force, states.q, states.v)
+    meshes = len(system.scene.meshes)  # frames that turn have positions too, behind those of the meshes
+    return unwrapped(seen.position[:meshes]), seen.coordinate[system.driving_rows], force[:, :3]
+
+
+def run_again(window: Window, system: System, integration: Integration) -> Difference | None:
+    """Integrate `window` again as `system`, from the run's state at its start; None if it ends early."""
+    first = window.states.rows(0, 1)
+    start = StaticSolution(StaticStatus.CONVERGED, first.q[0], np.empty(0), 0.0, 0)
+    repeated = integrate(system, start, integration, velocity=first.v[0])
+    if not repeated.status.usable or repeated.samples != window.time.size:
+        return None
+    _, error, force = _seen(window.system, window.time, repeated.states)
+    apart, pushed = error - window.error, force - window.force
+    orders = min((orders_seen(position, ORDERS) for position in window.position), default=0)
+    if np.ptp(window.position[0]) < 1.0:
+        orders = 0
+    by_error = [
+        order_amplitudes(position, series, orders)
+        for position, series in zip(window.position, apart, strict=True)
+    ]
+    by_force = np.linalg.norm(order_amplitudes(window.position[0], pushed, orders), axis=1)
+    return Difference(
+        float(np.sqrt(np.mean(apart**2))),
+        np.max(by_error, axis=0),
+        np.max(by_force, axis=0, initial=0.0),
+    )
+
 
 TIME_STEP_REST = 1.0 / (1.0 - ERROR_CHECK_FACTOR**0.75)
 """Error over the difference to a run at a tenth of the tolerance: it falls as the tolerance^(3/4)."""

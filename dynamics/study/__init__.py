@@ -1,12 +1,9 @@
 """Many scenes: a design of experiments over a scene, the responses of its runs, and their statistics."""
 
-from dynamics.study.batch import StudyTask
-from dynamics.study.design import Design
-from dynamics.study.factors import Distribution, Factor, Levels, Listed, Normal, Uniform
+from dynamics.study.design import Design, Distribution, Factor, Levels, Listed, Normal, Uniform
 from dynamics.study.responses import QUANTITIES, Response, responses_of
 from dynamics.study.result import Spread, Study
-from dynamics.study.run_study import keep_runs, study
-from dynamics.study.scenes import OneByOne, Scenes, Workers
+from dynamics.study.run_study import OneByOne, Scenes, StudyTask, Workers, keep_runs, study
 
 __all__ = [
     "QUANTITIES",

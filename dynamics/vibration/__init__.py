@@ -1,7 +1,6 @@
 """Vibration of housings under the forces of their bearings."""
 
 from dynamics.vibration.bearing_harmonics import BearingHarmonics, ReportedHarmonics
-from dynamics.vibration.contributions import Parts, bearing_parts, mode_parts
 from dynamics.vibration.housing_motion import housing_motion
 from dynamics.vibration.housing_power import HousingPower, housing_power
 from dynamics.vibration.housing_vibration import HousingVibration, housing_vibration
@@ -9,11 +8,20 @@ from dynamics.vibration.levels import overall, vibration_level
 from dynamics.vibration.motion_quantity import MotionQuantity
 from dynamics.vibration.points import named_points
 from dynamics.vibration.seat_forces import finer_seat_forces, run_seat_forces, seat_forces
-from dynamics.vibration.surface_shape import SurfaceShape, mode_shape, operating_deflection
 from dynamics.vibration.surface_weight import mean_square, surface_weight
 from dynamics.vibration.time_signal import motion_pieces, motion_signal, point_signal
-from dynamics.vibration.transfer_functions import mean_square_mobility, transfer_functions
-from dynamics.vibration.vibration_analysis import VibrationAnalysis, analyze_vibration
+from dynamics.vibration.vibration_analysis import (
+    Parts,
+    SurfaceShape,
+    VibrationAnalysis,
+    analyze_vibration,
+    bearing_parts,
+    mean_square_mobility,
+    mode_parts,
+    mode_shape,
+    operating_deflection,
+    transfer_functions,
+)
 
 __all__ = [
     "BearingHarmonics",

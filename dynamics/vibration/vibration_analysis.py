@@ -7,18 +7,230 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from dynamics.checks import integer, not_negative
 from dynamics.errors import InputError
-from dynamics.housing_modes.reduced_housing import ReducedHousing
-from dynamics.types import FloatArray, Json
+from dynamics.housing_modes.reduced_housing import ReducedHousing, SurfaceMotion
+from dynamics.types import FloatArray, IntArray, Json
 from dynamics.vibration.bearing_harmonics import ReportedHarmonics
-from dynamics.vibration.contributions import Parts, bearing_parts, mode_parts
 from dynamics.vibration.housing_motion import housing_motion
 from dynamics.vibration.housing_vibration import HousingVibration, housing_vibration
+from dynamics.vibration.modal_amplitudes import modal_amplitudes
+from dynamics.vibration.motion_quantity import MotionQuantity
 from dynamics.vibration.points import point_rows
 from dynamics.vibration.seat_forces import ComplexArray
-from dynamics.vibration.surface_shape import SurfaceShape, operating_deflection
-from dynamics.vibration.surface_weight import surface_weight
-from dynamics.vibration.transfer_functions import mean_square_mobility, transfer_functions
+from dynamics.vibration.surface_weight import mean_square, surface_weight
+
+# Contributions of bearings and modes to the motion of a housing at one frequency.
+
+
+RESIDUAL = "residual"
+"""Name of what the modes that are not kept contribute: static flexibility of the seats."""
+
+
+@dataclass(frozen=True)
+class Parts:
+    """A motion as a coherent sum.
+
+    Attributes
+    ----------
+    name : tuple of str
+        Bearing seats, or modes by their number from 1; `RESIDUAL` is what is left.
+    frequency : (p,) array
+        Natural frequencies in Hz; NaN of what is no mode.
+    motion : (p, r) complex array
+        Of the reduced coordinates, m and rad; their sum is the whole motion.
+    """
+
+    name: tuple[str, ...]
+    frequency: FloatArray
+    motion: ComplexArray
+
+    def shares(self, weight: FloatArray) -> FloatArray:
+        """Return contributions to a mean square, (p,): they add up to 1, and some may be negative.
+
+        Each is the part of its motion that is in phase and in shape with the sum: Re(x^H W x_p)/(x^H W x).
+
+        Parameters
+        ----------
+        weight : (r, r) array
+            Symmetric: `surface_weight`, or m^T m of the rows m of a point's motion.
+
+        Raises
+        ------
+        InputError
+            Nothing moves.
+        """
+        whole = self.motion.sum(axis=0)
+        felt = (whole.conj() @ weight) @ self.motion.T
+        size = float(felt.sum().real)
+        if not size > 0.0:
+            raise InputError(
+                "motion", size, "a motion", "No force acts on the seats at this order and speed."
+            )
+        return np.asarray(felt.real / size)
+
+
+def bearing_parts(housing: ReducedHousing, frequency: float, force: ComplexArray) -> Parts:
+    """Return the motion under the force of each bearing.
+
+    Parameters
+    ----------
+    housing : ReducedHousing
+    frequency : float
+        Hz.
+    force : (s,) complex array
+        On the motions of the seats (`seat_forces`).
+    """
+    owner = np.repeat(np.arange(len(housing.seats)), [len(seat.motions) for seat in housing.seats])
+    apart = np.where(owner == np.arange(len(housing.seats))[:, None], force, 0.0)
+    motion = housing_motion(housing, np.full(len(apart), float(frequency)), apart)
+    return Parts(tuple(seat.name for seat in housing.seats), np.full(len(apart), np.nan), motion)
+
+
+def mode_parts(housing: ReducedHousing, frequency: float, force: ComplexArray) -> Parts:
+    """Return the motion in each mode kept, and in the rest together; parameters as `bearing_parts`."""
+    amplitude = modal_amplitudes(housing, np.array([float(frequency)]), np.asarray(force)[None, None])[0, 0]
+    every = amplitude[:, None] * housing.modes[1].T
+    kept = len(housing.frequency)
+    names = tuple(f"mode {number + 1}" for number in range(kept))
+    if kept == len(every):
+        return Parts(names, housing.frequency, every)
+    motion = np.vstack([every[:kept], every[kept:].sum(axis=0, keepdims=True)])
+    return Parts((*names, RESIDUAL), np.append(housing.frequency, np.nan), motion)
+
+
+# Transfer functions of a reduced housing: from forces on its seats to points and to its surface.
+
+
+def transfer_functions(
+    housing: ReducedHousing,
+    frequency: FloatArray,
+    response: FloatArray,
+    excitation: FloatArray | None = None,
+    quantity: MotionQuantity = MotionQuantity.VELOCITY,
+) -> ComplexArray:
+    """Return the motion per unit force: receptance, mobility or accelerance by the quantity.
+
+    Rows are motions per reduced coordinate, such as `PointMotion.motion`. They are reciprocal: exchanging
+    response and excitation transposes the result. Forces on seats act with the residual flexibility of the
+    modes left out; forces elsewhere act through the reduced coordinates alone.
+
+    Parameters
+    ----------
+    housing : ReducedHousing
+        With mass.
+    frequency : (n,) array
+        Hz.
+    response : (q, r) array
+    excitation : (e, r) array, optional
+        By default the motions of the seats.
+    quantity : MotionQuantity
+
+    Returns
+    -------
+    (n, q, e) complex array
+        m/N, m/(N s) or m/(N s^2) for rows of points; rad and N m for those of rotations.
+
+    Raises
+    ------
+    InputError
+        A frequency is negative, or as `modal_amplitudes`.
+    """
+    hertz = np.asarray(frequency, dtype=float)
+    for index, value in enumerate(hertz):
+        not_negative(f"frequency[{index}]", float(value))
+    loads = np.eye(housing.motions, len(housing.mass)) if excitation is None else np.asarray(excitation)
+    amplitude = modal_amplitudes(housing, hertz, loads[None].astype(complex))
+    moved = np.swapaxes(amplitude @ (np.asarray(response) @ housing.modes[1]).T, 1, 2)
+    return quantity.of(moved, hertz[:, None, None])
+
+
+def mean_square_mobility(housing: ReducedHousing, frequency: FloatArray, weight: FloatArray) -> FloatArray:
+    """Return the mean square velocity per mean square force on each motion of the seats, (n, s).
+
+    Parameters
+    ----------
+    housing : ReducedHousing
+    frequency : (n,) array
+        Hz.
+    weight : (r, r) array
+        Of the surface (`surface_weight`).
+
+    Returns
+    -------
+    (n, s) array
+        m^2/(N s)^2, of moments 1/(N s)^2.
+    """
+    coordinates = np.eye(len(housing.mass))
+    return 2.0 * mean_square(np.swapaxes(transfer_functions(housing, frequency, coordinates), 1, 2), weight)
+
+
+# Shapes of a housing's surface: natural modes and operating deflections.
+
+
+QUARTERS = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
+"""Nodes of the four plane facets of a triangle with six nodes."""
+
+
+@dataclass(frozen=True)
+class SurfaceShape:
+    """Complex peak amplitudes of the motion of a surface.
+
+    Attributes
+    ----------
+    points : (p, 3) array
+        m.
+    triangles : (t, 6) int array
+        Corners, counter-clockwise from outside, then mid-side nodes.
+    motion : (p, 3) complex array
+        m, m/s or m/s^2; of a mode, real, with the largest motion 1.
+    """
+
+    points: FloatArray
+    triangles: IntArray
+    motion: ComplexArray
+
+    @property
+    def facets(self) -> IntArray:
+        """Return plane triangles, four for each of six nodes, (4 t, 3)."""
+        return np.asarray(self.triangles[:, QUARTERS].reshape(-1, 3))
+
+    @property
+    def normal_motion(self) -> ComplexArray:
+        """Return the mean outward motion of each facet, (4 t,)."""
+        a, b, c = np.moveaxis(self.points[self.facets], 1, 0)
+        normal = np.cross(b - a, c - a)
+        normal /= np.linalg.norm(normal, axis=1)[:, None]
+        return np.asarray(np.sum(self.motion[self.facets].mean(axis=1) * normal, axis=1))
+
+
+def operating_deflection(housing: ReducedHousing, motion: ComplexArray) -> SurfaceShape:
+    """Return the surface's motion by that of the reduced coordinates, (r,), of any quantity."""
+    surface = _surface(housing)
+    return SurfaceShape(surface.points, surface.triangles, np.asarray(surface.motion @ motion, dtype=complex))
+
+
+def mode_shape(housing: ReducedHousing, number: int) -> SurfaceShape:
+    """Return a natural mode of the housing with its seats free; `number` counts from 1, rigid motions first.
+
+    Raises
+    ------
+    InputError
+        There is no such mode, or the housing has no surface.
+    """
+    integer("number", number, 1, len(housing.frequency))
+    shape = operating_deflection(housing, housing.modes[1][:, number - 1].astype(complex))
+    largest = np.linalg.norm(shape.motion, axis=1).max()
+    return SurfaceShape(shape.points, shape.triangles, shape.motion / largest)
+
+
+def _surface(housing: ReducedHousing) -> SurfaceMotion:
+    """Return the surface, or say that there is none."""
+    if housing.surface is None:
+        advice = "Reduce its mesh or STEP file: matrices alone have no surface."
+        raise InputError("surface", "none", "a housing with a surface", advice)
+    return housing.surface
+
 
 FREQUENCIES = 800
 """Of the transfer functions, evenly spaced; resonances kept are among them."""

@@ -1,8 +1,12 @@
 """Flank compliance by finite elements: assembly, condensation to the flanks, checks, disk cache."""
 
 import host.analysis  # noqa: F401 (says what to install)
-from fe_contact.compliance.cost_3d import PredictedCost, predict_cost
-from fe_contact.compliance.cyclic_compliance import flank_compliance_3d, flank_compliances_3d
+from fe_contact.compliance.cyclic_compliance import (
+    PredictedCost,
+    flank_compliance_3d,
+    flank_compliances_3d,
+    predict_cost,
+)
 from fe_contact.compliance.finite_width import FiniteWidthCompliance, finite_width_compliances
 from fe_contact.compliance.flank import ComplianceChecks, FlankCompliance
 from fe_contact.compliance.flank_3d import FlankCompliance3D

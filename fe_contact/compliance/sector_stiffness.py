@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.compliance.elastic_seat import seat_stiffness
-from fe_contact.compliance.hanging_nodes import coarse_face
+from fe_contact.body.bore_seat import BoreSeat
+from fe_contact.compliance.hanging_nodes import coarse_face, face_functions
 from fe_contact.compliance.hexahedron import (
     SECTION,
     cylindrical_frames,
@@ -18,10 +18,48 @@ from fe_contact.compliance.hexahedron import (
 )
 from fe_contact.geometry import Toothing
 from fe_contact.material import Material
-from fe_contact.mesh.hexahedra import Batch
+from fe_contact.mesh.hexahedra import LOWER_FACE, Batch
 from fe_contact.mesh.quad_sector import QuadSector
+from fe_contact.mesh.sector_grid import SectorGrid
 from fe_contact.mesh.swept_sector import SweptSector
 from fe_contact.types import FloatArray, IntArray
+
+# Stiffness of an elastic seat under the bore: a foundation in cylindrical components.
+
+
+def face_mass() -> FloatArray:
+    """Return the products of the eight functions of a face integrated over -1 .. 1 squared, (8, 8)."""
+    t, weight = np.polynomial.legendre.leggauss(3)
+    x, y = (part.ravel() for part in np.meshgrid(t, t))
+    functions = face_functions(x, y)
+    return np.asarray(functions.T * np.outer(weight, weight).ravel() @ functions)
+
+
+def seat_stiffness(gear: Toothing, grid: SectorGrid, thickness: float, seat: BoreSeat) -> FloatArray:
+    """Return the matrix (60, 60) of the seat below one element on the bore, N/m.
+
+    Nodes on the bore are equally spaced in angle, so the radial, tangential and axial displacements are
+    quadratic over a rectangle of the unrolled cylinder: a turn of the whole bore is met exactly, on helical
+    meshes too.
+
+    Parameters
+    ----------
+    gear : Toothing
+        Its bore radius and teeth.
+    grid : SectorGrid
+        Its columns share one pitch.
+    thickness : float
+        Of the layer, m.
+    seat : BoreSeat
+        Only its finite stiffnesses count; freedoms in rigid directions are held.
+    """
+    area = gear.held_radius * 2.0 * math.pi / gear.teeth / grid.columns * thickness
+    mass = 0.25 * area * face_mass()
+    matrix, nodes = np.zeros((20, 3, 20, 3)), np.array(LOWER_FACE)
+    for c, stiffness in enumerate(seat.stiffness):
+        if math.isfinite(stiffness):
+            matrix[nodes[:, None], c, nodes, c] = stiffness * mass
+    return matrix.reshape(60, 60)
 
 
 @dataclass(frozen=True)

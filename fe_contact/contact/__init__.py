@@ -19,8 +19,7 @@ from fe_contact.contact.pressure import at_edges, contact_pressure
 from fe_contact.contact.problem import Candidates, ContactProblem, LoadedSlices
 from fe_contact.contact.slices import Slices
 from fe_contact.contact.solution import ContactSolution
-from fe_contact.contact.start import Start
-from fe_contact.contact.sweep import solve_contact
+from fe_contact.contact.sweep import Start, solve_contact
 from fe_contact.contact.touch import flank_coordinate
 
 __all__ = [

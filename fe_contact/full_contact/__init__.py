@@ -3,9 +3,14 @@
 They share geometry and mesher with the rest of the project, and nothing of its contact.
 """
 
-from fe_contact.full_contact.calculix import Run, find_calculix, run_calculix, version_of
 from fe_contact.full_contact.condensation import FullContactTable, Resolution, solve_full_contact
-from fe_contact.full_contact.loaded_position import solve_position
+from fe_contact.full_contact.loaded_position import (
+    Run,
+    find_calculix,
+    run_calculix,
+    solve_position,
+    version_of,
+)
 from fe_contact.full_contact.over_face import solve_full_contact_over_face
 from fe_contact.full_contact.point import FullContactPoint
 from fe_contact.full_contact.validity import refusal, refusal_over_face

@@ -2,20 +2,176 @@
 
 from __future__ import annotations
 
+import re
+import shutil
+import subprocess
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from fe_contact.full_contact.calculix import Run, run_calculix
+import numpy as np
+
 from fe_contact.full_contact.condensation.placed_mesh import placed_bodies
 from fe_contact.full_contact.condensation.resolution import Resolution
 from fe_contact.full_contact.condensation.sites import Range, contact_sites
-from fe_contact.full_contact.input_deck import Loading, input_deck, numbered_bodies
+from fe_contact.full_contact.input_deck import HELD, MM, TURNING, Loading, input_deck, numbered_bodies
 from fe_contact.full_contact.placed_pair import PlacedPair, no_load_gap, placed_pair
 from fe_contact.full_contact.point import FullContactPoint
-from fe_contact.full_contact.result_file import read_printed
 from fe_contact.geometry import ParallelAxes
 from fe_contact.hertz.line_contact import contact_modulus, peak_pressure
-from fe_contact.types import Status
+from fe_contact.types import FloatArray, IntArray, Status
+from host import child_environment, ending_signal
+
+# CalculiX as a child process: one deck, one thread, its limits, and how it ended.
+
+
+PROGRAM = "ccx"
+WALL_OVER_CPU = 20.0
+"""Wall seconds that a CPU second may take on a busy machine before the run counts as hung."""
+_LIMITED = 'ulimit -S -t "$1"; exec "$2" -i job'  # the limit ends it even where its parent is gone
+
+
+@dataclass(frozen=True)
+class Run:
+    """The end of a CalculiX run.
+
+    Attributes
+    ----------
+    status : Status
+        CONVERGED; ITERATION_LIMIT where it gave up; NOT_COMPUTED past its limit or where it did not start.
+    reason : str
+        In words; empty if it converged.
+    iterations : int
+        Equilibrium iterations.
+    printed : str
+        Its .dat file.
+    """
+
+    status: Status
+    reason: str
+    iterations: int
+    printed: str
+
+
+def find_calculix() -> str | None:
+    """Return the program, None if it is not installed."""
+    return shutil.which(PROGRAM)
+
+
+def version_of(program: str) -> str:
+    """Return the name and version that the program states."""
+    process = subprocess.run([program, "-v"], capture_output=True, text=True, timeout=60.0, check=False)
+    stated = re.search(r"Version\s+(\S+)", process.stdout)
+    return f"CalculiX {stated.group(1)}" if stated else "CalculiX"
+
+
+def run_calculix(program: str, deck: str, folder: Path, cpu_limit: float) -> Run:
+    """Run a deck in an empty folder.
+
+    Parameters
+    ----------
+    program : str
+        From `find_calculix`.
+    deck : str
+    folder : Path
+        Everything is written here.
+    cpu_limit : float
+        CPU seconds after which it is ended; 20 times as much by the clock.
+    """
+    (folder / "job.inp").write_text(deck, encoding="ascii")
+    command = ("sh", "-c", _LIMITED, "sh", f"{max(1, round(cpu_limit))}", program)
+    threads = dict.fromkeys(("OMP_NUM_THREADS", "CCX_NPROC_EQUATION_SOLVER", "NUMBER_OF_CPUS"), "1")
+    try:
+        child = subprocess.run(
+            command,
+            cwd=folder,
+            env=child_environment(**threads),
+            capture_output=True,
+            text=True,
+            errors="replace",
+            timeout=WALL_OVER_CPU * cpu_limit,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return Run(Status.NOT_COMPUTED, f"no result within {WALL_OVER_CPU * cpu_limit:.0f} s", 0, "")
+    except OSError as error:
+        return Run(Status.NOT_COMPUTED, f"cannot be started ({error})", 0, "")
+    return _ended(child, folder, cpu_limit)
+
+
+def _ended(child: subprocess.CompletedProcess[str], folder: Path, cpu_limit: float) -> Run:
+    """Say how a child ended."""
+    iterations = len(re.findall(r"^ iteration \d+", child.stdout, re.MULTILINE))
+    if ending_signal(child.returncode) == "SIGXCPU":
+        return Run(Status.NOT_COMPUTED, f"no result within {cpu_limit:.0f} CPU s", iterations, "")
+    if child.returncode != 0 or "Job finished" not in child.stdout:
+        return Run(Status.ITERATION_LIMIT, _complaint(child), iterations, "")
+    return Run(Status.CONVERGED, "", iterations, (folder / "job.dat").read_text(encoding="ascii"))
+
+
+def _complaint(child: subprocess.CompletedProcess[str]) -> str:
+    """Return the first error it printed, on one line."""
+    error = re.search(r"\*ERROR(.*?)(?:\n\s*\n|\Z)", child.stdout, re.DOTALL)
+    message = " ".join(error.group(1).split()).removeprefix(":").strip() if error else "no error printed"
+    return f"exit code {child.returncode}: {message}"
+
+
+# The .dat file of CalculiX: the rotation of gear 1 and the reactions of gear 2's bore.
+
+
+_HEAD = re.compile(r"^\s*(displacements|forces)\s.*for set (\S+) and time", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Printed:
+    """One solved position.
+
+    Attributes
+    ----------
+    turning : float
+        Displacement of the turning node, m: transmission error beyond the approach of the placed pair.
+    nodes : (b,) int array
+        Numbers of gear 2's bore nodes in the deck.
+    reactions : (b, 2) array
+        Forces of the shaft on them, N.
+    """
+
+    turning: float
+    nodes: IntArray
+    reactions: FloatArray
+
+    def moment(self, points: FloatArray, about: FloatArray) -> float:
+        """Moment in N m, counter-clockwise, of the reactions at their nodes' points (b, 2) about a point."""
+        arms = points - about
+        return float(np.sum(arms[:, 0] * self.reactions[:, 1] - arms[:, 1] * self.reactions[:, 0]))
+
+
+def read_printed(text: str) -> Printed:
+    """Return the last values that were printed.
+
+    Raises
+    ------
+    ValueError
+        Something is missing, or no number.
+    """
+    blocks: dict[tuple[str, str], str] = {}
+    heads = list(_HEAD.finditer(text))
+    ends = [*(head.start() for head in heads), len(text)][1:]
+    for head, end in zip(heads, ends, strict=True):
+        blocks[head.group(1), head.group(2)] = text[text.index("\n", head.end()) : end]
+    try:
+        turning, held = _rows(blocks["displacements", TURNING]), _rows(blocks["forces", HELD])
+    except KeyError as error:
+        raise ValueError(f"CalculiX printed no {' of '.join(error.args[0])}") from None
+    if len(turning) != 1 or not np.all(np.isfinite(held)) or not np.all(np.isfinite(turning)):
+        raise ValueError("CalculiX printed no finite result")
+    return Printed(float(turning[0, 1]) / MM, held[:, 0].astype(np.int64), held[:, 1:3])
+
+
+def _rows(block: str) -> FloatArray:
+    """Node number and three components in each row, (n, 4)."""
+    return np.array([[float(word) for word in line.split()] for line in block.splitlines() if line.strip()])
+
 
 OVERLAP_PART = 1e-4
 """Of the deflection that the overlap of the penalty may take: 1 nm in 10 um."""

@@ -11,14 +11,12 @@ from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.gear_pair import GearPair
 from fe_contact.geometry.internal_gear_pair import InternalGearPair
 from fe_contact.geometry.iso6336_stiffness import Iso6336Stiffness, blank_factor, iso6336_stiffness
-from fe_contact.geometry.parallel_axes import ParallelAxes
-from fe_contact.geometry.path_of_contact import PathOfContact
-from fe_contact.geometry.pitch_deviation import PitchDeviation
+from fe_contact.geometry.parallel_axes import ParallelAxes, PathOfContact
 from fe_contact.geometry.ring_gear import RingGear
 from fe_contact.geometry.seated_gear import seat_compliance
 from fe_contact.geometry.sliding import sliding_factor, specific_sliding
 from fe_contact.geometry.tooth_profile import ToothProfile, tooth_profile
-from fe_contact.geometry.toothing import Toothing
+from fe_contact.geometry.toothing import PitchDeviation, Toothing
 from fe_contact.geometry.web_compliance import web_compliance
 
 __all__ = [

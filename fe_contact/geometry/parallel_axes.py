@@ -16,7 +16,6 @@ from numpy.typing import ArrayLike
 
 from bounds import LIMIT_SLACK, Declared, Kind, declared, described, up_to
 from fe_contact.geometry.backlash import allowance_backlash, base_circle_backlash, working_pressure_angle
-from fe_contact.geometry.path_of_contact import PathOfContact
 from fe_contact.geometry.printed_data import backlash_rounding
 from fe_contact.types import FloatArray
 
@@ -24,6 +23,50 @@ if TYPE_CHECKING:
     from fe_contact.body.shaft import Shafts
     from fe_contact.geometry.gear import Gear
     from fe_contact.geometry.toothing import Toothing
+
+# The path of contact and its points A to E (ISO 21771-1, clause 5.3).
+
+
+@dataclass(frozen=True)
+class PathOfContact:
+    """Points of the path of contact, as roll lengths on the driving gear in m.
+
+    Attributes
+    ----------
+    start : float
+        A: the driven gear's tip meets the driving gear's flank.
+    pitch_point : float
+        C.
+    end : float
+        E: the driving gear's tip leaves.
+    base_pitch : float
+        Transverse base pitch, m.
+    """
+
+    start: float
+    pitch_point: float
+    end: float
+    base_pitch: float
+
+    @property
+    def inner_single_contact(self) -> float:
+        """B: one base pitch before E (start of single contact if the contact ratio is between 1 and 2)."""
+        return self.end - self.base_pitch
+
+    @property
+    def outer_single_contact(self) -> float:
+        """D: one base pitch after A (end of single contact if the contact ratio is between 1 and 2)."""
+        return self.start + self.base_pitch
+
+    @property
+    def length(self) -> float:
+        """Length g_alpha of the path of contact, m."""
+        return self.end - self.start
+
+    @property
+    def points(self) -> tuple[float, float, float, float, float]:
+        """A, B, C, D, E."""
+        return (self.start, self.inner_single_contact, self.pitch_point, self.outer_single_contact, self.end)
 
 
 _DISTANCE = Declared(Kind.LENGTH, "m", up_to(1000.0), "Center distance a", 0.08)

@@ -2,19 +2,85 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
+from fe_contact.errors import MeshError
 from fe_contact.geometry import Toothing, tooth_profile
+from fe_contact.mesh.gmsh_child import ask_gmsh
 from fe_contact.mesh.quad_quality import refuse_poor_quads
 from fe_contact.mesh.quality import QualityLimits
 from fe_contact.mesh.sector_grid import SectorGrid
 from fe_contact.mesh.sector_outline import SectorOutline, sector_outline
 from fe_contact.mesh.sector_recipe import SectorRecipe
-from fe_contact.mesh.transfinite_block import Block, fill_blocks
 from fe_contact.types import FloatArray
+
+# Four-sided blocks filled with rows of quadrilaterals by gmsh's transfinite interpolation.
+
+
+@dataclass(frozen=True)
+class Block:
+    """Sides of a block, each (n, 2) in m, divided alike on opposite sides.
+
+    `bottom` and `top` run from left to right, `left` and `right` from bottom to top; ends are shared.
+    """
+
+    bottom: FloatArray
+    right: FloatArray
+    top: FloatArray
+    left: FloatArray
+
+    def loop(self, scale: float) -> list[list[list[float]]]:
+        """Return the four sides counter-clockwise, in multiples of `scale`."""
+        sides = (self.bottom, self.right, self.top[::-1], self.left[::-1])
+        return [(side / scale).tolist() for side in sides]
+
+
+def fill_blocks(
+    blocks: Sequence[Block], scale: float, seconds: float = 60.0, command: Sequence[str] | None = None
+) -> list[FloatArray]:
+    """Fill each block with quadrilaterals.
+
+    Parameters
+    ----------
+    blocks : sequence of Block
+        Meshed one by one in the same child process.
+    scale : float
+        Length of the size of the blocks, m: gmsh works in multiples of it (its tolerances are absolute).
+    seconds : float
+        Time limit of the child.
+    command : sequence of str, optional
+        Program to run in place of the gmsh worker.
+
+    Returns
+    -------
+    list of (rows, columns, 2) arrays
+        Corner points of the quadrilaterals, m, from the bottom up and from left to right. Points on the
+        sides are the given ones, bit for bit.
+
+    Raises
+    ------
+    MeshError
+        The child failed, was killed, ran out of time or answered nonsense; the message says which.
+    """
+    answer = ask_gmsh({"blocks": [block.loop(scale) for block in blocks]}, seconds, command)
+    try:
+        grids = [np.array(rows, dtype=float) * scale for rows in answer["blocks"]]
+        return [_received(block, points) for block, points in zip(blocks, grids, strict=True)]
+    except (KeyError, ValueError, TypeError) as error:
+        raise MeshError("gmsh worker: unusable answer") from error
+
+
+def _received(block: Block, points: FloatArray) -> FloatArray:
+    """Return one answer with the points of the sides as they were given."""
+    if points.shape != (len(block.left), len(block.bottom), 2):
+        raise ValueError(f"block of shape {points.shape}")
+    points[0], points[-1], points[:, 0], points[:, -1] = block.bottom, block.top, block.left, block.right
+    return points
+
 
 QUAD_LIMITS = QualityLimits(angle=np.radians(15.0), scaled_jacobian=0.1)
 

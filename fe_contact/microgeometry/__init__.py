@@ -8,7 +8,6 @@ from fe_contact.microgeometry.objective import Limits, Objective, WeightedMean, 
 from fe_contact.microgeometry.optimization import Optimization, Outcome, Perturbation
 from fe_contact.microgeometry.optimize import optimize
 from fe_contact.microgeometry.request import OptimizationRequest
-from fe_contact.microgeometry.sampling import Sampling
 from fe_contact.microgeometry.scatter import GaussHermite, Scatter, ScatterNodes, SobolSample
 from fe_contact.microgeometry.search import Ended, Search, SearchRun
 from fe_contact.microgeometry.search_method import (
@@ -19,7 +18,7 @@ from fe_contact.microgeometry.search_method import (
 )
 from fe_contact.microgeometry.sweep import Sweep, sweep
 from fe_contact.microgeometry.sweep_request import SweepAxis, SweepRequest
-from fe_contact.microgeometry.tolerance_study import ToleranceStudy, scatter
+from fe_contact.microgeometry.tolerance_study import Sampling, ToleranceStudy, scatter
 from fe_contact.microgeometry.tolerances import Tolerances
 from fe_contact.microgeometry.variables import QUANTITIES, DesignVariable
 

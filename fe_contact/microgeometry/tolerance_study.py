@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from fe_contact.checks import integer, within
 from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.confirmation import full_table, ripple_errors
@@ -13,15 +15,84 @@ from fe_contact.microgeometry.design_study import DesignSpace, design_study
 from fe_contact.microgeometry.evaluator import Evaluator, least_deviation
 from fe_contact.microgeometry.linearized_design import linearized
 from fe_contact.microgeometry.objective import NO_LIMITS
-from fe_contact.microgeometry.sampling import Sampling
 from fe_contact.microgeometry.scatter import ONE_NODE, Scatter, ScatterNodes, SobolSample
-from fe_contact.microgeometry.spread import Quantile, quantile
 from fe_contact.microgeometry.tolerances import Tolerances
 from fe_contact.options import AnalysisOptions, Levels, Run
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, Json
 from model_studies import in_unit
-from model_studies.spread import rank_correlation
+from model_studies.spread import quantile_bounds, rank_correlation
+
+# Quantiles of a sample with confidence bounds that assume no shape of the distribution.
+
+
+@dataclass(frozen=True)
+class Quantile:
+    """A quantile of peak-to-peak at each of L torques.
+
+    Attributes
+    ----------
+    fraction : float
+        Part of all pairs that lie below.
+    value, low, high : ndarray, shape (L,)
+        Estimate and confidence bounds, m; infinite or zero where the sample is too small for a bound.
+    """
+
+    fraction: float
+    value: FloatArray = field(metadata=in_unit("m", "torque"))
+    low: FloatArray = field(metadata=in_unit("m", "torque"))
+    high: FloatArray = field(metadata=in_unit("m", "torque"))
+
+    def to_json(self) -> Json:
+        """Return plain JSON; a bound that the sample is too small for is null."""
+        return {
+            "fraction": self.fraction,
+            "value_m": self.value.tolist(),
+            "low_m": self.low.tolist() if self.low.any() else None,
+            "high_m": self.high.tolist() if np.isfinite(self.high).all() else None,
+        }
+
+
+def quantile(sample: FloatArray, fraction: float, confidence: float) -> Quantile:
+    """Estimate a quantile of samples (N, L) of lengths with distribution-free bounds."""
+    value, low, high = quantile_bounds(sample, fraction, confidence)
+    return Quantile(fraction, value, np.maximum(low, 0.0), high)
+
+
+# Sampling of a tolerance Monte Carlo: the pairs it draws and the quantities it estimates.
+
+
+@dataclass(frozen=True)
+class Sampling:
+    """A sample of pairs and its quantiles.
+
+    Attributes
+    ----------
+    samples : int
+        Pairs, 2 to 1 000 000.
+    seed : int
+        Equal seeds give equal results to the last bit, with any workers.
+    confidence : float
+        Of the bounds of the quantiles.
+    fractions : sequence of float
+        Quantiles to estimate.
+    positions : int
+        Equally spaced in a base pitch.
+    """
+
+    samples: int = 1000
+    seed: int = 0
+    confidence: float = 0.95
+    fractions: Sequence[float] = (0.05, 0.5, 0.95)
+    positions: int = 64
+
+    def __post_init__(self) -> None:
+        integer("samples", self.samples, 2, 1_000_000)
+        integer("seed", self.seed, 0, 2**63 - 1)
+        within("confidence", self.confidence, 0.5, 0.9999)
+        for index, fraction in enumerate(self.fractions):
+            within(f"fractions[{index}]", fraction, 0.0, 1.0)
+
 
 IN_A_TASK = 25
 """Samples of a task: half a second to some seconds. It does not depend on who does the tasks."""
@@ -107,7 +178,7 @@ def scatter(
     pair: ParallelAxes,
     torques: Levels,
     tolerances: Tolerances,
-    sampling: Sampling = Sampling(),  # noqa: B008 (frozen)
+    sampling: Sampling = Sampling(),
     options: AnalysisOptions = AnalysisOptions(),  # noqa: B008 (frozen)
     run: Run = Run(),  # noqa: B008 (frozen)
     *,

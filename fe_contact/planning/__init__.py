@@ -3,18 +3,21 @@
 from fe_contact.planning.cost_model import Prediction, predict_run
 from fe_contact.planning.cycle_cost import MOST_ROWS, CycleCost, cycle_cost, refuse_long_cycle
 from fe_contact.planning.discretization import FaceDiscretization, PlaneDiscretization
-from fe_contact.planning.error_model import (
+from fe_contact.planning.model_error import flank_tilt
+from fe_contact.planning.plan import NodeRule, Plan, make_plan
+from fe_contact.planning.planned import (
     LEFT_OUT,
+    ExpectedCurves,
     ExpectedError,
+    MeshChoice,
+    MeshOption,
+    chosen_mesh,
     expected_error,
     left_out,
+    planned,
+    usual_curves,
     usual_mesh_error,
 )
-from fe_contact.planning.expected_curves import ExpectedCurves, usual_curves
-from fe_contact.planning.flank_tilt import flank_tilt
-from fe_contact.planning.mesh_choice import MeshChoice, MeshOption
-from fe_contact.planning.plan import NodeRule, Plan, make_plan
-from fe_contact.planning.planned import chosen_mesh, planned
 from fe_contact.planning.root_recipes import FaceRootMeshes, PlaneRootMeshes, root_meshes
 
 __all__ = [

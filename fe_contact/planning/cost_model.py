@@ -1,8 +1,8 @@
 """Prediction of the cost of a run, stage by stage.
 
 Three dimensions: operations and numbers held follow from the elimination tree
-(`fe_contact.compliance.cost_3d`). The plane: a fit of non-negative terms to 40 measured compliances, gears
-of 17 to 140 teeth, modules of 1 to 8 mm, solid and deep bodies, meshes of 0.3 to 2 times the standard
+(`fe_contact.compliance.cyclic_compliance`). The plane: a fit of non-negative terms to 40 compliances,
+gears of 17 to 140 teeth, modules of 1 to 8 mm, solid and deep bodies, meshes of 0.3 to 2 times the standard
 refinement; all are met within 0.67 to 1.32. The contact: positions to assemble and points to solve.
 Everything is then multiplied by how slow the host is and by what earlier runs say.
 """

@@ -3,7 +3,7 @@
 The choice of a mesh must not depend on the host, nor on what is in the cache, nor on earlier runs: the same
 case has the same table everywhere. So this knows none of them. It is also quick, since several alternatives
 are weighed before a run: finite elements over the face are a fit, within a factor 1.8, to the operations that
-`fe_contact.compliance.cost_3d` counts, of gears of 18 to 60 teeth and faces of 4 to 14 modules.
+`fe_contact.compliance.cyclic_compliance` counts, of gears of 18 to 60 teeth and faces of 4 to 14 modules.
 """
 
 from __future__ import annotations

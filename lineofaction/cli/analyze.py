@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -20,20 +22,87 @@ from lineofaction.cli.output import (
     progress_bar,
     table,
 )
-from lineofaction.cli.tolerance_lines import print_draft, tolerance_lines, tolerance_warnings
 from lineofaction.cli.warned import warn
 from lineofaction.gearbox.convert.answers import summary_json
 from lineofaction.gearbox.convert.case import analysis_options, boundary_errors, case_json, table_axes
 from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.drafts import draft_line
 from lineofaction.gearbox.convert.effect_lines import assumption_lines, ledger_lines
 from lineofaction.gearbox.convert.plausibility import phrased_database
 from lineofaction.gearbox.convert.task_workers import ExecutorChoice, open_executor
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import JobFailed
 from lineofaction.gearbox.schemas import Case
-from lineofaction.gearbox.units import UM
+from lineofaction.gearbox.units import MM, NM, UM
 from lineofaction.report.tables.static_part import static_headlines
 from service.directories import cache_home
+
+# Lines of `loa analyze` about a tolerance: drafts while it refines, its passes, and whether it is met.
+
+
+Json = dict[str, Any]
+_AXES = {
+    "force": ("loads", 1.0, "N"),
+    "misalignment": ("misalignments", UM, "um"),
+    "center_distance_change": ("center distance changes", MM, "mm"),
+}
+
+
+def print_draft(table: SteDatabase, refining: str) -> None:
+    """Print the figures of a table that is being refined, on standard error: they are progress."""
+    sys.stderr.write(f"{draft_line(table, refining)}\n")
+    sys.stderr.flush()
+
+
+def tolerance_lines(receipt: Json) -> Iterator[str]:
+    """Yield whether the tolerance is met by the errors as measured, why not, and the passes if several."""
+    kept = receipt.get("tolerance")
+    if not kept:
+        return
+    yield _verdict(kept)
+    passes = receipt.get("passes", ())
+    if len(passes) > 1:
+        yield from (_pass(number, entry) for number, entry in enumerate(passes, 1))
+    for beyond in kept.get("between_nodes", ()):
+        name, unit, symbol = _AXES[beyond["axis"]]
+        low, high = (f"{value / unit:.6g}" for value in beyond["between"])
+        yield (
+            f"between the {name} {low} and {high} {symbol} "
+            f"interpolation uses {engineering(beyond['used'], 2)} of it: "
+            "add a value there"
+        )
+
+
+def tolerance_warnings(receipt: Json) -> Iterable[Json]:
+    """Return one warning where errors were measured and the tolerance is not met."""
+    kept = receipt.get("tolerance")
+    if not kept or kept["met"] is not False:
+        return []
+    reason = f" ({kept['reason']})" if kept.get("reason") else ""
+    return [{"check": "tolerance", "message": f"{_verdict(kept)}{reason}"}]
+
+
+def _verdict(kept: Json) -> str:
+    """Return whether the tolerance is met."""
+    tolerance = (
+        f"tolerance {engineering(100 * kept['relative'], 3)} % or {engineering(kept['floor_m'] / NM, 3)} nm"
+    )
+    if kept["met"] is None:
+        return f"{tolerance}: errors not estimated"
+    share = "" if kept["used"] is None else f", largest error {engineering(kept['used'], 2)} of it"
+    return f"{tolerance}: {'met' if kept['met'] else 'NOT met'}{share}"
+
+
+def _pass(number: int, entry: Json) -> str:
+    """Return what one pass ran, cost and used."""
+    mesh = entry["level"] if entry["slices"] == 1 else f"{entry['level']}, {entry['slices']} slices"
+    used = "failed" if entry["used"] is None else f"used {engineering(entry['used'], 2)}"
+    refined = f", refined {', '.join(entry['refined'])}" if entry["refined"] else ""
+    return (
+        f"pass {number}: {entry['model']}, {mesh}, "
+        f"{engineering(entry['cpu_seconds'], 2)} CPU s, {used}{refined}"
+    )
+
 
 _SHOWN_HARMONICS = 3
 

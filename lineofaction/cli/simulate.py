@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,6 @@ from lineofaction.cli.output import (
     print_result,
     progress_bar,
 )
-from lineofaction.cli.run_headlines import run_headlines
 from lineofaction.cli.scene_tables import scene_with_tables
 from lineofaction.cli.warned import warnings_so_far
 from lineofaction.gearbox.convert.run_effects import model_lines
@@ -26,6 +26,32 @@ from lineofaction.gearbox.convert.runs import run_json, staged
 from lineofaction.gearbox.convert.stamp import stamp
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput, JobFailed
+from lineofaction.report.drawing.figure import number
+from lineofaction.report.drawing.page import Headline
+
+# The main figures of a run: how far its forces swing.
+
+
+def run_headlines(peaks: Mapping[str, Any]) -> tuple[Headline, ...]:
+    """Return the largest mesh force, and the largest force on a bearing, from the `peaks` of a receipt."""
+    meshes = {name: (force["peak"], force["rms"]) for name, force in peaks.get("mesh_force", {}).items()}
+    bearings = {
+        f"{name}, {axis}": (peak, rms)
+        for name, force in peaks.get("bearing_force", {}).items()
+        for axis, peak, rms in zip("xyz", force["peak"], force["rms"], strict=True)
+    }
+    return tuple(
+        _largest(what, forces)
+        for what, forces in (("mesh force of", meshes), ("force on bearing", bearings))
+        if forces
+    )
+
+
+def _largest(what: str, forces: dict[str, tuple[float, float]]) -> Headline:
+    """Name the part with the largest peak."""
+    name = max(forces, key=lambda part: forces[part][0])
+    peak, rms = forces[name]
+    return Headline(f"largest {what} {name}", f"{number(peak, 4)} N", f"rms {number(rms, 4)} N")
 
 
 def run_simulate(file: InputFile, output: Path, service: str | None, *, resume: bool, as_json: bool) -> None:

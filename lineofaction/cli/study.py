@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import hashlib
+import shutil
 import sys
-from collections.abc import Callable, Sequence
-from contextlib import nullcontext
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
 from bounds import engineering
 from dynamics.results import RunResult
+from fe_contact.solver_version import SOLVER_VERSION
+from fe_contact.workers import Remembering, Workers
+from fe_contact.workers.content import content_digest
 from host import cpu_seconds
 from lineofaction.cli.assessed_case import assessed_scene
 from lineofaction.cli.interrupt import until_interrupted
@@ -25,7 +29,6 @@ from lineofaction.cli.output import (
     progress_bar,
     table,
 )
-from lineofaction.cli.resumed import resumed_workers
 from lineofaction.cli.scene_tables import tabled_scene
 from lineofaction.cli.warned import messages, warn, warnings_so_far
 from lineofaction.gearbox.convert.plausibility import case_warnings
@@ -36,6 +39,7 @@ from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.registry import Study
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
 from lineofaction.gearbox.schemas.lines import located
+from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.number_list import number_list
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.spelling import item_type, spelling_of
@@ -45,6 +49,28 @@ from lineofaction.report.document.write import write_whole
 from lineofaction.report.drawing.image import png
 from lineofaction.report.presentation import presentation_of
 from service.directories import cache_home
+from service.version import solver_version
+
+# Studies that go on where they were: what their tasks found is kept in the user's cache until they end.
+
+
+@contextmanager
+def resumed_workers(
+    study: Study, subjects: Sequence[BoundaryModel], inputs: BoundaryModel, workers: Workers
+) -> Iterator[Workers]:
+    """Provide workers that keep what they did, for a study that can be resumed; else the same workers.
+
+    A study that is interrupted or killed leaves its folder to the next one of the same subjects and inputs.
+    """
+    if not study.run.resumed:
+        yield workers
+        return
+    content = (study.name, inputs.model_dump_json(), *(subject.model_dump_json() for subject in subjects))
+    folder = cache_home() / "studies" / content_digest(content)
+    version = f"{solver_version()} {SOLVER_VERSION}"
+    yield Remembering(workers, folder, version)
+    shutil.rmtree(folder, ignore_errors=True)
+
 
 Json = dict[str, Any]
 Writer = Callable[[Any, Path], object]

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import base64
+import ipaddress
+import os
+from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import Any, Self, TypeVar
 
 import httpx2
 
-from lineofaction.client.address import http_options
 from lineofaction.client.awaiting import AwaitingDriver
 from lineofaction.client.batch import AsyncBatch, Batch
 from lineofaction.client.blocking import BlockingDriver
@@ -19,14 +21,191 @@ from lineofaction.client.cache import ResultCache
 from lineofaction.client.exchange import Exchange
 from lineofaction.client.job import AsyncJob, Job
 from lineofaction.client.job_calls import JobCalls
-from lineofaction.client.lookup_calls import LookupCalls
 from lineofaction.client.offers import reader_of
+from lineofaction.client.portable import CaseLike, SceneLike, case_inputs, scene_inputs
 from lineofaction.client.processes import Processes
 from lineofaction.client.result_calls import ResultCalls
 from lineofaction.client.scene_calls import SceneCalls
 from lineofaction.client.status import Watch
-from lineofaction.client.surface import Awaiting, Blocking, Session
+from lineofaction.client.steps import Steps
+from lineofaction.client.surface import Awaiting, Blocking, Session, Surface, operation
+from lineofaction.gearbox import schemas
+from lineofaction.gearbox.problems import BadInput
 from service.directories import cache_home
+from service.schemas.offers import EffectBody, ExampleBody
+from service.schemas.unit import UnitBody
+from service.version import solver_version
+
+# What a service says before anything is computed: plans, drawings, examples, effects, files.
+
+
+T = TypeVar("T")
+
+
+class LookupCalls(Surface):
+    """Answers that need no job."""
+
+    @operation
+    def plan(self, case: CaseLike, *, time_budget_s: float | None = None) -> Steps[schemas.PlanBody]:
+        """Return what the analysis of a case will be, cost and be wrong by.
+
+        Parameters
+        ----------
+        case : model, mapping or Path
+        time_budget_s : float, optional
+            CPU seconds that may be spent.
+        """
+        inputs = case_inputs(case) | {"time_budget_s": time_budget_s}
+        return (yield from self._answer("/v1/plans", {"inputs": inputs}, schemas.PlanBody.model_validate))
+
+    @operation
+    def outline(self, case: CaseLike) -> Steps[schemas.OutlineBody]:
+        """Return the drawing of both gears, the path of contact and the figures of the pair."""
+        body = {"inputs": case_inputs(case)}
+        return (yield from self._answer("/v1/cases/outline", body, schemas.OutlineBody.model_validate))
+
+    @operation
+    def examples(self) -> Steps[tuple[ExampleBody, ...]]:
+        """Return cases to begin with."""
+        exchange = self.session.exchange
+        return (yield from exchange.read(_examples, "GET", "/v1/examples"))
+
+    @operation
+    def effects(self) -> Steps[tuple[EffectBody, ...]]:
+        """Return the optional physics, which a case switches in its table ``[effects]``."""
+        return (yield from self.session.exchange.read(_effects, "GET", "/v1/effects"))
+
+    @operation
+    def case_from_toml(self, toml: str) -> Steps[schemas.Case]:
+        """Return the case in the text of a case file; raises `BadInput` with the lines at fault."""
+        return (yield from self._answer("/v1/cases/from-toml", {"toml": toml}, _case))
+
+    @operation
+    def case_to_toml(self, case: CaseLike) -> Steps[str]:
+        """Return a case with all defaults as the text of a case file."""
+        body = {"inputs": case_inputs(case)}
+        return (yield from self._answer("/v1/cases/to-toml", body, _text))
+
+    @operation
+    def scene_from_toml(self, toml: str) -> Steps[schemas.SceneInput]:
+        """Return the scene in the text of a scene file; raises `BadInput` with the lines at fault."""
+        return (yield from self._answer("/v1/scenes/from-toml", {"toml": toml}, _scene))
+
+    @operation
+    def scene_to_toml(self, scene: SceneLike) -> Steps[str]:
+        """Return a scene, its case files written out, as the text of a scene file."""
+        body = {"inputs": scene_inputs(scene)}
+        return (yield from self._answer("/v1/scenes/to-toml", body, _text))
+
+    @operation
+    def open_unit(self, file: Path, assume: Sequence[str] = ()) -> Steps[UnitBody]:
+        """Return the gear unit in a REXS file (.rexs, .rexsj, .rexsz) as cases, scene and account.
+
+        Its `left_out` says what the file has and the scene has not.
+
+        Parameters
+        ----------
+        file : Path
+        assume : sequence of str
+            Values over the file's, ``"14.helix_angle_reference_diameter=-12"``.
+
+        Raises
+        ------
+        BadInput
+            The file cannot be read, is no sound REXS file, or has no such component; the message names it.
+        """
+        try:
+            data = Path(file).read_bytes()
+        except OSError as error:
+            raise BadInput.of("file", str(file), f"a file that can be read ({error.strerror})") from None
+        body = {"rexs_base64": base64.b64encode(data).decode(), "assume": list(assume)}
+        return (yield from self._answer("/v1/units/open", body, UnitBody.model_validate))
+
+    def _answer(self, path: str, body: dict[str, Any], reader: Callable[[Any], T]) -> Steps[T]:
+        """Return what `reader` makes of the answer to a body."""
+        return (yield from self.session.exchange.read(reader, "POST", path, json=body))
+
+
+def _case(answer: dict[str, Any]) -> schemas.Case:
+    """Read a case."""
+    return schemas.validated(schemas.Case, answer["case"])
+
+
+def _scene(answer: dict[str, Any]) -> schemas.SceneInput:
+    """Read a scene."""
+    return schemas.validated(schemas.SceneInput, answer["scene"])
+
+
+def _text(answer: dict[str, Any]) -> str:
+    """Read the text of a file."""
+    return str(answer["toml"])
+
+
+def _effects(answer: list[Any]) -> tuple[EffectBody, ...]:
+    """Read declarations of effects."""
+    return tuple(map(EffectBody.model_validate, answer))
+
+
+def _examples(answer: list[Any]) -> tuple[ExampleBody, ...]:
+    """Read examples."""
+    return tuple(map(ExampleBody.model_validate, answer))
+
+
+# The address of a service, and how HTTP libraries are to reach it.
+
+
+DEFAULT = "http://127.0.0.1:8321"
+
+
+def http_options(base_url: str | None, timeout: float, key: str | None) -> dict[str, Any]:
+    """Return the arguments of an httpx2 client, blocking or awaiting, of one service.
+
+    Proxies and certificates are those of the environment (``HTTPS_PROXY``, ``NO_PROXY``, ``SSL_CERT_FILE``);
+    this machine is asked without a proxy.
+
+    Parameters
+    ----------
+    base_url : str, optional
+        Default: the environment variable ``LOA_SERVICE``, else ``http://127.0.0.1:8321``.
+    timeout : float
+        Seconds that connecting, sending, or the next piece of an answer may take.
+    key : str, optional
+        Access key; default: the environment variable ``LOA_KEY``.
+
+    Raises
+    ------
+    BadInput
+        The address is none.
+    """
+    address = base_url or os.environ.get("LOA_SERVICE") or DEFAULT
+    key = key or os.environ.get("LOA_KEY")
+    agent = {"User-Agent": f"lineofaction/{solver_version()}"}
+    return {
+        "base_url": address.rstrip("/"),
+        "headers": agent | ({"Authorization": f"Bearer {key}"} if key else {}),
+        "timeout": timeout,
+        "trust_env": not _is_loopback(_host(address)),
+    }
+
+
+def _host(base_url: str) -> str:
+    """Return the host of an address; raises `BadInput` for one that is none."""
+    try:
+        url = httpx2.URL(base_url)
+    except httpx2.InvalidURL:
+        url = httpx2.URL()
+    if url.scheme not in ("http", "https") or not url.host:
+        advice = "Begin it with http:// or https://."
+        raise BadInput.of("service", base_url, "an address such as http://127.0.0.1:8321", advice)
+    return url.host
+
+
+def _is_loopback(host: str) -> bool:
+    """Whether a host is this machine, which no proxy needs to reach."""
+    try:
+        return host == "localhost" or ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False
 
 
 class Client(Processes, JobCalls, ResultCalls, LookupCalls, SceneCalls):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -13,8 +14,24 @@ import httpx2
 
 from lineofaction.client.answers import problem_of, stranger
 from lineofaction.client.steps import Open, Pause, Piece, Send, Steps, Stream
-from lineofaction.client.trace import traced
 from lineofaction.gearbox.problems import Unreachable
+
+# The trace that a caller is in goes with every request.
+
+
+def traced(options: dict[str, Any]) -> dict[str, Any]:
+    """Return the options of a request with the headers of the active span of OpenTelemetry, if there is one.
+
+    Who has an active span has imported OpenTelemetry; nobody else pays for that.
+    """
+    if "opentelemetry.trace" not in sys.modules:
+        return options
+    from opentelemetry.propagate import inject  # noqa: PLC0415 (not installed with the client)
+
+    headers: dict[str, str] = {}
+    inject(headers)
+    return {**options, "headers": headers | options.get("headers", {})} if headers else options
+
 
 _TRY_AGAIN = (429, 502, 503, 504)
 _FIRST_PAUSE_S, _LONGEST_OWN_PAUSE_S, _LONGEST_PAUSE_S = 0.1, 2.0, 10.0

@@ -22,28 +22,28 @@ from lineofaction.client.portable import CaseLike, SceneLike, StudyLike
 from lineofaction.client.process import Offered
 from lineofaction.client.surface import Surface
 from lineofaction.gearbox.schemas.figures import Figures, RunFigures, TableFigures
-from lineofaction.gearbox.studies.ablate.answer import AblationFigures as LineofactionAblationFigures
-from lineofaction.gearbox.studies.deflect.answer import DeflectionFigures as LineofactionDeflectionFigures
-from lineofaction.gearbox.studies.deflect.result import GearboxDeflection as LineofactionGearboxDeflection
-from lineofaction.gearbox.studies.flank.answer import FlankFigures as LineofactionFlankFigures
-from lineofaction.gearbox.studies.frontier.answer import FrontierFigures as LineofactionFrontierFigures
-from lineofaction.gearbox.studies.listen.answer import RecordingFigures as LineofactionRecordingFigures
-from lineofaction.gearbox.studies.listen.heard_run import HeardRun as LineofactionHeardRun
-from lineofaction.gearbox.studies.modes.answer import ModesFigures as LineofactionModesFigures
-from lineofaction.gearbox.studies.noise.answer import NoiseFigures as LineofactionNoiseFigures
-from lineofaction.gearbox.studies.optimize.answer import OptimizationFigures as LineofactionOptimizationFigures
-from lineofaction.gearbox.studies.response.answer import ResponseFigures as LineofactionResponseFigures
-from lineofaction.gearbox.studies.root_stress.answer import RootStressFigures as LineofactionRootStressFigures
-from lineofaction.gearbox.studies.root_stress.run import Roots as LineofactionRoots
-from lineofaction.gearbox.studies.scatter.answer import ScatterFigures as LineofactionScatterFigures
-from lineofaction.gearbox.studies.sensitivity.answer import SensitivityFigures as LineofactionSensitivityFigures
-from lineofaction.gearbox.studies.sensitivity.stored import PairStudy as LineofactionPairStudy
-from lineofaction.gearbox.studies.steady.answer import SteadyFigures as LineofactionSteadyFigures
-from lineofaction.gearbox.studies.study.answer import StudyFigures as LineofactionStudyFigures
-from lineofaction.gearbox.studies.sweep.answer import SweepFigures as LineofactionSweepFigures
-from lineofaction.gearbox.studies.sweep.run import SweepResult as LineofactionSweepResult
-from lineofaction.gearbox.studies.vibration.answer import VibrationFigures as LineofactionVibrationFigures
-from lineofaction.gearbox.studies.vibration.run import HousingVibrationResult as LineofactionHousingVibrationResult
+from lineofaction.gearbox.studies.ablate.answer import AblationFigures as GearboxAblationFigures
+from lineofaction.gearbox.studies.deflect.answer import DeflectionFigures as GearboxDeflectionFigures
+from lineofaction.gearbox.studies.deflect.result import GearboxDeflection as GearboxGearboxDeflection
+from lineofaction.gearbox.studies.flank.answer import FlankFigures as GearboxFlankFigures
+from lineofaction.gearbox.studies.frontier.answer import FrontierFigures as GearboxFrontierFigures
+from lineofaction.gearbox.studies.listen.answer import RecordingFigures as GearboxRecordingFigures
+from lineofaction.gearbox.studies.listen.heard_run import HeardRun as GearboxHeardRun
+from lineofaction.gearbox.studies.modes.answer import ModesFigures as GearboxModesFigures
+from lineofaction.gearbox.studies.noise.answer import NoiseFigures as GearboxNoiseFigures
+from lineofaction.gearbox.studies.optimize.answer import OptimizationFigures as GearboxOptimizationFigures
+from lineofaction.gearbox.studies.response.answer import ResponseFigures as GearboxResponseFigures
+from lineofaction.gearbox.studies.root_stress.answer import RootStressFigures as GearboxRootStressFigures
+from lineofaction.gearbox.studies.root_stress.run import Roots as GearboxRoots
+from lineofaction.gearbox.studies.scatter.answer import ScatterFigures as GearboxScatterFigures
+from lineofaction.gearbox.studies.sensitivity.answer import SensitivityFigures as GearboxSensitivityFigures
+from lineofaction.gearbox.studies.sensitivity.stored import PairStudy as GearboxPairStudy
+from lineofaction.gearbox.studies.steady.answer import SteadyFigures as GearboxSteadyFigures
+from lineofaction.gearbox.studies.study.answer import StudyFigures as GearboxStudyFigures
+from lineofaction.gearbox.studies.sweep.answer import SweepFigures as GearboxSweepFigures
+from lineofaction.gearbox.studies.sweep.run import SweepResult as GearboxSweepResult
+from lineofaction.gearbox.studies.vibration.answer import VibrationFigures as GearboxVibrationFigures
+from lineofaction.gearbox.studies.vibration.run import HousingVibrationResult as GearboxHousingVibrationResult
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -56,7 +56,7 @@ class Processes(Surface):
     def analyze(self, case: CaseLike) -> SteDatabase: ...
     @_offered(RunFigures)
     def simulate(self, scene: SceneLike) -> RunResult: ...
-    @_offered(LineofactionFlankFigures)
+    @_offered(GearboxFlankFigures)
     def flank(
         self,
         case: CaseLike,
@@ -66,14 +66,14 @@ class Processes(Surface):
         misalignment_um: float | None = ...,
         center_distance_change_mm: float | None = ...,
     ) -> FeContactLoadDistribution: ...
-    @_offered(LineofactionAblationFigures)
+    @_offered(GearboxAblationFigures)
     def ablate(
         self,
         given: CaseLike | SceneLike,
         *,
         only: Sequence[str] | None = ...,
     ) -> FeContactAblation | DynamicsAblation: ...
-    @_offered(LineofactionFrontierFigures)
+    @_offered(GearboxFrontierFigures)
     def frontier(
         self,
         given: CaseLike | SceneLike,
@@ -82,15 +82,15 @@ class Processes(Surface):
         up_to: Literal["corrected_fine", "3d_draft", "3d_standard", "3d_fine"] = ...,
         full_contact: int | None = ...,
     ) -> FeContactFrontier | DynamicsFrontier: ...
-    @_offered(LineofactionSensitivityFigures)
+    @_offered(GearboxSensitivityFigures)
     def sensitivity(
         self,
         case: CaseLike,
         *,
         misalignment_um: Sequence[float] = ...,
         center_distance_change_percent: Sequence[float] = ...,
-    ) -> tuple[LineofactionPairStudy, ...]: ...
-    @_offered(LineofactionRootStressFigures)
+    ) -> tuple[GearboxPairStudy, ...]: ...
+    @_offered(GearboxRootStressFigures)
     def root_stress(
         self,
         case: CaseLike,
@@ -99,14 +99,14 @@ class Processes(Surface):
         normal_force_n: float | None = ...,
         misalignment_um: float | None = ...,
         center_distance_change_mm: float | None = ...,
-    ) -> LineofactionRoots: ...
-    @_offered(LineofactionOptimizationFigures)
+    ) -> GearboxRoots: ...
+    @_offered(GearboxOptimizationFigures)
     def optimize(
         self,
         case: CaseLike,
         study: StudyLike,
     ) -> FeContactOptimization: ...
-    @_offered(LineofactionScatterFigures)
+    @_offered(GearboxScatterFigures)
     def scatter(
         self,
         case: CaseLike,
@@ -117,15 +117,15 @@ class Processes(Surface):
         samples: int = ...,
         seed: int = ...,
     ) -> FeContactToleranceStudy: ...
-    @_offered(LineofactionSweepFigures)
+    @_offered(GearboxSweepFigures)
     def sweep(
         self,
         case: CaseLike,
         *,
         over: Sequence[str] = ...,
         show: Sequence[Literal["peak_to_peak", "harmonic_1", "harmonic_2", "harmonic_3", "max_pressure", "face_load_factor"]] = ...,
-    ) -> LineofactionSweepResult: ...
-    @_offered(LineofactionModesFigures)
+    ) -> GearboxSweepResult: ...
+    @_offered(GearboxModesFigures)
     def modes(
         self,
         scene: SceneLike,
@@ -134,7 +134,7 @@ class Processes(Surface):
         orders: int = ...,
         highest_frequency_hz: float | None = ...,
     ) -> DynamicsModalAnalysis: ...
-    @_offered(LineofactionResponseFigures)
+    @_offered(GearboxResponseFigures)
     def response(
         self,
         scene: SceneLike,
@@ -142,7 +142,7 @@ class Processes(Surface):
         speed_rpm: Sequence[float],
         orders: int = ...,
     ) -> DynamicsForcedResponse: ...
-    @_offered(LineofactionNoiseFigures)
+    @_offered(GearboxNoiseFigures)
     def noise(
         self,
         scene: SceneLike,
@@ -160,7 +160,7 @@ class Processes(Surface):
         radiation: Literal["monopoles", "equivalent_radiated_power"] = ...,
         boundary_elements: bool = ...,
     ) -> DynamicsRadiatedSound: ...
-    @_offered(LineofactionVibrationFigures)
+    @_offered(GearboxVibrationFigures)
     def vibration(
         self,
         scene: SceneLike,
@@ -172,8 +172,8 @@ class Processes(Surface):
         at_rpm: float | None = ...,
         at_order: float | None = ...,
         mode: int | None = ...,
-    ) -> LineofactionHousingVibrationResult: ...
-    @_offered(LineofactionRecordingFigures)
+    ) -> GearboxHousingVibrationResult: ...
+    @_offered(GearboxRecordingFigures)
     def listen(
         self,
         scene: SceneLike,
@@ -182,8 +182,8 @@ class Processes(Surface):
         microphone_mm: Sequence[float] | None = ...,
         point: str | None = ...,
         direction: Literal["x", "y", "z", "principal"] | None = ...,
-    ) -> LineofactionHeardRun: ...
-    @_offered(LineofactionSteadyFigures)
+    ) -> GearboxHeardRun: ...
+    @_offered(GearboxSteadyFigures)
     def steady(
         self,
         scene: SceneLike,
@@ -193,13 +193,13 @@ class Processes(Surface):
         repeat: int = ...,
         settling_periods: int = ...,
     ) -> DynamicsSteadyStates: ...
-    @_offered(LineofactionDeflectionFigures)
+    @_offered(GearboxDeflectionFigures)
     def deflect(
         self,
         scene: SceneLike,
         study: StudyLike = ...,
-    ) -> LineofactionGearboxDeflection: ...
-    @_offered(LineofactionStudyFigures)
+    ) -> GearboxGearboxDeflection: ...
+    @_offered(GearboxStudyFigures)
     def study(
         self,
         scene: SceneLike,

@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Sequence
+import sys
+from array import array
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Unpack
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack
 
 from lineofaction.client.cache import FIGURES
 from lineofaction.client.libraries import libraries
-from lineofaction.client.live_options import LiveOptions
 from lineofaction.client.offers import ANALYZE
 from lineofaction.client.paging import pages
-from lineofaction.client.raw_columns import Column, query_columns, read_answer
 from lineofaction.client.report import Report
 from lineofaction.client.steps import Items, Steps
 from lineofaction.client.surface import Session, Surface, listing, operation
 from lineofaction.gearbox import schemas
-from lineofaction.gearbox.problems import DamagedFile, NotFound
+from lineofaction.gearbox.problems import BadInput, DamagedFile, NotFound
 from lineofaction.gearbox.registry import JSON, NETCDF
+from lineofaction.gearbox.schemas.query import QueryOutput, validity_words
 from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS, RESULTS, SUFFIX, figures_model
 from service.schemas.database_list import DatabaseEntry
 
@@ -27,6 +28,86 @@ if TYPE_CHECKING:
 
     from fe_contact.ste import SteDatabase
     from lineofaction.gearbox.schemas.figures import Figures
+
+# Force queries as raw columns of little-endian float64: exact, and without numpy.
+
+
+Column = float | Collection[float]
+"""One value for all points, or a list or one-dimensional array with one for each."""
+
+
+def query_columns(columns: Mapping[str, Column]) -> bytes:
+    """Return columns one after the other; one value is repeated for all points.
+
+    Raises
+    ------
+    BadInput
+        The columns are of different lengths.
+    """
+    lists = {name: _values(column) for name, column in columns.items()}
+    size = max(len(values) for values in lists.values())
+    for name, values in lists.items():
+        if len(values) not in (1, size):
+            advice = "Give as many values in every list, or one for all points."
+            raise BadInput.of(name, f"{len(values)} values", f"a list of {size} values, or of one", advice)
+    return b"".join(_swapped(v if len(v) == size else v * size).tobytes() for v in lists.values())
+
+
+def read_answer(content: bytes) -> QueryOutput:
+    """Return force, stiffness and validity from their columns."""
+    values = array("d")
+    values.frombytes(content)
+    numbers = _swapped(values).tolist()
+    size = len(numbers) // 3
+    return QueryOutput.model_construct(
+        force_n=numbers[:size],
+        stiffness_n_per_um=numbers[size : 2 * size],
+        validity=[validity_words(int(flags)) for flags in numbers[2 * size :]],
+    )
+
+
+def _values(column: Column) -> array[float]:
+    """Return a column as an array."""
+    return array("d", [column] if isinstance(column, int | float) else column)
+
+
+def _swapped(values: array[float]) -> array[float]:
+    """Return the values in little-endian order, or from it."""
+    if sys.byteorder == "big":
+        values.byteswap()
+    return values
+
+
+# What a live question may ask beside the torques.
+
+
+class LiveOptions(TypedDict, total=False):
+    """Options of `ste`, in the words of a case file; what is left out is as in the case.
+
+    Attributes
+    ----------
+    misalignment_um, center_distance_change_mm : float
+        Default: 0.
+    pinion, wheel : mapping
+        Flank modifications of a gear (``tip_relief_um`` ...).
+    derivatives : bool
+        Also return the derivatives of each curve by its flanks, the misalignment and the torque.
+    flanks : bool
+        Also return pressure over the driving gear's flank, load over the face, K_Hbeta.
+    condense : bool
+        Compute the compliance first if the service has none in its cache.
+    caller : str, optional
+        Name of the caller: a later request replaces its waiting one (`Superseded`).
+    """
+
+    misalignment_um: float
+    center_distance_change_mm: float
+    pinion: Mapping[str, Any]
+    wheel: Mapping[str, Any]
+    derivatives: bool
+    flanks: bool
+    condense: bool
+    caller: str | None
 
 
 class ResultCalls(Surface):

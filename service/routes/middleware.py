@@ -6,6 +6,7 @@ import asyncio
 import re
 import time
 import uuid
+from collections.abc import Callable
 from functools import partial
 from typing import NoReturn
 
@@ -21,11 +22,79 @@ from lineofaction.gearbox.problems import (
     UnsupportedMediaType,
 )
 from service.routes.errors import problem_of
-from service.routes.extent import Extent
+from service.routes.media_types import CBOR, RAW, media_type
 from service.routes.metrics import Metrics
-from service.routes.stream_figures import StreamFigures
 from service.tracing.traceparent import TRACEPARENT, trace_facts, valid_traceparent
 from service.tracing.tracer import tracer
+
+# Event streams as they are sent: how many are open, and how many events went out.
+
+
+_EVENT_STREAM = b"text/event-stream"
+
+
+class StreamFigures:
+    """Watches the answer to one request; anything but an event stream leaves no trace.
+
+    Parameters
+    ----------
+    metrics : Metrics
+    route : callable
+        Returns the template of the request's path, once it was matched.
+
+    Attributes
+    ----------
+    route : str
+        Of the stream; empty while the answer is none.
+    """
+
+    def __init__(self, metrics: Metrics, route: Callable[[], str]) -> None:
+        self._metrics, self._template = metrics, route
+        self.route = ""
+
+    def see(self, message: Message) -> None:
+        """Look at a piece of the answer; the pieces of a stream are whole events or comments."""
+        if message["type"] == "http.response.start":
+            if dict(message.get("headers", ())).get(b"content-type", b"").startswith(_EVENT_STREAM):
+                self.route = self._template()
+                self._metrics.streams(self.route, 1)
+        elif self.route:
+            blocks = message.get("body", b"").split(b"\n\n")
+            events = sum(bool(block) and not block.startswith(b":") for block in blocks)
+            self._metrics.sent(self.route, events)
+
+    def end(self) -> None:
+        """Note that nothing more is sent."""
+        if self.route:
+            self._metrics.streams(self.route, -1)
+
+
+# Limits of a body before it is read: the cost of reading depends on its parts, not on its bytes.
+
+
+_MOST = {b"{": (5_000, "tables"), b"[": (50_000, "lists"), b":": (50_000, "fields"), b"=": (50_000, "fields")}
+"""Largest number of what each sign begins, in JSON or in the TOML that it carries.
+
+A scene of a wind turbine has some hundred tables, two free-form flanks have a thousand lists, a reduced
+housing six thousand. Numbers are not counted: a flank may have 250 000.
+"""
+
+
+class Extent:
+    """The parts of one body, counted as its pieces come; of binary bodies nothing is counted."""
+
+    def __init__(self, content_type: str) -> None:
+        self._found = {} if media_type(content_type) in (CBOR, RAW) else dict.fromkeys(_MOST, 0)
+
+    def add(self, piece: bytes) -> None:
+        """Count the parts of a piece; raises `TooLarge`."""
+        for sign in self._found:
+            self._found[sign] += piece.count(sign)
+            most, parts = _MOST[sign]
+            if self._found[sign] > most:
+                text = f"The body has more than {most} {parts}, the limit of this service. Send less at once."
+                raise TooLarge(text)
+
 
 API_PREFIX = "/v1"
 logger = structlog.get_logger(__name__)

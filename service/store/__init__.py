@@ -3,10 +3,9 @@
 from service.store.database import BRIEF_MS, instant, now, open_database, reading, writing
 from service.store.dialects import dialect_of
 from service.store.directory import DirectoryLock, identity_of
-from service.store.mark import Mark, behind
 from service.store.outages import optional, retried
 from service.store.places import DATABASE_FILE, RESULTS_DIRECTORY, result_store, stored_results
-from service.store.results import IndexLine, ResultStore, StoredResult
+from service.store.results import IndexLine, Mark, ResultStore, StoredResult, behind
 
 __all__ = [
     "BRIEF_MS",

@@ -7,11 +7,12 @@ import time
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from sqlalchemy import (
     BigInteger,
     Column,
+    ColumnElement,
     Connection,
     Engine,
     Index,
@@ -20,6 +21,7 @@ from sqlalchemy import (
     Table,
     delete,
     select,
+    tuple_,
     update,
 )
 
@@ -29,9 +31,31 @@ from service.project import COMMON, address_of, at_address
 from service.store.database import BRIEF_MS, instant, metadata, now, reading, writing
 from service.store.dialects import dialect_of
 from service.store.files import SET_ASIDE, ResultFiles, WrongContent, digest_of
-from service.store.mark import Mark, behind
 from service.store.outages import optional, retried
 from service.store.result_names import new_name
+
+# Places in lists that are read page by page, the newest first.
+
+
+class Mark(NamedTuple):
+    """The last line of a page; the next one begins behind it, whether the line still exists or not.
+
+    Attributes
+    ----------
+    created : str
+        RFC 3339 in UTC with microseconds.
+    name : str
+        Identifier, which orders lines of one instant.
+    """
+
+    created: str
+    name: str
+
+
+def behind(mark: Mark, created: ColumnElement[Any], name: ColumnElement[Any]) -> ColumnElement[bool]:
+    """Return the condition of lines older than the mark."""
+    return tuple_(created, name) < tuple_(mark.created, mark.name)
+
 
 USE_NOTED_EVERY_S = 3600.0
 """A result that is read all the time is noted as used this often."""

@@ -2,20 +2,37 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
+
+import rfc8785
 
 from lineofaction.gearbox.loading import LOADING
 from lineofaction.gearbox.problems import NoSuchProcess
 from lineofaction.gearbox.registry import FORMER
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.stages import Stage
-from service.worker.key import content_key
+from service.version import solver_version
 
 if TYPE_CHECKING:
     from service.store import ResultStore
+
+# Names of results: the hash of what decides them.
+
+
+def content_key(process: str, process_version: str, inputs: dict[str, Any]) -> str:
+    """Return the SHA-256 of the RFC 8785 form of the normalized inputs and the versions, hexadecimal."""
+    facts: dict[str, Any] = {
+        "process": process,
+        "process_version": process_version,
+        "solver_version": solver_version(),
+        "inputs": inputs,
+    }
+    return hashlib.sha256(rfc8785.dumps(facts)).hexdigest()
+
 
 Json = dict[str, Any]
 Prepare = Callable[[BoundaryModel, "ResultStore"], Json]

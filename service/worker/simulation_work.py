@@ -3,28 +3,109 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from dynamics.errors import ResultError
 from dynamics.scene import Scene
 from dynamics.simulation import simulate_to_file
+from fe_contact.analysis import ste_database
+from fe_contact.options import Run
 from fe_contact.ste import SteDatabase
-from lineofaction.gearbox.convert.case import case_json
+from lineofaction.gearbox.convert.case import (
+    analysis_options,
+    boundary_errors,
+    case_json,
+    gear_pair,
+    table_axes,
+)
+from lineofaction.gearbox.convert.drafts import draft_line
 from lineofaction.gearbox.convert.housings import HousedScene, reduced_in
-from lineofaction.gearbox.convert.plausibility import scene_warnings
+from lineofaction.gearbox.convert.plausibility import phrased_database, scene_warnings
 from lineofaction.gearbox.convert.runs import staged
 from lineofaction.gearbox.convert.scene import TabledScene, dynamic_scene
 from lineofaction.gearbox.problems import BadInput, JobFailed
+from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.scene_meshes import MeshInput
+from lineofaction.gearbox.stages import TableFraction
 from model_studies.progress import Report, by_cost
 from service.store import ResultStore, stored_results
-from service.worker.analysis_work import database_of
 from service.worker.catalogue import ANALYZE
+from service.worker.cluster import table_workers
 from service.worker.order import Product, Progress, WorkOrder
+
+# The work of the process analyze, done in a child process of its own.
+
+
+# Progress of an analysis: its fraction by predicted cost, and the figures of the last draft.
+
+
+class DraftedProgress:
+    """Reports stages, with the last draft behind their names, and the fraction of the whole table.
+
+    Parameters
+    ----------
+    report : callable
+        Called as report(stage, fraction, whole).
+    refines : bool
+        Whether passes may follow the first.
+    """
+
+    def __init__(self, report: Progress, *, refines: bool) -> None:
+        self._report, self._draft = report, ""
+        self._table = TableFraction(refines=refines)
+
+    def __call__(self, stage: str, fraction: float) -> None:
+        """Report the fraction done of a stage."""
+        name = f"{stage}; {self._draft}" if self._draft else stage
+        self._report(name, fraction, self._table.at(stage, fraction))
+
+    def plan(self, stages: Mapping[str, float]) -> None:
+        """Take the predicted cost of the stages of a pass."""
+        self._table.plan(stages)
+
+    def draft(self, table: SteDatabase, refining: str) -> None:
+        """Take the figures of a table that is being refined."""
+        self._draft = draft_line(table, refining)
+
+
+def warm_up() -> None:
+    """Analyze the smallest pair into a file: it loads what every analysis needs."""
+    gear = {"teeth": 20, "face_width_mm": 2.0, "bore_diameter_mm": 10.0}
+    pair = {"normal_module_mm": 1.0, "center_distance_mm": 20.0, "pinion": gear, "wheel": gear}
+    accuracy = {"level": "draft", "positions": 8}
+    case = {"pair": pair, "load": {"torque_n_m": [0.1]}, "accuracy": accuracy}
+    with TemporaryDirectory() as name:
+        inputs = {"case": validated(Case, case).model_dump(mode="json")}
+        analyze_case(WorkOrder("", inputs, "", Path(name), Path(name)), lambda *_: None)
+
+
+def analyze_case(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
+    """Compute the STE database of a case."""
+    case = Case.model_validate_json(json.dumps(order.inputs["case"]))
+    file = order.workspace / "database.nc"
+    database_of(case, order, progress).to_netcdf(file)
+    return (Product(order.key, "database", file),)
+
+
+def database_of(case: Case, order: WorkOrder, progress: Progress) -> SteDatabase:
+    """Return the STE database of a case of an order; condensed gears are kept in the service's cache."""
+    drafted = DraftedProgress(progress, refines=case.accuracy.tolerance is not None)
+    with boundary_errors(), table_workers(order) as workers:
+        database = ste_database(
+            gear_pair(case),
+            table_axes(case),
+            analysis_options(case),
+            Run(workers, order.data_directory / "compliance", drafted, drafted.plan),
+            case=case_json(case),
+            on_draft=drafted.draft,
+        )
+    return phrased_database(database, case)
 
 
 def simulate_scene(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:

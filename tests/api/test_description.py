@@ -15,7 +15,7 @@ from openapi_spec_validator import OpenAPIV30SpecValidator, OpenAPIV31SpecValida
 from lineofaction.gearbox import problems
 from lineofaction.gearbox.problems import ServiceError
 from lineofaction.gearbox.registry import STUDIES
-from service.routes.openapi30 import in_version_30
+from service.routes.description import in_version_30
 from service.routes.response_headers import OF_STATUS
 from service.schemas.ogc import class_name
 from service.worker.catalogue import default_registry

@@ -165,7 +165,7 @@ def test_nothing_of_opentelemetry_is_loaded_by_the_client_and_its_sdk_by_nobody_
     script = (
         "import sys\n"
         "from lineofaction.client import LineOfActionClient\n"
-        "from lineofaction.client.trace import traced\n"
+        "from lineofaction.client.exchange import traced\n"
         "assert traced({'json': 1}) == {'json': 1}\n"
         "assert not [name for name in sys.modules if name.startswith('opentelemetry')]\n"
         "import lineofaction.cli.work, service.app\n"

@@ -7,10 +7,10 @@ import pytest
 from sliced_face import sliced_database
 
 from dynamics.forces.compiled import compiled
-from dynamics.forces.grid_energy import grid_energy
 from dynamics.forces.grid_lookup import find_cell, grid_force
 from dynamics.forces.grid_tables import pack_grids
 from dynamics.forces.mesh_table import check_table
+from dynamics.forces.spatial_flank import grid_energy
 from fe_contact.ste.mesh_force import MeshForce
 
 M, A = (-20e-6, -8e-6, 3e-6, 18e-6), (-1e-4, 0.0, 2e-4)

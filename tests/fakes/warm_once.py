@@ -21,7 +21,7 @@ from service_surroundings import FAKES
 from service.worker.child_process import ChildProcess, Ends
 from service.worker.forks import Forks, _Server
 
-_ANALYSIS = "service.worker.analysis_work"
+_ANALYSIS = "service.worker.simulation_work"
 
 
 class _Shared(_Server):

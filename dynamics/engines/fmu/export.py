@@ -3,21 +3,262 @@
 from __future__ import annotations
 
 import hashlib
+import math
 import os
+import platform
 import re
+import shlex
+import shutil
+import subprocess
 import tempfile
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib.resources import files
 from pathlib import Path
+from xml.etree import ElementTree as Xml
 
-from dynamics.engines.fmu.compiler import binary_folder, compile_library, find_compiler
-from dynamics.engines.fmu.header import TABLE_FILE, header
-from dynamics.engines.fmu.model_description import model_description
-from dynamics.engines.fmu.table_resource import identity_of, table_content, table_file
-from dynamics.engines.fmu.variables import variables
+import numpy as np
+
+from dynamics.engines.fmu.variables import BOOLEAN, INTEGER, REAL, Variable, of_kind, variables
 from dynamics.engines.mesh_element import MeshElement
-from dynamics.errors import InputError
+from dynamics.errors import DynamicsError, InputError
+from dynamics.forces.mesh_table import FIELDS, MeshTable
+
+# modelDescription.xml of FMI 2.0.
+
+
+# exponents of the SI base units
+_UNITS = {
+    "rad": {"rad": 1},
+    "rad/s": {"rad": 1, "s": -1},
+    "m": {"m": 1},
+    "m/s": {"m": 1, "s": -1},
+    "N": {"kg": 1, "m": 1, "s": -2},
+    "N.m": {"kg": 1, "m": 2, "s": -2},
+    "N/m": {"kg": 1, "s": -2},
+    "N.s/m": {"kg": 1, "s": -1},
+}
+_CAPABILITIES = (
+    "canHandleVariableCommunicationStepSize",
+    "canGetAndSetFMUstate",
+    "canSerializeFMUstate",
+    "canNotUseMemoryManagementFunctions",
+)
+
+
+def model_description(name: str, chosen: Sequence[Variable], guid: str, sources: Sequence[str]) -> bytes:
+    """Return the XML; it holds no date, so that the same table gives the same file.
+
+    Parameters
+    ----------
+    name : str
+        Model name and identifier: a C identifier.
+    chosen : sequence of Variable
+    guid : str
+    sources : sequence of str
+        The C files to compile, in ``sources/``.
+    """
+    root = Xml.Element(
+        "fmiModelDescription",
+        fmiVersion="2.0",
+        modelName=name,
+        guid=guid,
+        description="Gear mesh force from a static-transmission-error table",
+        generationTool="lineofaction",
+        variableNamingConvention="flat",
+        numberOfEventIndicators="0",
+    )
+    unit = Xml.SubElement(
+        root, "CoSimulation", {"modelIdentifier": name, **dict.fromkeys(_CAPABILITIES, "true")}
+    )
+    files = Xml.SubElement(unit, "SourceFiles")
+    for source in sources:
+        Xml.SubElement(files, "File", name=source)
+    _add_units(root)
+    _add_variables(root, chosen)
+    _add_structure(root, chosen)
+    Xml.indent(root)
+    content: bytes = Xml.tostring(root, encoding="UTF-8", xml_declaration=True)
+    return content + b"\n"
+
+
+def _add_units(root: Xml.Element) -> None:
+    definitions = Xml.SubElement(root, "UnitDefinitions")
+    for name, exponents in _UNITS.items():
+        unit = Xml.SubElement(definitions, "Unit", name=name)
+        Xml.SubElement(unit, "BaseUnit", {base: str(power) for base, power in exponents.items()})
+
+
+def _add_variables(root: Xml.Element, chosen: Sequence[Variable]) -> None:
+    section, count = Xml.SubElement(root, "ModelVariables"), dict.fromkeys((REAL, INTEGER, BOOLEAN), 0)
+    for variable in chosen:
+        entry = Xml.SubElement(
+            section,
+            "ScalarVariable",
+            name=variable.name,
+            valueReference=str(count[variable.kind]),
+            description=variable.text,
+            causality=variable.causality,
+            variability=variable.variability,
+        )
+        count[variable.kind] += 1
+        facts = {"unit": variable.unit} if variable.unit else {}
+        if variable.start is not None:
+            facts["start"] = _text(variable)
+        Xml.SubElement(entry, variable.kind, facts)
+
+
+def _text(variable: Variable) -> str:
+    if variable.kind == BOOLEAN:
+        return "true" if variable.start else "false"
+    return repr(variable.start)
+
+
+def _add_structure(root: Xml.Element, chosen: Sequence[Variable]) -> None:
+    """Every output depends on every input, at once."""
+    structure = Xml.SubElement(root, "ModelStructure")
+    for section in ("Outputs", "InitialUnknowns"):
+        listed = Xml.SubElement(structure, section)
+        for index, variable in enumerate(chosen, start=1):
+            if variable.causality == "output":
+                Xml.SubElement(listed, "Unknown", index=str(index))
+
+
+# The system's C compiler, which makes the FMU's binary.
+
+
+COMPILERS = ("cc", "gcc", "clang")
+# -ffp-contract=off: the same rounding as the compiled look-up; -s and no paths: the same bytes every time
+FLAGS = ("-std=c99", "-O2", "-fPIC", "-shared", "-ffp-contract=off", "-Wall", "-Wextra", "-I.")
+_FOLDERS = {("Linux", "x86_64"): ("linux64", ".so"), ("Darwin", "x86_64"): ("darwin64", ".dylib")}
+_SECONDS = 120
+
+
+class CompilerError(DynamicsError):
+    """The C compiler refused the FMU's sources; its message is the text."""
+
+
+def binary_folder() -> tuple[str, str] | None:
+    """Return folder in ``binaries/`` and ending of this machine's binary; None where FMI 2.0 has none."""
+    return _FOLDERS.get((platform.system(), platform.machine()))
+
+
+def find_compiler() -> list[str]:
+    """Return the command of the C compiler: ``CC`` from the environment, or the first of cc, gcc, clang.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    requested = shlex.split(os.environ.get("CC", ""))
+    for command in [requested] if requested else [[name] for name in COMPILERS]:
+        if shutil.which(command[0]) is not None:
+            return command
+    advice = (
+        "Install one (Debian: apt-get install gcc), name one in CC, or write the sources alone: "
+        "export_fmu(..., binary=False)."
+    )
+    raise InputError("CC", " ".join(requested) or None, "a C compiler on the path", advice)
+
+
+def compile_library(folder: Path, sources: Sequence[str], library: str) -> None:
+    """Compile `sources` in `folder` into the shared library of that name there.
+
+    Raises
+    ------
+    InputError
+        If there is no compiler.
+    CompilerError
+        If it refuses.
+    """
+    strip = [] if platform.system() == "Darwin" else ["-s"]
+    command = [*find_compiler(), *FLAGS, *strip, "-o", library, *sources, "-lm"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=_SECONDS, check=False)
+    if done.returncode != 0:
+        raise CompilerError(f"{shlex.join(command)} failed:\n{done.stderr.strip()}")
+
+
+# The generated C header: value references, start values and the facts of the pair.
+
+
+TABLE_FILE = "mesh_force_table.bin"
+
+
+def header(element: MeshElement, chosen: Sequence[Variable], guid: str, identity: str) -> str:
+    """Return variables.h; numbers are written as hexadecimal floats, which C99 reads without rounding."""
+    parts = [_kind(of_kind(chosen, kind), kind.upper()) for kind in (REAL, INTEGER, BOOLEAN)]
+    names = ", ".join(f'"{variable.name}"' for variable in of_kind(chosen, REAL))
+    facts = {
+        "GUID": f'"{guid}"',
+        "TABLE_FILE": f'"{TABLE_FILE}"',
+        "TABLE_IDENTITY": f'"{identity}"',
+        "DRIVER_TEETH": str(element.teeth[0]),
+        "DRIVEN_TEETH": str(element.teeth[1]),
+        "DRIVER_BASE_RADIUS": _exact(element.base_radius[0]),
+        "DRIVEN_BASE_RADIUS": _exact(element.base_radius[1]),
+        "BASE_PITCH": _exact(element.base_pitch),
+        "TAN_BASE_HELIX_ANGLE": _exact(math.tan(element.base_helix_angle)),
+    }
+    lines = [f"#define {name} {value}" for name, value in facts.items()]
+    return "\n".join(
+        [
+            "/* Generated with the model description. */",
+            "#ifndef VARIABLES_H",
+            "#define VARIABLES_H",
+            *parts,
+            f"static const char *const REAL_NAMES[] = {{{names}}};",
+            *lines,
+            "#endif",
+            "",
+        ]
+    )
+
+
+def _kind(chosen: Sequence[Variable], kind: str) -> str:
+    """Value references and start values of one kind; what can be set comes first."""
+    settable = [variable for variable in chosen if variable.start is not None]
+    if list(chosen[: len(settable)]) != settable:
+        raise AssertionError("outputs come after what can be set")
+    names = ", ".join([*(variable.name.upper() for variable in chosen), f"{kind}_COUNT"])
+    start = ", ".join(
+        _exact(variable.start or 0.0) if kind == "REAL" else str(int(variable.start or 0))
+        for variable in chosen
+    )
+    return f"enum {{{names}, {kind}_SETTABLE = {len(settable)}}};\n#define {kind}_START_VALUES {{{start}}}"
+
+
+def _exact(value: float) -> str:
+    return float(value).hex()
+
+
+# The mesh-force table as the FMU's resource: plain little-endian numbers.
+
+
+MAGIC = b"LOAMESH1"
+
+
+def table_content(table: MeshTable) -> bytes:
+    """Return five sizes (M, D, P, L, period) and the arrays: axes, positions, levels, nodes.
+
+    Nodes (M, D, P, L, 4) hold deflection, its slope, stiffness, its slope.
+    """
+    axes = [table.misalignment, table.center_distance_change, table.position, table.level]
+    flat = [np.atleast_1d(np.asarray(axis, dtype="<f8")) for axis in axes]
+    sizes = np.array([*(axis.size for axis in flat), table.period], dtype="<u8")
+    nodes = np.stack([np.asarray(getattr(table, name), dtype="<f8") for name in FIELDS], axis=-1)
+    return b"".join([sizes.tobytes(), *(axis.tobytes() for axis in flat), nodes.tobytes()])
+
+
+def identity_of(content: bytes) -> str:
+    """Return 32 hexadecimal digits by which the unit knows its table."""
+    return hashlib.sha256(content).hexdigest()[:32]
+
+
+def table_file(content: bytes) -> bytes:
+    """Return the file: magic, identity, content."""
+    return MAGIC + identity_of(content).encode("ascii") + content
+
 
 _EARLIEST = (1980, 1, 1, 0, 0, 0)
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")

@@ -3,24 +3,90 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
 
 from bounds import engineering
 from fe_contact.allowed_error import AllowedError
-from fe_contact.analysis.checks.tip_edges import assemble_edges, deepest_edge
 from fe_contact.analysis.pairs.operating_points import OperatingPoint, OperatingPoints
+from fe_contact.analysis.pairs.solved_operating_points import assemble_remotely
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.tables.solved_table import SolvedTable
-from fe_contact.contact import ContactProblem, ContactSolution
+from fe_contact.contact import Candidates, ContactProblem, ContactSolution
 from fe_contact.effects.across_face import across_face
 from fe_contact.effects.influence import EstimatedInfluence, estimate_influence
 from fe_contact.effects.misalignment import MisalignmentGap
+from fe_contact.geometry import ParallelAxes
 from fe_contact.geometry.printed_data import backlash_rounding
 from fe_contact.planning import Plan, left_out
 from fe_contact.types import FloatArray, Json
+
+# Depth of tip edges inside the mating flanks in a contact that was solved without them.
+
+
+OUTSIDE = 1e-3
+"""Base pitches before A and after E at which the gap of an edge is assessed: it grows from there on."""
+
+
+def assemble_edges(points: OperatingPoints, solved: Sequence[tuple[ContactProblem, ContactSolution]]) -> None:
+    """Let workers assemble the compliance at the tip edges of all places, as `edge_depth` needs it."""
+    models = [replace(point.model, corner_contact=True) for point in points.places]
+    assemble_remotely(points, models, _phase(solved[0][0]))
+
+
+def deepest_edge(
+    point: OperatingPoint, load: FloatArray, problem: ContactProblem, solution: ContactSolution
+) -> FloatArray:
+    """Return how far tip edges would be inside the mating flanks (L,), m; 0 where they stay clear.
+
+    At the positions solved, and where pairs come into contact and leave it: there the gap of an edge is
+    least, and solved positions may pass it by. The contact is solved for these too.
+    """
+    position = handovers(point.contact.pair)
+    meant = point.solve_pitches(position, load, np.arange(point.model.period))
+    return np.maximum(edge_depth(point, problem, solution), edge_depth(point, *meant))
+
+
+def handovers(pair: ParallelAxes) -> FloatArray:
+    """Return the positions (2,) in [0, 1), rising, just before a pair meets at A and after it leaves at E."""
+    path = pair.path_of_contact
+    start, end = (float(pair.position(roll)) for roll in (path.start, path.end))
+    return np.sort(np.array([start - OUTSIDE, end + OUTSIDE]) % 1.0)
+
+
+def edge_depth(point: OperatingPoint, problem: ContactProblem, solution: ContactSolution) -> FloatArray:
+    """Return how far tip edges would be inside the mating flanks (L,), m; 0 where they stay clear.
+
+    Under the forces as solved: what the loaded teeth move at the unloaded edges is in.
+    """
+    where = problem.candidates.position
+    phase, pitch = _phase(problem), np.floor(where).astype(np.int64)
+    model = replace(point.model, corner_contact=True)
+    edges = point.contact.problem(model, phase, pitch if model.tooth_gaps else None)
+    touch = edges.candidates.touch
+    off_line = (touch.lever_1 != 1.0) | (touch.lever_2 != 1.0)
+    force = _carried(problem.candidates, edges.candidates, np.nan_to_num(solution.force))
+    moved = edges.moved(force)
+    closing = edges.candidates.motion_arm[:, None, :] * np.nan_to_num(solution.deflection)[:, :, None]
+    gap = np.where(off_line, touch.gap, np.inf) * edges.candidates.motion_arm
+    return np.asarray(np.max(closing - moved - gap[:, None, :], axis=(0, 2), initial=0.0))
+
+
+def _phase(problem: ContactProblem) -> FloatArray:
+    """Return the positions of a problem in one base pitch."""
+    return problem.candidates.position[: len(problem.compliance)] % 1.0
+
+
+def _carried(these: Candidates, those: Candidates, force: FloatArray) -> FloatArray:
+    """Return forces (P, L, n) of some candidates on others, of which they are a part."""
+    column = {key: i for i, key in enumerate(zip(those.pair.tolist(), those.face_position, strict=True))}
+    carried = np.zeros((*force.shape[:2], those.pair.size))
+    keys = zip(these.pair.tolist(), these.face_position, strict=True)
+    carried[:, :, [column[key] for key in keys]] = force
+    return carried
+
 
 LEAST_BACKLASH = 1e-9
 """m; teeth without a thickness allowance have none but rounding."""

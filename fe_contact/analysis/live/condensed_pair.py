@@ -8,18 +8,20 @@ elements; and its errors about as much again.
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from bounds import at_most
+from fe_contact.analysis.checks.assumptions import Assumption, SolvedRun, check_cheaply
+from fe_contact.analysis.database.contact_receipt import failed_points
+from fe_contact.analysis.estimates.assessed_table import AssessedTable
+from fe_contact.analysis.estimates.error_estimate import worst_residual
 from fe_contact.analysis.estimates.solved_again import TableSample
-from fe_contact.analysis.live.condensed_assumptions import CondensedRun, check_condensed
 from fe_contact.analysis.live.condensed_contacts import CondensedContacts
 from fe_contact.analysis.live.condensed_errors import condensed_errors
-from fe_contact.analysis.live.condensed_receipt import condensed_receipt
 from fe_contact.analysis.live.condensed_solution import CondensedSolution
 from fe_contact.analysis.pairs.operating_points import OperatingPoints, operating_points
 from fe_contact.analysis.pairs.pair_contact import PairContact
@@ -27,6 +29,7 @@ from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_asked
 from fe_contact.analysis.tables.position_nodes import PositionNodes, unmeasured_nodes
 from fe_contact.analysis.tables.solved_table import assembled_table
+from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.errors import InputError
 from fe_contact.geometry import FlankModification, ParallelAxes
 from fe_contact.options import TableAxes
@@ -35,7 +38,82 @@ from fe_contact.planning.cost_model import condensed_teeth
 from fe_contact.planning.plan import LARGEST_SUPPORT
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
-from fe_contact.types import FloatArray
+from fe_contact.ste.curve_errors import BETWEEN_NODES
+from fe_contact.types import FloatArray, Json
+
+# Assumptions of a condensed pair's table: what costs nothing is checked, the rest is named.
+
+
+@dataclass(frozen=True)
+class CondensedRun:
+    """A table of a condensed pair as its checks see it, after `SolvedRun`."""
+
+    checked: Checked
+    plan: Plan
+    places: OperatingPoints
+    solved: Sequence[tuple[ContactProblem, ContactSolution]]
+
+
+def check_condensed(run: SolvedRun, neglected: Mapping[str, str]) -> tuple[Assumption, ...]:
+    """Check what can be checked on the solution alone.
+
+    Parameters
+    ----------
+    run : SolvedRun
+    neglected : mapping of str to str
+        Effects of the bodies that the tolerance of the table's case neglected, and why: off here too.
+
+    Returns
+    -------
+    tuple of Assumption
+        What was not checked has no verdict (`holds` None) and says so.
+    """
+    return (*check_cheaply(run), *_edges(run), *_neglected(neglected))
+
+
+def _edges(run: SolvedRun) -> Iterator[Assumption]:
+    """Without corner contact: edges would have to be laid out, which assembles another compliance."""
+    if not run.checked.model.corner_contact:
+        reason = "not checked: corner contact is switched off by the case"
+        effect = run.checked.request.named("corner_contact")
+        yield Assumption(effect, "tip edges stay clear", None, float("nan"), reason)
+
+
+def _neglected(neglected: Mapping[str, str]) -> Iterator[Assumption]:
+    """Effects of the bodies that were neglected for a tolerance, assessed by the flanks of the case."""
+    for name, why in neglected.items():
+        reason = f"not checked on these flanks: {why}"
+        yield Assumption(name, "neglected effects are negligible", None, float("nan"), reason)
+
+
+# The receipt of a condensed pair's table: errors by source, cost by stage, assumptions.
+
+
+def condensed_receipt(
+    plan: Plan,
+    solution: ContactSolution,
+    assessed: AssessedTable,
+    assumptions: Sequence[Assumption],
+    clock: StageClock,
+) -> Json:
+    """Return the receipt of a table at the requested loads, between which nothing is known."""
+    errors = assessed.to_json()
+    missing = [name for name in errors["not_estimated"] if name not in BETWEEN_NODES]
+    known = {name: value for name, value in errors["curve_error"].items() if name not in BETWEEN_NODES}
+    return (
+        clock.to_json()
+        | errors
+        | {
+            "curve_error": known,
+            "not_estimated": missing,
+            "plan": plan.to_json(),
+            "beyond_load_patches": int(solution.beyond.sum()),
+            "residuals_max": worst_residual(solution),
+            "failed_points": failed_points([solution]),
+            "assumptions": [assumption.to_json() for assumption in assumptions],
+        }
+    )
+
 
 PLANE_POSITIONS, FACE_POSITIONS = 192, 64
 """Of a base pitch, equally spaced: the compliance at them is assembled once for all flanks. In the plane

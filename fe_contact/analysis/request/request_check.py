@@ -2,20 +2,114 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
-from bounds import Text, at_least, warn_of
-from fe_contact.analysis.request.neglected_effects import neglected_effects
-from fe_contact.analysis.request.plane_limits import refuse_beyond_plane
+import numpy as np
+
+from bounds import DEPTHS, Text, at_least, warn_of
+from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.request.request import Checked, Request
 from fe_contact.compliance.rounding import LARGEST_ROUNDING, least_face_width
 from fe_contact.contact import ContactModel
-from fe_contact.effects import LedgerEntry, compose
+from fe_contact.effects import ContactScene, LedgerEntry, compose
+from fe_contact.effects.influence import EstimatedInfluence, estimate_influences
 from fe_contact.errors import InputError
-from fe_contact.geometry import ParallelAxes
+from fe_contact.flank.modification import fields_of
+from fe_contact.geometry import FlankModification, ParallelAxes
 from fe_contact.mesh import SectorRecipe
 from fe_contact.options import AnalysisOptions, OperatingPoint, TableAxes
 from fe_contact.planning import CycleCost, cycle_cost, make_plan, refuse_long_cycle
+
+# Automatic effects that a requested tolerance does not need.
+
+
+SHARE = 0.1
+"""Part of the tolerance that all neglected effects together may change by their estimates, which are right
+within a factor of two in most cases (docs/effects/influence.md): what is neglected stays below it."""
+
+
+def neglected_effects(
+    scene: ContactScene, ledger: Sequence[LedgerEntry], tolerance: AllowedError | None
+) -> dict[str, str]:
+    """Return the automatic effects whose estimated influence is below the tolerance's share, and why.
+
+    Parameters
+    ----------
+    scene : ContactScene
+    ledger : sequence of LedgerEntry
+        As the scene alone decides.
+    tolerance : AllowedError or None
+        Of mean and peak-to-peak; None: nothing is neglected.
+
+    Returns
+    -------
+    dict of str to str
+        The smallest first, until their sum would exceed the share.
+    """
+    if tolerance is None:
+        return {}
+    automatic = [entry.name for entry in ledger if entry.on and entry.choice == "auto"]
+    able = [name for name in automatic if scene.effect(name).without(scene) is not None]
+    decided = {entry.name: "on" if entry.on else "off" for entry in ledger}
+    estimates = estimate_influences(scene, decided, able, tolerance.least_scale)
+    neglected: dict[str, str] = {}
+    total = 0.0
+    influences = [(name, influence) for name, influence in estimates.items() if influence is not None]
+    for name, influence in sorted(influences, key=lambda item: item[1].largest):
+        total += influence.largest
+        if total > SHARE * tolerance.relative:
+            break
+        neglected[name] = _reason(influence, tolerance)
+    return neglected
+
+
+def _reason(influence: EstimatedInfluence, tolerance: AllowedError) -> str:
+    """Say why an effect is neglected: an estimate of another size than the tolerance bounds nothing."""
+    part = tolerance.part_words(influence.largest)
+    return f"neglected: estimated, within a factor of two in most cases, at {part} where it is largest"
+
+
+# Limits of a plane model: all that acts across the face.
+
+
+def refuse_beyond_plane(scene: ContactScene, model: ContactModel, ledger: Sequence[LedgerEntry]) -> None:
+    """Refuse what acts across the face, and what effects that are on have there, where the model is a plane.
+
+    Raises
+    ------
+    InputError
+        Helix, flanks that vary along the face, shafts, misalignment; what effects refuse; by field name.
+    """
+    if model.across_face:
+        return
+    _refuse_face_effects(scene)
+    for entry in ledger:
+        if entry.on:
+            scene.effect(entry.name).refuse_plane(scene)
+
+
+def _refuse_face_effects(scene: ContactScene) -> None:
+    """Refuse what varies or moves across the face."""
+    pair, advice = scene.pair, "Use the 3-D model for it."
+    if pair.pinion.helix_angle != 0.0:
+        raise InputError("pinion.helix_angle", pair.pinion.helix_angle, "0 for a plane model", advice)
+    for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
+        _refuse_varying_flanks(f"{name}.modification", gear.modification.along_face, advice)
+        if pair.shafts[name == "wheel"] is not None:
+            raise InputError(f"{name}.shaft", "given", "left out for a plane model", advice)
+    if np.any(scene.misalignment != 0.0):
+        raise InputError("misalignments", scene.misalignment.tolist(), "[0.0] for a plane model", advice)
+
+
+def _refuse_varying_flanks(field: str, along_face: FlankModification, advice: str) -> None:
+    """Refuse what a flank has along the face, by the amount that varies."""
+    bound = "constant along the face for a plane model"
+    for name in fields_of(*DEPTHS):
+        if amount := getattr(along_face, name):
+            raise InputError(f"{field}.{name}", amount, f"0: {bound}", advice)
+    if along_face.flank_grid is not None:
+        raise InputError(f"{field}.flank_grid.removed", along_face.flank_grid.removed, bound, advice)
 
 
 def check_request(

@@ -2,15 +2,272 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from fe_contact.full_contact.condensation.condensed_body import condensed_body
-from fe_contact.full_contact.condensation.contact_geometry import PairGeometry
-from fe_contact.full_contact.condensation.linearized_contact import ContactGeometry
+import numpy as np
+import scipy.sparse as sp
+from scipy.linalg import cho_factor, cho_solve
+from scipy.sparse.linalg import SuperLU, splu
+
+from fe_contact.errors import SolveError
+from fe_contact.full_contact.condensation.active_set import ContactSystem
+from fe_contact.full_contact.condensation.dissection import dissected, mesh_graph
+from fe_contact.full_contact.condensation.flank_curve import FlankCurve
+from fe_contact.full_contact.condensation.linearized_contact import (
+    LEAST_FACING,
+    Configuration,
+    ContactGeometry,
+    LinearizedContact,
+    Solution,
+    rotation,
+    turned_back,
+)
 from fe_contact.full_contact.condensation.placed_mesh import PlacedBody
 from fe_contact.full_contact.condensation.sites import ContactSite
-from fe_contact.geometry import ParallelAxes
+from fe_contact.full_contact.condensation.stiffness import plane_strain_stiffness
+from fe_contact.full_contact.condensation.weak_gap import WeakGap, weak_gap
+from fe_contact.geometry import ParallelAxes, tooth_profile
+from fe_contact.material import Material
+from fe_contact.types import BoolArray, FloatArray, IntArray
+
+# One gear condensed to the nodes of its strips: one factorisation, the strips' freedoms last.
+
+
+@dataclass(frozen=True)
+class CondensedBody:
+    """One gear seen from the nodes of its strips, per unit face width.
+
+    Attributes
+    ----------
+    body : PlacedBody
+    nodes : (k,) int array
+        All nodes of its strips.
+    columns : mapping of int to int array
+        By pair index: where in `nodes` those of a strip are.
+    compliance : (2 k, 2 k) array
+        Displacement per nodal force, m per N/m; freedom 2 i + c is component c of node i.
+    stiffness : (2 n, 2 n) sparse array
+        Of all nodes, the held ones too.
+    solve : callable
+        Forces on the freedoms of all nodes (2 n,) to displacements; held nodes stay.
+    """
+
+    body: PlacedBody
+    nodes: IntArray
+    columns: Mapping[int, IntArray]
+    compliance: FloatArray
+    stiffness: sp.csc_array
+    solve: Callable[[FloatArray], FloatArray]
+
+    @property
+    def freedoms(self) -> IntArray:
+        """Freedoms of the nodes of its strips."""
+        return freedoms(self.nodes)
+
+    @property
+    def points(self) -> FloatArray:
+        """Nodes of its strips, undeformed, (k, 2) m."""
+        return self.body.points[self.nodes]
+
+
+def condensed_body(body: PlacedBody, material: Material) -> CondensedBody:
+    """Assemble, factorise, condense.
+
+    Raises
+    ------
+    SolveError
+        The stiffness is singular.
+    """
+    matrix = plane_strain_stiffness(body.points, body.triangles, material)
+    nodes = np.unique(np.concatenate([strip.nodes for strip in body.strips.values()]))
+    columns = {ahead: np.searchsorted(nodes, strip.nodes) for ahead, strip in body.strips.items()}
+    inner = np.setdiff1d(np.arange(len(body.points)), np.concatenate([nodes, body.held]))
+    inner = dissected(mesh_graph(body.triangles, len(body.points)), inner)
+    order = np.concatenate([freedoms(inner), freedoms(nodes)])
+    permuted = sp.csc_array(matrix[order][:, order])
+    try:
+        factor = splu(permuted, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    except RuntimeError as error:
+        raise SolveError(f"full contact: {error}") from error
+
+    def solve(forces: FloatArray) -> FloatArray:
+        displacement = np.zeros_like(forces)
+        displacement[order] = factor.solve(forces[order])
+        return displacement
+
+    schur = _trailing_product(factor, 2 * len(nodes))
+    compliance = cho_solve(cho_factor(schur), np.eye(len(schur)))
+    return CondensedBody(body, nodes, columns, 0.5 * (compliance + compliance.T), matrix, solve)
+
+
+def freedoms(nodes: IntArray) -> IntArray:
+    """Return the two freedoms of each node, node by node."""
+    return np.asarray((2 * nodes[:, None] + np.arange(2)).ravel())
+
+
+def _trailing_product(factor: SuperLU, count: int) -> FloatArray:
+    """Return L_ss U_ss of the last `count` freedoms: their Schur complement, symmetric."""
+    size = factor.shape[0]
+    last = np.arange(size - count, size)
+    if not (np.array_equal(factor.perm_c[last], last) and np.array_equal(factor.perm_r[last], last)):
+        raise SolveError("full contact: the factorisation changed the order of the strips")
+    lower = factor.L[size - count :, size - count :].toarray()
+    upper = factor.U[size - count :, size - count :].toarray()
+    product = lower @ upper
+    return np.asarray(0.5 * (product + product.T))
+
+
+# All weak gaps of a pair in plane strain, undeformed or deformed, as one contact system.
+
+
+# Laws that a solution must keep, checked on the displacements of all nodes: reactions and energy.
+
+
+Bodies = tuple[CondensedBody, CondensedBody]
+
+
+def bore_checks(bodies: Bodies, solutions: Sequence[Solution]) -> list[tuple[float, float]]:
+    """Return the largest relative breach of the laws, and the torque of gear 2 over that of gear 1.
+
+    The moment of the reactions at gear 1's bore is the torque, at gear 2's bore that of the contact forces;
+    the work u f of both gears is p C p. Nothing condensed enters the reactions: all nodes are solved for.
+    """
+    reactions, work = zip(*(_of_body(bodies, number, solutions) for number in range(2)), strict=True)
+    checks = []
+    for i, (contact, pressure, torque) in enumerate(solutions):
+        driven = _moment(bodies[1], contact.forces[1] @ pressure)
+        balance = max(abs(float(reactions[0][i]) / torque + 1.0), abs(float(reactions[1][i]) / driven + 1.0))
+        elastic = float(pressure @ contact.system.compliance @ pressure)
+        energy = abs(float(work[0][i] + work[1][i]) / elastic - 1.0)
+        checks.append((max(balance, energy), abs(driven) / torque))
+    return checks
+
+
+def _of_body(bodies: Bodies, number: int, solutions: Sequence[Solution]) -> tuple[FloatArray, FloatArray]:
+    """Return the moments of the bore's reactions about the center, and the work of the forces, (T,)."""
+    body = bodies[number]
+    forces = np.zeros((body.stiffness.shape[0], len(solutions)))
+    for i, (contact, pressure, _) in enumerate(solutions):
+        forces[body.freedoms, i] = contact.forces[number] @ pressure
+    moved = body.solve(forces)
+    held = body.body.held
+    reactions = np.asarray(body.stiffness @ moved).reshape(-1, 2, len(solutions))[held]
+    arms = body.body.points[held] - body.body.center
+    moments = arms[:, 0] @ reactions[:, 1] - arms[:, 1] @ reactions[:, 0]
+    return moments, np.sum(moved * forces, axis=0)
+
+
+def _moment(body: CondensedBody, forces: FloatArray) -> float:
+    """Return the moment of forces (2 k,) on the strips' nodes about the gear's center, counter-clockwise."""
+    arms = body.points - body.body.center
+    return float(arms[:, 0] @ forces[1::2] - arms[:, 1] @ forces[0::2])
+
+
+@dataclass(frozen=True)
+class PairGeometry:
+    """Two condensed bodies that may touch at sites.
+
+    Attributes
+    ----------
+    pair : GearPair or InternalGearPair
+    sites : tuple of ContactSite
+    bodies : (CondensedBody, CondensedBody)
+    """
+
+    pair: ParallelAxes
+    sites: tuple[ContactSite, ...]
+    bodies: tuple[CondensedBody, CondensedBody]
+
+    @property
+    def undeformed(self) -> Configuration:
+        """Rigid gears in the conjugate position."""
+        first, second = (np.zeros(2 * len(body.nodes)) for body in self.bodies)
+        return Configuration(0.0, (first, second))
+
+    @property
+    def lag_rate(self) -> float:
+        """Counter-clockwise angle of gear 2 by the lag, rad/m."""
+        return -self.pair.wheel.sign / self.pair.wheel.base_radius
+
+    @property
+    def thickness(self) -> float:
+        """Face width that the plane stands for, m."""
+        return self.pair.face_width
+
+    def checks(self, solutions: Sequence[Solution]) -> list[tuple[float, float]]:
+        """Return breach of the laws and ratio of the torques, as `bore_checks`."""
+        return bore_checks(self.bodies, solutions)
+
+    def linearized(self, at: Configuration) -> LinearizedContact:
+        """Return the contact with the geometry and the forces of a configuration."""
+        turn, center = rotation(self.lag_rate * at.lag), self.bodies[1].body.center
+        rigid = (self.bodies[0].points, (self.bodies[1].points - center) @ turn.T + center)
+        first, second = (u.reshape(-1, 2) for u in at.displacements)
+        deformed = (rigid[0] + first, rigid[1] + second @ turn.T)
+
+        def lag(points: FloatArray) -> FloatArray:
+            return np.asarray(self.lag_rate * (points - center)[:, ::-1] * [-1.0, 1.0])
+
+        gaps = []
+        for site in self.sites:
+            columns = [body.columns[site.ahead] for body in self.bodies]
+            curves = FlankCurve(deformed[0][columns[0]]), FlankCurve(deformed[1][columns[1]])
+            reference = FlankCurve(rigid[site.slave][columns[site.slave]])
+            gaps.append(weak_gap(curves, reference, site.slave, lag))
+        return self._gathered(gaps, at, turn)
+
+    def _gathered(self, gaps: Sequence[WeakGap], at: Configuration, turn: FloatArray) -> LinearizedContact:
+        """Join the pairs, without hats that hardly face their mate."""
+        facing = [_full_weights(self, site) * LEAST_FACING for site in self.sites]
+        kept = np.concatenate([gap.weight > least for gap, least in zip(gaps, facing, strict=True)])
+        first, second = self._forces(gaps, 0)[:, kept], turned_back(self._forces(gaps, 1)[:, kept], turn)
+        moved = self.bodies[0].compliance @ first, self.bodies[1].compliance @ second
+        compliance = first.T @ moved[0] + second.T @ moved[1]
+        closing = np.concatenate([gap.closing for gap in gaps])[kept]
+        points, deformed = self.bodies[0].points, at.displacements
+        system = ContactSystem(
+            gap=np.concatenate([gap.gap for gap in gaps])[kept]
+            + closing * at.lag
+            - first.T @ deformed[0]
+            - second.T @ deformed[1],
+            compliance=0.5 * (compliance + compliance.T),
+            closing=closing,
+            lever=points[:, 0] @ first[1::2] - points[:, 1] @ first[0::2],
+            weight=np.concatenate([gap.weight for gap in gaps])[kept],
+        )
+        site = np.repeat(np.arange(len(gaps)), [len(gap.gap) for gap in gaps])[kept]
+        at_end = np.concatenate([_at_end(self, site) for site in self.sites])[kept]
+        return LinearizedContact(system, (first, second), moved, site, site, at_end)
+
+    def _forces(self, gaps: Sequence[WeakGap], number: int) -> FloatArray:
+        """Return the nodal forces (2 k, h) of all pairs on one gear."""
+        body = self.bodies[number]
+        blocks = []
+        for site, gap in zip(self.sites, gaps, strict=True):
+            block = np.zeros((2 * len(body.nodes), len(gap.gap)))
+            block[freedoms(body.columns[site.ahead])] = gap.forces[number]
+            blocks.append(block)
+        return np.concatenate(blocks, axis=1)
+
+
+def _full_weights(geometry: PairGeometry, site: ContactSite) -> FloatArray:
+    """Return the lengths of the hats of a site's slave, m."""
+    body = geometry.bodies[site.slave]
+    nodes = body.points[body.columns[site.ahead]]
+    lengths = np.linalg.norm(np.diff(nodes, axis=0), axis=1)
+    return np.asarray(0.5 * (np.append(lengths, 0.0) + np.insert(lengths, 0, 0.0)))
+
+
+def _at_end(geometry: PairGeometry, site: ContactSite) -> BoolArray:
+    """Say which hats of a site are at an end of its strip that is no tip edge."""
+    s = geometry.bodies[site.slave].body.strips[site.ahead].s
+    gear = (geometry.pair.pinion, geometry.pair.wheel)[site.slave]
+    ends = np.zeros(len(s), dtype=bool)
+    ends[0], ends[-1] = True, s[-1] < tooth_profile(gear).s_tip
+    return ends
+
 
 MESH_STIFFNESS = 20e9 / 210e9
 """Of steel teeth, about 20 N/(mm um), over the modulus of elasticity: a first guess of the deflection."""

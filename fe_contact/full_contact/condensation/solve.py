@@ -3,19 +3,209 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fe_contact.checks import finite, positive
-from fe_contact.errors import InputError
-from fe_contact.full_contact.condensation.contact_model import ContactModel, PlaneStrain
+from fe_contact.errors import InputError, MeshError, SolveError
+from fe_contact.full_contact.condensation.active_set import ActiveSetSolution, solve_active_set
+from fe_contact.full_contact.condensation.contact_model import ContactModel, PlaneStrain, softness
+from fe_contact.full_contact.condensation.linearized_contact import (
+    Configuration,
+    ContactGeometry,
+    LinearizedContact,
+    Solution,
+)
+from fe_contact.full_contact.condensation.placed_mesh import placed_bodies
 from fe_contact.full_contact.condensation.resolution import Resolution
-from fe_contact.full_contact.condensation.solved_position import Loads, SolvedPosition, solve_position
+from fe_contact.full_contact.condensation.sites import Range, contact_sites, least_gap_left_out
 from fe_contact.full_contact.condensation.table import FullContactTable
+from fe_contact.full_contact.point import FullContactPoint
 from fe_contact.full_contact.validity import refusal
 from fe_contact.geometry import ParallelAxes
 from fe_contact.stage_clock import StageClock
+from fe_contact.types import Status
+
+# One position of one contact geometry under all torques, settled on the deformed gears.
+
+
+MOST_EVALUATIONS, SETTLED, ENOUGH = 6, 1e-6, 2e-4
+"""Geometries of the deformed bodies; changes of the lag that end them, and that are the most allowed."""
+LARGEST_RESIDUAL = 1e-8
+
+
+def solve_loads(
+    geometry: ContactGeometry, torques: Sequence[float], position: float
+) -> tuple[FullContactPoint, ...]:
+    """Solve all torques from the same compliance, then check them together."""
+    undeformed = geometry.linearized(geometry.undeformed)
+    states = [_settled(geometry, undeformed, torque) for torque in torques]
+    solutions = [
+        Solution(state.contact, state.solution.pressure, torque / geometry.thickness)
+        for state, torque in zip(states, torques, strict=True)
+    ]
+    checks = geometry.checks(solutions)
+    return tuple(
+        _point(geometry, state, position, torque, check)
+        for state, torque, check in zip(states, torques, checks, strict=True)
+    )
+
+
+@dataclass(frozen=True)
+class _Settled:
+    """Solution on the deformed geometry, iterations of all solves, and the lag's last relative change."""
+
+    contact: LinearizedContact
+    solution: ActiveSetSolution
+    iterations: int
+    change: float
+
+
+def _settled(geometry: ContactGeometry, undeformed: LinearizedContact, torque: float) -> _Settled:
+    """Solve on the undeformed geometry, then on that which the solution before it makes."""
+    line_torque = torque / geometry.thickness
+    contact, solution = undeformed, solve_active_set(undeformed.system, line_torque)
+    iterations, change = solution.iterations, np.inf
+    for _ in range(MOST_EVALUATIONS):
+        moved = contact.moved[0] @ solution.pressure, contact.moved[1] @ solution.pressure
+        contact = geometry.linearized(Configuration(solution.lag, moved))
+        following = solve_active_set(contact.system, line_torque)
+        iterations += following.iterations
+        change = abs(following.lag / solution.lag - 1.0)
+        solution = following
+        if change < SETTLED:
+            break
+    return _Settled(contact, solution, iterations, change)
+
+
+def _point(
+    geometry: ContactGeometry, state: _Settled, position: float, torque: float, check: tuple[float, float]
+) -> FullContactPoint:
+    """Gather a point, with its status."""
+    contact, solution = state.contact, state.solution
+    residual = max(solution.residual, check[0])
+    status, reason = _status(state, residual)
+    if not status.usable:
+        return FullContactPoint.failed(status, reason, state.iterations, torque)
+    moments = contact.system.lever * solution.pressure
+    share = {
+        site.ahead: float(moments[contact.site == number].sum() / moments.sum())
+        for number, site in enumerate(geometry.sites)
+    }
+    return FullContactPoint(
+        position=position,
+        transmission_error=solution.lag,
+        status=status,
+        reason="",
+        iterations=state.iterations,
+        residual=residual,
+        torque_ratio=check[1],
+        torque=torque,
+        load_share=share,
+        max_pressure=_largest_pressure(contact, solution),
+    )
+
+
+def _largest_pressure(contact: LinearizedContact, solution: ActiveSetSolution) -> float:
+    """Return the largest mean pressure over the length of an element, Pa: two hats stand on each."""
+    largest = 0.0
+    for number in np.unique(contact.line):
+        pressure = solution.pressure[contact.line == number]
+        means = np.convolve(pressure, [0.25, 0.5, 0.25], mode="same")
+        largest = max(largest, float(means.max()))
+    return largest
+
+
+def _status(state: _Settled, residual: float) -> tuple[Status, str]:
+    """Say whether a solution holds, and else why not."""
+    if not state.solution.status.usable or not residual < LARGEST_RESIDUAL:
+        return Status.ITERATION_LIMIT, f"the active set did not settle: residual {residual:.1e}"
+    if not state.change < ENOUGH:
+        return Status.ITERATION_LIMIT, f"the deformed geometry did not settle: change {state.change:.1e}"
+    if np.any(state.solution.pressure[state.contact.at_end] > 0.0):
+        return Status.OUT_OF_MODEL, "the contact reaches the end of the strip that is meshed for it"
+    return Status.CONVERGED, ""
+
+
+# One position under all torques: one mesh and one condensation of each gear.
+
+
+ATTEMPTS = 4
+WIDER = 1.6
+Loads = tuple[FullContactPoint, ...]
+
+
+@dataclass(frozen=True)
+class SolvedPosition:
+    """Points of each contact of the model under all torques, and the unknowns of both bodies."""
+
+    contacts: tuple[Loads, ...]
+    unknowns: int
+
+
+def solve_position(
+    model: ContactModel,
+    pair: ParallelAxes,
+    torques: Sequence[float],
+    position: float,
+    resolution: Resolution,
+) -> SolvedPosition:
+    """Solve one position.
+
+    Parameters
+    ----------
+    model : ContactModel
+    pair : GearPair or InternalGearPair
+        That the model holds.
+    torques : sequence of float
+        On gear 1, N m, > 0.
+    position : float
+        By the driving gear, base pitches; any.
+    resolution : Resolution
+
+    Returns
+    -------
+    SolvedPosition
+        Without unknowns, and points that say why, where there is no mesh or no body.
+    """
+    try:
+        return _solved(model, pair, torques, position, resolution)
+    except (MeshError, SolveError) as error:
+        reason = str(error)
+        lost = tuple(
+            FullContactPoint.failed(Status.NOT_COMPUTED, reason, torque=torque) for torque in torques
+        )
+        return SolvedPosition((lost,) * model.count, 0)
+
+
+def _solved(
+    model: ContactModel,
+    pair: ParallelAxes,
+    torques: Sequence[float],
+    position: float,
+    resolution: Resolution,
+) -> SolvedPosition:
+    """Mesh and solve; again with more pairs or longer strips where those do not hold the contact."""
+    phase = position - round(position)
+    least, most = (float(pair.normal_force(torque)) for torque in (min(torques), max(torques)))
+    loads = least / pair.face_width, model.largest_line_load(pair, most)
+    closer = model.closer(pair)
+    held = Range(loads, 1.5 * loads[1] * softness(pair) + closer)
+    for _ in range(ATTEMPTS):
+        sites = contact_sites(pair, phase, held, resolution)
+        meshes = placed_bodies(pair, phase, sites, resolution)
+        geometries, unknowns = model.geometries(pair, sites, meshes, resolution.layers)
+        solved = tuple(solve_loads(geometry, torques, position) for geometry in geometries)
+        points = [point for contact in solved for point in contact]
+        lags = [point.transmission_error for point in points if point.status.usable]
+        lag = max(lags, default=0.0) + closer
+        cut_off = any(point.status is Status.OUT_OF_MODEL for point in points)
+        if lag < least_gap_left_out(pair, phase, sites) and not cut_off:
+            break
+        held = Range(loads, max(held.lag, 1.3 * lag), held.longer * (WIDER if cut_off else 1.0))
+    return SolvedPosition(solved, unknowns)
+
 
 COARSER = 1.5
 Report = Callable[[float], None]

@@ -10,21 +10,91 @@ from typing import Any, cast
 
 import numpy as np
 
-from fe_contact.analysis import CondensedPair, condensed_pair, load_distribution
+from fe_contact.analysis import (
+    CondensedPair,
+    LoadDistribution,
+    condensed_pair,
+    load_distribution,
+    pressure_map,
+)
 from fe_contact.geometry import ParallelAxes
-from fe_contact.microgeometry import curve_derivatives
+from fe_contact.microgeometry import CurveDerivatives, FlankDerivatives, curve_derivatives
 from fe_contact.ste import SteDatabase
+from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.answers import curve_json
 from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
-from lineofaction.gearbox.convert.derivatives import derivatives_json
-from lineofaction.gearbox.convert.live_flanks import flanks_json
+from lineofaction.gearbox.convert.vocabulary import boundary_name
 from lineofaction.gearbox.problems import BadInput, Fault, NotAnalyzed, NotFound
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.live import LiveInput
 from lineofaction.gearbox.schemas.reading import validated
-from lineofaction.gearbox.units import MM, UM
+from lineofaction.gearbox.units import MM, UM, factor
+
+# Derivatives of curves in boundary units: per um, per mm of a length, per N m.
+
 
 Json = dict[str, Any]
+
+
+def derivatives_json(derivatives: CurveDerivatives) -> Iterator[Json]:
+    """Yield the derivatives of the curve at each torque."""
+    names = [boundary_name(name) for name in derivatives.names]
+    flanks = {gear: derivatives.on_flank(gear) for gear in ("pinion", "wheel")}
+    for k in range(derivatives.torque.size):
+        by = {}
+        for a, name in enumerate(names):
+            scale = factor(name) / UM
+            harmonics = scale * derivatives.harmonics[a, :, k]
+            by[name] = {
+                "ste_um": (scale * derivatives.by[a, :, k]).tolist(),
+                "mean_um": float(scale * derivatives.mean[a, k]),
+                "peak_to_peak_um": float(scale * derivatives.peak_to_peak[a, k]),
+                "harmonics_um": [float(value) if np.isfinite(value) else None for value in harmonics],
+            }
+        yield {"by": by} | {gear: _flank(flank, k) for gear, flank in flanks.items()}
+
+
+def _flank(flank: FlankDerivatives, k: int) -> Json:
+    """Return the grid of one flank at a torque, per um removed."""
+    return {
+        "roll_length_mm": (flank.roll_length / MM).tolist(),
+        "face_position_mm": (flank.face_position / MM).tolist(),
+        "mean_um": flank.mean[k].tolist(),
+        "peak_to_peak_um": flank.peak_to_peak[k].tolist(),
+    }
+
+
+# What happens on the flanks of a live question: pressure over the flank, load over the face, K_Hbeta.
+
+
+_MPA = 1e6
+_N_PER_MM = 1e3
+_DIGITS = 5
+
+
+def flanks_json(flanks: LoadDistribution) -> Json:
+    """Return the results on the flanks; K_Hbeta is null in the plane, whose load is even by assumption."""
+    roll, pressure = pressure_map(flanks, flanks.roll_length_1)
+    load = flanks.face_load
+    worst = int(load.max(axis=-1).argmax())
+    over_face = flanks.face_position.size > 1
+    return {
+        "largest_pressure_mpa": float(flanks.clear_pressure.max() / _MPA),
+        "edge_pressure_mpa": flanks.edge_pressure / _MPA,
+        "k_h_beta": flanks.mean_face_load_factor if over_face else None,
+        "roll_length_mm": _short(roll / MM),
+        "face_position_mm": _short(flanks.face_position / MM),
+        "pressure_mpa": [_short(row) for row in pressure / _MPA],
+        "mean_load_n_per_mm": _short(load.mean(axis=0) / _N_PER_MM),
+        "worst_load_n_per_mm": _short(load[worst] / _N_PER_MM),
+        "worst_position": float(flanks.position[worst]),
+    }
+
+
+def _short(values: FloatArray) -> list[float]:
+    """Return numbers of five digits: they are drawn."""
+    return [float(f"{value:.{_DIGITS}g}") for value in values]
+
 
 _PLACES = ("pair.", "load.", "errors.")
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
+from fe_contact.errors import FeContactError
+from fe_contact.geometry import Gear
 from lineofaction.gearbox.convert.checks import check_plain_case
 from lineofaction.gearbox.from_rexs.flank_sides import LoadedFlank
 from lineofaction.gearbox.from_rexs.gear_bodies import blank_of, elasticity, held_diameter, root_diameter
@@ -14,14 +16,101 @@ from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
 from lineofaction.gearbox.from_rexs.meshing import Meshing
 from lineofaction.gearbox.from_rexs.micro_geometry import micro_geometry
 from lineofaction.gearbox.from_rexs.profile_shift import ToothedPair
-from lineofaction.gearbox.from_rexs.ring_tip import clearing_tip
-from lineofaction.gearbox.from_rexs.thickness_allowance import thickness_allowance
 from lineofaction.gearbox.from_rexs.tooth_depth import ToothDepth, tip_alteration, tooth_depth
 from lineofaction.gearbox.from_rexs.toothing import ToothingData
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.units import DEGREE, GPA, MM, UM
+
+# A ring gear's tip that the file leaves out, clear of the mate's fillet.
+
+
+_STEP = 0.01 * MM  # tip diameters are rounded up to it
+
+
+def clearing_tip(pair: ToothedPair, depths: Sequence[ToothDepth], shifts: Mapping[int, float]) -> ToothDepth:
+    """Return the ring gear's depth with a tip that stays on the involute of its mate.
+
+    The tip meets the mate's form circle at the roll length l_F1 + a sin(alpha_wt) of the ring gear.
+
+    Parameters
+    ----------
+    depths : sequence of ToothDepth
+        Of pinion and ring gear.
+    shifts : mapping of int to float
+        Profile shift coefficients by gear.
+
+    Raises
+    ------
+    BadInput
+        No such pinion exists.
+    """
+    ring, depth = pair.wheel, depths[1]
+    base = 0.5 * ring.reference_diameter * math.cos(ring.transverse_pressure_angle)
+    tangent = pair.center_distance * math.sin(pair.working_pressure_angle)
+    least = 2.0 * math.hypot(base, _form_roll_length(pair, depths[0], shifts) + tangent)
+    if depth.tip_diameter > least:
+        return depth
+    tip = math.ceil(least / _STEP + 1e-3) * _STEP
+    words = (
+        f"{tip / MM:.7g} mm, above {least / MM:.7g} mm = 2 sqrt(r_b2^2 + (l_F1 + a sin alpha_wt)^2), where"
+    )
+    words += f" the tip meets the form circle of {pair.pinion.part.name}; d - 2 m_n (x + h_aP) would be"
+    ring.part.say("tip_diameter", "defaulted", f"{words} {depth.tip_diameter / MM:.7g} mm")
+    return replace(depth, tip_diameter=tip)
+
+
+def _form_roll_length(pair: ToothedPair, depth: ToothDepth, shifts: Mapping[int, float]) -> float:
+    """Return the roll length in m at which the pinion's involute begins."""
+    gear, shift = pair.pinion, shifts[pair.pinion.part.id]
+    try:
+        return Gear(
+            gear.teeth,
+            gear.normal_module,
+            gear.face_width,
+            0.1 * gear.reference_diameter,  # any bore: the flank does not depend on it
+            normal_pressure_angle=gear.pressure_angle,
+            helix_angle=gear.helix_angle,
+            profile_shift_coefficient=shift,
+            dedendum_coefficient=depth.dedendum_coefficient,
+            root_radius_coefficient=depth.root_radius_coefficient,
+            tip_diameter=depth.tip_diameter,
+        ).form_roll_length
+    except FeContactError as error:
+        raise BadInput.of(gear.part.place, gear.part.name, f"a gear that exists: {error}") from None
+
+
+# Tooth thickness allowance of a gear, from the deviations of its span (ISO 21771-1, DIN 3967).
+
+
+_UPPER, _LOWER = (f"{side}_backlash_allowance_referenced_to_span" for side in ("upper", "lower"))
+_SERIES = "tooth_thickness_deviation_tolerance_series_din_3967_1978"
+
+
+def thickness_allowance(gear: ToothingData) -> float:
+    """Return the normal tooth thickness removed at the reference circle in m: the mean of its limits.
+
+    The span changes by the thickness times cos(alpha_n). A tolerance series (DIN 3967) without deviations is
+    ignored, and so are deviations that thicken the teeth on average: the account says so.
+    """
+    part = gear.part
+    if part.attribute(_SERIES) is not None:
+        part.say(_SERIES, "ignored", "no backlash but that of the center distance, without deviations in um")
+    upper = part.number(_UPPER, "thickness_allowance_um")
+    lower = part.number(_LOWER, "thickness_allowance_um")
+    if upper is None or lower is None:
+        return 0.0
+    allowance = -0.5 * (upper + lower) / math.cos(gear.pressure_angle)
+    if allowance < 0.0:
+        for item in (_UPPER, _LOWER):
+            part.say(item, "refused", "the mean deviation thickens the teeth: no allowance")
+        return 0.0
+    words = f"thickness_allowance_um {allowance / UM:.6g} = -(A_u + A_l) / (2 cos alpha_n)"
+    for item in (_UPPER, _LOWER):
+        part.say(item, "derived", words)
+    return allowance
+
 
 Table = dict[str, Any]
 

@@ -3,18 +3,128 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
+from bounds.types import FloatArray
+from lineofaction.gearbox.from_rexs.connections import Connection, bearings, couplings
 from lineofaction.gearbox.from_rexs.gear_stages import GearStage, gear_stages
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
 from lineofaction.gearbox.from_rexs.part import Part
-from lineofaction.gearbox.from_rexs.placement import Placement, placement
+from lineofaction.gearbox.from_rexs.placement import FIXED, Placement, placement
 from lineofaction.gearbox.from_rexs.planetary_set import planetary_sets
 from lineofaction.gearbox.from_rexs.rotors import Rotors, rotors_of
 from lineofaction.gearbox.from_rexs.scene_axes import SceneAxes, scene_axes
-from lineofaction.gearbox.from_rexs.shaft_places import shaft_places
 from lineofaction.gearbox.from_rexs.shafts import SAME_PLACE, PlacedShaft, placed_shaft
+
+# Where shafts stand: as the file says, else by the angles of the stages and by couplings.
+
+
+_ANGLE = "rotating_angle_around_neg_u_axis"
+
+
+def shaft_places(unit: GearUnit, stages: Sequence[GearStage]) -> dict[int, Placement]:
+    """Return the places of the shafts by their ids; those that nothing places are left out.
+
+    A shaft without a place of its own follows from a placed one: in a stage at the center distance, in the
+    direction w turned about -u by the stage's angle, the gears face to face; or along a coupling. If none is
+    placed, the first shaft of a stage is the origin. A carrier's shaft that only its set places is on the
+    axis of the central shafts, its u = 0 at theirs.
+
+    Raises
+    ------
+    BadInput
+        As `placement`.
+    """
+    shafts = unit.of_type("shaft")
+    places = {shaft.id: place for shaft in shafts if (place := placement(unit, shaft)) is not None}
+    if not places and stages:
+        first = stages[0].shafts[0]
+        places[first.id] = FIXED
+        first.say("support_vector", "defaulted", "no shaft has a place; the first is the origin")
+    _spread(unit, stages, places)
+    for planets in planetary_sets(unit):
+        pins = {pin.id for pin in unit.related(planets.stage, "planet_pin", "planetary_stage", "shaft")}
+        for shaft in planets.carrier:
+            _by_set(shaft, pins, planets.central, places)
+    _spread(unit, stages, places)
+    for shaft in shafts:
+        if shaft.id not in places:
+            shaft.say("", "refused", "neither a place, a stage nor a coupling says where it stands")
+    return places
+
+
+def _spread(unit: GearUnit, stages: Sequence[GearStage], places: dict[int, Placement]) -> None:
+    """Place what stages, couplings and bearings join to placed shafts."""
+    joined = (*couplings(unit), *bearings(unit))
+    while True:
+        before = len(places)
+        for stage in stages:
+            _by_stage(stage, places)
+        for entry in joined:
+            _by_coupling(entry, places)
+        if len(places) == before:
+            return
+
+
+def _by_set(shaft: Part, pins: set[int], central: Sequence[Part], places: dict[int, Placement]) -> None:
+    """Place a carrier's shaft on the axis of the central shafts."""
+    base = next((places[part.id] for part in central if part.id in places), None)
+    if shaft.type == "shaft" and shaft.id not in places and shaft.id not in pins and base is not None:
+        places[shaft.id] = base
+        shaft.say("support_vector", "defaulted", "on the axis of the central shafts, its begin at theirs")
+
+
+def _by_stage(stage: GearStage, places: dict[int, Placement]) -> None:
+    """Place one shaft of a stage by the other."""
+    known = [shaft.id in places for shaft in stage.shafts]
+    if not stage.is_cylindrical or known[0] == known[1]:
+        return
+    center_distance = stage.stage.number("center_distance", "center distance of the stage, mm")
+    if center_distance is None:
+        return
+    angle = stage.stage.number(_ANGLE, "direction from gear 1 to gear 2, deg")
+    if angle is None:
+        angle = 0.0
+        stage.stage.say(_ANGLE, "defaulted", "0 deg")
+    way = 1.0 if known[0] else -1.0
+    base, new = (stage.shafts[index] for index in ((0, 1) if known[0] else (1, 0)))
+    place = places[base.id]
+    u, v, w = place.axes
+    across = way * center_distance * (math.sin(angle) * v + math.cos(angle) * w)
+    ends = [_u(gear, "u_coordinate_on_shaft") for gear in stage.gears]
+    along = way * (ends[0] - ends[1]) * u
+    _place(new, place, across + along, f"center distance and {_ANGLE} of component {stage.stage.id}", places)
+
+
+def _by_coupling(coupling: Connection, places: dict[int, Placement]) -> None:
+    """Place a shaft coaxial with the one it is coupled to."""
+    sides = (coupling.inner, coupling.outer)
+    known = [side.id in places for side in sides]
+    if known[0] == known[1] or any(side.type != "shaft" for side in sides):
+        return
+    base, new = sides if known[0] else sides[::-1]
+    inner, outer = (_u(coupling.part, f"u_coordinate_on_shaft_{side}_side") for side in ("inner", "outer"))
+    way = 1.0 if known[0] else -1.0
+    place = places[base.id]
+    _place(
+        new, place, way * (inner - outer) * place.axes[0], f"coaxial: component {coupling.part.id}", places
+    )
+
+
+def _u(part: Part, item: str) -> float:
+    """Return a coordinate along a shaft, m; 0 where the file gives none."""
+    return part.number(item, "place along the shaft, mm") or 0.0
+
+
+def _place(
+    shaft: Part, base: Placement, offset: FloatArray, words: str, places: dict[int, Placement]
+) -> None:
+    """Enter a derived place."""
+    places[shaft.id] = Placement(np.asarray(base.origin + offset), base.axes)
+    shaft.say("support_vector", "derived", words)
 
 
 @dataclass(frozen=True)

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from bounds import engineering
-from fe_contact.geometry import Toothing
+from fe_contact.geometry import FlankGrid, Toothing
+from fe_contact.types import FloatArray
+from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.from_rexs.account import Fate
 from lineofaction.gearbox.from_rexs.face_modifications import (
     at_both_ends,
@@ -15,8 +20,7 @@ from lineofaction.gearbox.from_rexs.face_modifications import (
     helix_slope,
     profile_twist,
 )
-from lineofaction.gearbox.from_rexs.flank_place import FlankPlace, Modification, mm
-from lineofaction.gearbox.from_rexs.flank_raster import rasterized
+from lineofaction.gearbox.from_rexs.flank_place import FlankPlace, Modification, mm, um
 from lineofaction.gearbox.from_rexs.flank_sides import LoadedFlank
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
 from lineofaction.gearbox.from_rexs.part import Part
@@ -26,8 +30,157 @@ from lineofaction.gearbox.from_rexs.profile_modifications import (
     root_relief,
     tip_relief,
 )
-from lineofaction.gearbox.from_rexs.topography import topography
+from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.units import MM, UM
+
+# Flank modifications for which the case has no field, as the nodes of its free-form flank.
+
+
+_COUNTS = (17, 33, 65, 129)
+_ALLOWED = 0.05e-6  # m; a tenth of what a gear measuring machine resolves
+_SAMPLE = 65
+_BETWEEN = 4  # places between two nodes at which the difference is taken
+
+
+@dataclass(frozen=True)
+class Raster:
+    """A free-form flank and its largest difference in m from what it stands for."""
+
+    table: dict[str, Any]
+    difference: float
+    counts: tuple[int, int]
+
+
+def rasterized(place: FlankPlace, modifications: Sequence[Modification]) -> Raster:
+    """Return the sum of modifications on a grid over the involute and the face.
+
+    The grid is refined until it differs from the sum by less than 0.05 um, or has 129 lines each way. The
+    difference is the largest on a grid four times as fine.
+    """
+    for count in _COUNTS:
+        raster = _on_grid(place, modifications, count)
+        if raster.difference <= _ALLOWED:
+            break
+    return raster
+
+
+def _on_grid(place: FlankPlace, modifications: Sequence[Modification], count: int) -> Raster:
+    """Return the raster of a grid of `count` lines in the directions in which the sum varies."""
+    rolls, faces = _axes(place, modifications, count)
+    removed = _removed(place, modifications, rolls, faces)
+    with boundary_errors("flank_grid"):
+        grid = FlankGrid(tuple(rolls), tuple(faces), tuple(map(tuple, removed.tolist())))
+    table = {
+        "roll_length_mm": [mm(value / MM) for value in rolls],
+        "face_position_mm": [mm(value / MM) for value in faces],
+        "removed_um": [[um(value) for value in row] for row in removed],
+    }
+    return Raster(table, _difference(place, modifications, grid), (len(rolls), len(faces)))
+
+
+def _axes(
+    place: FlankPlace, modifications: Sequence[Modification], count: int
+) -> tuple[FloatArray, FloatArray]:
+    """Return roll lengths and face positions of the grid, two where the sum does not vary."""
+    low, high = sorted((place.root, place.tip))
+    half = 0.5 * place.width
+    sample = _removed(
+        place, modifications, np.linspace(low, high, _SAMPLE), np.linspace(-half, half, _SAMPLE)
+    )
+    counts = [count if np.ptp(sample, axis=axis).max() > 1e-3 * _ALLOWED else 2 for axis in (0, 1)]
+    rolls = [kink for entry in modifications for kink in entry.rolls]
+    faces = [place.loaded.datum * (half - kink) for entry in modifications for kink in entry.faces]
+    return (
+        _through(np.linspace(low, high, counts[0]), rolls),
+        _through(np.linspace(-half, half, counts[1]), faces),
+    )
+
+
+def _through(axis: FloatArray, kinks: Sequence[float]) -> FloatArray:
+    """Return an axis whose inner nodes next to kinks are moved to them."""
+    moved = axis.copy()
+    for kink in kinks:
+        nearest = int(np.argmin(np.abs(axis - kink)))
+        if 0 < nearest < len(axis) - 1:
+            moved[nearest] = kink
+    return moved
+
+
+def _difference(place: FlankPlace, modifications: Sequence[Modification], grid: FlankGrid) -> float:
+    """Return the largest difference between a grid and what it stands for, m."""
+    axes = [_finer(np.array(axis)) for axis in (grid.roll_length, grid.face_position)]
+    expected = _removed(place, modifications, *axes)
+    rolls, faces = np.meshgrid(*axes, indexing="ij")
+    return float(np.abs(grid.material_removed(rolls, faces) - expected).max())
+
+
+def _finer(axis: FloatArray) -> FloatArray:
+    """Return an axis with further places between its nodes."""
+    fractions = np.arange(_BETWEEN * (len(axis) - 1) + 1) / _BETWEEN
+    return np.interp(fractions, np.arange(len(axis)), axis)
+
+
+def _removed(
+    place: FlankPlace, modifications: Sequence[Modification], rolls: FloatArray, faces: FloatArray
+) -> FloatArray:
+    """Return the sum of the modifications at roll lengths (m) and face positions (n) of the case, (m, n)."""
+    coordinates = 0.5 * place.width - place.loaded.datum * faces
+    roll, face = np.meshgrid(rolls, coordinates, indexing="ij")
+    return np.asarray(sum(entry.removed(roll, face) for entry in modifications))
+
+
+# A flank's topographical modification: amounts at the nodes of a grid.
+
+
+_AMOUNTS = "topographical_modification_amounts"
+_FACES = "coordinates_of_topographical_modification"
+_DIAMETERS, _LENGTHS = "diameters_of_topographical_modification", "length_of_topographical_modification"
+
+
+def topography(place: FlankPlace, part: Part) -> Modification:
+    """Return a topographical modification: an amount for each pair of a coordinate and a diameter.
+
+    The three lists have an entry for each node. Between the nodes the amounts are linear, beyond them those
+    of the border.
+
+    Raises
+    ------
+    BadInput
+        Lists of different lengths, nodes that are no grid, or a diameter inside the base circle.
+    """
+    from scipy.interpolate import RegularGridInterpolator  # noqa: PLC0415 (start-up time)
+
+    amounts = part.numbers(_AMOUNTS, "flank_grid")
+    faces = part.numbers(_FACES, "flank_grid, from the datum face")
+    rolls = _roll_lengths(place, part)
+    if amounts is None or faces is None or rolls is None or not len(amounts) == len(faces) == len(rolls):
+        counts = [None if entry is None else len(entry) for entry in (faces, rolls, amounts)]
+        raise BadInput.of(f"{part.place}, {_AMOUNTS}", counts, "as many coordinates, diameters and amounts")
+    nodes = dict(zip(zip(rolls, faces, strict=True), amounts, strict=True))
+    axes = [np.array(sorted({node[axis] for node in nodes})) for axis in (0, 1)]
+    if len(nodes) != len(axes[0]) * len(axes[1]) or min(map(len, axes)) < 2 or len(nodes) != len(amounts):
+        raise BadInput.of(f"{part.place}, {_AMOUNTS}", len(amounts), "on a grid of coordinates and diameters")
+    values = np.array([[nodes[roll, face] for face in axes[1]] for roll in axes[0]])
+    surface = RegularGridInterpolator(tuple(axes), values)
+
+    def removed(roll: FloatArray, face: FloatArray) -> FloatArray:
+        """Material removed, beyond the grid that of its border."""
+        inside = [np.clip(x, axis[0], axis[-1]) for x, axis in zip((roll, face), axes, strict=True)]
+        return np.asarray(surface(np.stack(np.broadcast_arrays(*inside), axis=-1)))
+
+    return Modification(part, removed, rolls=tuple(axes[0]), faces=tuple(axes[1]))
+
+
+def _roll_lengths(place: FlankPlace, part: Part) -> tuple[float, ...] | None:
+    """Return the roll lengths in m of the nodes, from their diameters or as such."""
+    diameters = part.numbers(_DIAMETERS, "flank_grid, as roll lengths")
+    if diameters is None:
+        return part.numbers(_LENGTHS, "flank_grid")
+    base = place.gear.base_radius
+    if min(abs(value) for value in diameters) <= 2.0 * base:
+        raise BadInput.of(f"{part.place}, {_DIAMETERS}", 1e3 * min(diameters), f"above {2e3 * base:.7g} mm")
+    return tuple(float(np.sqrt((0.5 * value) ** 2 - base**2)) for value in diameters)
+
 
 Table = dict[str, Any]
 

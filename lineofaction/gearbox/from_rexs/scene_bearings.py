@@ -2,22 +2,170 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from bounds.types import FloatArray
-from lineofaction.gearbox.from_rexs.bearing_stiffness import BearingStiffness, bearing_stiffness
+from dynamics.bearing_rows import BallBearing, CatalogLine, RollerBearing
+from dynamics.bearing_rows.locating import BOTH, NEGATIVE, NONE, POSITIVE
+from dynamics.joints.rolling_bearing import AXIAL_PRELOAD, DYNAMIC_CAPACITY
+from lineofaction.gearbox.from_rexs.bearing_geometry import BearingGeometry, bearing_geometry
+from lineofaction.gearbox.from_rexs.bearing_stiffness import (
+    BearingStiffness,
+    bearing_stiffness,
+    operating_point,
+    stated_stiffness,
+)
+from lineofaction.gearbox.from_rexs.bounded_number import bounded_number
 from lineofaction.gearbox.from_rexs.connections import Connection, bearings, couplings
 from lineofaction.gearbox.from_rexs.layout import Layout
 from lineofaction.gearbox.from_rexs.names import Names
 from lineofaction.gearbox.from_rexs.part import Part
 from lineofaction.gearbox.from_rexs.placement import placement
-from lineofaction.gearbox.from_rexs.rolling_bearing import rolling_bearing
 from lineofaction.gearbox.from_rexs.scene_housing import loosely_housed
 from lineofaction.gearbox.from_rexs.scene_shafts import SceneShafts
+from lineofaction.gearbox.schemas.declared import figures
+
+# A bearing of a REXS model as a rolling bearing of the scene, by its geometry.
+
+
+# In which directions a bearing of a REXS model holds its shaft along the axis of the scene.
+
+
+ITEM, ROW_ITEM = "axial_force_absorption", "axial_force_absorption_of_row"
+_LOCATING = {"both_directions": BOTH, "positive": POSITIVE, "negative": NEGATIVE, "no_direction": NONE}
+_OPPOSITE = {POSITIVE: NEGATIVE, NEGATIVE: POSITIVE}
+
+
+def axial_location(part: Part, sense: int, item: str = ITEM) -> str | None:
+    """Return the directions along z in which a bearing, or its row, holds its shaft.
+
+    Parameters
+    ----------
+    part : Part
+        The bearing, or its row.
+    sense : int
+        +1 where u of the bearing is along z, -1 where it is against it.
+    item : str
+        The attribute.
+
+    Returns
+    -------
+    str or None
+        both, positive, negative, none; None where the file does not say.
+    """
+    stated = _LOCATING.get(part.text(item, "directions in which it holds the shaft, by its own u") or "")
+    if stated in _OPPOSITE and sense < 0:
+        part.say(item, "derived", f"{_OPPOSITE[stated]} along z: its u is against z")
+        return _OPPOSITE[stated]
+    return stated
+
+
+def contact_side(part: Part, row: Part | None, sense: int) -> int | str:
+    """Return the sign of the contact angle of a row, +1 where it holds a shaft that is pushed along z.
+
+    The row's own direction counts, else that of the bearing; the reason where neither says or they differ.
+    """
+    senses = {POSITIVE: 1, NEGATIVE: -1}
+    own = senses.get(axial_location(part, sense) or "")
+    of_row = None if row is None else senses.get(axial_location(row, sense, ROW_ITEM) or "")
+    if own is not None and of_row is not None and own != of_row:
+        return f"{ITEM} of the bearing and of its row are opposite"
+    side = of_row or own
+    return side or f"{ITEM} does not say which direction its contact angle holds: positive or negative"
+
+
+_STIFFNESSES = ("radial_stiffness", "axial_stiffness", "bending_stiffness")
+
+
+def rolling_bearing(layout: Layout, entry: Connection, loose: Collection[int]) -> dict[str, Any] | str:
+    """Return what a scene file states of a bearing by its geometry, or why it is a bushing.
+
+    Name, shaft and position are left to the caller.
+
+    Parameters
+    ----------
+    layout : Layout
+    entry : Connection
+        A bearing on the ground.
+    loose : collection of int
+        Components in an elastic housing that is not held in all directions.
+    """
+    part = entry.part
+    if part.id in loose:
+        return "the matrix of the casing is singular, and only linear bearings sit in it"
+    if entry.held.id != entry.inner.id:
+        return "the shaft is on its outer side"
+    if operating_point(part) is not None or any(stated_stiffness(part, item) for item in _STIFFNESSES):
+        return "its stiffness is stated"
+    absorbs = part.attribute("radial_force_absorption")
+    if absorbs is not None and absorbs.value is False:
+        return "it carries no radial force"
+    geometry = bearing_geometry(layout.unit, part)
+    if isinstance(geometry, str):
+        return geometry
+    located = _located(layout, entry, geometry)
+    return located if isinstance(located, str) else located | _further(part, geometry)
+
+
+def _located(layout: Layout, entry: Connection, geometry: BearingGeometry) -> dict[str, Any] | str:
+    """Return the row and the directions that it holds, or why there are none."""
+    place = placement(layout.unit, entry.part) or layout.shafts[entry.held.id].place
+    sense = 1 if float(layout.axes.turn(place)[2, 0]) > 0.0 else -1
+    if geometry.row.contact_angle == 0.0:
+        return _without_angle(entry.part, geometry, sense)
+    rows = layout.unit.children(entry.part, "rolling_bearing_row")
+    side = contact_side(entry.part, rows[0] if rows else None, sense)
+    if isinstance(side, str):
+        return side
+    row = replace(geometry.row, contact_angle=side * geometry.row.contact_angle)
+    return _table(row) | _preload(entry.part, side)
+
+
+def _without_angle(part: Part, geometry: BearingGeometry, sense: int) -> dict[str, Any] | str:
+    """Return a deep groove ball or cylindrical roller bearing."""
+    locating, table = axial_location(part, sense), _table(geometry.line or geometry.row)
+    if isinstance(geometry.row, RollerBearing):
+        ribs = "its ribs carry axial force, which rollers by their geometry do not"
+        return table if locating in (NONE, None) else ribs
+    if locating is None:
+        locating = BOTH
+        part.say(ITEM, "defaulted", "both directions: the file does not say")
+    for item in ("preload_force", "preload_distance"):
+        if part.number(item, "preload"):
+            part.say(item, "refused", "without a contact angle it has no direction")
+    return table | ({} if locating == BOTH else {"locating": locating})
+
+
+def _preload(part: Part, side: int) -> dict[str, Any]:
+    """Return the axial preload of a row with a contact angle."""
+    force = bounded_number(part, "preload_force", "axial preload, N", AXIAL_PRELOAD)
+    return {"axial_preload_n": side * abs(force)} if force else {}
+
+
+def _further(part: Part, geometry: BearingGeometry) -> dict[str, Any]:
+    """Return the rating of a bearing; state that its stiffness follows from the geometry."""
+    for item in _STIFFNESSES:
+        if part.number(item, "stiffness of the bearing") is not None:
+            part.say(item, "ignored", "the stiffness follows from the geometry")
+    words = "dynamic load rating, kN: the rating life"
+    rating = bounded_number(part, "radial_dynamic_load_rating", words, DYNAMIC_CAPACITY)
+    return {"dynamic_capacity_n": float(f"{rating:.12g}")} if rating else {}
+
+
+def _table(row: BallBearing | RollerBearing | CatalogLine) -> dict[str, Any]:
+    """Return a row as a scene file states it; defaults are not written out."""
+    names = {BallBearing: "ball", RollerBearing: "roller", CatalogLine: "catalog"}
+    values = {
+        figure.field: figure.own(value)
+        for figure in figures(type(row))
+        if (value := getattr(row, figure.name)) != figure.default
+    }
+    return {names[type(row)]: values}
+
 
 RIGID_COUPLING, RIGID_TORSION = 1e9, 1e7
 """N/m, and N m/rad, of a coupling that does not yield."""

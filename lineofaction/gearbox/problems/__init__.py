@@ -63,18 +63,10 @@ from lineofaction.gearbox.problems.error import (
     Unexpected,
 )
 from lineofaction.gearbox.problems.fault import Fault
-from lineofaction.gearbox.problems.no_result import JobDismissed, JobFailed, ResultNotReady, StillRunning
-from lineofaction.gearbox.problems.outages import (
-    DamagedFile,
-    DatabaseDamaged,
-    DatabaseUnavailable,
-    NoSpace,
-    OutOfFiles,
-    StoreUnavailable,
-    Unreachable,
-)
-from lineofaction.gearbox.problems.refused import (
+from lineofaction.gearbox.problems.no_result import (
     HeadTooLarge,
+    JobDismissed,
+    JobFailed,
     KeyExpired,
     Malformed,
     MissingScope,
@@ -83,10 +75,21 @@ from lineofaction.gearbox.problems.refused import (
     NotAcceptable,
     NotForUs,
     NotFound,
+    ResultNotReady,
+    StillRunning,
     TooLarge,
     TooSlow,
     Unauthorised,
     UnsupportedMediaType,
+)
+from lineofaction.gearbox.problems.outages import (
+    DamagedFile,
+    DatabaseDamaged,
+    DatabaseUnavailable,
+    NoSpace,
+    OutOfFiles,
+    StoreUnavailable,
+    Unreachable,
 )
 
 __all__ = [

@@ -9,7 +9,14 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from lineofaction.gearbox.schemas.case import AccuracyInput, Case, ErrorsInput, LoadInput, PairInput
+    from lineofaction.gearbox.schemas.case import (
+        AccuracyInput,
+        Case,
+        ErrorsInput,
+        LoadInput,
+        PairInput,
+        WheelInput,
+    )
     from lineofaction.gearbox.schemas.gear import GearInput, ToothingInput
     from lineofaction.gearbox.schemas.gear_body import MaterialInput
     from lineofaction.gearbox.schemas.live_answer import LiveOutput
@@ -18,7 +25,6 @@ if TYPE_CHECKING:
     from lineofaction.gearbox.schemas.query import QueryOutput
     from lineofaction.gearbox.schemas.reading import read_model, read_table, validated
     from lineofaction.gearbox.schemas.scene import SceneInput
-    from lineofaction.gearbox.schemas.wheel import WheelInput
 
 __all__ = [
     "AccuracyInput",

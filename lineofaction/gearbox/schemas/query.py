@@ -4,10 +4,25 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Self
 
-from pydantic import Field, Strict, model_validator
+from pydantic import Discriminator, Field, Strict, Tag, model_validator
 
 from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
-from lineofaction.gearbox.schemas.one_or_many import MANY, ONE, ONE_OR_MANY
+
+# Fields that take one value for all, or a list with one for each.
+
+
+ONE, MANY = Tag("[one]"), Tag("[many]")
+"""Marks of the two types; names in brackets are left out of what a fault is called."""
+
+
+def _shape(value: object) -> str:
+    """Tell one value from a list of them."""
+    return (MANY if isinstance(value, list | tuple) else ONE).tag
+
+
+ONE_OR_MANY = Discriminator(_shape)
+"""Chooses the type by the value, so that a fault is that of the type that was meant."""
+
 
 MOST_POINTS = 100_000
 LIMITS: dict[str, float] = {

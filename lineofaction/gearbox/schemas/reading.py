@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import csv
 import json
-from collections.abc import Collection
+import math
+from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -12,11 +14,157 @@ from pydantic import BaseModel, ValidationError
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.faults import faults_of
-from lineofaction.gearbox.schemas.flank_grid_csv import with_flank_grids
 from lineofaction.gearbox.schemas.housing_file import READERS, with_housing_files
 from lineofaction.gearbox.schemas.lines import located
 from lineofaction.gearbox.schemas.named_files import Find, beside
 from lineofaction.gearbox.schemas.toml_table import toml_table
+
+# Free-form flanks as CSV files beside a case file: read and written out in the case.
+
+
+FIELD = "flank_grid_csv"
+COLUMNS = ("roll_length_mm", "face_position_mm", "removed_um")
+_HELP = "See docs/case-file.md: one row per node, in any order."
+Table = dict[str, Any]
+
+
+def with_flank_grids(
+    table: Table, find: Find, read_text: Callable[[Path, str], str], prefix: str = ""
+) -> dict[str, Any]:
+    """Return `table` with `flank_grid` in place of every `flank_grid_csv`, at any depth.
+
+    Parameters
+    ----------
+    table : dict
+        A case or scene as read from a file.
+    find : callable
+        Returns where the CSV file of a name is.
+    read_text : callable
+        Returns the text of a file, given its name for errors, or raises `BadInput`.
+    place : str
+        Where `table` stands in the file, for errors.
+
+    Raises
+    ------
+    BadInput
+        A file that cannot be read or holds no complete grid.
+    """
+    resolved = {key: _inside(value, find, read_text, _joined(prefix, key)) for key, value in table.items()}
+    if FIELD not in table:
+        return resolved
+    field, name = _joined(prefix, FIELD), resolved.pop(FIELD)
+    if not isinstance(name, str):
+        raise BadInput.of(field, name, "the name of a CSV file in quotes", _HELP)
+    if "flank_grid" in table:
+        raise BadInput.of(field, name, "left out when flank_grid is given", "Give one of the two.")
+    file = find(name, field)
+    try:
+        text = read_text(file, name)
+    except BadInput as error:
+        raise error.within(field) from None
+    return resolved | {"flank_grid": flank_grid(text, field, name)}
+
+
+def _inside(value: object, find: Find, read_text: Callable[[Path, str], str], prefix: str) -> object:
+    """Look for grids inside a table or a list."""
+    if isinstance(value, dict):
+        return with_flank_grids(value, find, read_text, prefix)
+    if isinstance(value, list):
+        return [_inside(item, find, read_text, f"{prefix}[{i}]") for i, item in enumerate(value)]
+    return value
+
+
+def _joined(prefix: str, key: str) -> str:
+    """Dotted name of a field."""
+    return f"{prefix}.{key}" if prefix else key
+
+
+def flank_grid(text: str, field: str, name: str) -> Table:
+    """Return the grid that the text of a CSV file holds.
+
+    Parameters
+    ----------
+    text : str
+        A heading with the three columns in any order, then one row per node in any order; lines that start
+        with # are comments.
+    field, name : str
+        The field of the case and the file it names, for errors.
+
+    Returns
+    -------
+    dict
+        Of the form of `FlankGridInput`.
+
+    Raises
+    ------
+    BadInput
+        Another heading, something that is no number, a node given twice or not at all.
+    """
+    try:
+        nodes = _nodes(text)
+        rolls, faces = (sorted({node[axis] for node in nodes}) for axis in (0, 1))
+        missing = [(roll, face) for roll in rolls for face in faces if (roll, face) not in nodes]
+        if missing:
+            roll, face = missing[0]
+            where = f"roll_length_mm = {roll:.12g}, face_position_mm = {face:.12g}"
+            raise ValueError(
+                f"a complete grid: {len(missing)} of {len(rolls) * len(faces)} nodes are missing, "
+                f"the first at {where}"
+            )
+    except ValueError as fault:
+        raise BadInput.of(field, name, str(fault), _HELP) from None
+    removed = [[nodes[roll, face] for face in faces] for roll in rolls]
+    return dict(zip(COLUMNS, (rolls, faces, removed), strict=True))
+
+
+def _nodes(text: str) -> dict[tuple[float, float], float]:
+    """Material removed by roll length and face position; `ValueError` says what the file must hold."""
+    lines = ((number, line) for number, line in enumerate(text.removeprefix("\ufeff").splitlines(), 1))
+    rows = [(n, line) for n, line in lines if line.strip() and not line.lstrip().startswith("#")]
+    if not rows:
+        raise ValueError(f"a CSV file with the columns {', '.join(COLUMNS)}; it is empty")
+    order = _order(_cells(rows[0][1]))
+    nodes: dict[tuple[float, float], float] = {}
+    for number, line in rows[1:]:
+        roll, face, removed = _row(_cells(line), order, number)
+        if (roll, face) in nodes:
+            raise ValueError(f"a file that gives each node once; line {number} repeats one")
+        nodes[roll, face] = removed
+    return nodes
+
+
+def _cells(line: str) -> list[str]:
+    """Cells of a line."""
+    return [cell.strip() for cell in next(csv.reader([line]))]
+
+
+def _order(heading: list[str]) -> list[int]:
+    """Return where the columns stand."""
+    if sorted(heading) != sorted(COLUMNS):
+        raise ValueError(
+            f"a CSV file whose heading is {','.join(COLUMNS)} in any order, with commas; it is {heading}"
+        )
+    return [heading.index(column) for column in COLUMNS]
+
+
+def _row(cells: list[str], order: list[int], number: int) -> list[float]:
+    """Return the three numbers of a row."""
+    if len(cells) != len(COLUMNS):
+        raise ValueError(f"a file with {len(COLUMNS)} values in each row; line {number} has {len(cells)}")
+    return [_number(cells[index], column, number) for index, column in zip(order, COLUMNS, strict=True)]
+
+
+def _number(cell: str, column: str, line: int) -> float:
+    """Return a finite number."""
+    try:
+        value = float(cell)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        shown = f"{cell!r}" if cell else "nothing"
+        raise ValueError(f"a file of finite numbers; line {line} holds {shown} in {column}")
+    return value
+
 
 M = TypeVar("M", bound=BaseModel)
 

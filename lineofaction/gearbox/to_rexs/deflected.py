@@ -2,21 +2,287 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from dynamics.deflection import CaseDeflection
+from bounds.types import FloatArray, Json
+from dynamics.deflection import BearingLoad, CaseDeflection, MeshAlignment
+from lineofaction.gearbox.from_rexs.load_case import LoadCase
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit
-from lineofaction.gearbox.from_rexs.scene_parts import SceneParts
+from lineofaction.gearbox.from_rexs.scene_parts import BearingPart, SceneParts, ShaftPart
+from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs import Attribute, Document, upgrade
-from lineofaction.gearbox.studies.deflect.result import GearboxDeflection
-from lineofaction.gearbox.to_rexs.bearing_results import bearing_results
-from lineofaction.gearbox.to_rexs.calculated import with_case_results
-from lineofaction.gearbox.to_rexs.mesh_results import alignment_results, flank_results
-from lineofaction.gearbox.to_rexs.same_scene import check_same_scene
-from lineofaction.gearbox.to_rexs.shaft_results import shaft_results
+from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks
+from lineofaction.gearbox.studies.deflect.run import scene_of
+from lineofaction.gearbox.to_rexs.calculated import calculated, with_case_results
+from lineofaction.gearbox.units import MM, RPM, UM
+
+# Whether a deflection is that of a gear unit: the first difference of their scenes and load cases.
+
+
+RELATIVE, ABSOLUTE = 1e-9, 1e-12
+"""Of numbers that are equal: files of scenes have twelve digits."""
+LOAD = 1e-6
+"""Relative, of the torques and speeds of load cases: those of a result come from its search."""
+SETTINGS = ("run", "accuracy", "outputs", "integration", "effects", "left_out")
+"""Of a scene: how it is computed, which a REXS file does not say, and what its import left out."""
+_ADVICE = "Deflect the scene and the load cases that `loa open` writes of this unit, as they are."
+
+
+def check_same_scene(unit: OpenedUnit, result: GearboxDeflection) -> None:
+    """Refuse a result of another scene than the unit's, or of load cases that it has not.
+
+    Raises
+    ------
+    BadInput
+        With the first difference, in the units of scene files.
+    """
+    if unit.scene is None:
+        raise BadInput.of("rexs", "no scene", "a unit that makes a scene", "See the report of `loa open`.")
+    if not result.scene:
+        advice = "It is of an older version: repeat the deflection."
+        raise BadInput.of("deflection", "no scene", "a result that keeps its scene", advice)
+    _refuse(first_difference(_bodies(scene_of(unit.scene)), _bodies(result.scene), "scene"))
+    pairs = {case.name: case.case.pair.model_dump(mode="json") for case in unit.cases}
+    for name, part in unit.parts.meshes.items():
+        own = pairs[part.case]
+        _refuse(first_difference(own, result.cases.get(name, {}).get("pair"), f'case of mesh "{name}", pair'))
+    _check_load_cases(unit, result.deflection.cases)
+
+
+def first_difference(unit: Any, result: Any, path: str) -> tuple[str, Any, Any] | None:
+    """Return the path at which two values of JSON differ first with both values, None if they are equal."""
+    if isinstance(unit, Mapping) and isinstance(result, Mapping):
+        return _first(
+            first_difference(unit.get(key), result.get(key), f"{path}.{key}") for key in {**unit, **result}
+        )
+    if isinstance(unit, list) and isinstance(result, list):
+        if len(unit) != len(result):
+            return f"length of {path}", len(unit), len(result)
+        pairs = enumerate(zip(unit, result, strict=True))
+        return _first(first_difference(one, other, f"{path}[{k}]") for k, (one, other) in pairs)
+    return None if _equal(unit, result) else (path, unit, result)
+
+
+def _first(differences: Iterable[tuple[str, Any, Any] | None]) -> tuple[str, Any, Any] | None:
+    return next((difference for difference in differences if difference is not None), None)
+
+
+def _equal(unit: Any, result: Any) -> bool:
+    """Return whether two scalars are equal, numbers to the digits of files."""
+    numbers = all(isinstance(value, int | float) and not isinstance(value, bool) for value in (unit, result))
+    return math.isclose(unit, result, rel_tol=RELATIVE, abs_tol=ABSOLUTE) if numbers else bool(unit == result)
+
+
+def _bodies(scene: Json) -> Json:
+    """Return a scene without the settings of its computation."""
+    return {key: value for key, value in scene.items() if key not in SETTINGS}
+
+
+def _refuse(difference: tuple[str, Any, Any] | None) -> None:
+    """Raise the error of a difference."""
+    if difference is not None:
+        path, own, other = difference
+        raise BadInput.of(f"rexs, {path}", _shown(own), f"{_shown(other)}, as in the deflection", _ADVICE)
+
+
+def _shown(value: Any) -> Any:
+    """Return a value without the rounding of its computation."""
+    return float(f"{value:.10g}") if isinstance(value, float) else value
+
+
+def _check_load_cases(unit: OpenedUnit, cases: Sequence[CaseDeflection]) -> None:
+    """Refuse load cases that the unit has not, and those that were not found."""
+    known = {case.name: case for case in unit.load_cases}
+    for case in cases:
+        if case.name not in known:
+            names = ", ".join(known) or "none"
+            raise BadInput.of("load_cases", case.name, f"a load case of the unit: {names}", _ADVICE)
+        if case.status != "converged":
+            raise BadInput.of(
+                f'load case "{case.name}"', case.status, "converged", "Its figures say nothing."
+            )
+        own = known[case.name]
+        _check_load(own, case)
+        forces = {part.name: _vectors(part.force.tolist(), part.moment.tolist()) for part in case.forces}
+        path = f'load case "{case.name}", forces'
+        _refuse(first_difference(_forces_under(unit, own), forces, path))
+
+
+def _forces_under(unit: OpenedUnit, case: LoadCase) -> Json:
+    """Return the forces of a unit's scene under a load case by name."""
+    forces = () if unit.scene is None else unit.scene.forces
+    of_scene = {part.name: _vectors(part.force_n, part.moment_n_m) for part in forces}
+    return of_scene | {part["name"]: _vectors(part["force_n"], part["moment_n_m"]) for part in case.forces}
+
+
+def _vectors(force: Iterable[float], moment: Iterable[float]) -> Json:
+    """Return a force and a moment as they are compared."""
+    return {"force_n": list(force), "moment_n_m": list(moment)}
+
+
+def _check_load(own: LoadCase, case: CaseDeflection) -> None:
+    """Refuse a load case that is not loaded as the unit's of its name."""
+    if own.direction != case.direction:
+        _refuse((f'load case "{case.name}", direction', own.direction, case.direction))
+    numbers = {
+        "torque_n_m": (own.torque_n_m, case.torque),
+        "speed_rpm": (own.speed_rpm, case.speed / RPM),
+        "share": (own.share, case.share),
+    }
+    for item, (first, second) in numbers.items():
+        if not math.isclose(first, second, rel_tol=LOAD):
+            _refuse((f'load case "{case.name}", {item}', first, second))
+
+
+# Results of a bearing: forces on both sides, and how they move, each and against each other.
+
+
+AXES = "uvw"
+DEFLECTIONS = ("axial_deflection", "radial_deflection_in_v", "radial_deflection_in_w")
+
+
+def bearing_results(part: BearingPart, load: BearingLoad) -> tuple[Attribute, ...]:
+    """Return the attributes of a bearing under a load case, along its own u, v, w, mean over the mesh cycle.
+
+    The force on a side is what the bearing exerts on the component of that side: what it carries acts on the
+    housing, its reaction on the shaft. The deflection is the displacement of the inner less that of the
+    outer side, clearance included.
+
+    Parameters
+    ----------
+    part : BearingPart
+    load : BearingLoad
+        In x, y, z of the scene.
+    """
+    on_housing, moment = _turned(part, load.force)
+    across, tilt = _turned(part, load.elastic + load.clearance)
+    seat, seat_tilt = _turned(part, load.seat)
+    shaft, shaft_tilt = across + seat, tilt + seat_tilt
+    shaft_side, housing_side = ("inner", "outer") if part.shaft_inside else ("outer", "inner")
+    inward = 1.0 if part.shaft_inside else -1.0
+    return (
+        *_loads(shaft_side, -on_housing, -moment),
+        *_loads(housing_side, on_housing, moment),
+        *(
+            calculated(name, inward * value / UM, "mum")
+            for name, value in zip(DEFLECTIONS, across, strict=True)
+        ),
+        *(
+            calculated(f"angular_deflection_in_{axis}", inward * tilt[AXES.index(axis)], "rad")
+            for axis in "vw"
+        ),
+        *_displacements(shaft_side, shaft, shaft_tilt),
+        *_displacements(housing_side, seat, seat_tilt),
+    )
+
+
+def _turned(part: BearingPart, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the vectors along u, v, w of x, y, z and of tilt_x, tilt_y."""
+    return part.turn.T @ values[:3], part.turn.T @ np.array([*values[3:5], 0.0])
+
+
+def _loads(side: str, force: FloatArray, moment: FloatArray) -> Iterator[Attribute]:
+    """Yield force and moment on the component of a side; none about u, about which the bearing turns."""
+    for axis, value in zip(AXES, force, strict=True):
+        yield calculated(f"force_acting_on_{side}_component_{axis}", value, "N")
+    for axis, value in zip("vw", moment[1:], strict=True):
+        yield calculated(f"torque_acting_on_{side}_component_{axis}", value, "N m")
+
+
+def _displacements(side: str, displacement: FloatArray, tilt: FloatArray) -> Iterator[Attribute]:
+    """Yield the displacements of a side from where it stands without load."""
+    for axis, value in zip(AXES, displacement, strict=True):
+        yield calculated(f"displacement_{side}_side_{axis}", value / UM, "mum")
+    for axis, value in zip("vw", tilt[1:], strict=True):
+        yield calculated(f"tilting_{side}_side_{axis}", math.degrees(value), "deg")
+
+
+# Results of a stage under a load case: misalignment, load along the face, contact stress.
+
+
+_PA_PER_MPA, _N_PER_M = 1e6, 1e3
+
+
+def alignment_results(mesh: MeshAlignment, sense: int) -> tuple[Attribute, ...]:
+    """Return the misalignment of a stage, mean over the mesh cycle.
+
+    The attribute of ISO 6336 is its size without running-in allowance; signed it is a custom one: > 0 where
+    the gap between the flanks grows along u of gear 1's shaft.
+
+    Parameters
+    ----------
+    mesh : MeshAlignment
+    sense : int
+        +1 where the case's face positions count along that u, -1 against it.
+    """
+    return (
+        calculated("effective_equivalent_misalignment_iso_6336_2019", abs(mesh.misalignment) / UM, "mum"),
+        calculated("custom_misalignment", sense * mesh.misalignment / UM, "mum"),
+    )
+
+
+def flank_results(flanks: MeshFlanks, sense: int) -> tuple[Attribute, ...]:
+    """Return the load along the face and what follows from it, by increasing u of gear 1's shaft.
+
+    Nodes count from the end of the face of the lower u. K_Hbeta is left out where the model is plane.
+
+    Parameters
+    ----------
+    flanks : MeshFlanks
+    sense : int
+        As of `alignment_results`.
+    """
+    order = slice(None, None, sense)
+    along = sense * flanks.face_position[order]
+    pattern = flanks.pattern[:, order] / _PA_PER_MPA
+    factor = flanks.face_load_factor
+    return (
+        calculated("load_distribution_node_positions", ((along - along[0]) / MM).tolist(), "mm"),
+        calculated(
+            "load_distribution_along_face_width", (flanks.face_load[order] / _N_PER_M).tolist(), "N / mm"
+        ),
+        *(() if math.isnan(factor) else (calculated("face_load_factor_contact_stress", factor, "none"),)),
+        calculated("custom_largest_contact_stress", flanks.largest_pressure / _PA_PER_MPA, "MPa"),
+        calculated("custom_contact_pattern_roll_lengths", (flanks.roll_length / MM).tolist(), "mm"),
+        calculated("custom_contact_pattern", pattern.ravel().tolist(), "MPa"),
+        calculated("custom_transmission_error_mean", flanks.mean / UM, "mum"),
+        calculated("custom_transmission_error_peak_to_peak", flanks.peak_to_peak / UM, "mum"),
+        calculated("custom_transmission_error_harmonics", (flanks.harmonics / UM).tolist(), "mum"),
+        calculated("custom_torque_on_driving_gear", flanks.torque, "N m"),
+    )
+
+
+# Results of a shaft: its deflection line.
+
+
+def shaft_results(part: ShaftPart, position: FloatArray, motion: FloatArray) -> tuple[Attribute, ...]:
+    """Return the deflection line of a shaft along its own u, v, w, by increasing u, mean over the mesh cycle.
+
+    Parameters
+    ----------
+    part : ShaftPart
+    position : (P,) array
+        From the left end in the scene, m, increasing.
+    motion : (P, 6) array
+        Displacement in x, y, z, m; rotation about them, rad.
+    """
+    order = slice(None, None, part.sense)
+    u = part.sense * (position - part.zero)[order]
+    displacement = (motion[:, :3] @ part.turn)[order]
+    torsion = part.sense * motion[order, 5]
+    return (
+        calculated("u_coordinates_of_beam_nodes", (u / MM).tolist(), "mm"),
+        *(
+            calculated(f"displacement_{axis}_of_nodes", (displacement[:, k] / UM).tolist(), "mum")
+            for k, axis in enumerate("uvw")
+        ),
+        calculated("torsion_u", np.degrees(torsion).tolist(), "deg"),
+    )
 
 
 def deflected(document: Document, unit: OpenedUnit, result: GearboxDeflection) -> Document:

@@ -9,29 +9,187 @@ from typing import Any
 import numpy as np
 
 from bounds import leftover
+from dynamics.errors import InputError
+from dynamics.orders import Sideband, Waterfall, highest_valid_order, sidebands
 from dynamics.results import RunResult
 from dynamics.results.contact_state import contact_shares
+from dynamics.results.dynamic_factor import dynamic_factor
+from dynamics.results.planet_load_sharing import PlanetLoadSharing, planet_load_sharing
+from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.effects_section import EffectRow, effects_section
+from lineofaction.report.drawing.envelope import envelope
 from lineofaction.report.drawing.facts import facts
-from lineofaction.report.drawing.figure import Table, number
+from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Table, number, unit_of
+from lineofaction.report.drawing.mode_bars import mode_bars
+from lineofaction.report.drawing.mode_lines import ModeLine, mode_lines, whirling
 from lineofaction.report.drawing.page import Headline, Part, Section
 from lineofaction.report.drawing.sampling import peak_table, sampling_table
-from lineofaction.report.runs.campbell import campbell, frequency_blocks
+from lineofaction.report.runs.campbell import campbell, frequency_blocks, top_frequency
 from lineofaction.report.runs.dynamic_error import dynamic_error
-from lineofaction.report.runs.dynamic_factor import dynamic_factor_figure
-from lineofaction.report.runs.levels_over_speed import levels_over_speed, order_blocks
+from lineofaction.report.runs.level_map import DEPTH, level_map
+from lineofaction.report.runs.levels_over_speed import MAPPED, levels_over_speed, order_blocks
 from lineofaction.report.runs.loudest import has_orders
-from lineofaction.report.runs.mode_shares import mode_shares
 from lineofaction.report.runs.octave_bands import octave_bands
-from lineofaction.report.runs.order_map import order_map
-from lineofaction.report.runs.planet_sharing import planet_sharing
-from lineofaction.report.runs.run_series import run_series
-from lineofaction.report.runs.run_view import RunView, Signal, shown_signal
-from lineofaction.report.runs.sideband_table import sideband_tables
+from lineofaction.report.runs.run_series import run_series, validity
+from lineofaction.report.runs.run_view import RunView, Signal, run_axis, shown_signal
 from lineofaction.report.runs.signal_over_time import signal_over_time
 from lineofaction.report.runs.signal_recording import along_direction
 from lineofaction.report.runs.signal_spectrum import TOO_SHORT, has_spectrum, signal_spectrum
 from lineofaction.report.runs.sound import Heard, sound_of
+
+# Load sharing of planets over a run.
+
+
+def planet_sharing(run: RunResult) -> Figure | None:
+    """Draw what each planet carries at sun and ring; None without planets."""
+    sharings = planet_load_sharing(run)
+    if not sharings:
+        return None
+    rows = tuple(
+        (
+            sharing.central,
+            mesh,
+            number(float(mean)),
+            number(float(np.nanmin(ratio))),
+            number(float(np.nanmax(ratio))),
+        )
+        for sharing in sharings
+        for mesh, mean, ratio in zip(sharing.mesh, sharing.mean, sharing.ratio, strict=True)
+    )
+    factors = "; ".join(f"{s.central} {number(s.mesh_load_factor)}" for s in sharings)
+    return Figure(
+        key="planet_sharing",
+        title="Load sharing of the planets",
+        caption="Force of each planet's mesh times the number of planets over the sum of their forces: 1 "
+        "for equal loads.",
+        alternative=f"Largest share in the mean (K_gamma): {factors}.",
+        content=tuple(_panel(run, sharing) for sharing in sharings),
+        table=Table("Load sharing", ("gear", "mesh", "of means", "least", "largest"), rows),
+    )
+
+
+def _panel(run: RunResult, sharing: PlanetLoadSharing) -> Panel:
+    """One central gear."""
+    lines = []
+    for index, ratio in enumerate(sharing.ratio):
+        time, values = envelope(run.time, ratio)
+        lines.append(Line(f"planet {index + 1}", time, values, palette.category(index), width=1.0))
+    ends = (float(run.time[0]), float(run.time[-1]))
+    return Panel(
+        Axis("time, s", limits=ends), Axis("load sharing ratio"), tuple(lines), title=sharing.central
+    )
+
+
+# Order map: levels over speed and mesh order.
+
+
+def order_map(run: RunResult, signal: Signal, made: Waterfall) -> Figure:
+    """Draw spectra over mesh orders side by side: what follows the mesh lies level."""
+    valid = highest_valid_order(run, signal.mesh)
+    last = max(min(MAPPED, valid), 1)
+    amplitude = signal.amplitude(made.amplitude)[:, made.line <= last]
+    axis, along = run_axis(run, made.time, signal.mesh)
+    shade = level_map(along, made.line[made.line <= last], amplitude, float(last))
+    names = tuple((float(order), f"{order}×") for order in range(1, last + 1))
+    ends = Axis(axis.label, limits=(float(shade.x[0]), float(shade.x[-1])))
+    orders = Axis("mesh order", limits=(0.0, float(made.line[-1])), names=names)
+    block, line = np.unravel_index(int(np.argmax(amplitude[:, 1:])), amplitude[:, 1:].shape)
+    loudest = number(float(amplitude[block, line + 1]), 3)
+    where = f"{number(float(along[block]), 3)} {unit_of(axis.label)}"
+    return Figure(
+        key="order_map",
+        title=f"Order map of the {signal.name}",
+        caption=f"Color: {signal.scale} amplitude of each block's spectrum over mesh orders, in dB below the "
+        f"largest, down to −{DEPTH:g} dB. {validity(valid, float(run.mesh_frequency[signal.mesh].max()))}",
+        alternative=f"Largest: {loudest} {signal.unit} at order "
+        f"{number(float(made.line[line + 1]), 4)} and {where}.",
+        content=(Panel(ends, orders, shade=shade),),
+    )
+
+
+# Dynamic factor over a run.
+
+
+PITCHES = 16
+
+
+def dynamic_factor_figure(run: RunResult) -> Figure:
+    """Draw largest, mean and least mesh force over the nominal one."""
+    factor = dynamic_factor(run, PITCHES)
+    axis, abscissa = run_axis(run, factor.time)
+    lines = (
+        Line("largest", abscissa, factor.largest, palette.VERMILLION),
+        Line("mean", abscissa, factor.mean, palette.INK, "dash"),
+        Line("least", abscissa, factor.least, palette.BLUE),
+    )
+    worst = int(np.argmax(factor.largest))
+    unit = axis.label.rpartition(",")[2].strip()
+    return Figure(
+        key="dynamic_factor",
+        title=f"Dynamic factor of {run.mesh[0]}",
+        caption=f"Force of the driving flank over the nominal one, in blocks of {PITCHES} pitches. "
+        "The largest is the dynamic factor K_v; where the least is 0 the flanks lift off. The mean "
+        "differs from 1 by the torque that accelerates the train.",
+        alternative=f"Largest {number(float(factor.largest[worst]), 4)} at "
+        f"{number(float(abscissa[worst]), 3)} {unit}, least {number(float(factor.least.min()), 3)}.",
+        content=(Panel(axis, Axis("mesh force over nominal, 1"), lines),),
+    )
+
+
+# Sidebands of the mesh orders as a table.
+
+
+SHARE, ROWS = 1e-3, 12  # of the largest mesh order
+
+
+def sideband_tables(run: RunResult, signal: Signal) -> tuple[Table, ...]:
+    """Tabulate the largest sidebands of the loudest component; nothing if the run is too short for them."""
+    values = max(signal.components(run).values(), key=lambda series: float(np.var(series)))
+    try:
+        lines = sidebands(run, values, mesh=signal.mesh)
+    except InputError:  # fewer than four revolutions
+        return ()
+    least = SHARE * max(line.amplitude for line in lines if line.number == 0)
+    beside = sorted((s for s in lines if s.number and s.amplitude > least), key=lambda s: -s.amplitude)
+    if not beside:
+        return ()
+    caption = f"Sidebands of the {signal.name}, once per revolution of a gear and its multiples"
+    head = ("mesh order", "sideband", "order", f"amplitude, {signal.quantity.unit} peak")
+    return (Table(caption, head, tuple(map(_row, beside[:ROWS]))),)
+
+
+def _row(line: Sideband) -> tuple[str, ...]:
+    """One line."""
+    offset = f"{line.number:+d} × {line.source}"
+    return str(line.mesh_order), offset, number(line.order, 5), number(line.amplitude, 3)
+
+
+# What moves in the modes of a Campbell diagram.
+
+
+def mode_shares(run: RunResult, signal: Signal, made: Waterfall) -> Figure | None:
+    """Draw the shares of the parts in the kinetic energy of each mode of the diagram; None without modes."""
+    modes = mode_lines(run, made.mesh_frequency, top_frequency(run, signal, made))
+    shown = [mode for mode in modes if mode.shares]
+    if not shown:
+        return None
+    names = [f"{number(float(mode.frequency[0]), 4)} Hz" for mode in shown]
+    where = "whirl modes at the highest speed of the run" if whirling(run) else "natural modes"
+    return Figure(
+        key="mode_shares",
+        title="What moves in the modes of the Campbell diagram",
+        caption=f"Kinetic energy of the {where} by shaft and kind of motion, named by their frequency "
+        "at the start of the run. Parts below a twentieth are among the others.",
+        alternative=_words(shown[0], names[0]),
+        content=(mode_bars(names, [mode.shares for mode in shown], "kinetic energy"),),
+    )
+
+
+def _words(mode: ModeLine, name: str) -> str:
+    """Say what moves in the lowest mode."""
+    part, share = max(mode.shares.items(), key=lambda item: item[1])
+    return f"In the lowest mode, {name}, {number(100.0 * share, 2)} % of the kinetic energy are of {part}."
+
 
 ROUNDING = 1e-15
 """m, of the static displacement of an effect."""

@@ -12,28 +12,160 @@ from bounds import leftover
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
 from lineofaction.gearbox.convert.effect_sizes import by_size, influence_place, influence_words, trifles_title
+from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.effects_section import EffectRow, effect_table, effects_section
 from lineofaction.report.drawing.facts import facts, records, side_by_side
-from lineofaction.report.drawing.figure import Figure, Table, number
+from lineofaction.report.drawing.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Table, number
 from lineofaction.report.drawing.page import Headline, Part, Section
 from lineofaction.report.tables.aligned import (
     aligned_index,
     headline_load,
     load_curve,
     load_labels,
+    middle_load,
+    position_axis,
     shown_loads,
+    shown_rows,
 )
 from lineofaction.report.tables.data_sheet import data_sheet_section
 from lineofaction.report.tables.deflection_budget import budget_figure
 from lineofaction.report.tables.deviation_curves import deviation_curves, has_deviations
-from lineofaction.report.tables.face_load import face_load, has_face_load
-from lineofaction.report.tables.flanks_over_torque import flanks_over_torque
 from lineofaction.report.tables.load_sharing import load_sharing
 from lineofaction.report.tables.mesh_stiffness import mesh_stiffness
 from lineofaction.report.tables.pair import pair_of
 from lineofaction.report.tables.ripple_over_torque import ripple_over_torque
 from lineofaction.report.tables.ste_curves import ste_curves
 from lineofaction.report.tables.ste_spectrum import ste_spectrum
+
+# Position of the load along the face, and the largest pressure, over position.
+
+
+def has_face_load(database: SteDatabase) -> bool:
+    """Whether the load moves along the face: a table in three dimensions of a helical or misaligned pair."""
+    moves = np.nanmax(database.face_centroid) - np.nanmin(database.face_centroid)
+    return bool(moves > 1e-6 * database.facts.face_width)
+
+
+def face_load(database: SteDatabase) -> Figure:
+    """Draw load centroid and peak pressure at the middle load, one line per misalignment."""
+    load, (_, d) = middle_load(database), aligned_index(database)
+    centroid = 1e3 * database.face_centroid[:, load, :, d]
+    pressure = 1e-6 * database.max_pressure[:, load, :, d]
+    label = load_labels(database)[load]
+    return Figure(
+        key="face_load",
+        title="Load along the face",
+        caption="Above: distance of the load's centroid from the pinion's mid-face. Below: the largest Hertz "
+        f"pressure anywhere on the flanks{_waves(database)}; at a tip edge the true pressure is singular.",
+        alternative=f"At {label} the load acts from {number(float(np.nanmin(centroid)), 3)} to "
+        f"{number(float(np.nanmax(centroid)), 3)} mm from mid-face; the largest pressure is "
+        f"{number(float(np.nanmax(pressure)), 3)} MPa.",
+        content=(
+            Panel(
+                position_axis(database),
+                Axis("load centroid, mm"),
+                _lines(database, centroid),
+                (Reference("mid-face", 0.0, "horizontal"),),
+                title=label,
+            ),
+            Panel(position_axis(database), Axis("largest pressure, MPa"), _lines(database, pressure)),
+        ),
+    )
+
+
+def _waves(database: SteDatabase) -> str:
+    """Say what of the pressure is the model's."""
+    return (
+        ", which fluctuates as the contact lines pass from slice to slice of the model"
+        if database.facts.base_helix_angle
+        else ""
+    )
+
+
+def _lines(database: SteDatabase, values: FloatArray) -> tuple[Line, ...]:
+    """Draw `values` (P, M) over the pitches shown, dark for the first misalignment."""
+    position, rows = shown_rows(database)
+    names = [f"misalignment {number(1e6 * float(m), 3)} µm" for m in database.misalignment]
+    return tuple(
+        Line(
+            name,
+            position,
+            values[rows, m],
+            palette.ordered(m, len(names)),
+            label=name if len(names) > 1 else "",
+        )
+        for m, name in enumerate(names)
+    )
+
+
+# Largest flank pressure and place of the load along the face over torque.
+
+
+_MPA, _MM = 1e-6, 1e3
+_ROOM = 0.02  # of the torques' range, at both ends
+
+
+def flanks_over_torque(database: SteDatabase) -> Figure:
+    """Draw the largest pressure over torque, and where the load moves along the face, its range."""
+    loads = list(shown_loads(database))
+    m, d = aligned_index(database)
+    torque = database.torque[loads]
+    pressure = _MPA * np.nanmax(database.max_pressure[:, loads, m, d], axis=0)
+    centroid = _MM * database.face_centroid[:, loads, m, d]
+    ends = np.stack([np.nanmin(centroid, axis=0), np.nanmean(centroid, axis=0), np.nanmax(centroid, axis=0)])
+    room = _ROOM * float(np.ptp(torque))
+    across = Axis("torque on the driving gear, N m", limits=(torque[0] - room, torque[-1] + room))
+    y = Axis("largest pressure, MPa", limits=(0.0, 1.05 * float(pressure.max())))
+    line = Line("largest pressure", torque, pressure, palette.BLUE, markers=True)
+    panels: tuple[Panel, ...] = (Panel(across, y, (line,), title="Flank pressure"),)
+    panels += (_centroid(across, torque, ends),) if has_face_load(database) else ()
+    return Figure(
+        key="flanks_over_torque",
+        title="Flank pressure over torque"
+        if len(panels) == 1
+        else "Flank pressure and load centroid over torque",
+        caption="The largest Hertz pressure of the mesh cycle at every stored load"
+        + ("; below, how far the load's centroid is from the pinion's mid-face." if len(panels) > 1 else "."),
+        alternative=_words(database, loads, pressure),
+        content=panels,
+        table=_table(database, loads, pressure, ends),
+    )
+
+
+def _centroid(across: Axis, torque: FloatArray, ends: FloatArray) -> Panel:
+    """Draw the least, mean and largest distance from mid-face over the cycle."""
+    names = ("least", "mean", "largest")
+    colors = (palette.SKY, palette.BLUE, palette.VERMILLION)
+    lines = tuple(
+        Line(name, torque, values, color, markers=True, label=name)
+        for name, values, color in zip(names, ends, colors, strict=True)
+    )
+    mark = Reference("mid-face", 0.0, "horizontal")
+    return Panel(across, Axis("load centroid, mm"), lines, (mark,), title="Load along the face")
+
+
+def _words(database: SteDatabase, loads: list[int], pressure: FloatArray) -> str:
+    """Say how much the pressure grows for the growth of the torque."""
+    names, torque = load_labels(database), database.torque
+    first, last = loads[0], loads[-1]
+    growth = f"{number(float(torque[last] / torque[first]), 3)} times the torque"
+    return (
+        f"The largest pressure grows from {number(float(pressure[0]), 3)} MPa at {names[first]} to "
+        f"{number(float(pressure[-1]), 3)} MPa at {names[last]}: "
+        f"{number(float(pressure[-1] / pressure[0]), 3)} times for {growth}."
+    )
+
+
+def _table(database: SteDatabase, loads: list[int], pressure: FloatArray, ends: FloatArray) -> Table:
+    """Pressure and centroid at every load."""
+    labels = load_labels(database)
+    rows = tuple(
+        (labels[k], number(float(p), 4), *(number(float(end), 3) for end in column))
+        for k, p, column in zip(loads, pressure, ends.T, strict=True)
+    )
+    places = (f"{name} centroid, mm" for name in ("least", "mean", "largest"))
+    return Table("Flanks by load", ("torque", "largest pressure, MPa", *places), rows)
+
 
 _RESIDUALS = ("equilibrium", "penetration", "tension", "complementarity")
 _DECISIONS = {

@@ -18,8 +18,7 @@ from typer.main import get_command
 
 from lineofaction.cli.commands import app
 from service.queue.claims import DEFAULT_LEASE_S
-from service.secret_files import is_secret
-from service.settings import Settings
+from service.settings import Settings, is_secret
 
 ROOT = Path(__file__).resolve().parents[3]
 MANIFESTS = ROOT / "deploy" / "kubernetes"

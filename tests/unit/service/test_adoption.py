@@ -38,7 +38,7 @@ def machine(tmp_path: Path, database_url: str | None) -> Iterator[Bench]:
 
 def of_version(monkeypatch: pytest.MonkeyPatch, version: str) -> None:
     """Let results be named as this version of the program names them."""
-    monkeypatch.setattr("service.worker.key.solver_version", lambda: version)
+    monkeypatch.setattr("service.worker.process.solver_version", lambda: version)
 
 
 def adoption(machine: Bench, version: str, registry: Registry = REGISTRY) -> Adoption:

@@ -20,8 +20,8 @@ from rexs_stage import (
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
 from lineofaction.gearbox.from_rexs.micro_geometry import READERS, UNREAD
 from lineofaction.gearbox.from_rexs.stage_case import stage_cases
+from lineofaction.gearbox.schemas.case import WheelInput
 from lineofaction.gearbox.schemas.gear import GearInput
-from lineofaction.gearbox.schemas.wheel import WheelInput
 
 PAGE = (Path(__file__).parents[3] / "docs" / "reference" / "rexs-gears.md").read_text("utf-8")
 SECOND = {"tooth_tip_chamfer": 0.2, "addendum_modification_coefficient": None}

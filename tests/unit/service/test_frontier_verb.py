@@ -13,8 +13,7 @@ from fe_contact.analysis.studies.accuracy_study.full_contact import (
     MEASURED_GEAR,
     known_full_contact,
 )
-from fe_contact.analysis.studies.fidelity_result import FidelityResult
-from fe_contact.analysis.studies.frontier import Frontier
+from fe_contact.analysis.studies.frontier import FidelityResult, Frontier
 from fe_contact.analysis.studies.measured_full_contact import PLANE, MeasuredFullContact
 from fe_contact.full_contact import FullContactPoint, FullContactTable
 from fe_contact.geometry import FlankModification, GearPair

@@ -189,7 +189,7 @@ def test_one_that_dies_unseen_after_an_answer_is_replaced_once(
     first = answer(pool.ask(order("echo", word="a")))["pid"]
     os.kill(first, signal.SIGKILL)
     until(lambda: not lives(first))
-    monkeypatch.setattr("service.live.worker.LiveWorker.alive", True)
+    monkeypatch.setattr("service.live.pool.LiveWorker.alive", True)
     assert answer(pool.ask(order("echo", word="b")))["pid"] != first
 
 

@@ -25,7 +25,7 @@ from dynamics.acoustics import Hull, a_weighting
 from dynamics.noise import RadiatedSound, loudest
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.studies.noise import run
-from lineofaction.gearbox.studies.noise.figures import facts
+from lineofaction.gearbox.studies.noise.run import facts
 from lineofaction.report.drawing import surface_view
 from lineofaction.report.studies import noise as page
 from lineofaction.report.studies.noise import limits

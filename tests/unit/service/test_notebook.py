@@ -14,7 +14,7 @@ from small_table import small_table
 from stored_jobs import state
 
 from lineofaction.client import JobState, Report, progress_bars
-from lineofaction.client.line_chart import BOTTOM, TOP, Axis
+from lineofaction.client.report import BOTTOM, TOP, Axis
 from lineofaction.report.document.as_json import stored_figures
 
 

@@ -17,8 +17,7 @@ from service.settings import Settings, load_settings
 from service.store import DirectoryLock, ResultStore, open_database, reading, stored_results, writing
 from service.store.deployment import NOTE
 from service.store.files import DirectoryFiles
-from service.store.object_files import ObjectFiles, object_files
-from service.store.places import result_files, result_store
+from service.store.places import ObjectFiles, object_files, result_files, result_store
 from service.worker.order import WorkOrder
 
 KEY = hashlib.sha256(b"input").hexdigest()
@@ -186,7 +185,7 @@ def test_the_cache_is_bounded_and_spares_what_is_being_read(tmp_path: Path, s3_u
 def test_a_store_that_does_not_answer_is_said(
     tmp_path: Path, s3_objects: Objects, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.store.object_files.RETRIES", {"max_retries": 1})
+    monkeypatch.setattr("service.store.places.RETRIES", {"max_retries": 1})
     store = result_store(open_database(tmp_path / "index.sqlite3"), tmp_path, "s3://bucket/prefix")
     put(store, tmp_path, b"table")
     s3_objects.down = True

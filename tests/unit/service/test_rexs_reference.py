@@ -45,8 +45,7 @@ from lineofaction.gearbox.rexs import Document, parsed, read_rexs, serialized, u
 from lineofaction.gearbox.rexs.kinds import KINDS, kind_of
 from lineofaction.gearbox.rexs.units import UNITS
 from lineofaction.gearbox.rexs.vocabulary import words
-from lineofaction.gearbox.to_rexs.bearing_results import bearing_results
-from lineofaction.gearbox.to_rexs.deflected import deflected
+from lineofaction.gearbox.to_rexs.deflected import bearing_results, deflected
 from lineofaction.gearbox.to_rexs.exported import exported
 from tests.fakes.deflected_unit import deflection_of_unit
 from tests.fakes.rexs_unit import MOTOR, two_stages

@@ -14,8 +14,7 @@ from dynamics.simulation import simulate
 from dynamics.types import RunStatus
 from lineofaction.cli.commands import app
 from lineofaction.cli.interrupt import until_interrupted
-from lineofaction.cli.run_headlines import run_headlines
-from lineofaction.cli.simulate import _run
+from lineofaction.cli.simulate import _run, run_headlines
 from lineofaction.gearbox.convert.run_effects import effect_lines
 
 SCENE = gear_pair_scene(duration=0.02)

@@ -17,7 +17,7 @@ from lineofaction.cli.commands import app
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model
-from lineofaction.gearbox.studies.sweep.axes import SWEEPABLE, axis_of
+from lineofaction.gearbox.studies.sweep.run import SWEEPABLE, axis_of
 
 CASE = (
     SPUR.replace("[pair.pinion]", "[pair.pinion]\ntip_relief_um = 15.0\ntip_relief_length_mm = 1.5")

@@ -12,8 +12,8 @@ import pytest
 
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.stages import TableFraction
-from service.worker.analysis_work import database_of
 from service.worker.order import WorkOrder
+from service.worker.simulation_work import database_of
 
 LARGEST_ERROR = 0.15
 LARGEST_STEP = 0.2

@@ -10,11 +10,11 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from fe_contact import AllowedError, Gear, GearPair, SteDatabase, analyze
+from lineofaction.cli.analyze import tolerance_lines, tolerance_warnings
 from lineofaction.cli.commands import app
-from lineofaction.cli.tolerance_lines import tolerance_lines, tolerance_warnings
 from lineofaction.gearbox.convert.drafts import draft_line
 from lineofaction.gearbox.problems import EXIT_WARNINGS
-from service.worker.drafted_progress import DraftedProgress
+from service.worker.simulation_work import DraftedProgress
 
 CASE = """
 [pair]

@@ -15,7 +15,7 @@ from dynamics.integrators import integrate, static_equilibrium
 from dynamics.results.order_fit import order_amplitudes, unwrapped
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate
-from dynamics.simulation.error_windows import run_again, windows
+from dynamics.simulation.error_by_source import run_again, windows
 
 
 def run_up(positions, **changes):

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from dynamics.acoustics import (
     Air,
@@ -13,19 +16,33 @@ from dynamics.acoustics import (
     EquivalentRadiatedPower,
     PanelModel,
     RadiationModel,
+    a_weighting,
     outer_hull,
+    sound_power_level,
 )
+from dynamics.acoustics.run_recording import LOWEST
 from dynamics.housing_modes import ReducedHousing, write_surface
 from dynamics.noise import (
     HousingRadiation,
+    LoudPoint,
+    PanelSound,
     RadiatedSound,
+    Region,
+    SoundOverTime,
     kept_radiation,
     loudest,
     models_at,
+    panel_sound,
     radiated_sound,
+    regions,
+    side_by_side,
+    sound_over_time,
     together,
 )
 from dynamics.noise.housing_radiation import resolved_frequency
+from dynamics.noise.sound_over_time import BLOCK
+from dynamics.results import RunResult
+from dynamics.types import FloatArray
 from dynamics.vibration import BearingHarmonics
 from host import cpu_seconds
 from lineofaction.gearbox.convert.case import boundary_errors
@@ -33,18 +50,218 @@ from lineofaction.gearbox.convert.housings import FOLDER
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.studies.bearing_forces import forces_of
+from lineofaction.gearbox.studies.bearing_forces import LINEAR, forces_of
 from lineofaction.gearbox.studies.computation import Computation, Means
-from lineofaction.gearbox.studies.housing_costs import reduction_costs
+from lineofaction.gearbox.studies.equilibrium import equilibrium_figures
+from lineofaction.gearbox.studies.housing_costs import cost_figures, reduction_costs, reduction_figures
 from lineofaction.gearbox.studies.listen.through_housing import require_surface, silent
 from lineofaction.gearbox.studies.noise import Inputs
-from lineofaction.gearbox.studies.noise.figures import facts
-from lineofaction.gearbox.studies.noise.over_time import over_time, over_time_json, run_frequencies
-from lineofaction.gearbox.studies.noise.radiating_regions import SoundingHousing, with_regions
 from lineofaction.gearbox.studies.noise.uncertainty import uncertainty
 from lineofaction.gearbox.studies.result_file import array_file
+from lineofaction.gearbox.units import MM, RPM
+
+# Figures of a radiated sound in the units of the boundary.
+
 
 Json = dict[str, Any]
+
+
+def facts(sound: RadiatedSound) -> Json:
+    """Return levels (lists by order, then by speed), third octaves and the loudest points."""
+    orders, about = sound.orders, sound.facts
+    center, bands = orders.third_octaves()
+    return {
+        "leading_shaft": about["leading_shaft"],
+        "speed_rpm": (sound.speed / RPM).tolist(),
+        "order": sound.order.tolist(),
+        "frequency_hz": orders.frequency.tolist(),
+        "level_db": orders.level.tolist(),
+        "level_db_a": orders.weighted_level.tolist(),
+        "total_level_db": orders.total_level.tolist(),
+        "total_level_db_a": orders.total_weighted_level.tolist(),
+        "third_octave_hz": center.tolist(),
+        "third_octave_db": sound_power_level(bands).tolist(),
+        "radiation_efficiency": sound.efficiency.T.tolist(),
+        "bearings": {name: _bearing(sound, index) for index, name in enumerate(sound.bearing)},
+        "loudest": [
+            _point(point, regions) for point, regions in zip(loudest(sound), about["regions"], strict=True)
+        ],
+        "housings": {name: _housing(about, name) for name in sound.housing},
+        "natural_frequency_hz": sound.natural_frequency.tolist(),
+        "parting_rpm": (sound.speed[~sound.in_contact] / RPM).tolist(),
+        "equilibrium": None if about["equilibrium"] is None else equilibrium_figures(about["equilibrium"]),
+        "forces": about.get("forces", LINEAR),
+        "over_time": about.get("over_time"),
+        "band": about["band"],
+        "sensitivities": about["sensitivities"],
+        "sensitivities_left_out": about["sensitivities_left_out"],
+        "cpu_seconds": about["seconds"],
+        "reduction_cost": reduction_figures(about),
+        "effect_ledger": about["effect_ledger"],
+    }
+
+
+def _bearing(sound: RadiatedSound, bearing: int) -> Json:
+    """Return the levels by the force of a bearing alone, and of what is left without it."""
+    weighting = a_weighting(sound.frequency)
+    alone, without = sound.bearing_alone[bearing], sound.without_bearing[bearing]
+    return {
+        "alone_db_a": (sound_power_level(np.maximum(alone, 0.0)) + weighting).T.tolist(),
+        "without_db_a": (sound_power_level(without) + weighting).T.tolist(),
+    }
+
+
+def _housing(about: Json, name: str) -> Json:
+    """Return what is known of the radiation of a housing."""
+    radiation, compared = about["radiation"][name], about["models"][name]
+    return {
+        "radiation": radiation["model_name"],
+        "outer_area_m2": radiation["area"],
+        "inner_area_m2": radiation["inner_area"],
+        "cap_area_m2": radiation["cap_area"],
+        "panels": radiation["panels"],
+        "resolved_hz": radiation["resolved_frequency"],
+        "valid_hz": radiation["valid_frequency"],
+        "interpolation_error_db": radiation["interpolation_error"],
+        "models_db": compared.get("level", {}),
+        "model_error_db": compared.get("error", {}),
+        "models_left_out": compared.get("left_out", {}),
+        "models_cpu_seconds": compared.get("seconds", {}),
+        "models_error_band_db": compared.get("error_band", {}),
+        "models_predicted": {
+            model: {"cpu_seconds": cost["seconds"], "bytes": cost["bytes"]}
+            for model, cost in compared.get("predicted", {}).items()
+        },
+        "radiation_cost": cost_figures(radiation.get("cost")),
+    }
+
+
+def _figures_region(region: Json) -> Json:
+    """Return a region of a housing."""
+    return {
+        "housing": region["housing"],
+        "facing": region["facing"],
+        "points": region["points"],
+        "normal": region["normal"],
+        "center_mm": [value / MM for value in region["center"]],
+        "area_m2": region["area"],
+        "power_w": region["power"],
+        "share": region["share"],
+    }
+
+
+def _point(point: LoudPoint, regions: list[Json]) -> Json:
+    """Return a loudest point."""
+    return {
+        "order": point.order,
+        "speed_rpm": point.speed / RPM,
+        "frequency_hz": point.frequency,
+        "level_db": point.level,
+        "level_db_a": point.weighted_level,
+        "radiation_efficiency": point.efficiency,
+        "housing": point.mode_housing,
+        "mode": point.mode,
+        "natural_frequency_hz": point.natural_frequency,
+        "mode_share": point.mode_share,
+        "bearing": point.bearing,
+        "bearing_alone_db_a": point.bearing_level,
+        "without_bearing_db_a": point.level_without_bearing,
+        "in_contact": point.in_contact,
+        "regions": [_figures_region(region) for region in regions],
+    }
+
+
+# Panels and regions of the housings through which the sound leaves at the loudest points.
+
+
+@dataclass(frozen=True)
+class SoundingHousing:
+    """A housing that radiates: its name, its reduction, the bearings in its seats, its radiation."""
+
+    name: str
+    body: ReducedHousing
+    bearings: tuple[str, ...]
+    radiation: HousingRadiation
+
+
+def with_regions(
+    sound: RadiatedSound, response: BearingHarmonics, housings: Sequence[SoundingHousing], model: PanelModel
+) -> RadiatedSound:
+    """Return a sound with the panels of its loudest point, and the fact `regions` of all of `loudest`."""
+    told: list[list[Json]] = []
+    for point in loudest(sound):
+        at = point.speed_index, point.order_index
+        panels = [_panels(response, housing, at, model) for housing in housings]
+        if not told:
+            sound = _with_panels(sound, side_by_side(panels))
+        rows = [
+            _region(housing.name, region, float(sound.power[at]))
+            for housing, own in zip(housings, panels, strict=True)
+            for region in regions(own, housing.body.points)
+        ]
+        told.append(sorted(rows, key=lambda row: -row["power"]))
+    return replace(sound, facts={**sound.facts, "regions": told})
+
+
+def _panels(
+    response: BearingHarmonics, housing: SoundingHousing, at: tuple[int, int], model: PanelModel
+) -> PanelSound:
+    """Return the power of the panels of a housing."""
+    return panel_sound(response, housing.body, housing.bearings, housing.radiation, at, model)
+
+
+def _with_panels(sound: RadiatedSound, panels: PanelSound) -> RadiatedSound:
+    """Return a sound with the panels of its loudest point."""
+    hull = panels.hull
+    return replace(sound, panel_node=hull.nodes, panel_corner=hull.triangles, panel_power=panels.power)
+
+
+def _region(housing: str, region: Region, whole: float) -> Json:
+    """Return a region as plain JSON, SI, with its share of the power of the point."""
+    plain = {name: np.asarray(getattr(region, name)).tolist() for name in ("normal", "center")}
+    own = {"facing": region.facing, "points": list(region.points), "area": region.area, "power": region.power}
+    return {"housing": housing, **own, **plain, "share": region.power / whole}
+
+
+# Sound power over the time of a run, all that it holds: figures and the plot of its third octaves.
+
+
+def run_frequencies(run: RunResult, frequency: FloatArray) -> FloatArray:
+    """Return frequencies of orders (S, H) with the ends of what is heard of a run, Hz."""
+    ends = [LOWEST, float(run.receipt["sampling"]["pass_frequency"])]
+    return np.append(frequency.ravel(), ends)
+
+
+def over_time(
+    subject: TabledScene, run: RunResult, radiation: Mapping[str, HousingRadiation]
+) -> SoundOverTime | None:
+    """Return the sound power of all housings over a run; None where it is shorter than a block."""
+    if run.time.size < BLOCK * run.sample_rate:
+        return None
+    sounds = [
+        sound_over_time(run, subject.housings[part.name], part.bushings, radiation[part.name])
+        for part in subject.scene.housings
+        if part.name in radiation
+    ]
+    return SoundOverTime.of_all(sounds)
+
+
+def over_time_json(sound: SoundOverTime | None) -> Json | None:
+    """Return levels over time in the units of the boundary."""
+    if sound is None:
+        return None
+    return {
+        "time_s": sound.time.tolist(),
+        "speed_rpm": (sound.speed / RPM).tolist(),
+        "third_octave_hz": sound.nominal.tolist(),
+        "third_octave_db": sound_power_level(sound.power.T).tolist(),
+        "total_level_db": sound.total_level.tolist(),
+        "total_level_db_a": sound.total_weighted_level.tolist(),
+        "lowest_hz": sound.lowest,
+        "highest_hz": sound.highest,
+    }
+
+
 PLANE, MONOPOLES = EquivalentRadiatedPower(), ElementalRadiators()
 MODELS: dict[str, PanelModel] = {model.model_name: model for model in (PLANE, MONOPOLES)}
 

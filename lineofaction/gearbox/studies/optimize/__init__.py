@@ -12,7 +12,7 @@ from fe_contact.flank.modification import FlankModification
 from lineofaction.gearbox.schemas.case import Load
 from lineofaction.gearbox.schemas.declared import Figure, figures, with_fields
 from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
-from lineofaction.gearbox.schemas.one_or_many import MANY, ONE, ONE_OR_MANY
+from lineofaction.gearbox.schemas.query import MANY, ONE, ONE_OR_MANY
 
 Deviation = Annotated[float, Field(gt=0.0, le=1000.0)]
 _EACH = (Strict(False), Field(min_length=1, max_length=64))

@@ -2,21 +2,174 @@
 
 from __future__ import annotations
 
+import copy
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from dynamics.study import Study, StudyTask, keep_runs, study
+import numpy as np
+
+from dynamics.scene import Scene
+from dynamics.study import (
+    Design,
+    Factor,
+    Levels,
+    Listed,
+    Normal,
+    Response,
+    Study,
+    StudyTask,
+    Uniform,
+    keep_runs,
+    study,
+)
+from fe_contact.microgeometry import iso1328_tolerances
+from fe_contact.microgeometry.tolerances import PROCESS_SPREAD
 from fe_contact.workers.content import content_digest
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
 from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Computation, Means, with_defaults
 from lineofaction.gearbox.studies.result_file import array_file
-from lineofaction.gearbox.studies.study import Inputs
-from lineofaction.gearbox.studies.study.checks import check
-from lineofaction.gearbox.studies.study.design import design_of, responses_of
+from lineofaction.gearbox.studies.study import MOST_POINTS, FactorInput, Inputs
 from lineofaction.gearbox.studies.study.figures import facts
-from lineofaction.gearbox.studies.study.scenes import VariedScene
+from lineofaction.gearbox.studies.study.paths import Place, check_flank, mesh_of_case, places_of, with_value
+from lineofaction.gearbox.studies.study.scenes import VariedScene, scene_of_json
+from lineofaction.gearbox.units import UM
+
+# The design and the responses of a study, from its file.
+
+
+def design_of(scene: SceneInput, inputs: Inputs, places: Mapping[str, tuple[Place, ...]]) -> Design:
+    """Return the design; raises `BadInput`, `DynamicsError`."""
+    factors = {f.path: _factor(k, f, scene, places[f.path]) for k, f in enumerate(inputs.factors)}
+    return Design(factors, inputs.samples, inputs.seed)
+
+
+def responses_of(scene: Scene, inputs: Inputs) -> tuple[Response, ...]:
+    """Return the responses; raises `BadInput` for a part that the scene has not."""
+    responses = tuple(
+        Response(r.quantity, r.part or "", r.order or 0, r.mesh or "") for r in inputs.responses
+    )
+    _check_parts(scene, responses)
+    return responses
+
+
+def _factor(index: int, factor: FactorInput, scene: SceneInput, places: tuple[Place, ...]) -> Factor:
+    """Return a factor of the library."""
+    if factor.levels is not None:
+        return Levels(factor.levels)
+    if factor.values is not None:
+        return Listed(factor.values)
+    if factor.uniform is not None:
+        return Uniform(factor.uniform.low, factor.uniform.high)
+    if factor.normal is not None:
+        normal = factor.normal
+        low = -np.inf if normal.low is None else normal.low
+        high = np.inf if normal.high is None else normal.high
+        return Normal(normal.mean, normal.standard_deviation, low, high)
+    return _by_class(index, factor, scene, places)
+
+
+def _by_class(index: int, factor: FactorInput, scene: SceneInput, places: tuple[Place, ...]) -> Normal:
+    """Return the distribution within a class of ISO 1328 about the designed value, um."""
+    assert factor.iso1328_class is not None
+    limits = set()
+    for place in places:
+        case = scene.meshes[int(place[1])].case
+        assert case is not None
+        gear, name = str(place[4]), str(place[5])
+        widths = iso1328_tolerances(gear_pair(case), factor.iso1328_class).modification
+        designed = float(getattr(getattr(case.pair, gear), name))
+        limits.add((designed, widths[f"{gear}.{name.removesuffix('_um')}"]))
+    if len(limits) > 1:
+        raise BadInput.of(f"factors[{index}].path", factor.path, "of gears with one tolerance", "Name each.")
+    ((design, width),) = limits
+    half = width / UM
+    return Normal(design, half / PROCESS_SPREAD, design - half, design + half)
+
+
+def _check_parts(scene: Scene, responses: tuple[Response, ...]) -> None:
+    """Every response names a mesh or a bearing of the scene."""
+    meshes = [mesh.name for mesh in scene.meshes]
+    bearings = [part.name for part in (*scene.ground_bearings, *scene.planet_bearings)]
+    for index, response in enumerate(responses):
+        for field, name, known in (
+            ("part", response.part, bearings if response.kind.of == "bearing" else meshes),
+            ("mesh", response.mesh, meshes),
+        ):
+            if name and name not in known:
+                raise BadInput.of(f"responses[{index}].{field}", name, f"one of {', '.join(known)}")
+
+
+# Checks of a study at the request: paths, values, numbers of points.
+
+
+def check(scene: SceneInput, inputs: Inputs) -> Mapping[str, tuple[Place, ...]]:
+    """Return where every factor stands in the scene.
+
+    Raises
+    ------
+    BadInput
+        A path that names no number, a value that its field does not accept, or too many points.
+    """
+    places = {}
+    for index, factor in enumerate(inputs.factors):
+        field = f"factors[{index}].path"
+        places[factor.path] = places_of(scene, field, factor.path)
+        for place in places[factor.path]:
+            _check_case(scene, field, factor, place)
+    _check_values(scene, inputs, places)
+    return places
+
+
+def _check_case(scene: SceneInput, field: str, factor: FactorInput, place: Place) -> None:
+    """Refuse what of a case cannot be varied: only flanks can, at one alignment; a class is of slopes."""
+    index = mesh_of_case(place)
+    if index is None:
+        if factor.iso1328_class is not None:
+            bound = "of a profile or helix slope of a case"
+            raise BadInput.of(field.replace("path", "iso1328_class"), factor.iso1328_class, bound)
+        return
+    check_flank(field, factor.path, place)
+    mesh = scene.meshes[index]
+    if mesh.case is None and mesh.case_file is None:
+        raise BadInput.of(field, factor.path, f"of a mesh with a case: {mesh.name} takes a database")
+    case = mesh.case
+    if case and max(len(case.errors.misalignment_um), len(case.errors.center_distance_change_mm)) > 1:
+        bound = "of a case at one misalignment and one center distance"
+        raise BadInput.of(field, factor.path, bound, "Vary the mesh's misalignment_um of another study.")
+    if factor.iso1328_class is not None and place[-1] not in ("profile_slope_um", "helix_slope_um"):
+        bound = "of profile_slope_um or helix_slope_um, which the standard has tolerances of"
+        raise BadInput.of(field.replace("path", "iso1328_class"), factor.iso1328_class, bound)
+
+
+def _check_values(scene: SceneInput, inputs: Inputs, places: Mapping[str, tuple[Place, ...]]) -> None:
+    """Try the ends of the values, one factor at a time; those of cases are tried with their tables."""
+    base = scene.model_dump(mode="json")
+    for factor in inputs.factors:
+        if any(mesh_of_case(place) is not None for place in places[factor.path]):
+            continue
+        for value in _ends(factor):
+            table = copy.deepcopy(base)
+            for place in places[factor.path]:
+                with_value(table, place, value)
+            scene_of_json(table)
+    count = inputs.samples * math.prod(len(f.levels) for f in inputs.factors if f.levels)
+    if count > MOST_POINTS:
+        raise BadInput.of("factors", count, f"at most {MOST_POINTS} points in all")
+
+
+def _ends(factor: FactorInput) -> tuple[float, ...]:
+    """Return values of a factor that are tried: the ends, of a normal distribution its mean."""
+    values = factor.levels or factor.values
+    if values:
+        return (min(values), max(values))
+    if factor.uniform is not None:
+        return (factor.uniform.low, factor.uniform.high)
+    return (factor.normal.mean,) if factor.normal is not None else ()
 
 
 def study_of(tabled: TabledScene, inputs: Inputs, means: Means) -> Study:

@@ -16,7 +16,7 @@ from dynamics.bodies import Inertia, Shaft, TimeLaw
 from dynamics.errors import InputError
 from dynamics.forces.law import Law
 from dynamics.integrators import integrate, static_equilibrium
-from dynamics.integrators.energy import stored_energy
+from dynamics.integrators.march import stored_energy
 from dynamics.joints import Bushing, Coupling
 from dynamics.linearize import natural_modes
 from dynamics.linearize.common_period import common_period

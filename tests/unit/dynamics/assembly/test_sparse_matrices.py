@@ -8,7 +8,7 @@ from dynamics.assembly.assemble import assemble
 from dynamics.bodies import TimeLaw
 from dynamics.forces.by_address import by_address
 from dynamics.forces.compiled import compiled
-from dynamics.integrators.step_level import invert
+from dynamics.integrators.implicit_step import invert
 from tests.fakes.geared_scenes import spring_table
 
 SPAN = 1e-5

@@ -10,7 +10,7 @@ import pytest
 from geared_scenes import gear_pair_scene, spring_table, with_gear
 
 from dynamics.deflection import LoadCase, deflect, life_duration
-from dynamics.deflection.bearing_life import life_of
+from dynamics.deflection.deflect import life_of
 from dynamics.errors import InputError
 from dynamics.joints import Bushing, RollingBearing
 from dynamics.rolling_bearings import BallBearing, LoadedBearing, RollerBearing, rating_life

@@ -15,7 +15,7 @@ from two_stage_scenes import mirrored_across, mirrored_along, two_stages
 from dynamics.assembly.assemble import assemble
 from dynamics.bodies import TimeLaw
 from dynamics.deflection import CAUSES, LoadCase, deflect, equivalent_load, loaded_scene
-from dynamics.deflection.mesh_cycle import cycle_times
+from dynamics.deflection.deflect import cycle_times
 from dynamics.deflection.rest import rest_over
 from dynamics.errors import InputError
 from dynamics.forces import RollingContact

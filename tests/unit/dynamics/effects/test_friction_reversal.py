@@ -15,7 +15,7 @@ from dynamics.assembly.assemble import assemble
 from dynamics.bodies import TimeLaw
 from dynamics.forces import CoastFlank, LoadTorque
 from dynamics.forces.mesh_table import FIELDS
-from dynamics.forces.sliding_friction import CREEP_SPEED
+from dynamics.forces.spatial_flank import CREEP_SPEED
 from dynamics.forces.technique import PlainTable
 from dynamics.integrators import static_equilibrium
 from dynamics.joints import FreeRotation

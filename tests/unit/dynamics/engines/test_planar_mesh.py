@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from geared_scenes import BASE_RADIUS
 
-from dynamics.engines.exudyn_mesh import PlanarMesh, user_functions
+from dynamics.engines.exudyn_scene import PlanarMesh, user_functions
 from dynamics.forces.flank_force import FlankLaws, flank_force
 from dynamics.forces.packed_tables import pack_tables
 

@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from dynamics.forces.packed_tables import pack_tables
 from dynamics.forces.table_energy import table_energy
 from dynamics.forces.table_lookup import table_deflection, table_force
-from dynamics.forces.table_slope import deflection_slope
+from dynamics.forces.technique import deflection_slope
 
 rng = np.random.default_rng(7)
 TABLE = square_wave_table()

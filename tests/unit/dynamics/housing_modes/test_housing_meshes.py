@@ -28,9 +28,9 @@ from dynamics.housing_modes import (
     mesh_step,
     read_mesh,
 )
-from dynamics.housing_modes.elasticity import mass_and_stiffness
-from dynamics.housing_modes.mesh_quality import element_shape
-from dynamics.housing_modes.reduction import reduce_housing
+from dynamics.housing_modes.assembled_housing import mass_and_stiffness
+from dynamics.housing_modes.kept import reduce_housing
+from dynamics.housing_modes.mesh_file import element_shape
 from host import missing_protections
 
 MESH = tube(0.12, 0.08, 0.1, (8, 1, 2))

@@ -28,11 +28,14 @@ from dynamics.housing_modes import (
     receptance,
 )
 from dynamics.housing_modes import free_modes as free_modes_module
-from dynamics.housing_modes.assembled_housing import AssembledHousing, assemble
-from dynamics.housing_modes.elasticity import mass_and_stiffness
+from dynamics.housing_modes.assembled_housing import (
+    AssembledHousing,
+    assemble,
+    independent_freedoms,
+    mass_and_stiffness,
+)
 from dynamics.housing_modes.free_modes import ModeStatus, free_modes
-from dynamics.housing_modes.reduction import reduce_housing
-from dynamics.housing_modes.rigid_faces import independent_freedoms
+from dynamics.housing_modes.kept import reduce_housing
 from dynamics.housing_modes.rigid_motion import rigid_body
 from dynamics.housing_modes.seats import mean_motion
 

@@ -34,9 +34,7 @@ from dynamics.housing_modes import (
     reduction_cost,
 )
 from dynamics.housing_modes import kept as kept_module
-from dynamics.housing_modes.kept import content_key
-from dynamics.housing_modes.reduction import reduce_housing
-from dynamics.housing_modes.reduction_cost import cost_of
+from dynamics.housing_modes.kept import content_key, cost_of, reduce_housing
 
 WITHIN = 1.3
 """Factor within which a cost is predicted."""

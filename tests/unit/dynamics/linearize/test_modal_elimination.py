@@ -11,7 +11,7 @@ from housed_pair import ON, housed_pair
 
 from dynamics.assembly.assemble import assemble
 from dynamics.linearize import harmonic_response, linearize, steady_vibration
-from dynamics.linearize.modal_elimination import modal_elimination
+from dynamics.linearize.steady_vibration import modal_elimination
 
 
 @pytest.mark.parametrize("gyroscopic", ["off", "on"])

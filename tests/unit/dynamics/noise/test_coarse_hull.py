@@ -12,7 +12,7 @@ from sounding_housings import smooth_motion, with_surface
 
 from dynamics.acoustics import Air, ElementalRadiators, OuterHull, outer_hull, resistance
 from dynamics.noise import radiating_hull
-from dynamics.noise.surface_cells import split_cells, surface_cells
+from dynamics.noise.coarse_hull import split_cells, surface_cells
 
 AIR, HERTZ = Air(), 3000.0
 BODIES = {

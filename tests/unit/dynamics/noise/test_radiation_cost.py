@@ -15,8 +15,7 @@ from dynamics.acoustics import Air, ElementalRadiators, outer_hull
 from dynamics.housing_modes import ReducedHousing
 from dynamics.noise import HousingRadiation, housing_radiation
 from dynamics.noise.coarse_hull import radiating_hull
-from dynamics.noise.knots import expected_knots, octaves
-from dynamics.noise.radiation_cost import USUAL, Octave, radiation_cost
+from dynamics.noise.housing_radiation import USUAL, Octave, expected_knots, octaves, radiation_cost
 from dynamics.work_cost import Cost
 
 AIR, MODEL = Air(), ElementalRadiators()

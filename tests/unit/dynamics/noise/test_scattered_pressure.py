@@ -11,7 +11,7 @@ from sounding_housings import rigid_housing
 from dynamics.acoustics import Air, ElementalRadiators, exterior_pressure
 from dynamics.acoustics.plane_waves import directions
 from dynamics.noise import pressure_transfer, scattered_pressure_transfer
-from dynamics.noise.sound_paths import sound_paths
+from dynamics.noise.housing_recordings import sound_paths
 
 AIR, RADIUS = Air(), 0.1
 PLACES = np.array([[0.0, 0.1, 0.2], [0.3, 0.4, 0.5], [0.0, 5.0, 5.0]])

@@ -16,7 +16,7 @@ from dynamics.acoustics import Air, ElementalRadiators, Hull, outer_hull
 from dynamics.acoustics.plane_waves import directions
 from dynamics.errors import InputError
 from dynamics.noise import housing_radiation, pressure_signal, pressure_transfer, radiated_sound, sound_limit
-from dynamics.noise.sound_paths import sound_paths
+from dynamics.noise.housing_recordings import sound_paths
 from dynamics.vibration import seat_forces
 
 AIR, FREE, BAFFLED = Air(), ElementalRadiators(), ElementalRadiators(baffled=True)

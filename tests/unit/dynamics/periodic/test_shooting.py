@@ -25,7 +25,7 @@ from dynamics.periodic import (
     periodic_problem,
     spectrum,
 )
-from dynamics.periodic.period_grid import period_grid, refined
+from dynamics.periodic.period_map import period_grid, refined
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate
 

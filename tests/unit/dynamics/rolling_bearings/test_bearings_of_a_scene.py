@@ -25,7 +25,7 @@ from dynamics.assembly.bearing_rest import bearing_rows
 from dynamics.errors import InputError
 from dynamics.forces.law import OF_BEARINGS
 from dynamics.integrators import static_equilibrium
-from dynamics.integrators.energy import stored_energy
+from dynamics.integrators.march import stored_energy
 from dynamics.joints import Bushing, RollingBearing
 from dynamics.linearize import natural_modes
 from dynamics.motion.observation import local_state

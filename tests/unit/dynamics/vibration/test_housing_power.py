@@ -24,7 +24,7 @@ from dynamics.housing_modes import (
     SeatBore,
 )
 from dynamics.housing_modes.assembled_housing import assemble
-from dynamics.housing_modes.reduction import reduce_housing
+from dynamics.housing_modes.kept import reduce_housing
 from dynamics.vibration import housing_power
 
 STEEL = Material(210e9, 0.3, 7850.0)

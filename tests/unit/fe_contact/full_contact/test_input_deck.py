@@ -12,8 +12,8 @@ from fe_contact.full_contact.condensation.placed_mesh import placed_bodies
 from fe_contact.full_contact.condensation.resolution import Resolution
 from fe_contact.full_contact.condensation.sites import Range, contact_sites
 from fe_contact.full_contact.input_deck import Loading, input_deck, numbered_bodies
+from fe_contact.full_contact.loaded_position import read_printed
 from fe_contact.full_contact.placed_pair import PlacedPair, flank_sides, placed_pair
-from fe_contact.full_contact.result_file import read_printed
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 LOADING = Loading((GEAR.material, GEAR.material), GEAR.base_radius, 25e-3, 2660.0, 1e18)

@@ -9,7 +9,7 @@ import pytest
 from contact_blocks import DEPTH, WIDTH, block
 
 from fe_contact.full_contact.condensation.active_set import ContactSystem, solve_active_set
-from fe_contact.full_contact.condensation.condensed_body import CondensedBody, condensed_body
+from fe_contact.full_contact.condensation.contact_model import CondensedBody, condensed_body
 from fe_contact.full_contact.condensation.flank_curve import FlankCurve
 from fe_contact.full_contact.condensation.weak_gap import WeakGap, weak_gap
 from fe_contact.material import Material

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, RingGear
-from fe_contact.full_contact.condensation.condensed_body import freedoms
+from fe_contact.full_contact.condensation.contact_model import freedoms
 from fe_contact.full_contact.condensation.placed_mesh import PlacedBody, placed_bodies
 from fe_contact.full_contact.condensation.resolution import Resolution
 from fe_contact.full_contact.condensation.sites import Range, contact_sites, least_gap_left_out

@@ -11,7 +11,7 @@ import pytest
 from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, RingGear
 from fe_contact.errors import InputError, MeshError
 from fe_contact.full_contact import FullContactTable, Resolution, refusal, solve_full_contact
-from fe_contact.full_contact.condensation import solved_position
+from fe_contact.full_contact.condensation import solve as solved_position
 from fe_contact.geometry import GearBlank
 from fe_contact.material import Material
 

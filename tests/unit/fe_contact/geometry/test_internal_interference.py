@@ -12,8 +12,8 @@ import pytest
 from fe_contact.errors import InfeasibleGeometry
 from fe_contact.flank.involute import involute_function
 from fe_contact.geometry import Gear, internal_gear_pair
-from fe_contact.geometry.internal_gear_pair import InternalGearPair
-from fe_contact.geometry.internal_interference import (
+from fe_contact.geometry.internal_gear_pair import (
+    InternalGearPair,
     flank_angle,
     pinion_edge_path,
     ring_edge_path,

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fe_contact.errors import MeshError
-from fe_contact.mesh.transfinite_block import Block, fill_blocks
+from fe_contact.mesh.quad_sector import Block, fill_blocks
 
 U, V = np.linspace(0.0, 1.0, 6) ** 1.3, np.linspace(0.0, 1.0, 4)
 

@@ -18,8 +18,8 @@ from fe_contact.microgeometry import (
     SequentialLinearProgramming,
 )
 from fe_contact.microgeometry.design_problem import Assessed, DesignProblem
+from fe_contact.microgeometry.optimize import search_all, search_one
 from fe_contact.microgeometry.search import EXPLORED, search_from
-from fe_contact.microgeometry.search_starts import search_all, search_one
 from fe_contact.options import Run
 from fe_contact.types import FloatArray
 from fe_contact.workers import InProcess

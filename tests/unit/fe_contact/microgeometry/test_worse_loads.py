@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from fe_contact.microgeometry import Search, SearchRun
-from fe_contact.microgeometry.conclusion import conclusion
 from fe_contact.microgeometry.design_problem import Assessed
 from fe_contact.microgeometry.harris_map import HarrisMap, rising
 from fe_contact.microgeometry.optimization import Outcome
+from fe_contact.microgeometry.optimize import conclusion
 from fe_contact.microgeometry.search import Ended
 from fe_contact.types import Estimate
 

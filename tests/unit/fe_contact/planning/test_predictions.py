@@ -18,8 +18,7 @@ from fe_contact.errors import InputError
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning import cost_model, predict_run
 from fe_contact.planning.contact_cost import contact_bytes, contact_seconds, expected_positions
-from fe_contact.planning.error_model import ExpectedError
-from fe_contact.planning.mesh_choice import MeshOption, mesh_for_time, mesh_for_tolerance
+from fe_contact.planning.planned import ExpectedError, MeshOption, mesh_for_time, mesh_for_tolerance
 from model_studies.run_log import FILE as LOG
 
 LEVELS = ("draft", "standard", "fine")

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from sliced_face import sliced_database
 
-from fe_contact.ste.sliding import SMOOTHING, sliding
+from fe_contact.ste.extraction import SMOOTHING, sliding
 
 
 def test_a_single_pair_slides_by_its_distance_from_the_pitch_point():

@@ -16,8 +16,7 @@ from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, Outli
 from lineofaction.gearbox.studies.deflect.run import _pattern
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, panel_height
 from lineofaction.report.drawing.interactive import plotly_figure
-from lineofaction.report.studies.deflect_gear_names import gear_names
-from lineofaction.report.studies.deflect_gearbox_drawing import gearbox_drawing, view_direction
+from lineofaction.report.studies.deflect_gearbox_drawing import gear_names, gearbox_drawing, view_direction
 
 
 @pytest.fixture(scope="module")

@@ -13,7 +13,7 @@ from dynamics.results import RunResult
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.report.comparison.compare import compare
+from lineofaction.report.comparison.compare import compare, compare_runs
 from lineofaction.report.comparison.difference import Difference
 from lineofaction.report.comparison.measured import (
     PER_PITCH,
@@ -22,7 +22,6 @@ from lineofaction.report.comparison.measured import (
     aligned_to,
     read_measured,
 )
-from lineofaction.report.comparison.of_runs import compare_runs
 from lineofaction.report.comparison.of_tables import compare_tables
 from lineofaction.report.runs.run_view import RunView
 

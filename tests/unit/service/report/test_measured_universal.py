@@ -15,9 +15,8 @@ from dynamics.export import write_universal_file
 from dynamics.simulation import simulate
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.report.comparison.compare import compare
+from lineofaction.report.comparison.compare import compare, read_universal
 from lineofaction.report.comparison.measured import PER_PITCH, MeasuredCurve, MeasuredOrders, averaged
-from lineofaction.report.comparison.measured_universal import read_universal
 from lineofaction.report.runs.run_view import RunView
 
 with warnings.catch_warnings():

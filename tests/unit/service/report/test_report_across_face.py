@@ -7,8 +7,7 @@ import pytest
 
 from fe_contact.ste import SteDatabase
 from lineofaction.report.tables.deviation_curves import deviation_curves, has_deviations
-from lineofaction.report.tables.face_load import face_load, has_face_load
-from lineofaction.report.tables.static_part import static_results
+from lineofaction.report.tables.static_part import face_load, has_face_load, static_results
 
 SKEW = np.array([-20e-6, 0.0, 40e-6])
 CHANGE = np.array([0.0, 0.1e-3])

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from fe_contact.analysis import Frontier
-from fe_contact.analysis.studies.fidelity_result import FidelityResult
+from fe_contact.analysis.studies.frontier import FidelityResult
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.studies.frontier.run import RUN
 from lineofaction.report.document.as_json import page_json, stored_figures

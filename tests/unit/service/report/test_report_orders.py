@@ -13,15 +13,17 @@ from dynamics.results import RunResult
 from dynamics.simulation import simulate
 from lineofaction.report.drawing.figure import HeatMap, Panel
 from lineofaction.report.runs.campbell import campbell, frequency_blocks
-from lineofaction.report.runs.dynamic_factor import dynamic_factor_figure
-from lineofaction.report.runs.dynamic_part import dynamic_results
+from lineofaction.report.runs.dynamic_part import (
+    dynamic_factor_figure,
+    dynamic_results,
+    order_map,
+    planet_sharing,
+    sideband_tables,
+)
 from lineofaction.report.runs.level_map import DEPTH
 from lineofaction.report.runs.levels_over_speed import levels_over_speed, order_blocks
 from lineofaction.report.runs.octave_bands import octave_bands
-from lineofaction.report.runs.order_map import order_map
-from lineofaction.report.runs.planet_sharing import planet_sharing
 from lineofaction.report.runs.run_view import RunView, shown_signal
-from lineofaction.report.runs.sideband_table import sideband_tables
 
 MODES = {
     "frequency": [0.0, 300.0, 301.0, 900.0],

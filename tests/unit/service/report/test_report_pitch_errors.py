@@ -10,9 +10,8 @@ import pytest
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.answers import curve_json, metadata_json
 from lineofaction.report.tables.aligned import pitches_shown, position_axis, shown_rows, ste_shown
-from lineofaction.report.tables.face_load import face_load
 from lineofaction.report.tables.load_sharing import load_sharing, pair_shares
-from lineofaction.report.tables.static_part import static_results
+from lineofaction.report.tables.static_part import face_load, static_results
 from lineofaction.report.tables.ste_curves import ste_curves
 
 Tables = Callable[..., SteDatabase]

@@ -15,9 +15,8 @@ from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.study import Inputs
-from lineofaction.gearbox.studies.study.checks import check
-from lineofaction.gearbox.studies.study.design import design_of
 from lineofaction.gearbox.studies.study.paths import places_of
+from lineofaction.gearbox.studies.study.run import check, design_of
 from lineofaction.gearbox.studies.study.scenes import VariedScene
 
 CASE = (

@@ -22,7 +22,7 @@ from typer.testing import CliRunner, Result
 
 from dynamics.results import RunResult
 from dynamics.study import QUANTITIES, Study
-from dynamics.study.batch import run_batch
+from dynamics.study.run_study import run_batch
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.schemas import read_model
 from lineofaction.gearbox.schemas.scene import SceneInput

@@ -12,7 +12,7 @@ from analysis_requests import point_request
 
 from fe_contact import FlankModification, Gear, GearPair, analyze
 from fe_contact.analysis import check_request, flank_results, root_stress
-from fe_contact.analysis.checks.tip_edges import OUTSIDE, handovers
+from fe_contact.analysis.checks.assumptions import OUTSIDE, handovers
 from fe_contact.errors import SolveError
 from fe_contact.options import Run, TableAxes
 from fe_contact.types import Json

@@ -15,7 +15,7 @@ from analysis_requests import table_request
 
 from fe_contact import Gear, GearPair, PitchDeviation, SteDatabase, analyze, study_sensitivity
 from fe_contact.analysis.pairs import contact_lines, solved_operating_points
-from fe_contact.analysis.pairs.contact_block import ContactBlock
+from fe_contact.analysis.pairs.contact_lines import ContactBlock
 from fe_contact.geometry import FlankModification, Shaft
 from fe_contact.options import Run
 from fe_contact.workers import InProcess, RunCost

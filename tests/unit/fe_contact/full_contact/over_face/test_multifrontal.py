@@ -8,7 +8,7 @@ import scipy.sparse as sp
 
 from fe_contact.errors import SolveError
 from fe_contact.full_contact.condensation.dissection import dissected
-from fe_contact.full_contact.over_face.multifrontal import ColumnMatrix, schur_complement
+from fe_contact.full_contact.over_face.extruded_body import ColumnMatrix, schur_complement
 from fe_contact.types import FloatArray
 
 SIDE, KEPT = 9, 7

@@ -18,8 +18,8 @@ from fe_contact.full_contact import (
     solve_full_contact_over_face,
 )
 from fe_contact.full_contact.condensation.contact_model import softness
-from fe_contact.full_contact.over_face.face_model import WholeFace
 from fe_contact.full_contact.over_face.layers import graded_layers
+from fe_contact.full_contact.over_face.solve import WholeFace
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 PAIR = GearPair(GEAR, GEAR, center_distance=80e-3)
