@@ -134,7 +134,6 @@ def described(kind: type[Thing]) -> type[Thing]:
 
 
 def _unit(declaration: Declared) -> str:
-    """Write the unit of a field, or what it is in place of one."""
     if declaration.part is not None:
         return declaration.part.__name__
     return declaration.unit or ("name" if isinstance(declaration.bound, Choice) else "1")

@@ -144,5 +144,4 @@ def warn_of(findings: Sequence[Finding]) -> None:
 
 
 def _package(level: int) -> str:
-    """Return the package of a caller, counted as `warnings` counts from who asks."""
     return str(sys._getframe(level).f_globals.get("__name__", "")).partition(".")[0]

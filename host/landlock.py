@@ -76,7 +76,6 @@ def _handled(present: int) -> list[int]:
 
 
 def _allow(ruleset: int, path: Path, rights: int) -> None:
-    """Allow rights beneath a path that exists."""
     try:
         descriptor = os.open(path, os.O_PATH | os.O_CLOEXEC)  # type: ignore[attr-defined, unused-ignore]
     except OSError:
@@ -90,7 +89,6 @@ def _allow(ruleset: int, path: Path, rights: int) -> None:
 
 
 def _call(number: int, *arguments: object) -> int:
-    """Return what a system call returns."""
     return int(ctypes.CDLL(None, use_errno=True).syscall(number, *arguments))
 
 

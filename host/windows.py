@@ -46,7 +46,6 @@ def most_open_files() -> float:
 
 
 def _psutil() -> Any:
-    """Return psutil, a requirement on Windows alone."""
     import psutil  # type: ignore[import-untyped,unused-ignore] # noqa: PLC0415
 
     return psutil

@@ -86,7 +86,6 @@ class NetcdfContent:
         }
 
     def _packed(self) -> bytes:
-        """Return the bytes of the file."""
         import h5py  # noqa: PLC0415 - needed for files only
 
         with h5py.File.in_memory(track_order=True) as file:

@@ -48,7 +48,6 @@ def _key(of: Field[Any]) -> str:
 
 
 def _known(value: object) -> bool:
-    """Whether a value can be written."""
     return not isinstance(value, float) or math.isfinite(value)
 
 

@@ -42,7 +42,6 @@ def evict(folder: Path, most_bytes: int, in_use_s: float = IN_USE_S) -> list[Use
 
 
 def _files(folder: Path) -> Iterator[UsedFile]:
-    """Yield the files below a folder."""
     for path in folder.rglob("*"):
         with contextlib.suppress(FileNotFoundError):  # another process was quicker
             if path.is_file():

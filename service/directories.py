@@ -42,5 +42,4 @@ def keep_private() -> None:
 
 @lru_cache(maxsize=1)
 def _own_folder() -> TemporaryDirectory[str]:
-    """Make a folder that is removed with this process."""
     return TemporaryDirectory(prefix="lineofaction-", ignore_cleanup_errors=True)

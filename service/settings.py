@@ -263,7 +263,6 @@ class Settings(BaseSettings):
 
 
 def _entries(text: str) -> list[str]:
-    """Return the entries of a list."""
     return [entry.strip() for entry in text.split(",") if entry.strip()]
 
 

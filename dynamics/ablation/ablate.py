@@ -52,7 +52,7 @@ class RunFigures(Figures):
     bearing_orders: FloatArray = field(metadata=in_unit("n", "bearing", "order"))
 
 
-def run_figures(result: RunResult, seconds: float) -> RunFigures:
+def _run_figures(result: RunResult, seconds: float) -> RunFigures:
     """Return the figures of a run of so many CPU seconds.
 
     Raises
@@ -164,7 +164,7 @@ def ablate(scene: Scene, only: Sequence[str] | None = None, progress: Progress =
     scene = replace(scene, on_violation="report", tolerance=None)
     result, seconds = _timed(scene)
     influences = estimate_influences(scene, SETTLED)
-    nominal = run_figures(result, seconds)
+    nominal = _run_figures(result, seconds)
     parts = {name: [e for e in result.effect_ledger["entries"] if e["effect"] == name] for name in names}
 
     def toggle(name: str) -> EffectAblation:
@@ -185,7 +185,7 @@ def _toggled(
         raise LeftOut(parts[0]["reason"] if parts else "no part of the scene has it")
     on = any(part["on"] for part in able)
     choice = "off" if on else "on"
-    other = run_figures(*_timed(replace(scene, effects={**scene.effects, name: choice})))
+    other = _run_figures(*_timed(replace(scene, effects={**scene.effects, name: choice})))
     first = next((part for part in able if part["on"] == on), able[0])
     influence = float(np.max([part["worth"] for part in able]))
     states = (nominal, other) if on else (other, nominal)

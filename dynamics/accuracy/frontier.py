@@ -121,14 +121,14 @@ def frontier(
         results,
         left_out,
         knee_of_results(results),
-        chosen_fidelity(scene, [outcome.fidelity for outcome in outcomes]),
+        _chosen_fidelity(scene, [outcome.fidelity for outcome in outcomes]),
         blocks.orders,
         len(blocks.bounds),
         outcomes[-1].result.rms,
     )
 
 
-def chosen_fidelity(scene: Scene, fidelities: Sequence[Fidelity]) -> str | None:
+def _chosen_fidelity(scene: Scene, fidelities: Sequence[Fidelity]) -> str | None:
     """Return the fidelity of all effects and tables with the scene's tolerance, or the next finer one."""
     for fidelity in fidelities:
         tolerance = fidelity.tolerance if isinstance(fidelity, TimeIntegration) else None
@@ -165,7 +165,6 @@ def _compared(outcomes: Sequence[Outcome[Fidelity, Vibration]]) -> tuple[Fidelit
 
 
 def _errors(vibration: Vibration, reference: Vibration) -> Errors:
-    """Return the relative errors."""
     pairs = (
         (vibration.rms, reference.rms),
         (vibration.error_orders, reference.error_orders),

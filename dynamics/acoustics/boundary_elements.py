@@ -34,7 +34,7 @@ from model_studies.progress import Progress, by_cost, silent
 # Layer operators of the Helmholtz equation by NGSolve: the one module that loads it.
 
 
-def layer_operators(
+def _layer_operators(
     hull: Hull, wavenumber: float, done: Callable[[str], None] = lambda _layer: None
 ) -> tuple[ComplexArray, ComplexArray]:
     """Return the dense single layer (T, T) and double layer (T, N), tested with the panels, m^3 and m^2.
@@ -78,7 +78,6 @@ def _mesh(hull: Hull) -> Any:
 
 
 def _dense(matrix: Any) -> ComplexArray:
-    """Return the entries of a matrix of the library as an array."""
     rows, columns, values = (np.asarray(part) for part in matrix.COO())
     entries = np.zeros((matrix.height, matrix.width), dtype=complex)
     entries[rows, columns] = values
@@ -198,7 +197,7 @@ def _solve(
 ) -> tuple[ComplexArray, float]:
     """Return the pressure (N, M) for its normal derivative `slope` (T, M), and the residual."""
     parts = by_cost(lambda fraction: progress(STAGE, fraction), SHARES)
-    single, double = layer_operators(hull, wavenumber, lambda part: parts(part, 1.0))
+    single, double = _layer_operators(hull, wavenumber, lambda part: parts(part, 1.0))
     coupling = _coupling(hull, wavenumber)
     matrix = 0.5 * panels.mass.toarray() - np.asarray(panels.mean.T @ double)
     matrix = matrix + coupling * panels.hypersingular(single, wavenumber)

@@ -159,5 +159,4 @@ def _beyond(reached: FloatArray, deviations: Mapping[str, FloatArray]) -> FloatA
 
 
 def _entries(deviations: Mapping[str, FloatArray], index: int) -> dict[str, float]:
-    """Return the deviations of one level by parameter."""
     return {name: float(values[index]) for name, values in deviations.items()}

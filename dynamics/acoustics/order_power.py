@@ -161,7 +161,6 @@ def modal_resistance(
 
 
 def _hat(frequency: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
-    """Return the part of the way from `low` to `high`."""
     return np.asarray((frequency - low) / (high - low))
 
 

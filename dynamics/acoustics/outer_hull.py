@@ -247,7 +247,6 @@ def _outside(points: FloatArray, triangles: IntArray) -> BoolArray:
 
 
 def _parts(triangles: IntArray, chosen: BoolArray) -> list[IntArray]:
-    """Return the connected parts of chosen triangles."""
     members = np.flatnonzero(chosen)
     count, part = connected_components(_neighbors(triangles[members, :3]))
     return [members[part == number] for number in range(count)]

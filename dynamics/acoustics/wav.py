@@ -87,7 +87,6 @@ def read_wav(path: Path | str) -> Recording:
 
 
 def _chunk(name: bytes, content: bytes) -> bytes:
-    """Return a chunk of RIFF, padded to an even length."""
     return name + struct.pack("<I", len(content)) + content + b"\0" * (len(content) % 2)
 
 

@@ -61,7 +61,7 @@ class SparseMatrices(NamedTuple):
     modal: ModalFreedoms
 
 
-def sparse_rows(matrix: FloatArray, entries: FloatArray | None = None) -> SparseRows:
+def _sparse_rows(matrix: FloatArray, entries: FloatArray | None = None) -> SparseRows:
     """Lay out the entries of `matrix` (rows, columns), or all at which `entries` is not 0."""
     row, column = np.nonzero(matrix if entries is None else entries)
     first = np.searchsorted(row, np.arange(matrix.shape[0] + 1))
@@ -87,13 +87,13 @@ def sparse_matrices(
     either = (damping != 0.0) | (stiffness != 0.0)
     modal = modal_freedoms(mass, damping, stiffness, direction, np.concatenate([turn, *others]))
     return SparseMatrices(
-        damping=sparse_rows(damping, either),
-        stiffness=sparse_rows(stiffness, either),
-        direction=sparse_rows(direction),
-        turn=sparse_rows(turn),
-        bodies=sparse_rows(direction[:, : modal.first]),
-        mobility=sparse_rows(mobility),
-        coupling=sparse_rows(coupling.astype(float)),
+        damping=_sparse_rows(damping, either),
+        stiffness=_sparse_rows(stiffness, either),
+        direction=_sparse_rows(direction),
+        turn=_sparse_rows(turn),
+        bodies=_sparse_rows(direction[:, : modal.first]),
+        mobility=_sparse_rows(mobility),
+        coupling=_sparse_rows(coupling.astype(float)),
         modal=modal,
     )
 

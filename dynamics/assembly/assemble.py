@@ -49,7 +49,7 @@ LEAST_SEAT = 0.1
 """Least scale of an amplitude, of the largest."""
 
 
-def system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) -> SystemArrays:
+def _system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) -> SystemArrays:
     """Reduce every array over all freedoms to the free directions."""
     mechanism, freedoms, joined = model.mechanism, model.freedoms, model.connections
     scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
@@ -270,15 +270,13 @@ def assemble(scene: Scene) -> System:
 
 
 def _at_rest(scene: Scene) -> Scene:
-    """Return the scene in which bearings have their laws at rest alone, on all its housings."""
     off = {effect.name: "off" for effect in EFFECTS if not LAWS.isdisjoint(effect.adds)}
     return replace(scene, housings=resting_housings(scene), effects={**scene.effects, **off})
 
 
 def _assemble(model: Model) -> System:
-    """Assemble `model` as it is."""
     elements, laws = force_elements(model)
-    return _put_together(model, elements, system_arrays(model, elements, laws))
+    return _put_together(model, elements, _system_arrays(model, elements, laws))
 
 
 def _with_linear_bearings(system: System) -> Scene:

@@ -105,7 +105,6 @@ def _resisted(arrays: SystemArrays, matrix: FloatArray) -> FloatArray:
 
 
 def _on_bearings(arrays: SystemArrays, matrix: FloatArray, q: FloatArray) -> _Answer:
-    """Return what springs and bearings answer to `q`."""
     elements = arrays.elements
     local, force, stiffness = local_state(arrays, 0.0, q, np.zeros(q.size)), matrix @ q, matrix.copy()
     largest = float(np.max(np.abs(force / arrays.scale), initial=0.0))
@@ -166,7 +165,7 @@ def linear_scene(
             local.viscous[rows, :size],
             local.coordinate[rows],
         )
-        linear[name] = with_tangent(linear[name], at, *state)
+        linear[name] = _with_tangent(linear[name], at, *state)
     parts = [linear[part.name] for part in (*scene.ground_bearings, *scene.planet_bearings)]
     return replace(
         scene,
@@ -178,7 +177,7 @@ def linear_scene(
     )
 
 
-def with_tangent(
+def _with_tangent(
     bearing: Bushing | PlanetBearing,
     at: BearingElement,
     force: FloatArray,
@@ -199,5 +198,4 @@ def with_tangent(
 
 
 def _rows(matrix: FloatArray) -> Matrix:
-    """Return a matrix as tuples."""
     return tuple(tuple(float(value) for value in row) for row in matrix)

@@ -68,7 +68,7 @@ class SpatialFlank:
     slides: BoolArray
 
 
-def spatial_elements(model: Model, plain: Sequence[Element]) -> tuple[tuple[Element, ...], SpatialFlankLaws]:
+def _spatial_elements(model: Model, plain: Sequence[Element]) -> tuple[tuple[Element, ...], SpatialFlankLaws]:
     """Return the elements `plain` with those of such meshes replaced, each at its index, and their laws.
 
     Flanks slide along the kinematic motion but keep their deflection.
@@ -140,7 +140,7 @@ def _pack(model: Model, flanks: Sequence[SpatialFlank]) -> SpatialFlankLaws:
 # Rotating-frame elements: what effects add to rotors because these, or their frames, rotate.
 
 
-def rotating_frame_elements(model: Model) -> tuple[tuple[Element, ...], RotatingFrameLaws]:
+def _rotating_frame_elements(model: Model) -> tuple[tuple[Element, ...], RotatingFrameLaws]:
     """Return the elements of all rotors on which such effects are on, and their laws.
 
     A radius makes lengths of angles. Where nothing moves there is no element.
@@ -197,7 +197,7 @@ def _element(
 # The force elements of the flanks: driving flanks of all meshes, coast flanks where backlash is on.
 
 
-def flank_elements(
+def _flank_elements(
     scene: Scene,
     rotors: Bodies,
     senses: Sequence[int],
@@ -226,7 +226,7 @@ def flank_elements(
 # The force elements of torques that depend on speed.
 
 
-def speed_elements(
+def _speed_elements(
     scene: Scene, rotors: Bodies, kinematics: Kinematics
 ) -> tuple[tuple[Element, ...], SpeedTorqueLaws]:
     """Return one element per speed torque, and their laws.
@@ -253,10 +253,10 @@ def force_elements(model: Model) -> tuple[tuple[Element, ...], ElementLaws]:
     """Return the driving flanks of all meshes, everything else, bearings last, and their laws."""
     mechanism, flanks = model.mechanism, model.flanks
     scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
-    plain = flank_elements(scene, rotors, kinematics.mesh_sense, mechanism.lines, flanks)
-    in_space, spatial = spatial_elements(model, plain)
-    by_speed, speed = speed_elements(scene, rotors, kinematics)
-    in_frames, rotating_frame = rotating_frame_elements(model)
+    plain = _flank_elements(scene, rotors, kinematics.mesh_sense, mechanism.lines, flanks)
+    in_space, spatial = _spatial_elements(model, plain)
+    by_speed, speed = _speed_elements(scene, rotors, kinematics)
+    in_frames, rotating_frame = _rotating_frame_elements(model)
     phase = len(scene.meshes) + len(repeating_phases(scene, kinematics))
     passing = [part.name for part in scene.rolling_bearings if part.name in mechanism.passing]
     on_bearings, bearing_laws = bearing_elements(

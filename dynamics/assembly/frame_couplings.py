@@ -128,6 +128,5 @@ def frame_joint(
 
 
 def _frame_speed(scene: Scene, kinematics: Kinematics, shaft: int) -> tuple[Fraction, ...]:
-    """Return the speed of the frame of a shaft per unit of each law."""
     frame = scene.frame_index(shaft)
     return kinematics.ratio[frame] if frame is not None else (Fraction(0),) * len(kinematics.law_shaft)

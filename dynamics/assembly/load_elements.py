@@ -129,7 +129,6 @@ def _mean(scene: Scene, kinematics: Kinematics, force: AppliedForce) -> tuple[fl
 
 
 def _sense(kinematics: Kinematics, shaft: int, field: str, name: str) -> int:
-    """Return the sense in which a shaft turns."""
     sense = kinematics.sense[shaft]
     if sense == 0:
         raise InputError(field, name, "a shaft that turns", "Give a held shaft's force by time.")

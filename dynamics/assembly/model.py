@@ -53,7 +53,6 @@ def decide_model(scene: Scene, registry: tuple[Effect, ...]) -> Model:
 
 
 def _flanks(mechanism: Mechanism) -> Flanks:
-    """Resolve the driving flanks."""
     scene, kinematics = mechanism.scene, mechanism.kinematics
     return flank_laws(scene, kinematics, mechanism.nominal_force, mechanism.polar_inertia)
 
@@ -61,7 +60,6 @@ def _flanks(mechanism: Mechanism) -> Flanks:
 def _on_rotors(
     mechanism: Mechanism, flanks: Flanks, registry: Sequence[RotorEffect]
 ) -> tuple[Mechanism, EffectLedger]:
-    """Decide the effects of rotors, and add to the mechanism what they add."""
     ledger, choices = EffectLedger(), mechanism.scene.effects
     rotors = loaded_rotors(mechanism, flanks)
     names = [rotor.shaft.name for rotor in mechanism.rotors]

@@ -223,5 +223,4 @@ def _largest(shape: FloatArray) -> FloatArray:
 
 
 def _hertz(square: FloatArray) -> FloatArray:
-    """Return frequencies from squared circular ones."""
     return np.asarray(np.sqrt(square) / (2.0 * math.pi))

@@ -87,7 +87,7 @@ def families(
     )
 
 
-def fine_beam(
+def _fine_beam(
     sections: Sequence[BeamSection],
     discs: Sequence[Disc],
     points: Sequence[PointOfApplication],
@@ -237,7 +237,7 @@ def elastic_shaft(
     held : float or None
         Where along the shaft its rotation is imposed, m: one of the points of application.
     """
-    beam, error = fine_beam(sections, discs, points, highest, held)
+    beam, error = _fine_beam(sections, discs, points, highest, held)
     across, along, turn = families(beam, discs, held)
     nodes = [int(np.argmin(np.abs(beam.position - point.position))) for point in points]
     pairs = list(zip(nodes, points, strict=True))

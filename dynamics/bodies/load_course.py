@@ -118,5 +118,4 @@ def mean_factor(course: Course, time: float | FloatArray, speed: float | FloatAr
 
 
 def _multiple(order: float) -> Fraction:
-    """Return the nearest fraction of small denominator."""
     return Fraction(order).limit_denominator(LARGEST_DENOMINATOR)

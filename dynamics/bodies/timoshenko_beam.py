@@ -71,8 +71,7 @@ class _Along(NamedTuple):
     diametral: FloatArray
 
 
-def beam_elements(pieces: Sequence[Piece]) -> ElementMatrices:
-    """Return mass and stiffness of an element for each of `pieces`."""
+def _beam_elements(pieces: Sequence[Piece]) -> ElementMatrices:
     length = np.array([piece.length for piece in pieces])
     at, inside = _along(pieces, _SHARE), _along(pieces, np.outer(_SHARE, _SHARE))
     bending_mass, bending = _bending(length, at, inside)
@@ -224,7 +223,7 @@ def timoshenko_beam(
     size = PER_NODE * node.size
     mass, stiffness = np.zeros((size, size)), np.zeros((size, size))
     pieces = [_piece(sections, ends, left, right) for left, right in pairwise(node)]
-    for k, (m, s) in enumerate(zip(*_coupled(beam_elements(pieces)), strict=True)):
+    for k, (m, s) in enumerate(zip(*_coupled(_beam_elements(pieces)), strict=True)):
         rows = slice(PER_NODE * k, PER_NODE * k + 2 * PER_NODE)
         mass[rows, rows] += m
         stiffness[rows, rows] += s

@@ -26,7 +26,7 @@ FREE = 1e-12
 """Part of the force up to which an element does not press."""
 
 
-def clearance_of(system: System, strain: FloatArray, coordinate: FloatArray) -> FloatArray:
+def _clearance_of(system: System, strain: FloatArray, coordinate: FloatArray) -> FloatArray:
     """Return the part (b, 5) of the bearings' strains (b, 5) that meets no force.
 
     The largest fraction of an element's displacement, in its own directions and in the sense in which it is
@@ -81,7 +81,6 @@ def _free_fraction(arrays: SystemArrays, element: int, coordinate: FloatArray) -
 
 @compiled
 def _evaluate(system: SystemArrays, local: LocalState, element: int) -> None:
-    """Evaluate one element at its coordinates in `local`."""
     evaluate(system.elements, local, element)
 
 
@@ -128,7 +127,7 @@ def bearing_strain(system: System, motion: FloatArray, coordinate: FloatArray) -
     carried = np.array([carried_seat(rotors, name) @ motion for name in names]).reshape(-1, SEAT)
     total = strain + carried
     seat = carried + _condensed_seats(system, total)
-    clearance = clearance_of(system, total - seat, coordinate)
+    clearance = _clearance_of(system, total - seat, coordinate)
     return BearingStrain(total - seat - clearance, clearance, seat)
 
 

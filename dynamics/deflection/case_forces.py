@@ -44,7 +44,6 @@ def forces_under(forces: Sequence[AppliedForce], stated: Sequence[CaseForce]) ->
 
 
 def _stated(force: AppliedForce, own: CaseForce) -> AppliedForce:
-    """Return a force as a load case states it."""
     factor = 1.0 if own.factor is None else own.factor
     return replace(
         force,
@@ -54,6 +53,5 @@ def _stated(force: AppliedForce, own: CaseForce) -> AppliedForce:
 
 
 def _times(factor: float, vector: Vector) -> Vector:
-    """Return a vector times a factor."""
     x, y, z = vector
     return factor * x, factor * y, factor * z

@@ -117,8 +117,7 @@ class BearingLoad(Record):
         return float(self.force[2])
 
 
-def bearing_loads(system: System, rest: Rest, strain: BearingStrain) -> tuple[BearingLoad, ...]:
-    """Return the loads of all bearings in the rest positions, `strain` that of their mean."""
+def _bearing_loads(system: System, rest: Rest, strain: BearingStrain) -> tuple[BearingLoad, ...]:
     places, force = supports_by_name(system.rotors), rest.bearing_force
     speed = system.kinematics.float_ratio @ [drive.speed.extreme for drive in system.scene.drives]
     rows = {bearing.name: bearing for bearing in system.scene.rolling_bearings}
@@ -192,7 +191,7 @@ class ShaftLines(Record):
     motion: FloatArray = field(metadata=in_unit("m", "point", "freedom"))
 
 
-def shaft_lines(system: System, motion: FloatArray) -> ShaftLines:
+def _shaft_lines(system: System, motion: FloatArray) -> ShaftLines:
     """Return the lines at `motion` (N,): at the nodes of an elastic shaft, at what is on a rigid one."""
     shaft, position, moved = [], [], []
     for index, rotor in enumerate(system.rotors):
@@ -333,7 +332,6 @@ def deflect(
 
 
 def _deflected(loaded: Scene, case: LoadCase, positions: int) -> CaseDeflection:
-    """Return the deflection of a scene under the loads of one case."""
     system = assemble(loaded)
     rest = rest_over(system, cycle_times(system, positions))
     motion = rest.motion.mean(axis=0)
@@ -349,7 +347,7 @@ def _deflected(loaded: Scene, case: LoadCase, positions: int) -> CaseDeflection:
         rest.status.name.lower(),
         rest.residual,
         tuple(mesh_alignment(system, k, rest, strain) for k in range(len(loaded.meshes))),
-        bearing_loads(system, rest, strain),
-        shaft_lines(system, motion),
+        _bearing_loads(system, rest, strain),
+        _shaft_lines(system, motion),
         as_records(loaded.forces),
     )

@@ -33,7 +33,7 @@ SHAFT, BEARING, CLEARANCE, HOUSING, COUPLING, SET = range(len(CAUSES))
 TILT = slice(3, 5)
 
 
-def gear_tilt(system: System, gear: str, motion: FloatArray, strain: BearingStrain) -> FloatArray:
+def _gear_tilt(system: System, gear: str, motion: FloatArray, strain: BearingStrain) -> FloatArray:
     """Return tilt_x and tilt_y (rad) of a gear's section by cause, (causes, 2); their sum is the whole.
 
     The shaft's part is the tilt against the straight line through its bearing seats.
@@ -41,12 +41,12 @@ def gear_tilt(system: System, gear: str, motion: FloatArray, strain: BearingStra
     part = system.scene.gear(gear)
     index = system.scene.shaft_index(part.shaft)
     z = system.scene.shafts[index].origin[2] + part.position
-    tilts = axis_tilt(system, index, motion, strain)
+    tilts = _axis_tilt(system, index, motion, strain)
     tilts[SHAFT] += section_rows(system.rotors, index, z)[TILT] @ motion - tilts.sum(axis=0)
     return tilts
 
 
-def axis_tilt(system: System, index: int, motion: FloatArray, strain: BearingStrain) -> FloatArray:
+def _axis_tilt(system: System, index: int, motion: FloatArray, strain: BearingStrain) -> FloatArray:
     """Return the tilt of the line through the bearing seats of the rotor `index` by cause, (causes, 2).
 
     The displaced centers of two bearings make the line, of more of them the line of least squares, of a
@@ -56,7 +56,7 @@ def axis_tilt(system: System, index: int, motion: FloatArray, strain: BearingStr
     rotor, tilts = system.rotors[index], np.zeros((len(CAUSES), 2))
     carried = [part for part in rotor.supports if isinstance(part, PlanetBearing)]
     if carried and rotor.carrier is not None:
-        tilts += axis_tilt(system, rotor.carrier, motion, strain)
+        tilts += _axis_tilt(system, rotor.carrier, motion, strain)
     names = _radial(system, index)
     if not names:
         tilts[COUPLING] += motion[6 * index + 3 : 6 * index + 5]
@@ -65,11 +65,11 @@ def axis_tilt(system: System, index: int, motion: FloatArray, strain: BearingStr
     z = np.array([places[name][1].position for name in names])
     at = [system.supports.name.index(name) for name in names]
     for cause, moved in ((BEARING, strain.elastic), (CLEARANCE, strain.clearance), (HOUSING, strain.seat)):
-        tilts[cause] += line_tilt(z, moved[at])
+        tilts[cause] += _line_tilt(z, moved[at])
     return tilts
 
 
-def line_tilt(z: FloatArray, moved: FloatArray) -> FloatArray:
+def _line_tilt(z: FloatArray, moved: FloatArray) -> FloatArray:
     """Return tilt_x and tilt_y (rad) of the line through points at z (S,), m, moved by `moved` (S, 5).
 
     u_x = tilt_y z and u_y = -tilt_x z.
@@ -195,7 +195,7 @@ def _causes(system: System, index: int, motion: FloatArray, strain: BearingStrai
     scene, mesh = system.scene, system.scene.meshes[index]
     sense = system.kinematics.mesh_sense[index]
     per_tilt = misalignment_per_tilt(scene, index, system.lines[index], sense)[:2]
-    driver, driven = (gear_tilt(system, gear, motion, strain) for gear in (mesh.driver, mesh.driven))
+    driver, driven = (_gear_tilt(system, gear, motion, strain) for gear in (mesh.driver, mesh.driven))
     parts = (driver - driven) @ per_tilt
     parts[SET] += mesh.misalignment
     assert parts.size == len(CAUSES)

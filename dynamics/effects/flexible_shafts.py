@@ -66,7 +66,6 @@ class FlexibleShafts(RotorEffect):
 
 
 def _with_elastic(mechanism: Mechanism, elastic: Sequence[ElasticShaft | None]) -> Mechanism:
-    """Return the mechanism with its rotors' elastic coordinates."""
     pairs = zip(mechanism.rotors, elastic, strict=True)
     rotors = tuple(replace(rotor, elastic=part) for rotor, part in pairs)
     return replace(mechanism, rotors=replace(mechanism.rotors, rotors=rotors))
@@ -108,7 +107,6 @@ def _influence(
 
 
 def _meshes(mechanism: Mechanism, index: int) -> list[int]:
-    """Return the meshes of the shaft `index`."""
     scene, name = mechanism.scene, mechanism.scene.shafts[index].name
     pairs = [(scene.gear(mesh.driver).shaft, scene.gear(mesh.driven).shaft) for mesh in scene.meshes]
     return [mesh for mesh, pair in enumerate(pairs) if name in pair]

@@ -42,10 +42,10 @@ class Friction(MeshEffect):
         mesh = scene.meshes[flank.index]
         helix = scene.gear(mesh.driver).base_helix_angle
         coefficient = (mesh.friction or 0.0) / math.cos(helix)
-        return replace(terms.with_rows(SLIDING, sliding_gradients(flank)), friction=coefficient)
+        return replace(terms.with_rows(SLIDING, _sliding_gradients(flank)), friction=coefficient)
 
 
-def sliding_gradients(flank: FlankInSpace) -> FloatArray:
+def _sliding_gradients(flank: FlankInSpace) -> FloatArray:
     """Return the derivatives of sliding at the pitch point and of rolling on it, (2, N).
 
     A contact at y n from the pitch point slides at (w_1 - w_2) y along z x n, whichever flank it is on: the

@@ -56,7 +56,6 @@ class HousingModes(RotorEffect):
 
 
 def _housings_of(mechanism: Mechanism, index: int) -> list[Housing]:
-    """Return the housings with mass in which the shaft `index` has a bearing."""
     own = {part.name for part in mechanism.rotors[index].supports}
     massive = (part for part in mechanism.scene.housings if part.mass is not None)
     return [part for part in massive if not own.isdisjoint(part.bushings)]

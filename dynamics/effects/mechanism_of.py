@@ -32,5 +32,4 @@ def mechanism_of(scene: Scene, registry: tuple[Effect, ...] = EFFECTS) -> Mechan
 
 
 def _added(effects: Sequence[Effect]) -> frozenset[str]:
-    """Return what `effects` add."""
     return frozenset(part for effect in effects for part in effect.adds)

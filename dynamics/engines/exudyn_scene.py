@@ -304,14 +304,12 @@ def _check(system: System) -> float:
 
 
 def _constant_value(field: str, law: object) -> float:
-    """Return the value of a law that never changes."""
     if not isinstance(law, TimeLaw) or len(set(law.value)) != 1:
         raise InputError(field, law, "constant")
     return float(law.value[0])
 
 
 def _planar_mesh(system: System, sense: int) -> PlanarMesh:
-    """Return the mesh in the plane."""
     scene_mesh = system.scene.meshes[0]
     gears = [system.scene.gear(name) for name in (scene_mesh.driver, scene_mesh.driven)]
     return PlanarMesh(
@@ -325,7 +323,6 @@ def _planar_mesh(system: System, sense: int) -> PlanarMesh:
 
 
 def _constant(speed: float) -> Drive:
-    """Return the drive of that speed."""
     return lambda t: (speed * t, speed)
 
 

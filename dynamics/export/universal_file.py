@@ -87,14 +87,14 @@ class NodalFunction:
     values: FloatArray
 
 
-def units_dataset() -> str:
+def _units_dataset() -> str:
     """Return dataset 164: SI, absolute temperatures."""
     factors = "".join(f"{value:25.16E}" for value in (1.0, 1.0, 1.0)).replace("E", "D")
     offset = f"{273.15:25.16E}".replace("E", "D")
     return _dataset(164, [f"{1:10d}{'SI: Meter (newton)':<20}{2:10d}", factors, offset])
 
 
-def nodes_dataset(nodes: Iterable[tuple[int, FloatArray]]) -> str:
+def _nodes_dataset(nodes: Iterable[tuple[int, FloatArray]]) -> str:
     """Return dataset 2411: labels and positions (3,) in m, in the fixed frame."""
     records = []
     for label, origin in nodes:
@@ -103,7 +103,7 @@ def nodes_dataset(nodes: Iterable[tuple[int, FloatArray]]) -> str:
     return _dataset(2411, records)
 
 
-def function_dataset(function: NodalFunction) -> str:
+def _function_dataset(function: NodalFunction) -> str:
     """Return dataset 58 of one function."""
     lines = [line[:80] for line in (*function.lines, *["NONE"] * 5)][:5]
     entity = f"{function.entity[:10]:<10}"
@@ -123,7 +123,6 @@ def function_dataset(function: NodalFunction) -> str:
 
 
 def _axis(quantity: Quantity | None) -> str:
-    """One axis record."""
     code, length, force, label, unit = vars(quantity).values() if quantity else NO_AXIS
     return f"{code:10d}{length:5d}{force:5d}{0:5d} {label[:20]:<20} {unit[:20]:<20}"
 
@@ -137,7 +136,6 @@ def _numbers(values: FloatArray) -> list[str]:
 
 
 def _dataset(number: int, records: list[str]) -> str:
-    """Put records between delimiters."""
     return "\n".join([f"{-1:6d}", f"{number:6d}", *records, f"{-1:6d}"]) + "\n"
 
 
@@ -208,10 +206,10 @@ def write_universal_file(
     draft, count = Path(name), 0
     try:
         with os.fdopen(handle, "w", encoding="ascii", errors="replace") as file:
-            file.write(units_dataset())
-            file.write(nodes_dataset(_nodes(result)))
+            file.write(_units_dataset())
+            file.write(_nodes_dataset(_nodes(result)))
             for nodal in chain(_functions(part, function), _tachos(part, function)):
-                file.write(function_dataset(nodal))
+                file.write(_function_dataset(nodal))
                 count += 1
         mask = os.umask(0)
         os.umask(mask)
@@ -223,7 +221,6 @@ def write_universal_file(
 
 
 def _stretch(result: RunResult, start: float, end: float) -> RunResult:
-    """Cut a stretch of time out of a run."""
     window = result.window(start, end)
     return replace(result, **{name: getattr(result, name)[..., window] for name in over_time()})
 
@@ -267,7 +264,6 @@ def _tachos(result: RunResult, function: str) -> Iterator[NodalFunction]:
 
 
 def _origin(result: RunResult) -> str:
-    """Name what wrote the file, and the exact rate."""
     return f"lineofaction, {result.sample_rate:.17g} samples per second"
 
 

@@ -119,13 +119,11 @@ _seen: dict[type, AddressType] = {}
 
 @cache
 def _address_type(cls: Any, kinds: tuple[Any, ...], first: tuple[int, ...]) -> AddressType:
-    """Return the type of a tuple of class `cls`."""
     fields = zip(cls._fields, (_field_type(kind) for kind in kinds), first, strict=True)
     return AddressType(cls.__name__, tuple(fields))
 
 
 def _field_type(kind: Any) -> Any:
-    """Return the compiled type of a field."""
     if isinstance(kind, tuple):
         return types.Array(ITEMS[kind[0]], kind[1], "C")
     return kind if isinstance(kind, AddressType) else SCALARS[kind]

@@ -37,7 +37,6 @@ class FrameCouplingLaws(NamedTuple):
 
 @inner
 def _turned(row: int, i: int, c: float, s: float, values: FloatArray) -> float:
-    """Return component `i` of R times the values from `row` on."""
     if i % 2 == 0:
         return float(c * values[row + i] - s * values[row + i + 1])
     return float(s * values[row + i - 1] + c * values[row + i])
@@ -45,7 +44,6 @@ def _turned(row: int, i: int, c: float, s: float, values: FloatArray) -> float:
 
 @inner
 def _strain(row: int, n: int, i: int, c: float, s: float, coordinate: FloatArray) -> float:
-    """Return component `i` of d."""
     return float(coordinate[row + i]) - _turned(row + n, i, c, s, coordinate)
 
 

@@ -77,7 +77,6 @@ def check_table(field: str, table: MeshTable) -> None:
 
 @identity_cached
 def _check(table: MeshTable, field: str) -> None:
-    """Check a table, once."""
     if not isinstance(table, MeshTable):
         raise InputError(field, type(table).__name__, "a mesh-force table", "Use SteDatabase.force_table().")
     period = integer(f"{field}.period", table.period, 1, LARGEST_PERIOD)

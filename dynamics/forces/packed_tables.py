@@ -92,7 +92,6 @@ def _laid_out(table: MeshTable) -> tuple[FloatArray, IntArray, FloatArray, Float
 
 
 def _starts(parts: Sequence[FloatArray] | Sequence[IntArray]) -> list[int]:
-    """Return the begin of each part when they are joined."""
     return [0, *np.cumsum([len(part) for part in parts]).tolist()]
 
 

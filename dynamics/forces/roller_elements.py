@@ -94,7 +94,6 @@ def _values(bearing: RollerBearing, at: RowPlacement) -> tuple[float, ...]:
 def _middle(
     laws: RollerElements, entry: int, c: float, s: float, y: FloatArray, row: int
 ) -> tuple[float, float]:
-    """Return what `y` from `row` on presses the middle of the roller at `c`, `s` by, and turns it by."""
     turn = y[row + 4] * c - y[row + 3] * s
     across = (y[row] * c + y[row + 1] * s) * laws.cosine[entry]
     return across + y[row + 2] * laws.sine[entry] - laws.arm[entry] * turn, turn

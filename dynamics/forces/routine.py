@@ -65,12 +65,10 @@ class Routine:
 
     @cached_property
     def _hints(self) -> dict[str, Any]:
-        """Annotations."""
         return get_type_hints(self._function)
 
     @cached_property
     def _arguments(self) -> list[Any]:
-        """Annotations of the arguments."""
         return [self._hints[name] for name in inspect.signature(self._function).parameters]
 
     @property

@@ -363,7 +363,6 @@ def _in_proportion(
     to_m: int,
     to_a: int,
 ) -> None:
-    """Write the row `here` of a force that is `factor` times that of `row`, with its derivatives."""
     force[here] = factor.value * force[row]
     for k in range(rows):
         tangent[here, k] = factor.value * tangent[row, k]

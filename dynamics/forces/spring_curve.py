@@ -151,7 +151,6 @@ def _area(c: FloatArray, s: float) -> float:
 
 @inner
 def _piece(laws: SpringCurveLaws, entry: int, displacement: float) -> int:
-    """Return the piece that holds `displacement`."""
     piece = laws.first[entry]
     while piece + 1 < laws.first[entry + 1] and displacement >= laws.start[piece + 1]:
         piece += 1

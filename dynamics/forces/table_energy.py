@@ -48,7 +48,6 @@ def table_energy(
 
 @inner
 def _energy_below(table: PackedTables, row: int, u: float) -> tuple[float, float]:
-    """Return the energy of the level intervals below `row` and its derivative in u."""
     energy, slope = table.energy[row, ORDER], 0.0
     for power in range(ORDER - 1, -1, -1):
         slope = slope * u + energy

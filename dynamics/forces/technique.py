@@ -151,7 +151,6 @@ def _at_force(level: FloatArray, values: FloatArray, force: float) -> FloatArray
 
 
 def _weights(field: str, knots: FloatArray, value: float) -> FloatArray:
-    """Weights of `knots` for linear interpolation at `value`."""
     knots = np.atleast_1d(np.asarray(knots, dtype=float))
     if not knots[0] <= value <= knots[-1]:
         bound = between(float(knots[0]), float(knots[-1]), "m", note=", the table's")

@@ -237,7 +237,6 @@ def _check_faces(housing: MeshedHousing) -> None:
 
 
 def _rigid_seats(housing: MeshedHousing) -> list[RigidFace]:
-    """Return the rigid rings."""
     rigid = [seat for seat in housing.seats if seat.ring is Ring.RIGID]
     return [
         RigidFace(f"seats.{seat.name}", wall_nodes(housing.mesh, seat.bore), np.array(seat.bore.position))
@@ -246,7 +245,6 @@ def _rigid_seats(housing: MeshedHousing) -> list[RigidFace]:
 
 
 def _rigid_feet(housing: MeshedHousing) -> list[RigidFace]:
-    """Return the feet."""
     return [
         RigidFace(
             f"feet.{foot.name}",
@@ -259,7 +257,6 @@ def _rigid_feet(housing: MeshedHousing) -> list[RigidFace]:
 
 
 def _centroid(mesh: TetrahedralMesh, foot: Foot) -> FloatArray:
-    """Return the centroid of a foot's face."""
     area, point = over_surface(mesh.points, foot.face.triangles(mesh))
     weight = np.linalg.norm(area, axis=2)
     return np.asarray(np.einsum("tp,tpi->i", weight, point) / weight.sum())

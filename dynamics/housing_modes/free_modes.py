@@ -147,7 +147,6 @@ def _status(complete: bool, residual: float) -> ModeStatus:
 
 
 def _shift(housing: AssembledHousing) -> float:
-    """Return a small squared frequency that makes a loose housing's stiffness definite."""
     return SHIFT * float(np.max(housing.stiffness.diagonal() / housing.mass.diagonal()))
 
 
@@ -177,7 +176,6 @@ def basis_vectors(count: int) -> int:
 
 
 def _orthonormal(vectors: FloatArray, mass: sp.csr_array) -> FloatArray:
-    """Return vectors of the same span with unit modal masses."""
     return np.asarray(np.linalg.solve(np.linalg.cholesky(vectors.T @ (mass @ vectors)), vectors.T).T)
 
 

@@ -176,7 +176,6 @@ def _seat_rigid(housing: MeshedHousing, assembled: AssembledHousing) -> float:
 
 
 def _surface(housing: MeshedHousing, assembled: AssembledHousing, coordinates: Coordinates) -> SurfaceMotion:
-    """Return the motion of the surface."""
     nodes, triangles = np.unique(housing.mesh.surface, return_inverse=True)
     motion = _motion_of(nodes, assembled, coordinates)
     return SurfaceMotion(housing.mesh.points[nodes], triangles.reshape(-1, 6), motion)
@@ -185,7 +184,6 @@ def _surface(housing: MeshedHousing, assembled: AssembledHousing, coordinates: C
 def _points(
     housing: MeshedHousing, assembled: AssembledHousing, coordinates: Coordinates
 ) -> tuple[PointMotion, ...]:
-    """Return the motion of the points."""
     nodes = housing.nodes_of_points()
     motion = _motion_of(nodes, assembled, coordinates)
     position = housing.mesh.points[nodes]
@@ -262,7 +260,7 @@ def cost_of(housing: MeshedHousing) -> Cost:
     return reduction_cost(housing.mesh.freedoms, housing.modes, motions)
 
 
-def check_cost(housing: MeshedHousing, cost: Cost, limit: CostLimit) -> None:
+def _check_cost(housing: MeshedHousing, cost: Cost, limit: CostLimit) -> None:
     """Refuse a housing whose predicted cost on this host is above a limit.
 
     Raises
@@ -315,13 +313,11 @@ def meshed_step(
 
 
 def _read_mesh(file: Path) -> TetrahedralMesh:
-    """Return a kept mesh."""
     kept = read_record(file, {MESH_SCHEMA: KeptMesh})
     return TetrahedralMesh(kept.points, kept.tetrahedra)
 
 
 def _write_mesh(mesh: TetrahedralMesh, file: Path) -> None:
-    """Keep a mesh."""
     write_record(KeptMesh(mesh.points, mesh.tetrahedra), file, MESH_SCHEMA)
 
 
@@ -356,7 +352,7 @@ def reduced_housing(
     def reduced() -> ReducedHousing:
         reference = cost_of(housing)
         predicted = on_this_host(WORK, reference, cache)
-        check_cost(housing, predicted, limit or CostLimit())
+        _check_cost(housing, predicted, limit or CostLimit())
         expected(predicted)
         body, cost = measured(WORK, reference, cache, lambda: reduce_housing(housing))
         return replace(body, cost=cost)

@@ -38,7 +38,7 @@ def element_shape(mesh: TetrahedralMesh) -> FloatArray:
     return np.asarray(6.0 * np.sqrt(2.0) * volume / length**3)
 
 
-def check_quality(mesh: TetrahedralMesh) -> None:
+def _check_quality(mesh: TetrahedralMesh) -> None:
     """Refuse a mesh that gives wrong results.
 
     Raises
@@ -110,7 +110,7 @@ def read_mesh(path: str | Path, unit: str) -> TetrahedralMesh:
     Raises
     ------
     InputError
-        No such file, no mesh, other solid elements than tetrahedra, or a bad mesh (see `check_quality`).
+        No such file, no mesh, other solid elements than tetrahedra, or a bad mesh (see `_check_quality`).
     """
     scale = UNITS[one_of("unit", unit, list(UNITS))]
     return _checked(_content(Path(path)), scale)
@@ -145,7 +145,6 @@ def _content(file: Path) -> Content:
 
 
 def _checked(content: Content, scale: float) -> TetrahedralMesh:
-    """Return the mesh of a file."""
     points, tetrahedra = _quadratic(content)
     points = scale * np.asarray(points, dtype=float)
     if not np.all(np.isfinite(points)):
@@ -156,7 +155,7 @@ def _checked(content: Content, scale: float) -> TetrahedralMesh:
     groups = {name: number[nodes] for name, nodes in content.groups.items()}
     whole = {name: np.unique(nodes[nodes >= 0]) for name, nodes in groups.items()}
     mesh = TetrahedralMesh(points[used], tetrahedra.reshape(-1, 10), whole)
-    check_quality(mesh)
+    _check_quality(mesh)
     return mesh
 
 

@@ -50,7 +50,7 @@ def read(file: Path, title: str) -> tuple[dict[str, NDArray[Any]], list[str]]:
         if isinstance(error, MemoryError):
             raise
         raise Unreadable from None
-    groups = dict(named_parts(content))
+    groups = dict(_named_parts(content))
     arrays = {f"group_{number}": nodes for number, nodes in enumerate(groups.values())}
     return arrays | {"points": content.points, "tetrahedra": tetrahedra(content)}, list(groups)
 
@@ -72,8 +72,7 @@ def tetrahedra(content: Any) -> Nodes:
     return nodes
 
 
-def named_parts(content: Any) -> Iterator[tuple[str, Nodes]]:
-    """Yield the nodes of named parts of the surface."""
+def _named_parts(content: Any) -> Iterator[tuple[str, Nodes]]:
     yield from ((name, np.asarray(nodes, dtype=np.int64)) for name, nodes in content.point_sets.items())
     for name, members in content.cell_sets.items():
         parts = [
@@ -85,12 +84,11 @@ def named_parts(content: Any) -> Iterator[tuple[str, Nodes]]:
             yield name, np.concatenate(parts)
     names = {int(value[0]): name for name, value in content.field_data.items() if int(value[1]) == 2}
     for key in (PHYSICAL, PROPERTY):
-        for number, nodes in by_number(content, key).items():
+        for number, nodes in _by_number(content, key).items():
             yield names.get(number, str(number)), nodes
 
 
-def by_number(content: Any, key: str) -> dict[int, Nodes]:
-    """Return the nodes of triangles by a number that the file has for each."""
+def _by_number(content: Any, key: str) -> dict[int, Nodes]:
     numbered: dict[int, list[Nodes]] = {}
     for cells, numbers in zip(content.cells, content.cell_data.get(key, []), strict=False):
         if cells.type in SURFACE_CELLS:

@@ -123,7 +123,6 @@ def housing_of_matrices(
 
 
 def _read(file: Path, reader: Any) -> Any:
-    """Return what a reader makes of a file."""
     if not file.is_file():
         raise InputError(FIELD, file.name, "a file that exists")
     try:
@@ -162,7 +161,6 @@ def _dmig(file: Path) -> Mapping[str, FloatArray]:
 
 
 def _named(file: Path, matrices: Mapping[str, FloatArray]) -> ReducedMatrices:
-    """Return the matrices by their names."""
     small = {name.lower(): matrix for name, matrix in matrices.items()}
     chosen = {
         part: next((small[name] for name in names if name in small), None) for part, names in NAMES.items()
@@ -175,5 +173,4 @@ def _named(file: Path, matrices: Mapping[str, FloatArray]) -> ReducedMatrices:
 
 
 def _symmetric(matrix: FloatArray) -> FloatArray:
-    """Return the symmetric part."""
     return 0.5 * (matrix + matrix.T)

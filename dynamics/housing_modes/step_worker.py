@@ -27,7 +27,7 @@ WORST = 0.05
 """Quality below which a mesh is made again: Delaunay's method leaves slivers in the walls of castings."""
 
 
-def start_gmsh() -> Any:
+def _start_gmsh() -> Any:
     """Import and start gmsh: one thread, silent, no user files, signal handlers left as they were."""
     import gmsh  # noqa: PLC0415
 
@@ -60,7 +60,7 @@ def mesh(gmsh: Any, request: dict[str, Any]) -> dict[str, Any]:
     solids = gmsh.model.getEntities(3)
     if len(solids) != 1:
         return {"solids": len(solids)}
-    size = request["size"] or MILLIMETER * wall_thickness(gmsh, solids[0][1]) / request["wall_elements"]
+    size = request["size"] or MILLIMETER * _wall_thickness(gmsh, solids[0][1]) / request["wall_elements"]
     gmsh.option.setNumber("Mesh.MeshSizeMax", size / MILLIMETER)
     gmsh.model.addPhysicalGroup(3, [solids[0][1]])  # only its elements are written
     try:
@@ -74,19 +74,19 @@ def mesh(gmsh: Any, request: dict[str, Any]) -> dict[str, Any]:
 def generate(gmsh: Any) -> None:
     """Mesh the solid, a second time if elements are bad."""
     gmsh.model.mesh.generate(3)
-    if worst_element(gmsh) < WORST:
+    if _worst_element(gmsh) < WORST:
         gmsh.option.setNumber("Mesh.OptimizeNetgen", 1)  # twice the time, a sixth more elements: on demand
         gmsh.model.mesh.clear()
         gmsh.model.mesh.generate(3)
 
 
-def worst_element(gmsh: Any) -> float:
+def _worst_element(gmsh: Any) -> float:
     """Return the least quality of a tetrahedron: its inverse condition number, 1 if it is regular."""
     _, tags, _ = gmsh.model.mesh.getElements(3)
     return float(min(quality.min() for quality in map(gmsh.model.mesh.getElementQualities, tags)))
 
 
-def wall_thickness(gmsh: Any, solid: int) -> float:
+def _wall_thickness(gmsh: Any, solid: int) -> float:
     """Return 2 V/S of a solid, the mean thickness of a thin-walled one, mm."""
     volume = gmsh.model.occ.getMass(3, solid)
     faces = gmsh.model.getBoundary([(3, solid)], oriented=False)
@@ -101,7 +101,7 @@ def main() -> None:
     end_after(int(request["seconds"]) + 1)  # ends this process even when its parent is gone
     confine(Path.cwd(), Limits(memory_mb=None, cpu_seconds=int(request["seconds"]) + 1))
     try:
-        answer = mesh(start_gmsh(), request)
+        answer = mesh(_start_gmsh(), request)
     except MemoryError:
         answer = {"error": "MemoryError"}
     except Exception:  # noqa: BLE001 - bare Exception is what gmsh raises; its text may hold what is in the file

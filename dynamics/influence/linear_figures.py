@@ -91,8 +91,8 @@ def linear_figures(system: System, conditions: Sequence[OperatingCondition]) -> 
         low = np.minimum(low, np.min(rest + least, axis=1))
         high = np.maximum(high, np.max(rest + most, axis=1))
         mean += rest @ condition.weight
-        orders = np.maximum(orders, low_orders(harmonics.dynamic_transmission_error, harmonics))
-        amplitude = np.maximum(amplitude, low_orders(harmonics.bearing_force[:, :3], harmonics))
+        orders = np.maximum(orders, _low_orders(harmonics.dynamic_transmission_error, harmonics))
+        amplitude = np.maximum(amplitude, _low_orders(harmonics.bearing_force[:, :3], harmonics))
         loads = np.maximum(loads, _by_loads(at, condition, harmonics))
         pull = np.maximum(-np.min(harmonics.least_mesh_force, axis=1), 0.0)
         parted = np.maximum(parted, pull / np.maximum(harmonics.mean_stiffness, 1e-300))
@@ -132,7 +132,7 @@ def _by_loads(at: Excited, condition: OperatingCondition, response: HarmonicResp
     return np.asarray(np.sqrt(np.sum(largest**2, axis=(1, 2))))
 
 
-def low_orders(amplitude: ComplexArray, response: HarmonicResponse) -> FloatArray:
+def _low_orders(amplitude: ComplexArray, response: HarmonicResponse) -> FloatArray:
     """Return the largest amplitude (..., 5) over the speeds of mesh orders 1 to 5 of (..., S, H)."""
     largest = np.zeros((*amplitude.shape[:-2], COMPARED))
     for k in range(COMPARED):

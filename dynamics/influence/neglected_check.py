@@ -28,7 +28,6 @@ ROUNDING = 1e-8
 
 
 def _no_orders() -> FloatArray:
-    """Of estimates that older versions wrote."""
     return np.zeros((0, COMPARED))
 
 
@@ -130,18 +129,18 @@ def estimate_influences(
     except (InputError, SolveError):
         return {}
     influences = {}
-    for name, on in switchable(system).items():
+    for name, on in _switchable(system).items():
         try:
             other = assemble(replace(scene, effects={**scene.effects, name: "off" if on else "on"}))
             figures = linear_figures(other, conditions)
         except (InputError, SolveError):
             continue
         both = (whole, figures) if on else (figures, whole)
-        influences[name] = influence_of(system, on, *both)
+        influences[name] = _influence_of(system, on, *both)
     return influences
 
 
-def switchable(system: System) -> dict[str, bool]:
+def _switchable(system: System) -> dict[str, bool]:
     """Return the effects that a part of a system can have and would feel, and whether any has them on."""
     states: dict[str, bool] = {}
     for name in dict.fromkeys(entry.effect for entry in system.ledger.entries):
@@ -151,7 +150,7 @@ def switchable(system: System) -> dict[str, bool]:
     return states
 
 
-def influence_of(system: System, on: bool, whole: LinearFigures, without: LinearFigures) -> Influence:
+def _influence_of(system: System, on: bool, whole: LinearFigures, without: LinearFigures) -> Influence:
     """Return what a system loses without an effect: `whole` are the figures with it.
 
     Flanks that linear theory pulls apart by more than the backlash would go on that far without a coast

@@ -109,7 +109,6 @@ def _along(elements: Elements, work: Workspace, table: PackedTables, e: int, pat
 
 @inner
 def _intervals(table: PackedTables, entry: int) -> int:
-    """Return the number of position intervals."""
     return int(table.offset[entry, 2] // BUCKETS_PER_KNOT)
 
 

@@ -96,7 +96,6 @@ def _follow(work: Workspace, level: int, span: float) -> None:
 
 @inner
 def _is_linear_row(work: Workspace, row: int) -> bool:
-    """Return whether `row` is one of a linear element."""
     among = False
     for a in range(work.linear.shape[0]):
         among = among or work.linear[a, 0] == row
@@ -140,7 +139,6 @@ def hold_linear(system: SystemArrays, work: Workspace, level: int, span: float) 
 
 @inner_sums
 def _sum(weights: FloatArray, values: FloatArray) -> float:
-    """Return the sum of products."""
     total = 0.0
     for c in range(values.size):
         total += weights[c] * values[c]

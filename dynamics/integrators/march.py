@@ -87,7 +87,7 @@ class SampleFigures:
         }
 
 
-def sample_figures(system: System, ring: SampleRing, points: int, samples: int) -> SampleFigures:
+def _sample_figures(system: System, ring: SampleRing, points: int, samples: int) -> SampleFigures:
     """Read the figures off a ring after `points` of the inner grid and `samples` of the output."""
     rows, supports = ring.local.force.size, system.bearing_stiffness.shape[:2]
     largest, rms = ring.peaks.largest, np.sqrt(ring.peaks.square / max(points, 1))
@@ -110,7 +110,6 @@ def sample_figures(system: System, ring: SampleRing, points: int, samples: int) 
 
 
 def _by_part(names: list[str] | tuple[str, ...], peak: FloatArray, rms: FloatArray) -> Json:
-    """Peak and rms of each part."""
     return {
         name: {"peak": np.asarray(p).tolist(), "rms": np.asarray(r).tolist()}
         for name, p, r in zip(names, peak, rms, strict=False)
@@ -347,7 +346,7 @@ def ending(march: March, sink: StateSink, status: RunStatus, seconds: float) -> 
         work.counts,
         _step_range(work),
         seconds,
-        sample_figures(march.system, ring, int(work.counts[Count.POINT]), samples),
+        _sample_figures(march.system, ring, int(work.counts[Count.POINT]), samples),
     )
 
 

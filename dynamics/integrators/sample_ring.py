@@ -111,7 +111,7 @@ def make_sampler(system: System) -> Sampler:
     static, nominal = system.flanks.static, system.flanks.nominal_force
     rows, n = system.arrays.direction.shape
     bodies, outputs = system.arrays.sparse.modal.first, system.scene.outputs
-    column = channels_of(rows, n, bodies, nominal.size)[system.bearing_map.column]
+    column = _channels_of(rows, n, bodies, nominal.size)[system.bearing_map.column]
     bearings = system.bearing_map._replace(column=column)
     amplitudes = n - bodies if outputs.displacements or outputs.accelerations else 0
     filtered = rows + 2 * (bodies + amplitudes) + nominal.size
@@ -119,7 +119,7 @@ def make_sampler(system: System) -> Sampler:
     return Sampler(sampling.filter_taps(), sampling.factor, sampling.inner_rate, static, nominal, *rest)
 
 
-def channels_of(rows: int, freedoms: int, bodies: int, meshes: int) -> IntArray:
+def _channels_of(rows: int, freedoms: int, bodies: int, meshes: int) -> IntArray:
     """Return the channels of R local forces, q (n,) and v (n,); `bodies` of the freedoms are not modal."""
     forces, own = np.arange(rows), np.arange(bodies)
     modal = np.arange(rows + 2 * bodies + meshes, rows + 2 * freedoms + meshes)
@@ -130,7 +130,7 @@ def channels_of(rows: int, freedoms: int, bodies: int, meshes: int) -> IntArray:
 def make_ring(arrays: SystemArrays, sampler: Sampler) -> SampleRing:
     """Allocate."""
     n, rows, laws = arrays.mass.shape[0], arrays.direction.shape[0], arrays.inertial.shape[0]
-    channels = channel_count(arrays, sampler)
+    channels = _channel_count(arrays, sampler)
     signals = rows + sampler.bearings.constant.size
     return SampleRing(
         np.zeros((sampler.taps.size, channels)),
@@ -147,7 +147,6 @@ def make_ring(arrays: SystemArrays, sampler: Sampler) -> SampleRing:
     )
 
 
-def channel_count(arrays: SystemArrays, sampler: Sampler) -> int:
-    """Return the number of channels of a point."""
+def _channel_count(arrays: SystemArrays, sampler: Sampler) -> int:
     rows, n = arrays.direction.shape
     return int(rows + 2 * n + sampler.nominal_force.size)

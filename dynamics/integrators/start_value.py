@@ -63,8 +63,7 @@ class SavedState:
         return int(self.state["counts"][Count.OUTPUT])
 
 
-def saved_state(march: March) -> SavedState:
-    """Return a copy of the state of `march`."""
+def _saved_state(march: March) -> SavedState:
     work, ring = march.state
     state = {name: np.array(getattr(work, name)) for name in STATE}
     motion = {name: np.array(getattr(work.before, name)) for name in MOTION}
@@ -75,7 +74,6 @@ def saved_state(march: March) -> SavedState:
 
 
 def _figures(ring: SampleRing) -> tuple[FloatArray, ...]:
-    """Return what a ring adds up."""
     return (ring.peaks.last, ring.peaks.largest, ring.peaks.square, ring.removed, ring.folded)
 
 
@@ -92,7 +90,7 @@ class Trail:
         def remember() -> None:
             if len(self._saved) == MOST_SAVED:
                 del self._saved[::2]
-            self._saved.append(saved_state(march))
+            self._saved.append(_saved_state(march))
 
         return remember
 

@@ -51,7 +51,6 @@ class StateSpool:
 
     @property
     def _record(self) -> int:
-        """Columns of a record."""
         return sum(part.shape[1] for part in self._room)
 
     def room(self, first: int, count: int) -> States:
@@ -71,7 +70,6 @@ class StateSpool:
         return self._read(self.widths, first, stop)
 
     def _read(self, widths: Widths, first: int, stop: int) -> States:
-        """Read records of these widths."""
         parts = widths.states(0)
         columns = [part.shape[1] for part in parts]
         record = sum(columns)

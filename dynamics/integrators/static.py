@@ -109,7 +109,6 @@ def _accelerating(arrays: SystemArrays, values: FloatArray) -> FloatArray:
 
 
 def _balance(arrays: SystemArrays, time: float, q: FloatArray, external: FloatArray) -> ForceBalance:
-    """Return the balance at rest in `q`, with free trains accelerating."""
     balance = force_balance(arrays, time, q, np.zeros(q.size), external)
     force, stiffness = (_accelerating(arrays, values) for values in (balance.force, balance.stiffness))
     return replace(balance, force=force, stiffness=stiffness)

@@ -222,7 +222,6 @@ def make_workspace(
 
 
 def _per_freedom(n: int) -> dict[str, Any]:
-    """Allocate state and scratch of the freedoms."""
     names = ("v", "v_rest", "a", "q_new", "v_new", "a_new", "q_error", "v_error", "external", "unloaded")
     stages = {name: np.zeros((STAGES, n)) for name in ("stage_v", "stage_a")}
     return {name: np.zeros(n) for name in names} | stages
@@ -268,7 +267,6 @@ def _per_level(levels: int, rows: int, meshes: int, linear: int, entries: int) -
 
 
 def _linear_rows(elements: Elements) -> IntArray:
-    """Return ``Workspace.linear``."""
     rows: list[tuple[int, int, int]] = []
     for e in range(elements.law.size):
         if is_linear.py_func(elements, e):
@@ -279,5 +277,4 @@ def _linear_rows(elements: Elements) -> IntArray:
 
 
 def _step_end(meshes: int, rows: int, laws: int) -> StepEnd:
-    """Allocate one end of a step."""
     return StepEnd(*(np.zeros(size) for size in (meshes, meshes, rows, rows, laws)))

@@ -180,5 +180,4 @@ def read_housing_matrices(path: str | Path) -> dict[str, FloatArray]:
 
 
 def _rows(matrix: FloatArray) -> Matrix:
-    """Return an array's rows as tuples."""
     return tuple(tuple(float(value) for value in np.ravel(row)) for row in np.atleast_2d(matrix))

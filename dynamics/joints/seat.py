@@ -96,7 +96,6 @@ def seat_matrix(matrix: Matrix | None) -> FloatArray:
 
 
 def _isotropic(radial: float, axial: float) -> FloatArray:
-    """Return the matrix of springs along x, y, z."""
     return np.diag([radial, radial, axial, 0.0, 0.0])
 
 

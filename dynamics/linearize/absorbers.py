@@ -125,5 +125,4 @@ def _bodies(system: System) -> Iterator[Absorber]:
 
 
 def _damper(name: str, kind: str, rows: FloatArray, damping: FloatArray) -> Absorber:
-    """Return a part whose stiffness is symmetric."""
     return Absorber(name, kind, rows, np.zeros_like(damping), damping)

@@ -100,7 +100,6 @@ def common_period(system: System) -> CommonPeriod:
 
 
 def _proportion(field: str, value: float) -> Fraction:
-    """Return `value` as a fraction of small integers."""
     fraction = Fraction(value).limit_denominator(LARGEST_DENOMINATOR)
     if abs(float(fraction) - value) > AGREEMENT * abs(value):
         bound = (

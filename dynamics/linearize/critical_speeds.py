@@ -56,7 +56,7 @@ class SpeedMatrices:
         return np.asarray(eigenvalue * self.gyroscopic + self.swept + 2.0 * speed * self.centripetal)
 
 
-def speed_matrices(system: System, linear: LinearSystem, speed: float) -> SpeedMatrices:
+def _speed_matrices(system: System, linear: LinearSystem, speed: float) -> SpeedMatrices:
     """Return the matrices, their speed terms from those at `speed` (rad/s, not 0) and at twice that."""
     per_meter = 1.0 / linear.scale
     gyroscopic, once = terms_at(system, law_speeds(system, speed))
@@ -106,7 +106,7 @@ def critical_speeds(
     method finds eigenvector, damping and speed together.
     """
     turns = float(np.max(branches.speed))
-    matrices = speed_matrices(system, linear, turns) if turns > 0.0 else None
+    matrices = _speed_matrices(system, linear, turns) if turns > 0.0 else None
     per_speed = mesh_frequencies(system, np.ones(1))[:, 0]
     rows: list[tuple[float, ...]] = []
     for mesh, rate in enumerate(per_speed):

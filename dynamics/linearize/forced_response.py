@@ -261,7 +261,6 @@ def forced_response(
 
 
 def _power_fields(power: PowerBalance) -> Json:
-    """Return the fields of a forced response that keep its power balance."""
     return {
         "power_source": power.source,
         "power_input": power.input,
@@ -356,7 +355,6 @@ def _maxima(values: FloatArray) -> tuple[list[int], list[int]]:
 def _peak(
     sweep: ForcedResponse, quantity: str, name: str, at: tuple[int, int], amplitude: float, gain: FloatArray
 ) -> Peak:
-    """Describe one peak."""
     frequency = float(sweep.frequency[at])
     near = sweep.natural_frequency[np.argmin(np.abs(sweep.natural_frequency - frequency))]
     return Peak(

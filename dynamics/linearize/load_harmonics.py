@@ -107,7 +107,6 @@ class _Course:
         return waves
 
     def _multiple_of(self, position: int) -> Fraction:
-        """Return turns per common period of the phase at an index among the positions."""
         return self._multiple[position - len(self._system.scene.meshes)]
 
     def _shaft_speed(self, name: str) -> FloatArray:
@@ -124,7 +123,6 @@ def _circle(multiple: Fraction, angle: float) -> tuple[Waves, Waves]:
 
 
 def _sum(first: Waves, second: Waves) -> Waves:
-    """Return the sum of two series."""
     keys = dict.fromkeys((*first, *second))
     return {key: np.asarray(first.get(key, 0.0) + second.get(key, 0.0), dtype=complex) for key in keys}
 

@@ -25,7 +25,7 @@ from host import cpu_seconds
 # To which frequency the shafts of a modal analysis are resolved.
 
 
-def resolved_to(system: System, speed: FloatArray, orders: int, highest: float | None) -> float:
+def _resolved_to(system: System, speed: FloatArray, orders: int, highest: float | None) -> float:
     """Return the frequency to resolve, Hz: `highest`, else the highest of the orders at the highest speed.
 
     Raises
@@ -44,7 +44,7 @@ def resolved_to(system: System, speed: FloatArray, orders: int, highest: float |
     return orders * top
 
 
-def with_shafts_to(system: System, highest: float) -> System:
+def _with_shafts_to(system: System, highest: float) -> System:
     """Return `system`, its shafts that bend and twist resolved to `highest`, Hz; 0: as they are."""
     elastic = [rotor.elastic.highest for rotor in system.rotors if rotor.elastic is not None]
     if highest == 0.0 or all(frequency == highest for frequency in elastic):
@@ -201,8 +201,8 @@ def modal_analysis(
     require_freedoms(system)
     speeds = checked_speeds(np.asarray(speed, dtype=float), above_zero=False)
     began = cpu_seconds()
-    highest = resolved_to(system, speeds, orders, highest_frequency)
-    system = about_running(with_shafts_to(system, highest))
+    highest = _resolved_to(system, speeds, orders, highest_frequency)
+    system = about_running(_with_shafts_to(system, highest))
     linear = linearize(system, time)
     ledger = checked_ledger(system, linear.equilibrium.mesh_force)
     linear = averaged(system, linear, flank_cycles(system, linear, time), time)

@@ -62,7 +62,7 @@ class ModalElimination:
         own = _sum(omega[..., None], self.modal)
         receptance = (self.shape / own[..., None, :]) @ self.shape.T
         out, into, along = (_sum(w, part) for part in (self.outward, self.inward, self.along))
-        top = np.concatenate([_sum(w, self.bodies) + turning_terms(w, swept), out], axis=-1)
+        top = np.concatenate([_sum(w, self.bodies) + _turning_terms(w, swept), out], axis=-1)
         unit = np.eye(len(self.shape))
         bottom = np.concatenate([receptance @ into, unit + receptance @ along], axis=-1)
         answer = right[..., first:, :] / own[..., None]
@@ -82,11 +82,11 @@ class ModalElimination:
         rows = self.shape @ modes
         own = _sum(omega[..., None], self.modal)[..., None] * modes
         pushed = own + self.shape.T @ (into @ bodies + along @ rows)
-        own_bodies = _sum(w, self.bodies) + turning_terms(w, swept)
+        own_bodies = _sum(w, self.bodies) + _turning_terms(w, swept)
         return np.concatenate([own_bodies @ bodies + out @ rows, pushed], axis=-2)
 
 
-def turning_terms(w: FloatArray | ComplexArray, swept: Sequence[FloatArray]) -> ComplexArray | float:
+def _turning_terms(w: FloatArray | ComplexArray, swept: Sequence[FloatArray]) -> ComplexArray | float:
     """Return what gyroscopic and frame terms (S, n, n) add to the matrix at `w` (S, H, 1, 1), rad/s."""
     return np.asarray(1j * w * swept[0][:, None] + swept[1][:, None]) if swept else 0.0
 
@@ -294,19 +294,19 @@ def _excitation(
     force = np.zeros((cycles[-1].rows.stop if cycles else 0, harmonics.size), dtype=complex)
     for f, (mesh, cycle) in enumerate(zip(system.scene.meshes, cycles, strict=True)):
         grid = period.pitches[f], mesh.table.period, mesh.position_offset, harmonics
-        static[f] = harmonics_of(cycle.static_error, *grid)
+        static[f] = _harmonics_of(cycle.static_error, *grid)
         for p, row in enumerate(range(cycle.rows.start, cycle.rows.stop)):
             if kind == "static_error":
                 held = (
-                    harmonics_of(cycle.force[:, p], *grid) if p else 0.0
+                    _harmonics_of(cycle.force[:, p], *grid) if p else 0.0
                 )  # the first force is the same all along
                 force[row] = cycle.tangent[p, 0] * static[f] - held
             else:
-                force[row] = -harmonics_of(cycle.blocked[:, p], *grid)
+                force[row] = -_harmonics_of(cycle.blocked[:, p], *grid)
     return static, force
 
 
-def harmonics_of(
+def _harmonics_of(
     values: FloatArray, pitches: int, period: int, offset: float, harmonics: IntArray
 ) -> ComplexArray:
     """Amplitudes (H,) in multiples of the common period of a function of position, known over its table."""
@@ -387,7 +387,7 @@ def _dense(
     w, size = omega[:, :, None, None], parts.shape[1]
     by_part = np.concatenate([np.ones_like(w), -w * w, 1j * w], axis=-1)
     matrix = (by_part[..., 0, :] @ parts.reshape(3, -1)).reshape(*w.shape[:2], size, size)
-    matrix += turning_terms(w, swept)
+    matrix += _turning_terms(w, swept)
     solved = np.asarray(np.linalg.solve(matrix, right), dtype=complex)
     miss = np.abs(np.einsum("shij,shj->shi", matrix, solved[..., 0]) - right[..., 0])
     return solved, np.asarray(miss, dtype=float)

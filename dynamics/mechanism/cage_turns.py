@@ -28,7 +28,6 @@ def cage_turns(
 
 
 def _cage_turn(scene: Scene, kinematics: Kinematics, bearing: RollingBearing) -> tuple[Fraction, ...]:
-    """Return the revolutions of one cage."""
     inner = Fraction(bearing.row.cage_ratio).limit_denominator(LARGEST_DENOMINATOR)
     shaft = scene.shaft_index(bearing.shaft)
     frame = scene.frame_index(shaft)

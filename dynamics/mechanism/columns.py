@@ -38,7 +38,6 @@ def housing_columns(rotors: Bodies, index: int) -> slice:
 
 
 def _first_of_housings(rotors: Bodies) -> int:
-    """Return the number of freedoms of the rotors."""
     return 6 * len(rotors) + sum(rotor.elastic_count for rotor in rotors)
 
 

@@ -87,12 +87,10 @@ class TrainSpeeds:
 
     @staticmethod
     def _along(basis: list[Fraction], row: Row) -> Fraction:
-        """Return the value of one equation's left side."""
         return sum((factor * basis[shaft] for shaft, factor in row.items()), Fraction(0))
 
 
 def _less(vector: list[Fraction], factor: Fraction, other: list[Fraction]) -> list[Fraction]:
-    """Return vector - factor other."""
     return [x - factor * y for x, y in zip(vector, other, strict=True)]
 
 
@@ -191,7 +189,6 @@ def mesh_shafts(scene: Scene, index: int) -> tuple[int, int, int | None]:
 
 
 def _add_mesh(scene: Scene, speeds: TrainSpeeds, index: int) -> None:
-    """Add the equation of one mesh."""
     mesh = scene.meshes[index]
     driver, driven = scene.gear(mesh.driver), scene.gear(mesh.driven)
     a, b, carrier = mesh_shafts(scene, index)

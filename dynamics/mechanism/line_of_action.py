@@ -81,7 +81,6 @@ def line_of_action(scene: Scene, index: int, sense: int) -> LineOfAction:
 
 
 def _center(scene: Scene, gear: GearBody) -> FloatArray:
-    """Mid-face center of a gear in the fixed frame."""
     shaft = scene.shafts[scene.shaft_index(gear.shaft)]
     x, y, z = shaft.origin
     return np.array([x, y, z + gear.position])

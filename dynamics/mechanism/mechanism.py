@@ -38,7 +38,7 @@ from dynamics.types import BoolArray, FloatArray
 RADIAL, AXIAL, TILT = (0, 1), (2,), (3, 4)
 
 
-def with_couplings(scene: Scene, rotors: Sequence[Rotor]) -> tuple[Rotor, ...]:
+def _with_couplings(scene: Scene, rotors: Sequence[Rotor]) -> tuple[Rotor, ...]:
     """Return the rotors with what their couplings hold where no bearing does.
 
     A coupling's matrix holds a shaft in a direction if bearings (or further couplings) hold the shaft behind
@@ -166,7 +166,7 @@ def gather_mechanism(scene: Scene, additions: Additions) -> Mechanism:
     forces = nominal_forces(scene, kinematics, rotational_inertia(rotors), coasts=coasts)
     duties = bearing_duties(scene, rotors, bearing_loads(scene, rotors, forces))
     bearings, rotors = _with_bearings(scene, rotors, duties)
-    rotors = Bodies(with_couplings(scene, rotors))
+    rotors = Bodies(_with_couplings(scene, rotors))
     _check_rotation(rotors, kinematics)
     return Mechanism(scene, kinematics, rotors, lines, forces, duties, bearings, corrected, additions)
 

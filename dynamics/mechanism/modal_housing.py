@@ -79,6 +79,5 @@ def modal_housing(housing: Housing) -> ModalHousing:
 
 
 def _symmetric(matrix: object) -> FloatArray:
-    """Return the symmetric part."""
     whole = np.array(matrix, dtype=float)
     return np.asarray(0.5 * (whole + whole.T))

@@ -77,7 +77,6 @@ def with_planets(
 
 
 def _carrier(scene: Scene, shaft: str) -> Shaft:
-    """Return the carrier of the planet on `shaft`."""
     one_of("planet", shaft, [part.name for part in scene.shafts])
     carrier = scene.frame_index(scene.shaft_index(shaft))
     if carrier is None or on_axis(scene.shafts[scene.shaft_index(shaft)], scene.shafts[carrier]):
@@ -87,7 +86,6 @@ def _carrier(scene: Scene, shaft: str) -> Shaft:
 
 
 def _with_copies(parts: Sequence[Part], shaft: str, number: int) -> tuple[Part, ...]:
-    """Return `parts` and the copies of those on `shaft`, planet by planet."""
     copies = [_copy(part, index) for index in range(1, number) for part in parts if part.shaft == shaft]
     return tuple(parts) + tuple(copies)
 
@@ -114,7 +112,6 @@ def _on_pins(
 
 
 def _on_copies(laws: Sequence[BearingLaw], copied: Mapping[str, Sequence[str]]) -> tuple[BearingLaw, ...]:
-    """Return `laws` and those that the copies of their bearings have."""
     extended = list(laws)
     for law in laws:
         extended += [replace(law, bushing=name) for name in copied.get(law.bushing, ())]
@@ -165,12 +162,10 @@ def _check_fit(mine: Sequence[Turn], other: Sequence[Turn]) -> None:
 
 
 def _numbered(name: str, index: int) -> str:
-    """Return the name of a copy."""
     return name if index == 0 else f"{name} {index + 1}"
 
 
 def _copy(part: Part, index: int) -> Part:
-    """Return a part of another planet."""
     return replace(part, name=_numbered(part.name, index), shaft=_numbered(part.shaft, index))
 
 
@@ -192,7 +187,6 @@ def _copied_mesh(mesh: GearMesh, of_shaft: set[str], index: int, ahead: Turn) ->
 
 
 def _with_error(bearing: PlanetBearing, error: tuple[float, float] | None) -> PlanetBearing:
-    """Return a bearing on a pin with this error."""
     if error is None:
         return bearing
     return replace(bearing, radial_error=error[0], tangential_error=error[1])

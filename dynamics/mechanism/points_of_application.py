@@ -128,6 +128,5 @@ def _positions(scene: Scene, rotor: Rotor) -> list[tuple[str, float]]:
 
 
 def _shafts(scene: Scene, mesh: str) -> Sequence[str]:
-    """Return the shafts of a mesh's gears."""
     meshing = next(part for part in scene.meshes if part.name == mesh)
     return [scene.gear(name).shaft for name in (meshing.driver, meshing.driven)]

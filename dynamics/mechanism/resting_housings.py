@@ -46,5 +46,4 @@ def _resting(housing: Housing) -> Housing:
 
 
 def _rows(matrix: FloatArray) -> Matrix:
-    """Return a matrix as tuples."""
     return tuple(tuple(float(value) for value in row) for row in np.asarray(matrix))

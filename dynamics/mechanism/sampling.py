@@ -96,7 +96,7 @@ class Sampling:
         at = np.arange(self.taps) - self.taps // 2
         if self.stop_band == 0.0:
             return np.asarray(at == 0, dtype=float)
-        weight = np.sinc(at / self.factor) * np.kaiser(self.taps, kaiser_shape(DESIGN))
+        weight = np.sinc(at / self.factor) * np.kaiser(self.taps, _kaiser_shape(DESIGN))
         return np.asarray(weight / np.sum(weight))
 
     def points(self) -> Sampling:
@@ -108,7 +108,7 @@ class Sampling:
         return {**asdict(self), "edge": self.edge}
 
 
-def kaiser_shape(stop_band: float) -> float:
+def _kaiser_shape(stop_band: float) -> float:
     """Return the shape of Kaiser's window for a stop band above 50 dB (Kaiser 1974)."""
     return 0.1102 * (stop_band - 8.7)
 
@@ -215,6 +215,5 @@ def _taps(factor: int) -> int:
 
 
 def _rounded_up(rate: float) -> float:
-    """Return `rate` rounded up to a few digits."""
     unit = 10.0 ** (math.floor(math.log10(rate)) + 1 - DIGITS)
     return math.ceil(rate / unit * (1.0 - 1e-12)) * unit

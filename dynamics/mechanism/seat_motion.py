@@ -24,7 +24,7 @@ def seat_motion(rotors: Bodies, index: int, support: Bushing | PlanetBearing) ->
     z = rotor.shaft.origin[2] + support.position
     row = section_rows(rotors, index, z)[:SEAT]
     if isinstance(support, PlanetBearing):
-        carrier = carrier_of(rotor, support)
+        carrier = _carrier_of(rotor, support)
         pin = section(rotors[carrier], np.array([*rotor.center[:2], z]))[:SEAT]
         row[:, 6 * carrier : 6 * carrier + 6] -= pin
     return row - carried_seat(rotors, support.name)
@@ -45,7 +45,7 @@ def seat_axes(rotors: Sequence[Rotor], index: int, support: Bushing | PlanetBear
     """
     if not isinstance(support, PlanetBearing):
         return np.eye(SEAT)
-    apart = rotors[index].center - rotors[carrier_of(rotors[index], support)].center
+    apart = rotors[index].center - rotors[_carrier_of(rotors[index], support)].center
     c, s = apart[:2] / np.hypot(apart[0], apart[1])
     turn = np.eye(SEAT)
     turn[:2, :2] = turn[3:, 3:] = [[c, s], [-s, c]]
@@ -60,8 +60,7 @@ def seat_error(rotors: Sequence[Rotor], index: int, support: Bushing | PlanetBea
     return np.asarray(seat_axes(rotors, index, support).T @ own)
 
 
-def carrier_of(rotor: Rotor, bearing: PlanetBearing) -> int:
-    """Return the rotor that carries the bearing's pin."""
+def _carrier_of(rotor: Rotor, bearing: PlanetBearing) -> int:
     if rotor.carrier is None:
         raise ValueError(f"{bearing.name}: not on a planet")  # the scene's checks come first
     return rotor.carrier

@@ -112,7 +112,6 @@ def gather_seats(scene: Scene, rotors: Bodies, names: Sequence[str]) -> Seats:
 
 
 def _frame(rotors: Sequence[Rotor], index: int, part: Bushing | PlanetBearing) -> int | None:
-    """Return the carrier in whose rotating frame the ground is seen from a bearing."""
     return None if isinstance(part, PlanetBearing) else rotors[index].frame
 
 

@@ -66,7 +66,6 @@ def settle_unbalance(
 
 @inner
 def _add_row(system: SystemArrays, row: int, force: float, external: FloatArray) -> None:
-    """Add `force` along a local coordinate to the forces on the freedoms."""
     direction = system.sparse.direction
     for entry in range(direction.first[row], direction.first[row + 1]):
         external[direction.column[entry]] += direction.weight[entry] * force

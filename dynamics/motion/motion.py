@@ -73,7 +73,6 @@ def flank_phase(reference: Reference, mesh: int, motion: FloatArray) -> float:
 
 @inner
 def _whole_part(reference: Reference, mesh: int, law: int, whole: float) -> float:
-    """Return what `whole` revolutions of a law add to a mesh's position, less whole periods."""
     cycle = reference.denominator[mesh, law] * reference.period[mesh]
     remainder = (int(whole) % cycle) * reference.numerator[mesh, law] % cycle
     return float(remainder / reference.denominator[mesh, law])

@@ -112,7 +112,6 @@ def _observe(
     scratch: FloatArray,
     seen: Observed,
 ) -> None:
-    """Fill `seen`."""
     for k in range(time.size):
         write_motion(system.reference, time[k], moved[k], motion)
         set_phases(system.reference, motion, local.position, local)

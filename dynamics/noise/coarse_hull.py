@@ -40,7 +40,7 @@ def split_cells(hull: Hull, cell: IntArray, chosen: BoolArray) -> IntArray:
     return _settled(hull, np.union1d(nearest, farthest[chosen]), 1)
 
 
-def cell_positions(hull: Hull, cell: IntArray) -> FloatArray:
+def _cell_positions(hull: Hull, cell: IntArray) -> FloatArray:
     """Return a node for each cell, next to the planes of all its panels, m: edges and corners stay sharp."""
     count, owner = int(cell.max()) + 1, cell[hull.triangles].ravel()
     planes, offset = np.zeros((count, 3, 3)), np.zeros((count, 3))
@@ -57,7 +57,7 @@ def cell_positions(hull: Hull, cell: IntArray) -> FloatArray:
     return middle + np.where(near[:, None], step, 0.0)
 
 
-def nearest_nodes(hull: Hull, cell: IntArray, positions: FloatArray) -> IntArray:
+def _nearest_nodes(hull: Hull, cell: IntArray, positions: FloatArray) -> IntArray:
     """Return the node of each cell next to a position of each, (C,)."""
     return _first_nodes(cell, np.linalg.norm(hull.nodes - positions[cell], axis=1))
 
@@ -73,7 +73,7 @@ def _settled(hull: Hull, seeds: IntArray, steps: int) -> IntArray:
     edges, share = _edges(hull), _node_areas(hull)
     for _ in range(steps):
         cell = _next_seed(edges, seeds)
-        seeds = nearest_nodes(hull, cell, _means(cell, share, hull.nodes))
+        seeds = _nearest_nodes(hull, cell, _means(cell, share, hull.nodes))
     return np.unique(_next_seed(edges, seeds), return_inverse=True)[1]
 
 
@@ -114,7 +114,7 @@ ROUNDS = 4
 """A row of nodes on a straight edge needs several exchanges."""
 
 
-def without_thin(nodes: FloatArray, triangles: IntArray) -> IntArray:
+def _without_thin(nodes: FloatArray, triangles: IntArray) -> IntArray:
     """Return triangles (T, 3) in which thin ones share their longest edge no more.
 
     A thin triangle and the one beyond its longest edge form a quadrilateral, which gets its other diagonal.
@@ -190,7 +190,7 @@ def radiating_hull(outer: OuterHull, highest_frequency: float, sound_speed: floa
         return fine
     cell = surface_cells(outer.hull, count)
     for _ in range(ATTEMPTS):
-        coarse, owner = coarse_hull(outer, cell)
+        coarse, owner = _coarse_hull(outer, cell)
         poor = np.concatenate([coarse.hull.open_edges, coarse.hull.longer_edges(longest)])
         if not poor.size:
             return coarse
@@ -200,7 +200,7 @@ def radiating_hull(outer: OuterHull, highest_frequency: float, sound_speed: floa
     return fine
 
 
-def coarse_hull(outer: OuterHull, cell: IntArray) -> tuple[RadiatingHull, IntArray]:
+def _coarse_hull(outer: OuterHull, cell: IntArray) -> tuple[RadiatingHull, IntArray]:
     """Return a hull that has a node for each cell of the nodes, and the cell of each of its nodes.
 
     A cell, which lies along the surface so that thin walls stay apart, becomes the node nearest to the
@@ -212,9 +212,9 @@ def coarse_hull(outer: OuterHull, cell: IntArray) -> tuple[RadiatingHull, IntArr
     triangles = cell[hull.triangles]
     apart = np.all(triangles != np.roll(triangles, 1, axis=1), axis=1)
     used, corners = np.unique(triangles[apart], return_inverse=True)
-    nodes = cell_positions(hull, cell)
-    near = nearest_nodes(hull, cell, nodes)[used]
-    corners = without_thin(nodes[used], corners.reshape(-1, 3))
+    nodes = _cell_positions(hull, cell)
+    near = _nearest_nodes(hull, cell, nodes)[used]
+    corners = _without_thin(nodes[used], corners.reshape(-1, 3))
     coarse = Hull(nodes[used], corners[~flat_triangles(nodes[used], corners)])
     shapes = OuterHull(coarse, outer.motion[near], 0.0, 0.0).shapes
     lost = hull.areas @ outer.shapes - coarse.areas @ shapes

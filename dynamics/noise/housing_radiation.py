@@ -47,7 +47,7 @@ class Knots:
     error: float
 
 
-def knots_between(
+def _knots_between(
     low: float,
     high: float,
     resistance: Callable[[float], ComplexArray],
@@ -95,7 +95,7 @@ def octaves(low: float, high: float) -> list[tuple[float, float]]:
 
 
 def expected_knots(ka: float) -> float:
-    """Return how many frequencies `knots_between` about takes in an octave up to a wavenumber times radius.
+    """Return how many frequencies `_knots_between` about takes in an octave up to a wavenumber times radius.
 
     Counted on cast boxes with 40 and 100 coordinates, ka of 0.6 to 28: within a quarter. Few simple modes
     need half as many.
@@ -103,7 +103,7 @@ def expected_knots(ka: float) -> float:
     return FEWEST + KNOTS[0] * ka + KNOTS[1] * ka**2
 
 
-def constant_knots(low: float, high: float, matrix: ComplexArray) -> Knots:
+def _constant_knots(low: float, high: float, matrix: ComplexArray) -> Knots:
     """Return frequencies between which a matrix that does not change is interpolated within 0.01 dB."""
     frequency = np.geomspace(low, high, max(int(np.ceil(np.log(high / low) / np.log(CONSTANT))), 1) + 1)
     return Knots(frequency, np.broadcast_to(matrix, (frequency.size, *matrix.shape)), 4.0 * CONSTANT_ERROR)
@@ -144,7 +144,6 @@ def radiation_cost(octaves: Iterable[Octave], model: RadiationModel, air: Air) -
 
 
 def _cost(octave: Octave, model: RadiationModel, air: Air) -> Cost:
-    """Return the cost of the resistances of an octave."""
     panels, coordinates = octave.hull.shapes.shape
     per_hertz = 2.0 * math.pi / air.sound_speed * octave.hull.hull.outer_radius
     usual = USUAL * octave.last
@@ -256,7 +255,7 @@ def housing_radiation(
     parts, own = _resolved_parts(outer, model, air, ends, housing.modes[1], reached, expected, cache)
     if high > resolved:
         first = max(low, float(np.nextafter(resolved, np.inf)))
-        parts.append(constant_knots(first, high, cast(ComplexArray, air.impedance * outer.surface)))
+        parts.append(_constant_knots(first, high, cast(ComplexArray, air.impedance * outer.surface)))
     return _joined(parts, outer, air, model, own | {"resolved_frequency": resolved})
 
 
@@ -299,7 +298,7 @@ def _resolved_parts(
         parts = []
         for octave in parted:
             resistance_at = partial(_resistance, model, octave.hull, air)
-            parts.append(knots_between(octave.first, octave.last, resistance_at, modes))
+            parts.append(_knots_between(octave.first, octave.last, resistance_at, modes))
             reached(octave.last)
         return parts
 

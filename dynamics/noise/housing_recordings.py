@@ -229,7 +229,6 @@ def sound_limit(housing: ReducedHousing, air: Air | None = None) -> float:
 def _paths(
     housing: ReducedHousing, microphone: FloatArray, model: ElementalRadiators, air: Air | None
 ) -> SoundPaths:
-    """Return the paths from all panels of the outer hull."""
     outer = outer_hull(housing)
     return sound_paths(outer.hull, outer.shapes, microphone, model, air or Air())
 

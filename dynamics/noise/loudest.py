@@ -75,7 +75,6 @@ def loudest(sound: RadiatedSound, count: int = 15) -> tuple[LoudPoint, ...]:
 
 
 def _point(sound: RadiatedSound, s: int, h: int) -> LoudPoint:
-    """Describe a point."""
     power, hertz = float(sound.power[s, h]), float(sound.frequency[s, h])
     mode, bearing = int(np.argmax(sound.mode_share[:, s, h])), int(np.argmax(sound.bearing_share[:, s, h]))
     own = mode - sound.mode_housing.index(sound.mode_housing[mode])

@@ -60,11 +60,11 @@ def models_at(
     """
     air, hertz = Air(), float(response.frequency[at])
     hull = radiating_hull(outer_hull(housing), hertz, air.sound_speed)
-    velocity = hull.shapes @ coordinate_velocity(response, housing, bearings, at)
+    velocity = hull.shapes @ _coordinate_velocity(response, housing, bearings, at)
     return compare_models(hull.hull, hertz, velocity, air, models, progress, offered, cache)
 
 
-def coordinate_velocity(
+def _coordinate_velocity(
     response: BearingHarmonics,
     housing: ReducedHousing,
     bearings: Sequence[str] | None,
@@ -125,7 +125,7 @@ def panel_sound(
         As `radiated_sound` does.
     """
     air, outer = air or Air(), outer_hull(housing)
-    velocity = coordinate_velocity(response, housing, bearings, at)
+    velocity = _coordinate_velocity(response, housing, bearings, at)
     weights = radiation.weights(float(response.frequency[at]))
     panels = radiation.hull_at(outer, weights[0][0], air.sound_speed)
     if panels is None:

@@ -231,7 +231,6 @@ def _result(
     radiation: HousingRadiation,
     name: str,
 ) -> RadiatedSound:
-    """Put the result of one housing together."""
     about = {
         "model_name": radiation.model_name,
         "area": radiation.area,

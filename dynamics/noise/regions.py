@@ -59,7 +59,7 @@ def regions(sound: PanelSound, points: Sequence[PointMotion] = ()) -> tuple[Regi
     points : sequence of PointMotion
         Named points; each belongs to the region of the panel with the nearest center.
     """
-    number = region_numbers(sound.hull)
+    number = _region_numbers(sound.hull)
     own = {
         point.name: int(number[np.argmin(np.linalg.norm(sound.hull.centers - point.position, axis=1))])
         for point in points
@@ -71,7 +71,7 @@ def regions(sound: PanelSound, points: Sequence[PointMotion] = ()) -> tuple[Regi
     return tuple(sorted(made, key=lambda region: -region.power))
 
 
-def region_numbers(hull: Hull) -> IntArray:
+def _region_numbers(hull: Hull) -> IntArray:
     """Return the region of each panel, (T,)."""
     one, other, nodes = shared_edges(hull.triangles)
     length = np.linalg.norm(hull.nodes[nodes[:, 0]] - hull.nodes[nodes[:, 1]], axis=1)

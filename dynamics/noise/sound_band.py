@@ -49,7 +49,6 @@ class Guess:
 def _each_housing(
     model: SoundModel, change: Callable[[ReducedHousing, float], ReducedHousing], factor: float
 ) -> SoundModel:
-    """Return the model with all its housings changed."""
     for name, housing in model.housings.items():
         model = model.with_housing(name, change(housing, factor))
     return model
@@ -237,7 +236,7 @@ def sound_band(
     for name in ranges:
         one_of("ranges", name, GUESSES)
     ranges = {name: span for name, span in ranges.items() if _has(model, name)}
-    others = {"mode_number": with_half_of_modes(model), **(alternatives or {})}
+    others = {"mode_number": _with_half_of_modes(model), **(alternatives or {})}
     count, done = 1 + len(others) + len(ranges) * (steps - 1) + joint, [0]
 
     def powers(varied: SoundModel) -> tuple[FloatArray, OrderPower]:
@@ -251,7 +250,6 @@ def sound_band(
 
 
 def _has(model: SoundModel, name: str) -> bool:
-    """Whether a scene has what is guessed."""
     return GUESSES[name].varied(model, 2.0) is not model
 
 
@@ -333,7 +331,7 @@ def _levels(order: FloatArray, loudest: FloatArray, own: FloatArray, power: Orde
     return sound_power_level(np.concatenate([[total.max()], weighted.max(axis=1), there, total]))
 
 
-def with_half_of_modes(model: SoundModel) -> SoundModel:
+def _with_half_of_modes(model: SoundModel) -> SoundModel:
     """Return the model whose housings keep half of their modes, at least one."""
     for name, housing in model.housings.items():
         model = model.with_housing(name, with_modes(housing, max(len(housing.frequency) // 2, 1)))

@@ -58,7 +58,7 @@ class MeshHarmonics:
         return np.asarray(self.multiple[:, None] * turned[self.mesh])
 
 
-def counting_mesh(result: RunResult) -> int:
+def _counting_mesh(result: RunResult) -> int:
     """Return the first mesh that turns.
 
     Raises
@@ -72,8 +72,8 @@ def counting_mesh(result: RunResult) -> int:
     return int(np.argmax(turning))
 
 
-def mesh_harmonics(result: RunResult, highest: int) -> MeshHarmonics:
-    """Return the harmonics of all meshes that turn up to order `highest` of the `counting_mesh`.
+def _mesh_harmonics(result: RunResult, highest: int) -> MeshHarmonics:
+    """Return the harmonics of all meshes that turn up to order `highest` of the `_counting_mesh`.
 
     Raises
     ------
@@ -81,7 +81,7 @@ def mesh_harmonics(result: RunResult, highest: int) -> MeshHarmonics:
         No mesh turns.
     """
     mean = result.mesh_frequency.mean(axis=-1)
-    ratio = mean / mean[counting_mesh(result)]
+    ratio = mean / mean[_counting_mesh(result)]
     rows = [
         (multiple * ratio[mesh], mesh, multiple)
         for mesh in np.flatnonzero(ratio > 0.0)
@@ -227,8 +227,8 @@ def bearing_orders(result: RunResult, orders: int | None = None, pitches: int | 
         The run holds no bearing forces or not those orders, no mesh turns, windows are too short to tell
         orders apart, or the run is too short or too fast for any window.
     """
-    mesh, signals = counting_mesh(result), bearing_signals(result)
-    harmonics = mesh_harmonics(result, checked_order(result, "orders", orders, mesh))
+    mesh, signals = _counting_mesh(result), bearing_signals(result)
+    harmonics = _mesh_harmonics(result, checked_order(result, "orders", orders, mesh))
     pitches = _checked_pitches(harmonics, pitches)
     cycles = harmonics.cycles(result)
     own = cycles[_first_of(harmonics, mesh)]
@@ -280,7 +280,7 @@ def _row(
 ) -> _Row:
     """Fit the orders in one window."""
     hertz = result.mesh_frequency[:, window]
-    own = hertz[counting_mesh(result)]
+    own = hertz[_counting_mesh(result)]
     progress = cycles[0, window]
     # Hann by position: the window has its length in pitches
     weight = np.sin(np.pi * (progress - progress[0]) / (progress[-1] - progress[0])) ** 2

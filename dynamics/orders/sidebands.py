@@ -72,7 +72,7 @@ def sidebands(
     per_pitch = max(64, 8 * (orders + 1))
     grid, _, signal = resample_to_position(result, values, per_pitch, mesh)
     bands: list[Sideband] = []
-    for source, period in (periods or gear_periods(result, mesh)).items():
+    for source, period in (periods or _gear_periods(result, mesh)).items():
         turns = grid.size // (period * per_pitch)
         if turns < REVOLUTIONS:
             bound = f"at least {REVOLUTIONS * period} base pitches for sidebands of {source}"
@@ -87,7 +87,7 @@ def sidebands(
     return tuple(bands)
 
 
-def gear_periods(result: RunResult, mesh: int = 0) -> dict[str, int]:
+def _gear_periods(result: RunResult, mesh: int = 0) -> dict[str, int]:
     """Return the tooth numbers of both gears of a mesh by name: their revolutions in base pitches."""
     teeth = {gear["name"]: int(gear["teeth"]) for gear in result.case["gears"]}
     pair = result.case["meshes"][mesh]

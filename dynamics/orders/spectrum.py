@@ -115,7 +115,6 @@ def mesh_orders(
 
 
 def _window(name: str, samples: int) -> FloatArray:
-    """Periodic window of `samples` values."""
     one_of("window", name, WINDOWS)
     phase = 2.0 * np.pi * np.arange(samples) / samples
     terms = {"hann": (0.5, -0.5), "rectangular": (1.0,), "flat_top": FLAT_TOP}[name]

@@ -163,7 +163,6 @@ def frequency_waterfall(
 
 
 def _blocks(samples: int, length: int, overlap: float) -> list[slice]:
-    """Return the samples of every block."""
     if not 0.0 <= overlap < 1.0:
         raise InputError("overlap", overlap, Bound(0.0, 1.0, high_open=True))
     step = max(round(length * (1.0 - overlap)), 1)

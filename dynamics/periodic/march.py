@@ -95,6 +95,5 @@ def _whole_step(
 
 @inner
 def _keep(work: Workspace, step: int, path: FloatArray) -> None:
-    """Write the state into `path` at `step`."""
     for i in range(work.q.size):
         path[0, step, i], path[1, step, i], path[2, step, i] = work.q[i], work.v[i], work.a[i]

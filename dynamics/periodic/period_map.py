@@ -111,7 +111,7 @@ def _knots(system: System, period: CommonPeriod) -> FloatArray:
 # A system at one constant speed under constant loads: what has a period.
 
 
-def at_constant_speed(system: System, period: CommonPeriod, speed: float, time: float) -> SystemArrays:
+def _at_constant_speed(system: System, period: CommonPeriod, speed: float, time: float) -> SystemArrays:
     """Return the arrays with the drives at `speed` (rad/s, of the leading law) for ever.
 
     Loads by time keep the values that they have at `time`.
@@ -169,7 +169,7 @@ def stiffest(system: System) -> float:
     return float(np.max(np.diag(arrays.stiffness) / arrays.scale**2)) or 1.0
 
 
-def resonant_gain(system: System, modes: Modes) -> float:
+def _resonant_gain(system: System, modes: Modes) -> float:
     """Return by how much loads move a system without meshes more at a resonance than at rest; with them 1."""
     held = modes.damping_ratio[modes.frequency > 0.0]
     if system.scene.meshes or not held.size:
@@ -244,7 +244,7 @@ def periodic_problem(
     period, start = common_period(system), static_equilibrium(about_running(system), time)
     if not start.status.usable:
         raise SolveError(f"no static equilibrium: {start.status.name.lower()}, {start.residual:.3g} N left")
-    at_constant_speed(system, period, slowest, time)  # checks the speed
+    _at_constant_speed(system, period, slowest, time)  # checks the speed
     system = with_static_reference(system, start.displacement, time)
     modes = natural_modes(system, time)
     cycles = _highest(system, modes.frequency) * period.duration(slowest)
@@ -252,7 +252,7 @@ def periodic_problem(
     waves = max(pitches, load_cycles(system, period))
     rest = start.displacement * system.arrays.scale
     force, stiff = largest_force(system, start.mesh_force), stiffest(system)
-    size = max(float(np.max(np.abs(rest))), resonant_gain(system, modes) * force / stiff)
+    size = max(float(np.max(np.abs(rest))), _resonant_gain(system, modes) * force / stiff)
     if size <= 0.0:
         raise InputError(
             "loads", 0.0, "present, or a nominal force given", "They set the size of the motion."
@@ -300,7 +300,7 @@ class PeriodMap:
     def arrays(self) -> SystemArrays:
         """The system at this speed."""
         problem = self.problem
-        return at_constant_speed(problem.system, problem.period, self.speed, problem.time)
+        return _at_constant_speed(problem.system, problem.period, self.speed, problem.time)
 
     @cached_property
     def duration(self) -> float:

@@ -58,7 +58,7 @@ class MotionFigures:
     rms_bearing_force: FloatArray
 
 
-def figures_of(problem: PeriodicProblem, orbits: Sequence[Orbit]) -> MotionFigures:
+def _figures_of(problem: PeriodicProblem, orbits: Sequence[Orbit]) -> MotionFigures:
     """Return the figures of all `orbits`; NaN where no motion was found."""
     meshes, bearings = len(problem.system.scene.meshes), len(problem.system.supports.name)
     per_mesh = np.full((len(PER_MESH), len(orbits), meshes), np.nan)
@@ -283,7 +283,7 @@ def steady_states(
     seconds["branch"] = cpu_seconds() - began
     began = cpu_seconds()
     curves = (up, down, followed.orbits if followed is not None else ())
-    figures = figures_of(problem, [orbit for orbits in curves for orbit in orbits])
+    figures = _figures_of(problem, [orbit for orbits in curves for orbit in orbits])
     seconds["figures"] = cpu_seconds() - began
     return _study(problem, curves, followed, figures, seconds)
 

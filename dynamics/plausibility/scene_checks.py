@@ -272,7 +272,6 @@ def _shaft(path: str, shaft: Shaft) -> Iterator[Finding]:
 
 
 def _gear(path: str, gear: GearBody) -> Iterator[Finding]:
-    """Check a gear's inertia by its size."""
     yield from _gyration("gear_inertia", path, gear.inertia, gear.base_radius)
 
 

@@ -79,7 +79,6 @@ def resolved_case(system: System) -> Json:
 
 
 def _mesh(system: System, index: int) -> Json:
-    """One mesh as used."""
     mesh, line, flanks = system.scene.meshes[index], system.lines[index], system.flanks
     return {
         "name": mesh.name,
@@ -107,7 +106,6 @@ def _mesh(system: System, index: int) -> Json:
 
 
 def _coast(mesh: GearMesh) -> Json | None:
-    """Return the coast flank of a mesh as given."""
     if mesh.coast is None:
         return None
     return {

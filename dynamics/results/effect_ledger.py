@@ -33,13 +33,13 @@ def effect_ledger(
     influences : mapping of str to dict
         What leaving effects out in all their parts is estimated to change, with `words`.
     """
-    deflection = mean_deflection(system)
+    deflection = _mean_deflection(system)
     whole = system.ledger.to_json()
     entries = [_entry(entry, deflection, checks, automatic, influences) for entry in whole["entries"]]
     return {**whole, "entries": entries, "worths": dict(influences), "checks": list(checks)}
 
 
-def mean_deflection(system: System) -> float:
+def _mean_deflection(system: System) -> float:
     """Return the largest of the meshes' mean static transmission errors under the nominal force, m."""
     table = system.arrays.elements.laws.flank.table
     position, touched = np.arange(POSITIONS) / POSITIONS, np.empty(POSITIONS)

@@ -38,12 +38,12 @@ class ForceChecks:
         self._largest = np.maximum(self._largest, np.max(force, axis=1, initial=0.0))
 
     def found(self) -> list[Json]:
-        """Return the entries of `force_checks`; ``beyond`` is the share of samples above the highest load."""
+        """Return the entries; ``beyond`` is the share of samples above the highest load."""
         shares = self._beyond / max(self._samples, 1)
-        return force_checks(self._scene, self._largest, shares)
+        return _force_checks(self._scene, self._largest, shares)
 
 
-def force_checks(scene: Scene, largest: FloatArray, beyond: FloatArray | None = None) -> list[Json]:
+def _force_checks(scene: Scene, largest: FloatArray, beyond: FloatArray | None = None) -> list[Json]:
     """Return one entry per mesh whose table is read between its loads.
 
     `largest` (m,) are the largest transverse mesh forces, N, also in the entries.
@@ -65,7 +65,7 @@ def checked_ledger(system: System, largest: FloatArray) -> Json:
     SolveError
         If a force is beyond its table and the scene's ``on_violation`` does not let that pass.
     """
-    checks = force_checks(system.scene, largest)
+    checks = _force_checks(system.scene, largest)
     if wrong := ending(checks, system.scene.on_violation):
         raise SolveError(f"violated assumptions of the study: {wrong}")
     return {**system.ledger.to_json(), "checks": checks}

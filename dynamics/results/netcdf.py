@@ -89,7 +89,6 @@ def attributes(fields: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _from_dataset(dataset: xarray.Dataset) -> RunResult:
-    """Undo `to_dataset`."""
     fields: dict[str, Any] = {
         field: tuple(str(name) for name in dataset[dimension].values) if dimension in dataset.coords else ()
         for field, dimension in LABELS.items()

@@ -53,7 +53,6 @@ def planet_load_sharing(result: RunResult) -> tuple[PlanetLoadSharing, ...]:
 
 
 def _sharing(result: RunResult, central: str, rows: list[int]) -> PlanetLoadSharing:
-    """One central gear."""
     force = result.mesh_force[rows] - (result.coast_force[rows] if result.coast_force.size else 0.0)
     total, mean = force.sum(axis=0), force.mean(axis=1)
     ratio = np.full(force.shape, np.nan)

@@ -56,7 +56,6 @@ class AxisChecks:
         return [self._entry(axis, mesh) for axis, mesh in self._watched if self._samples]
 
     def _entry(self, axis: int, mesh: int) -> Json:
-        """One mesh and axis."""
         (low, high), (first, last) = self._range[axis, mesh], self._ends(axis, mesh)
         farthest = max(first - low, high - last, 0.0)
         span = f"{low:.4g} to {high:.4g} m of {first:.4g} to {last:.4g} m"

@@ -99,7 +99,6 @@ def _lamina_ratings(bearing: RollerBearing, rating: float) -> tuple[float, float
 
 
 def _of_rings(each: float, ratio: float, constants: tuple[float, float], slope: float) -> tuple[float, float]:
-    """Share the rating between the rings by the ratio of their own."""
     inner = each / constants[0] * (1.0 + ratio**slope) ** (1.0 / slope)
     outer = each / constants[1] * (1.0 + ratio**-slope) ** (1.0 / slope)
     return inner, outer

@@ -39,5 +39,4 @@ def tangent_bushing(
 
 
 def _rows(matrix: FloatArray) -> Matrix:
-    """Return a matrix as tuples."""
     return tuple(tuple(float(value) for value in row) for row in matrix)

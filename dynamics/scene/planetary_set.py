@@ -181,7 +181,6 @@ class PlanetarySet:
         )
 
     def _planet(self, index: int) -> Shaft:
-        """Return a planet's shaft, at its pin."""
         angle = 2.0 * math.pi * float(self.turns[index])
         x, y, z = self.place
         x, y = x + self.center_distance * math.cos(angle), y + self.center_distance * math.sin(angle)
@@ -215,7 +214,6 @@ class PlanetarySet:
         )
 
     def _bearing(self, index: int, stiffness: BearingStiffness) -> PlanetBearing:
-        """Return a planet's bearing."""
         radial, tangential = self.pin_errors[index] if self.pin_errors is not None else (0.0, 0.0)
         return PlanetBearing(
             self.called(f"planet {index + 1} bearing"),
@@ -264,7 +262,6 @@ class PlanetarySet:
 
 
 def _in_full(stiffness: Stiffness) -> BearingStiffness:
-    """Return the stiffness of a bearing given by a number."""
     return stiffness if isinstance(stiffness, BearingStiffness) else BearingStiffness(stiffness or 0.0)
 
 

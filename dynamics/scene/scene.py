@@ -40,7 +40,7 @@ from dynamics.settings import Integration, Outputs
 # Laws of bearings that are not linear: what they can act on.
 
 
-def check_bearing_laws(
+def _check_bearing_laws(
     bearings: Sequence[str],
     contacts: Sequence[RollingContact],
     curves: Sequence[SpringCurve],
@@ -78,7 +78,7 @@ def _check_preload(field: str, bearing: RollingBearing) -> None:
 # Check of the positions of gears and bearings on their shafts.
 
 
-def check_positions(shafts: Sequence[Shaft], kind: str, parts: Sequence[OnShaft]) -> None:
+def _check_positions(shafts: Sequence[Shaft], kind: str, parts: Sequence[OnShaft]) -> None:
     """Refuse a part of a `kind` ("gears", "bushings", "planet_bearings") that is off its shaft.
 
     Raises
@@ -192,7 +192,7 @@ class Scene:
         check_force_shafts(self.forces, shafts)
         placed = ("gears", "discs", "bushings", "rolling_bearings", "planet_bearings")
         for kind in (*placed, "forces", "unbalances"):
-            check_positions(self.shafts, kind, getattr(self, kind))
+            _check_positions(self.shafts, kind, getattr(self, kind))
         for index, mesh in enumerate(self.meshes):
             one_of(f"meshes[{index}].driver", mesh.driver, gears)
             one_of(f"meshes[{index}].driven", mesh.driven, gears)
@@ -212,7 +212,7 @@ class Scene:
             frozenset(law.bushing for law in self.bearing_laws),
         )
         rotating = {shaft.name for shaft in self.shafts if shaft.frame is not None}
-        check_bearing_laws(
+        _check_bearing_laws(
             [bearing.name for bearing in (*self.bushings, *self.planet_bearings)],
             self.rolling_contacts,
             self.spring_curves,
@@ -283,5 +283,4 @@ def check_samples(duration: float, rate: float) -> None:
 
 
 def _names(parts: Iterable[_Named]) -> list[str]:
-    """Names of `parts`, in order."""
     return [part.name for part in parts]

@@ -49,7 +49,7 @@ WHIRL_SPEEDS = 33
 LEAST_SHARE = 0.05  # of a part in the kinetic energy of a mode
 
 
-def modes_of_run(system: System) -> Json:
+def _modes_of_run(system: System) -> Json:
     """Return the `modes` of `RunResult`; nothing where there is no equilibrium."""
     try:
         linear = linearize(system)
@@ -104,7 +104,7 @@ def _moves(freedom: Sequence[str], shares: FloatArray) -> Json:
 ROWS = (Law.BALLS, Law.ROLLERS)
 
 
-def bearings_at_rest(system: System) -> Json:
+def _bearings_at_rest(system: System) -> Json:
     """Return ``{"rolling_bearings": {name: ...}}`` in the equilibrium under the loads at t = 0.
 
     Of each: ``displacement`` of the inner ring against the outer (m, rad), ``force`` of the shaft on the
@@ -131,7 +131,6 @@ def bearings_at_rest(system: System) -> Json:
 def _carried(
     elements: Elements, local: LocalState, e: int, at: BearingElement, bearing: RollingBearing
 ) -> Json:
-    """Return what the bearing of element `e` carries."""
     own, law, turned = slice(elements.first[e], elements.first[e + 1]), row_law(bearing), elements.mesh[e]
     moved = local.coordinate[own] / np.diag(at.own)
     moved[2] += law.shift
@@ -169,7 +168,7 @@ def documents(
     automatic = {**decided.automatic, **before.reasons}
     began = cpu_seconds()
     influences = {
-        name: influence.to_json() for name, influence in known_influences(decided, system, end).items()
+        name: influence.to_json() for name, influence in _known_influences(decided, system, end).items()
     }
     seconds = {**seconds, "worth_estimates": cpu_seconds() - began + decided.seconds}
     audit = None
@@ -189,15 +188,15 @@ def documents(
         }
         | _method(choice, end)
         | before.to_json()
-        | bearings_at_rest(system)
+        | _bearings_at_rest(system)
         | system.corrections,
         "case": resolved_case(system),
         "warnings": [finding.to_json() for finding in scene_findings(decided.scene)],
-        "modes": modes_of_run(system),
+        "modes": _modes_of_run(system),
     }
 
 
-def known_influences(decided: Decided, system: System, end: Ending) -> Mapping[str, Influence]:
+def _known_influences(decided: Decided, system: System, end: Ending) -> Mapping[str, Influence]:
     """Return the influence of effects: as decided by, else estimated where the run is long enough."""
     scene = decided.scene
     work = int(end.count[Count.ACCEPTED]) * len(system.freedoms.name)

@@ -65,7 +65,6 @@ class Leg:
             self.spool.begin()
 
     def _resume(self, path: Path, arrays: dict[str, Any], facts: dict[str, Any]) -> None:
-        """Resume from the checkpoint."""
         if str(facts.get("mark")) != self._mark:
             raise ResultError(f"{path}: of another scene or version. Start a new run.")
         restore(self.march.state, arrays, path)

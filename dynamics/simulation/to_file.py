@@ -218,7 +218,6 @@ def _write(
 def _series(
     system: System, leg: Leg, samples: int
 ) -> Iterator[tuple[dict[str, Any], dict[str, Any], States]]:
-    """Yield the series of all blocks as stored and unfiltered, and the states that they are of."""
     for first, stop in blocks(samples):
         states = leg.spool.states(first, stop)
         yield *series_of(system, np.arange(first, stop) / system.sampling.rate, states), states

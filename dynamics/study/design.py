@@ -177,7 +177,6 @@ class Design:
 
     @property
     def _sampled(self) -> list[int]:
-        """Columns of the sampled factors."""
         return [k for k, f in enumerate(self.factors.values()) if isinstance(f, Normal | Uniform)]
 
     def _sample(self) -> FloatArray:

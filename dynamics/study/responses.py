@@ -219,7 +219,6 @@ def _dte_order(window: Window, row: int, order: int) -> Value:
 
 
 def _dte_rms(window: Window, row: int, _order: int) -> Value:
-    """Root mean square about the mean."""
     return Value(float(np.std(window.transmission_error(row))), window.error("rms"))
 
 
@@ -229,7 +228,6 @@ def _dte_peak_to_peak(window: Window, row: int, _order: int) -> Value:
 
 
 def _peak_mesh_force(window: Window, row: int, _order: int) -> Value:
-    """Largest unfiltered force of the driving flank."""
     return Value(float(np.max(window.run.largest_mesh_force[row, window.part])))
 
 

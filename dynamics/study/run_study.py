@@ -141,7 +141,7 @@ def _run_point(task: StudyTask, values: tuple[float, ...]) -> PointResult:
     """Run one point; what fails is a marked point with its reason."""
     began, integration, none = clock.thread_time(), NAN, [NAN] * len(task.responses)
     try:
-        run = run_scene(as_studied(task.scene(values), task.receipt))
+        run = run_scene(_as_studied(task.scene(values), task.receipt))
         integration = float(run.receipt["seconds"]["integration"])
         figures, errors = responses_of(run, task.responses, task.start)
         reason = ""
@@ -152,7 +152,7 @@ def _run_point(task: StudyTask, values: tuple[float, ...]) -> PointResult:
     return PointResult(figures, errors, reason, [clock.thread_time() - began, integration])
 
 
-def as_studied(scene: Scene, receipt: str) -> Scene:
+def _as_studied(scene: Scene, receipt: str) -> Scene:
     """Return the scene of a point with what a study stores of it: the motion is the same to the last bit."""
     outputs = replace(
         scene.outputs, receipt=receipt, energy_audit=False, displacements=False, accelerations=False

@@ -97,7 +97,6 @@ def kept_size(directory: Path | None, key: str) -> int:
 
 
 def _file(directory: Path, key: str) -> Path:
-    """Return the file of a key."""
     return directory / f"compliance-{key}.npz"
 
 

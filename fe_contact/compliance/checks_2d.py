@@ -91,7 +91,7 @@ def field_under(ring: Ring, tooth_index: int, forces: FloatArray) -> Field:
     return Field(u, load, internal)
 
 
-def stiffness_alone(ring: Ring) -> FloatArray:
+def _stiffness_alone(ring: Ring) -> FloatArray:
     """Return the stiffness (N,) in Pa of each node with all others held, along its stiffer axis."""
     mesh = ring.mesh
     stiffness, own = np.zeros(len(mesh.points)), _larger(ring.sector.matrix)
@@ -142,7 +142,7 @@ def ring_checks(ring: Ring, tooth_index: int, load: FlankLoad, matrix: FloatArra
     moment = float(np.sum(x * reaction[:, 1] - y * reaction[:, 0]))
     works = [float(np.sum(field.displacement * forces)) for forces in (field.internal, field.load)]
     works.append(load.work(matrix))
-    stiffness = np.repeat(stiffness_alone(ring), 2)
+    stiffness = np.repeat(_stiffness_alone(ring), 2)
     left = left_by_rounding(stiffness, field.displacement.ravel(), field.load, works[0])
     return ComplianceChecks(
         residual=float(np.linalg.norm(out_of_balance) / np.linalg.norm(field.load)),

@@ -107,7 +107,7 @@ def gear_checks(gear: CondensedGear, loads: FloatArray, lever: float, bore_radiu
     works = [inside + sum(moved), float(load[:, 0] @ values[: len(load), 0])]
     works.append(float(load[:, 0] @ gear.ring.blocks[0] @ load[:, 0]))
     moment = bore_moment(gear, loads, bore_radius)
-    left = left_by_rounding(stiffness_alone(gear.sector, gear.stiffness), field, load, works[0])
+    left = left_by_rounding(_stiffness_alone(gear.sector, gear.stiffness), field, load, works[0])
     return ComplianceChecks(
         residual=residual(gear, forces, load[:, 0]),
         reciprocity=reciprocity(gear, loads),
@@ -119,7 +119,7 @@ def gear_checks(gear: CondensedGear, loads: FloatArray, lever: float, bore_radiu
     )
 
 
-def stiffness_alone(sector: SweptSector, stiffness: ElementStiffness) -> FloatArray:
+def _stiffness_alone(sector: SweptSector, stiffness: ElementStiffness) -> FloatArray:
     """Return the stiffness (n,) of each freedom with all others held: the diagonal, N/m."""
     free = sector.element_freedoms >= 0
     diagonals = np.einsum("mii->mi", stiffness.matrices)[stiffness.of_element]

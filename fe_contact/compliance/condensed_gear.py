@@ -56,7 +56,7 @@ def condensed_gear(
     """
     tooth, loads = condensed_tooth(gear, section, recipe, support, clock)
     loads = loads if probes is None else probes
-    free = free_turn(section, tooth.sector)
+    free = _free_turn(section, tooth.sector)
     ring = close_ring(tooth.held, gear.teeth, reach, loads, free, partial(clock.progress, "ring"))
     clock.finish("ring")
     return CondensedGear(tooth.sector, tooth.stiffness, tooth.condensation, tooth.held, ring), loads
@@ -94,7 +94,7 @@ def condensed_tooth(
     return CondensedTooth(sector, stiffness, condensation, held), loads
 
 
-def free_turn(section: QuadSector, sector: SweptSector) -> FreeTurn | None:
+def _free_turn(section: QuadSector, sector: SweptSector) -> FreeTurn | None:
     """Return how a gear moves that nothing but a key keeps from turning; None for one that cannot turn."""
     if sector.seat.key is None:
         return None

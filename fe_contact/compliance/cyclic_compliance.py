@@ -108,28 +108,28 @@ def predict_cost(
     sector = swept_sector(grid, gear.face_width, recipe, bore_support(gear), gear.web)
     tree = sector_tree(sector)
     distance = usual_reach(gear) if reach is None else reach
-    sizes = sector_sizes(sector, gear.teeth, distance)
+    sizes = _sector_sizes(sector, gear.teeth, distance)
     key = len(sector.key_bore) + len(sector.key_cut)
     answers = float(gear.teeth * sizes.cut * key)  # of all cuts to forces on the bore
     operations = {
         "condensation": tree.operations + GATHERING * tree.front_entries + ELEMENT * sizes.matrices,
-        "ring": RING_LOSS * ring_operations(sizes) + sizes.harmonics * 4.0 * sizes.cut**2 * key,
+        "ring": RING_LOSS * _ring_operations(sizes) + sizes.harmonics * 4.0 * sizes.cut**2 * key,
         "checks": tree.factor_entries * GATHERING / 10.0,  # they pass twice over the factors
         "key": 2.0 * answers * sizes.flank,
     }
     keyed = int(NUMBER * (5.0 * answers + gear.teeth * sizes.flank * key))
     rate = kept_speed(cache, "dense_rate", dense_rate, _RATES)
     seconds = {part: count / rate for part, count in operations.items()}
-    return PredictedCost({"mesh": MESH_SECONDS} | seconds, working_bytes(tree, sizes) + keyed)
+    return PredictedCost({"mesh": MESH_SECONDS} | seconds, _working_bytes(tree, sizes) + keyed)
 
 
-def sector_sizes(sector: SweptSector, teeth: int, reach: int) -> SectorSizes:
+def _sector_sizes(sector: SweptSector, teeth: int, reach: int) -> SectorSizes:
     """Count what the cost follows from."""
     matrices = sum(len(batch.quads) for batch in sector.batches)
     return SectorSizes(len(sector.loaded), len(sector.left), teeth // 2 + 1, reach, matrices)
 
 
-def ring_operations(sizes: SectorSizes) -> float:
+def _ring_operations(sizes: SectorSizes) -> float:
     """Return the multiplications with addition of holding the sector and closing the ring."""
     nf, nc = float(sizes.flank), float(sizes.cut)
     rank = RANK_SHARE * nf
@@ -141,7 +141,7 @@ def ring_operations(sizes: SectorSizes) -> float:
     return holding + row_space + sizes.harmonics * (harmonic + summing) + back
 
 
-def working_bytes(tree: EliminationTree, sizes: SectorSizes) -> int:
+def _working_bytes(tree: EliminationTree, sizes: SectorSizes) -> int:
     """Return the bytes of the largest working set: factorising fronts, or closing the ring."""
     nf, nc = sizes.flank, sizes.cut
     rank = RANK_SHARE * nf

@@ -134,7 +134,6 @@ class _Draft:
 
 
 def _sorted(draft: _Draft, order: IntArray) -> Front:
-    """Return the front with its border in the order of elimination."""
     border = draft.border[np.argsort(order[draft.border])]
     return Front(draft.elements, tuple(_sorted(c, order) for c in draft.children), draft.inner, border)
 

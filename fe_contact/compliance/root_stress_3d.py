@@ -125,7 +125,6 @@ def root_functionals(
 def _surface_elements(
     section: QuadSector, sector: SweptSector, chain: IntArray, axes: FloatArray, turn_per_length: float
 ) -> SurfaceElements:
-    """Return the surface elements above a chain of section nodes, layer by layer."""
     first = 2 * np.arange(len(chain) // 2)
     on_section = chain[first[:, None] + (1 + ALONG).astype(int)]  # (e, 8)
     positions, frames, freedoms = [], [], []
@@ -142,7 +141,7 @@ def _unit_load_stress(
     tooth: CondensedTooth, functionals: sp.csr_array, modes: FloatArray, cuts: LeftCuts, reach: int
 ) -> FloatArray:
     """Return the stresses (2 reach + 1, r, nf) of tooth m = -reach .. reach by forces on tooth 0."""
-    kept = kept_functionals(tooth.condensation, functionals)
+    kept = _kept_functionals(tooth.condensation, functionals)
     held, count = tooth.held, len(tooth.sector.flank)
     by_cuts = kept[:, count:] + kept[:, :count] @ held.transmitted.T
     stress = np.empty((2 * reach + 1, len(kept), count))
@@ -153,7 +152,7 @@ def _unit_load_stress(
     return stress
 
 
-def kept_functionals(condensation: Condensation, rows: sp.csr_array) -> FloatArray:
+def _kept_functionals(condensation: Condensation, rows: sp.csr_array) -> FloatArray:
     """Return the rows (r, k) on the kept freedoms of a condensation that stand for `rows` (r, n) on all.
 
     The transpose of `Condensation.expand`: what a front eliminates it hands to its border.
@@ -187,7 +186,6 @@ def _checks(
 
 
 def _with_middles(ends: FloatArray) -> FloatArray:
-    """Return ends and middles of layers in turn."""
     planes = np.empty(2 * len(ends) - 1)
     planes[::2], planes[1::2] = ends, 0.5 * (ends[1:] + ends[:-1])
     return planes

@@ -35,7 +35,7 @@ def face_mass() -> FloatArray:
     return np.asarray(functions.T * np.outer(weight, weight).ravel() @ functions)
 
 
-def seat_stiffness(gear: Toothing, grid: SectorGrid, thickness: float, seat: BoreSeat) -> FloatArray:
+def _seat_stiffness(gear: Toothing, grid: SectorGrid, thickness: float, seat: BoreSeat) -> FloatArray:
     """Return the matrix (60, 60) of the seat below one element on the bore, N/m.
 
     Nodes on the bore are equally spaced in angle, so the radial, tangential and axial displacements are
@@ -119,7 +119,7 @@ def sector_stiffness(
     axes = np.tile(np.eye(3), (sector.grid.nodes, 1, 1))
     axes[sector.grid.flank] = frames
     matrices = [
-        np.tile(seat_stiffness(gear, sector.grid, batch.thickness, sector.seat), (len(batch.quads), 1, 1))
+        np.tile(_seat_stiffness(gear, sector.grid, batch.thickness, sector.seat), (len(batch.quads), 1, 1))
         if batch.seat
         else _batch_stiffness(gear.material, section, batch, axes, twist(gear))
         for batch in sector.batches

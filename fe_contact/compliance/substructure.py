@@ -127,7 +127,6 @@ def _eliminated(matrix: FloatArray, count: int) -> tuple[FloatArray, FloatArray,
 
 @njit(cache=True)
 def _add_part(matrix: FloatArray, part: FloatArray, rows: IntArray) -> None:
-    """Add the lower triangle of `part` at increasing rows `rows`."""
     for j in range(len(rows)):
         for i in range(j, len(rows)):
             matrix[rows[i], rows[j]] += part[i, j]

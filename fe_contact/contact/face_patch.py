@@ -271,7 +271,6 @@ def _needed(tooth: IntArray, loads: FaceLoads, first: int, out: IntArray) -> int
 
 @njit(cache=True)
 def _weigh_rows(block: FloatArray, loads: FaceLoads, i: int, needed: IntArray, moved: FloatArray) -> None:
-    """Sum the rows of a block by the forces of patch i, in the columns `needed`."""
     for a in needed:
         moved[a] = 0.0
     for q in range(loads.used[i]):

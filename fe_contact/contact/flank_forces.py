@@ -128,5 +128,4 @@ def _sides(slices: LoadedSlices) -> tuple[Side, Side]:
 
 
 def _add(by_tooth: ByTooth, tooth: int, forces: FloatArray) -> None:
-    """Add forces to those of a tooth."""
     by_tooth[tooth] = by_tooth.get(tooth, 0.0) + forces

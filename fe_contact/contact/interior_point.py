@@ -78,7 +78,7 @@ def pieces(about: GapAbout, center: Array, half: Array) -> tuple[Array, Array, A
     slope, first, mean = np.zeros((3, *center.shape))
     for left, right in pairwise(bounds):
         sine = np.stack([np.sin(left), 0.5 * (np.sin(left) + np.sin(right)), np.sin(right)])
-        g = gap_at(about, center + half * sine)
+        g = _gap_at(about, center + half * sine)
         width = np.where(sine[2] > sine[0], sine[2] - sine[0], 1.0)
         bend = 2.0 * (g[2] - 2.0 * g[1] + g[0]) / width**2  # g = bend/1 (u - u1)^2 + tilt (u - u1) + g1
         tilt = (g[2] - g[0]) / width
@@ -93,7 +93,7 @@ def pieces(about: GapAbout, center: Array, half: Array) -> tuple[Array, Array, A
     return slope / np.pi / half, first / np.pi / half, mean / np.pi
 
 
-def gap_at(about: GapAbout, x: Array) -> Array:
+def _gap_at(about: GapAbout, x: Array) -> Array:
     """Gap in m at x (..., n, ...), the contacts along axis 1."""
     lift = (1, -1) + (1,) * (x.ndim - 2)
     value = about.slope.reshape(lift) * x + 0.5 * about.curvature.reshape(lift) * x**2
@@ -178,7 +178,6 @@ class GuardedLaw:
         return value, np.where(p > high, self.beyond, slope) / self.problem.width
 
     def _tabulated(self, p: Array) -> tuple[Array, Array]:
-        """Interpolate."""
         return self._entry(p, self.value), self._entry(p, self.slope)
 
     def _entry(self, p: Array, values: Array) -> Array:
@@ -233,7 +232,7 @@ def solve(problem: Problem, total: float) -> Answer:
             if shrinking.any():
                 reach = min(reach, 0.99 * float(np.min(-x[shrinking] / dx[shrinking])))
         force, slack, d = force + reach * df, slack + reach * ds, d + reach * dd
-    return polished(problem, law, total, touch, gap, force, slack, unit, iterations)
+    return _polished(problem, law, total, touch, gap, force, slack, unit, iterations)
 
 
 def balanced(
@@ -262,7 +261,7 @@ def balanced(
     return force, float(d)
 
 
-def polished(
+def _polished(
     problem: Problem,
     law: GuardedLaw,
     total: float,

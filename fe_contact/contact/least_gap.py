@@ -69,7 +69,6 @@ def _slope(gap: Gap, i: int, x: float) -> float:
 
 @njit(cache=True, error_model="numpy")
 def _slope_beside(gap: Gap, i: int, x: float, side: float) -> float:
-    """Return the slope of the gap just to one side of x."""
     slope: float = gap.slope[i] + gap.curvature[i] * x
     for k in range(gap.place.shape[1]):
         at = gap.place[i, k]
@@ -83,7 +82,6 @@ def _slope_beside(gap: Gap, i: int, x: float, side: float) -> float:
 
 @njit(cache=True, error_model="numpy")
 def _curvature(gap: Gap, i: int, x: float) -> float:
-    """Return the curvature of the gap between breaks."""
     curvature: float = gap.curvature[i]
     for k in range(gap.place.shape[1]):
         at = gap.place[i, k]

@@ -149,7 +149,6 @@ def load_vector(
 def _add_element(
     nodes: FloatArray, e: int, center: float, half_width: float, edge_share: float, out: FloatArray
 ) -> None:
-    """Add the share of the patch that lies on element `e`."""
     left, right = nodes[2 * e], nodes[2 * e + 2]
     start = math.asin(min(max((left - center) / half_width, -1.0), 1.0))
     stop = math.asin(min(max((right - center) / half_width, -1.0), 1.0))

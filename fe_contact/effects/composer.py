@@ -77,7 +77,7 @@ def compose(scene: ContactScene, choices: Mapping[str, str]) -> tuple[ContactMod
     InputError
         Unknown effect or choice.
     """
-    check_choices(choices, scene.registry)
+    _check_choices(choices, scene.registry)
     model = ContactModel()
     ledger = []
     for effect in scene.registry:
@@ -95,8 +95,7 @@ def compose(scene: ContactScene, choices: Mapping[str, str]) -> tuple[ContactMod
     return replace(terms, parts=tuple(sorted(model.parts))), tuple(ledger)
 
 
-def check_choices(choices: Mapping[str, str], registry: Sequence[Effect]) -> None:
-    """Refuse unknown effects and choices."""
+def _check_choices(choices: Mapping[str, str], registry: Sequence[Effect]) -> None:
     names = [effect.name for effect in registry]
     for name, choice in choices.items():
         if name not in names:

@@ -71,7 +71,6 @@ def _what_is_missing(pair: ParallelAxes) -> str:
 
 
 def _curvature_radius(pair: ParallelAxes, roll_1: float) -> float:
-    """Relative radius of curvature of plain flanks in m, in the transverse plane."""
     return float(relative_radius(roll_1, pair.wheel.sign * float(pair.mating_roll_length(roll_1))))
 
 

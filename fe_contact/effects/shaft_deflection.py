@@ -48,7 +48,6 @@ class ShaftDeflection(Effect):
 
 
 def _term(scene: ContactScene) -> ShaftCompliance:
-    """Compliance term of the scene's shafts."""
     seats = (None if shaft is None else SeatCompliance.of_shaft(shaft) for shaft in scene.pair.shafts)
     return ShaftCompliance(*seats)
 

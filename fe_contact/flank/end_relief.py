@@ -29,11 +29,9 @@ class EndRelief(FaceRelief):
     end_relief_shape: Shape = shape(_FACE, "End relief over its length")
 
     def _outwards(self, face_position: FloatArray) -> FloatArray:
-        """Return them towards the nearer end."""
         return np.abs(face_position)
 
     def _room(self, gear: Tooth) -> float:
-        """Return half the face."""
         return 0.5 * gear.face_width
 
 
@@ -44,7 +42,6 @@ class OneSidedRelief(FaceRelief):
     _side: ClassVar[int]
 
     def _outwards(self, face_position: FloatArray) -> FloatArray:
-        """Return them towards that end."""
         return self._side * face_position
 
 

@@ -93,7 +93,6 @@ class FlankGrid:
 
 
 def _axis(name: str, values: Sequence[float]) -> tuple[float, ...]:
-    """Check an axis."""
     nodes = increasing(name, values)
     if nodes.size < 2:
         raise InputError(name, list(values), "a list of at least two")

@@ -167,12 +167,10 @@ def fields_of(*kinds: Kind) -> tuple[str, ...]:
 
 
 def _own_fields(modification: FlankPart, kind: type[Any]) -> dict[str, Any]:
-    """Return the fields of one of the parts, by name."""
     return {entry.name: getattr(modification, entry.name) for entry in fields(kind)}
 
 
 def _together(parts: Iterable[FlankPart]) -> FlankModification:
-    """Return the modification of these parts alone."""
     own = (_own_fields(part, type(part)) for part in parts)
     return FlankModification(**{name: value for facts in own for name, value in facts.items()})
 

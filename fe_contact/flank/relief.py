@@ -37,22 +37,18 @@ class Relief(FlankPart):
 
     @cached_property
     def _name(self) -> str:
-        """The field of the amount, to which those of length and shape add theirs."""
         return next(iter(declarations(type(self))))
 
     @property
     def _amount(self) -> float:
-        """The amount in m."""
         return float(getattr(self, self._name))
 
     @property
     def _length(self) -> float:
-        """The length in m."""
         return float(getattr(self, f"{self._name}_length"))
 
     @property
     def _shape(self) -> ReliefShape:
-        """The law of its depth."""
         return SHAPES[getattr(self, f"{self._name}_shape", "parabolic")]
 
     def _check_length(self, room: float) -> None:
@@ -60,7 +56,6 @@ class Relief(FlankPart):
         within(f"modification.{self._name}_length", self._length, 0.0, room, _LENGTHS)
 
     def _depth(self, fraction: FloatArray, length: float) -> FloatArray:
-        """Return what is removed in m at fractions of its length in m, over the roll length or the face."""
         return np.asarray(self._amount * self._shape(fraction, self._amount / abs(length)))
 
 
@@ -108,7 +103,6 @@ class FaceRelief(Relief):
     """A relief over a part of the face, to one end or both."""
 
     def _outwards(self, face_position: FloatArray) -> FloatArray:
-        """Return face positions in m as distances from mid-face towards the end to which it runs."""
         raise NotImplementedError
 
     def _room(self, gear: Tooth) -> float:

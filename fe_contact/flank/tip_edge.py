@@ -80,7 +80,6 @@ def _check(field: str, value: float, least: float, fits: Callable[[float], bool]
 
 
 def _above_form_point(gear: Tooth, roll: float) -> bool:
-    """Whether a tip form point leaves a usable flank."""
     return gear.sign * (roll - gear.form_roll_length) > 0.0
 
 

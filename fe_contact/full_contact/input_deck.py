@@ -88,7 +88,6 @@ def _nodes(points: FloatArray, body: NumberedBody) -> Iterable[str]:
 
 
 def _body(gear: PlacedBody, body: NumberedBody, material: Material, face_width: float) -> list[str]:
-    """Elements, material and section of a gear."""
     rows = (gear.triangles + body.first_node).tolist()
     return [
         f"*ELEMENT, TYPE=CPE6, ELSET={body.name}",
@@ -136,7 +135,6 @@ def _step(transverse_force: float) -> list[str]:
 
 
 def _list(numbers: IntArray) -> Iterable[str]:
-    """Several numbers to a line."""
     return (",".join(map(str, numbers[i : i + PER_LINE].tolist())) for i in range(0, len(numbers), PER_LINE))
 
 

@@ -100,7 +100,6 @@ def run_calculix(program: str, deck: str, folder: Path, cpu_limit: float) -> Run
 
 
 def _ended(child: subprocess.CompletedProcess[str], folder: Path, cpu_limit: float) -> Run:
-    """Say how a child ended."""
     iterations = len(re.findall(r"^ iteration \d+", child.stdout, re.MULTILINE))
     if ending_signal(child.returncode) == "SIGXCPU":
         return Run(Status.NOT_COMPUTED, f"no result within {cpu_limit:.0f} CPU s", iterations, "")

@@ -59,7 +59,6 @@ def no_load_gap(pair: ParallelAxes, position: float) -> float:
 
 
 def _placed(body: PlacedBody, turn: float) -> PlacedBody:
-    """Turn a body about its center."""
     return replace(body, points=rotated(body.points - body.center, turn) + body.center)
 
 

@@ -36,6 +36,5 @@ def balanced_shifts(pinion: Gear, wheel: Gear, center_distance: float) -> tuple[
 
 
 def _tip_roll(gear: Gear, shift: float) -> float:
-    """Roll length in m of the tip with another profile shift."""
     radius = gear.reference_radius + gear.normal_module * (gear.addendum_coefficient + shift)
     return math.sqrt(max(radius**2 - gear.base_radius**2, 0.0))

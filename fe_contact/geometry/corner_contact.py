@@ -146,7 +146,6 @@ def edge_gap(pair: ParallelAxes, side: Side, edge: ArrayLike, roll_length: Array
 def _touch(
     pair: ParallelAxes, tip: Toothing, flank: Toothing, edge: FloatArray | float, roll_length: FloatArray
 ) -> _Touch:
-    """Turn the flank gear until it touches the `edge` of the tip gear held at its nominal `roll_length`."""
     working, sign = pair.working_pressure_angle, tip.sign * flank.sign
     distance = tip.sign * pair.center_distance  # of the tip gear's center along the flank gear's +x
     tip_foot = working + (edge - roll_length) / tip.base_radius

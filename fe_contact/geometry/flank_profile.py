@@ -138,7 +138,6 @@ class FlankProfile:
         return self.gear.sign * 0.5 * roll_length**2 / self.gear.base_radius
 
     def _tool_angle(self, arc: FloatArray) -> FloatArray:
-        """Tool angles at arc lengths below the form point."""
         return self.gear.trochoid.angle_at_arc(self.gear.form_point.tool_angle, arc)
 
     def _checked(self, s: ArrayLike) -> FloatArray:

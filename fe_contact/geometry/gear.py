@@ -40,7 +40,7 @@ THINNEST_RIM = 0.5  # in normal modules
 THINNEST_WEB = 0.02  # in face widths
 
 
-def refuse_infeasible_gear(gear: Toothing, blank: GearBlank | None) -> None:
+def _refuse_infeasible_gear(gear: Toothing, blank: GearBlank | None) -> None:
     """Raise `InfeasibleGeometry` if no such external gear can be generated."""
     _refuse_bore(gear)
     if blank is not None:
@@ -152,7 +152,7 @@ class Gear(Toothing):
     def __post_init__(self) -> None:
         self._check_fields()
         _ = self.basic_rack
-        refuse_infeasible_gear(self, self.blank)
+        _refuse_infeasible_gear(self, self.blank)
         self.modification.check_fits(self)
         self.pitch_deviation.check_fits(self.teeth)
 

@@ -108,7 +108,6 @@ def _lens(offset: float, tip_radius: float, mating_tip_radius: float) -> FloatAr
 
 
 def _tip_involute(gear: Toothing) -> float:
-    """Involute function of the pressure angle at the tip."""
     return involute_function(math.acos(min(1.0, gear.base_radius / gear.tip_radius)))
 
 
@@ -118,7 +117,6 @@ def _pitch_point_angle(pair: ParallelAxes) -> float:
 
 
 def _paths(pair: ParallelAxes) -> tuple[tuple[EdgePath, Toothing], ...]:
-    """Both tip edges, each with the gear it moves in."""
     return (pinion_edge_path(pair), pair.wheel), (ring_edge_path(pair), pair.pinion)
 
 
@@ -131,7 +129,7 @@ def _deepest(path: EdgePath, mate: Toothing, on_fillet: bool) -> float:
 _SHORTER = "Raise the ring's tip diameter, or lower the pinion's"
 
 
-def refuse_tooth_numbers(pinion: Toothing, ring: Toothing) -> None:
+def _refuse_tooth_numbers(pinion: Toothing, ring: Toothing) -> None:
     """Refuse a pinion that is no smaller than the ring."""
     if ring.teeth <= pinion.teeth:
         bound = above(pinion.teeth, name="the pinion's")
@@ -229,7 +227,7 @@ def _refuse_trochoidal_interference(pair: ParallelAxes) -> None:
         raise InfeasibleGeometry("trochoidal interference", "wheel.tip_diameter", value, bound, advice)
 
 
-def refuse_trimming_interference(clearance: float) -> None:
+def _refuse_trimming_interference(clearance: float) -> None:
     """Refuse radial assembly past tips that stand in the way (`clearance` in m below 0)."""
     if clearance < 0.0:
         overlap = Quantity(-clearance, "m", digits=3)
@@ -263,12 +261,12 @@ class InternalGearPair(ParallelAxes):
 
     def __post_init__(self) -> None:
         refuse_strangers(self.pinion, self.wheel)
-        refuse_tooth_numbers(self.pinion, self.wheel)
+        _refuse_tooth_numbers(self.pinion, self.wheel)
         if self.center_distance is None:
             object.__setattr__(self, "center_distance", reference_center_distance(self.pinion, self.wheel))
         refuse_infeasible_internal_pair(self)
         if self.radial_assembly:
-            refuse_trimming_interference(self.radial_assembly_clearance)
+            _refuse_trimming_interference(self.radial_assembly_clearance)
 
     @property
     def tooth_number_difference(self) -> int:

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 _SAMPLES = 513
 
 
-def fillet_penetration(pair: ParallelAxes, tip: Toothing, flank: Toothing) -> float:
+def _fillet_penetration(pair: ParallelAxes, tip: Toothing, flank: Toothing) -> float:
     """Depth in m (arc) to which the edge of `tip` cuts the fillet of `flank`, both external; 0 if clear.
 
     The gears turn in conjugate motion. The edge is followed on both sides of the line of centers, from where
@@ -179,7 +179,7 @@ def _refuse_fillet_interference(pair: ParallelAxes) -> None:
     """Refuse a tip that cuts the mating fillet on its way through the tooth space."""
     gears = (("pinion", pair.pinion, pair.wheel), ("wheel", pair.wheel, pair.pinion))
     for name, gear, mate in gears:
-        depth = fillet_penetration(pair, gear, mate)
+        depth = _fillet_penetration(pair, gear, mate)
         if depth > FILLET_SLACK * gear.normal_module:
             cut = Quantity(depth, "m", digits=3)
             reason = Text.of("the tip cuts the mating fillet by ", cut, " off the line of action")
@@ -205,7 +205,7 @@ def _largest_clear_tip(pair: ParallelAxes, gear: Toothing, mate: Toothing) -> fl
     def cuts(radius: float) -> bool:
         tip_diameter = 2.0 * radius
         shorter = replace(gear, tip_diameter=tip_diameter, modification=UNMODIFIED)
-        return fillet_penetration(pair, shorter, mate) > FILLET_SLACK * gear.normal_module
+        return _fillet_penetration(pair, shorter, mate) > FILLET_SLACK * gear.normal_module
 
     low += 1e-6 * gear.normal_module
     if high <= low or cuts(low):

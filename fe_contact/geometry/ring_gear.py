@@ -196,7 +196,7 @@ class CutterTrochoid(FilletCurve):
 _OTHER_CUTTER = "Choose another number of teeth or profile shift of the cutter."
 
 
-def refuse_infeasible_ring(gear: Toothing, cutter: PinionCutter) -> None:
+def _refuse_infeasible_ring(gear: Toothing, cutter: PinionCutter) -> None:
     """Raise `InfeasibleGeometry` if the cutter cannot generate such a ring gear."""
     _refuse_rounding(gear, cutter)
     _refuse_tip_diameter(gear, cutter)
@@ -204,7 +204,7 @@ def refuse_infeasible_ring(gear: Toothing, cutter: PinionCutter) -> None:
     _refuse_pointed_tooth(gear)
 
 
-def refuse_shift_sum_of_cutter(gear: Toothing, teeth: int, profile_shift: float, involute: float) -> None:
+def _refuse_shift_sum_of_cutter(gear: Toothing, teeth: int, profile_shift: float, involute: float) -> None:
     """Refuse a cutter too thick for the tooth space at any center distance (`involute` below 0)."""
     if involute <= 0.0:
         angle = math.tan(gear.transverse_pressure_angle) - gear.transverse_pressure_angle
@@ -219,7 +219,7 @@ def refuse_shift_sum_of_cutter(gear: Toothing, teeth: int, profile_shift: float,
         )
 
 
-def refuse_narrow_rim(gear: Toothing) -> None:
+def _refuse_narrow_rim(gear: Toothing) -> None:
     """Refuse a rim that leaves nothing behind the teeth."""
     rim = 2.0 * gear.held_radius
     if rim <= 2.0 * gear.root_radius:
@@ -312,8 +312,8 @@ class RingGear(Toothing):
         self._check_fields()
         integer("cutter_teeth", self.cutter_teeth, 6, self.teeth - 1, "Fewer teeth than the ring gear.")
         _ = self.basic_rack
-        refuse_narrow_rim(self)
-        refuse_infeasible_ring(self, self.cutter)
+        _refuse_narrow_rim(self)
+        _refuse_infeasible_ring(self, self.cutter)
         self.modification.check_fits(self)
         self.pitch_deviation.check_fits(self.teeth)
 
@@ -354,7 +354,7 @@ class RingGear(Toothing):
         shifts = cutter_shift + self.profile_shift_coefficient
         involute = involute_function(self.transverse_pressure_angle)
         involute -= 2.0 * math.tan(self.normal_pressure_angle) * shifts / (self.teeth - self.cutter_teeth)
-        refuse_shift_sum_of_cutter(self, self.cutter_teeth, cutter_shift, involute)
+        _refuse_shift_sum_of_cutter(self, self.cutter_teeth, cutter_shift, involute)
         return inverse_involute(involute)
 
     @property

@@ -53,7 +53,6 @@ class Trochoid(FilletCurve):
         return self.corner_height - self.corner_radius * np.sin(tool_angle)
 
     def _normal_slope(self, tool_angle: FloatArray) -> FloatArray:
-        """Cotangent of the normal's angle to the pitch line, in the transverse plane."""
         return math.cos(self.helix_angle) * np.cos(tool_angle) / np.sin(tool_angle)
 
     def _rotation(self, tool_angle: FloatArray) -> FloatArray:

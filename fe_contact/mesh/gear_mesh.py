@@ -102,8 +102,8 @@ def assemble(
         Outward normals at `sector.flank` in the tooth frame.
     """
     closed = len(teeth) == round(2.0 * np.pi / pitch_angle)
-    sector_nodes = number_sectors(sector, len(teeth), closed)
-    hub_nodes = number_hub(sector, sector_nodes, hub)
+    sector_nodes = _number_sectors(sector, len(teeth), closed)
+    hub_nodes = _number_hub(sector, sector_nodes, hub)
     points = np.empty((max(sector_nodes.max(), hub_nodes.max(initial=0)) + 1, 2))
     if hub is not None:
         points[hub_nodes] = hub.points
@@ -120,7 +120,7 @@ def assemble(
     return GearMesh(points, triangles, bore, flanks, teeth, pitch_angle, sector, sector_nodes, hub_nodes, hub)
 
 
-def number_sectors(sector: ToothSector, count: int, closed: bool) -> IntArray:
+def _number_sectors(sector: ToothSector, count: int, closed: bool) -> IntArray:
     """Return the number in the gear of each sector's nodes; a left side is the next sector's right side."""
     size = len(sector.points)
     owned = np.ones(size, dtype=bool)
@@ -135,7 +135,7 @@ def number_sectors(sector: ToothSector, count: int, closed: bool) -> IntArray:
     return nodes
 
 
-def number_hub(sector: ToothSector, sector_nodes: IntArray, hub: Hub | None) -> IntArray:
+def _number_hub(sector: ToothSector, sector_nodes: IntArray, hub: Hub | None) -> IntArray:
     """Return the number in the gear of every hub node; shared ones keep the sectors' numbers."""
     if hub is None:
         return np.empty(0, dtype=np.int64)

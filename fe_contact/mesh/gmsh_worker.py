@@ -34,7 +34,7 @@ FRONTAL_DELAUNAY = 6
 QUADRILATERAL = 3
 
 
-def start_gmsh() -> Any:
+def _start_gmsh() -> Any:
     """Import and start gmsh: one thread, silent, no user files, signal handlers left as they were."""
     sys.modules["numpy"] = None  # type: ignore[assignment] # gmsh's documented fallback; saves 0.2 CPU s of start-up
     import gmsh  # noqa: PLC0415
@@ -54,7 +54,7 @@ def start_gmsh() -> Any:
     return gmsh
 
 
-def add_loop(gmsh: Any, loop: list[list[float]]) -> tuple[list[int], int]:
+def _add_loop(gmsh: Any, loop: list[list[float]]) -> tuple[list[int], int]:
     """Add a closed polygon whose edges stay undivided; return its point tags and its curve loop."""
     geo = gmsh.model.geo
     points = [geo.addPoint(x, y, 0.0) for x, y in loop]
@@ -64,7 +64,7 @@ def add_loop(gmsh: Any, loop: list[list[float]]) -> tuple[list[int], int]:
     return points, geo.addCurveLoop(lines)
 
 
-def grow_from(gmsh: Any, loops: list[list[list[float]]], tags: list[int], growth: float) -> None:
+def _grow_from(gmsh: Any, loops: list[list[list[float]]], tags: list[int], growth: float) -> None:
     """Let the size grow with the distance from the boundary, where it is the length of the edges.
 
     Points of like size (within a factor of sqrt 2) share one distance field, so that few fields are needed.
@@ -85,17 +85,17 @@ def grow_from(gmsh: Any, loops: list[list[list[float]]], tags: list[int], growth
     field.setAsBackgroundMesh(least)
 
 
-def triangulate(
+def _triangulate(
     gmsh: Any, loops: list[list[list[float]]], growth: float
 ) -> dict[str, list[list[float]] | list[list[int]]]:
     """Mesh one region; points of the loops first."""
     gmsh.clear()
     gmsh.model.add("region")
-    added = [add_loop(gmsh, loop) for loop in loops]
+    added = [_add_loop(gmsh, loop) for loop in loops]
     surface = gmsh.model.geo.addPlaneSurface([loop for _, loop in added])
     gmsh.model.geo.synchronize()
     boundary = [point for points, _ in added for point in points]
-    grow_from(gmsh, loops, boundary, growth)
+    _grow_from(gmsh, loops, boundary, growth)
     gmsh.model.mesh.generate(2)
     number = {int(gmsh.model.mesh.getNodes(0, tag)[0][0]): i for i, tag in enumerate(boundary)}
     points: list[list[float]] = [xy for loop in loops for xy in loop]
@@ -107,11 +107,11 @@ def triangulate(
     return {"points": points, "triangles": [corners[i : i + 3] for i in range(0, len(corners), 3)]}
 
 
-def fill_block(gmsh: Any, sides: list[list[list[float]]]) -> list[list[list[float]]]:
+def _fill_block(gmsh: Any, sides: list[list[list[float]]]) -> list[list[list[float]]]:
     """Fill a four-sided block by transfinite interpolation; return its rows of points."""
     gmsh.clear()
     gmsh.model.add("block")
-    tags, loop = add_loop(gmsh, [xy for side in sides for xy in side[:-1]])
+    tags, loop = _add_loop(gmsh, [xy for side in sides for xy in side[:-1]])
     geo, corners = gmsh.model.geo, [0]
     surface = geo.addPlaneSurface([loop])
     for side in sides:
@@ -122,13 +122,13 @@ def fill_block(gmsh: Any, sides: list[list[list[float]]]) -> list[list[list[floa
     gmsh.model.mesh.generate(2)
     flat = [int(tag) for tag in gmsh.model.mesh.getElementsByType(QUADRILATERAL)[1]]
     bottom = [int(gmsh.model.mesh.getNodes(0, tag)[0][0]) for tag in tags[: len(sides[0])]]
-    rows = rows_above(bottom, [flat[i : i + 4] for i in range(0, len(flat), 4)])
+    rows = _rows_above(bottom, [flat[i : i + 4] for i in range(0, len(flat), 4)])
     numbers, xyz, _ = gmsh.model.mesh.getNodes()
     where = {int(tag): [xyz[3 * i], xyz[3 * i + 1]] for i, tag in enumerate(numbers)}
     return [[where[tag] for tag in row] for row in rows]
 
 
-def rows_above(bottom: list[int], quads: list[list[int]]) -> list[list[int]]:
+def _rows_above(bottom: list[int], quads: list[list[int]]) -> list[list[int]]:
     """Order the nodes of a structured mesh in rows, walking up from the bottom one.
 
     Relies on nothing but which quadrilaterals share a side.
@@ -163,10 +163,10 @@ def main() -> None:
     request = json.load(sys.stdin)
     end_after(int(request["seconds"]) + 1)  # ends this process even when its parent is gone
     try:
-        gmsh = start_gmsh()
+        gmsh = _start_gmsh()
         answer: dict[str, Any] = {
-            "regions": [triangulate(gmsh, loops, request["growth"]) for loops in request.get("regions", [])],
-            "blocks": [fill_block(gmsh, sides) for sides in request.get("blocks", [])],
+            "regions": [_triangulate(gmsh, loops, request["growth"]) for loops in request.get("regions", [])],
+            "blocks": [_fill_block(gmsh, sides) for sides in request.get("blocks", [])],
         }
     except Exception as error:  # noqa: BLE001 - gmsh raises bare Exception; the parent turns the text into a MeshError
         answer = {"error": str(error) or type(error).__name__}

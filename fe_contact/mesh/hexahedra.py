@@ -113,7 +113,6 @@ def with_seat(
 
 
 def _layer(nodes: IntArray, quads: IntArray, low: int, height: int, half: int) -> IntArray:
-    """Return the nodes of the elements from plane `low` to `low + height`."""
     corners, middles = quads[:, :4], quads[:, 4:]
     middle, high = low + height // 2, low + height
     parts = [(low, corners), (high, corners), (low, middles), (high, middles), (middle, corners)]

@@ -66,12 +66,12 @@ def hub_outline(gear: Toothing, sector: ToothSector, teeth: IntArray, recipe: Me
     if len(teeth) < gear.teeth:
         left = Piece("left side", rotated(sector.points[sector.left_side], teeth[-1] * pitch))
         right = Piece("right side", rotated(sector.points[sector.right_side[::-1]], teeth[0] * pitch))
-        rim = plain_rim(left, gear.teeth - len(teeth), pitch, gear.rim_inside_radius, recipe)
+        rim = _plain_rim(left, gear.teeth - len(teeth), pitch, gear.rim_inside_radius, recipe)
         pieces += [left, rim, right]
     return Outline(tuple(pieces))
 
 
-def plain_rim(side: Piece, missing: int, pitch: float, inside: float, recipe: MeshRecipe) -> Piece:
+def _plain_rim(side: Piece, missing: int, pitch: float, inside: float, recipe: MeshRecipe) -> Piece:
     """Return the root circle from the end of `side` counter-clockwise over the missing teeth."""
     x, y = side.nodes[-1]
     radius, angle, length = float(np.hypot(x, y)), float(np.arctan2(x, y)), missing * pitch

@@ -50,14 +50,14 @@ def mesh_gear(
     recipe, filling = recipe or MeshRecipe.standard(gear), Filling(limits or QualityLimits(), seconds)
     profile = tooth_profile(gear)
     teeth = real_teeth(gear.teeth, recipe.real_teeth)
-    bottom_radius = sector_bottom(gear, profile, all_real=len(teeth) == gear.teeth)
-    sector = mesh_sector(profile, bottom_radius, recipe, filling)
-    rest = None if bottom_radius == gear.held_radius else mesh_hub(gear, sector, teeth, recipe, filling)
+    bottom_radius = _sector_bottom(gear, profile, all_real=len(teeth) == gear.teeth)
+    sector = _mesh_sector(profile, bottom_radius, recipe, filling)
+    rest = None if bottom_radius == gear.held_radius else _mesh_hub(gear, sector, teeth, recipe, filling)
     # Copies of the sector are as good as the sector, which is checked.
     return assemble(sector, rest, teeth, profile.pitch_angle, profile.normal(sector.s))
 
 
-def sector_bottom(gear: Toothing, profile: ToothProfile, all_real: bool) -> float:
+def _sector_bottom(gear: Toothing, profile: ToothProfile, all_real: bool) -> float:
     """Return the radius to which a tooth sector reaches, m."""
     depth = gear.rim_thickness
     slender = depth > SLENDER * gear.root_radius * profile.pitch_angle
@@ -81,16 +81,15 @@ class Filling:
         return mesh
 
 
-def mesh_sector(
+def _mesh_sector(
     profile: ToothProfile, bottom_radius: float, recipe: MeshRecipe, filling: Filling
 ) -> ToothSector:
-    """Mesh one tooth and the ring below it down to `bottom_radius`."""
     outline = tooth_outline(profile, bottom_radius, recipe)
     scale = profile.gear.normal_module
     return tooth_sector(filling.mesh("tooth sector", (outline.outline,), scale, recipe.growth), outline)
 
 
-def mesh_hub(
+def _mesh_hub(
     gear: Toothing, sector: ToothSector, teeth: IntArray, recipe: MeshRecipe, filling: Filling
 ) -> Hub:
     """Mesh the rest of the ring: of a solid gear in one piece, else what is left of the rim, web and hub."""

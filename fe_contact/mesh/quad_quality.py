@@ -23,14 +23,14 @@ def quad_quality(points: FloatArray, quads: IntArray) -> MeshQuality:
     """
     nodes = points[quads]
     gradients = np.einsum(
-        "qdk,mkx->mqdx", shape_derivatives(np.concatenate([CORNERS, MIDDLES, CENTER])), nodes
+        "qdk,mkx->mqdx", _shape_derivatives(np.concatenate([CORNERS, MIDDLES, CENTER])), nodes
     )
     determinant = gradients[..., 0, 0] * gradients[..., 1, 1] - gradients[..., 0, 1] * gradients[..., 1, 0]
     largest = np.abs(determinant).max(axis=1)
-    return MeshQuality(corner_angle(nodes[:, :4]), determinant.min(axis=1) / largest)
+    return MeshQuality(_corner_angle(nodes[:, :4]), determinant.min(axis=1) / largest)
 
 
-def corner_angle(corners: FloatArray) -> FloatArray:
+def _corner_angle(corners: FloatArray) -> FloatArray:
     """Return how far the corners of (m, 4, 2) stay from folding and from being straight, rad."""
     ahead, behind = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
     cross = ahead[..., 0] * behind[..., 1] - ahead[..., 1] * behind[..., 0]
@@ -38,7 +38,7 @@ def corner_angle(corners: FloatArray) -> FloatArray:
     return np.asarray(np.minimum(angle, np.pi - angle).min(axis=1))
 
 
-def shape_derivatives(at: FloatArray) -> FloatArray:
+def _shape_derivatives(at: FloatArray) -> FloatArray:
     """Return the derivatives (n, 2, 8) of the serendipity functions at reference points (n, 2) of -1 .. 1."""
     x, y = at[:, :1], at[:, 1:]
     a, b = CORNERS.T

@@ -130,12 +130,12 @@ def quad_sector(
     """
     outline = sector_outline(tooth_profile(gear), recipe)
     grid = outline.grid
-    points = sector_points(outline, grid, seconds)
+    points = _sector_points(outline, grid, seconds)
     refuse_poor_quads(points, grid.quads, limits)
     return QuadSector(points, grid, outline.s, outline.profile.normal(outline.s))
 
 
-def sector_points(outline: SectorOutline, grid: SectorGrid, seconds: float) -> FloatArray:
+def _sector_points(outline: SectorOutline, grid: SectorGrid, seconds: float) -> FloatArray:
     """Place all nodes: corners by gmsh, middles of inner sides between them, the rest on exact curves."""
     tooth, *body = fill_blocks(_blocks(outline), outline.profile.gear.normal_module, seconds)
     points, number, low = np.empty((grid.nodes, 2)), grid.number, 2 * grid.body_rows

@@ -48,10 +48,10 @@ class MeshQuality:
 def mesh_quality(points: FloatArray, triangles: IntArray) -> MeshQuality:
     """Return the quality of six-node triangles (m, 6) on points (n, 2)."""
     nodes = points[triangles]
-    return MeshQuality(least_angle(nodes[:, :3]), scaled_jacobian(nodes))
+    return MeshQuality(_least_angle(nodes[:, :3]), scaled_jacobian(nodes))
 
 
-def least_angle(corners: FloatArray) -> FloatArray:
+def _least_angle(corners: FloatArray) -> FloatArray:
     """Return the least angle of straight triangles (m, 3, 2), rad."""
     sides = np.roll(corners, -1, axis=1) - corners
     sides /= np.linalg.norm(sides, axis=2, keepdims=True)

@@ -71,7 +71,6 @@ def flank_coordinate(profile: FlankProfile, points: FloatArray) -> FloatArray:
 
 
 def _below_form(section: QuadSector, profile: FlankProfile) -> int:
-    """Return the number of flank elements below the form point."""
     return int(np.argmin(np.abs(section.s[::2] - profile.s_form)))
 
 

@@ -106,7 +106,7 @@ class SectorOutline:
         for row in self.web_rows:
             if -self.grid.body_rows < row < 0:
                 depth = self.depth[-2 * row]
-                angle = with_middles((1.0 - depth) * top + depth * bottom)
+                angle = _with_middles((1.0 - depth) * top + depth * bottom)
                 radius = np.linalg.norm(self.right_cut[-2 * row])
                 circles[row] = radius * np.stack([np.sin(angle), np.cos(angle)], axis=-1)
         return circles
@@ -122,20 +122,20 @@ class SectorOutline:
 def sector_outline(profile: ToothProfile, recipe: SectorRecipe) -> SectorOutline:
     """Divide the outline of one tooth sector."""
     gear = profile.gear
-    split = split_point(profile, recipe)
+    split = _split_point(profile, recipe)
     half_width = profile.flank(np.array([0.5 * (profile.s_form + profile.s_tip)]))[0, 0]
-    depth, web_rows = body_divisions(gear, recipe)
+    depth, web_rows = _body_divisions(gear, recipe)
     return SectorOutline(
         profile=profile,
-        s=with_middles(flank_divisions(profile, split, recipe)),
-        land=with_middles(np.linspace(profile.s_space, split, recipe.land_elements + 1)),
-        across=with_middles(tooth_divisions(half_width, recipe)),
-        depth=with_middles(depth),
+        s=_with_middles(_flank_divisions(profile, split, recipe)),
+        land=_with_middles(np.linspace(profile.s_space, split, recipe.land_elements + 1)),
+        across=_with_middles(_tooth_divisions(half_width, recipe)),
+        depth=_with_middles(depth),
         web_rows=web_rows,
     )
 
 
-def split_point(profile: ToothProfile, recipe: SectorRecipe) -> float:
+def _split_point(profile: ToothProfile, recipe: SectorRecipe) -> float:
     """Return the flank coordinate where tooth and body part.
 
     Below the waist of an undercut tooth the fillet rises steeply: there the point moves down to where the
@@ -148,8 +148,7 @@ def split_point(profile: ToothProfile, recipe: SectorRecipe) -> float:
     return float(profile.s_form - fraction * profile.fillet_length)
 
 
-def with_middles(x: FloatArray) -> FloatArray:
-    """Return the divisions with the middle of each part between them."""
+def _with_middles(x: FloatArray) -> FloatArray:
     out = np.empty(2 * len(x) - 1)
     out[::2], out[1::2] = x, middles(x)
     return out
@@ -165,7 +164,7 @@ def graded(length: float, size: Callable[[float], float], start: float = 0.0) ->
     return np.array(x) * (length / x[-1])
 
 
-def flank_divisions(profile: ToothProfile, split: float, recipe: SectorRecipe) -> FloatArray:
+def _flank_divisions(profile: ToothProfile, split: float, recipe: SectorRecipe) -> FloatArray:
     """Divide the flank from `split` to the tip, a corner on the form point, where the curvature jumps."""
 
     def size(x: float) -> float:
@@ -176,7 +175,7 @@ def flank_divisions(profile: ToothProfile, split: float, recipe: SectorRecipe) -
     return np.concatenate([np.linspace(split, profile.s_form, below + 1)[:-1], involute])
 
 
-def tooth_divisions(half_width: float, recipe: SectorRecipe) -> FloatArray:
+def _tooth_divisions(half_width: float, recipe: SectorRecipe) -> FloatArray:
     """Divide 0 .. 1 across a tooth: fine below the loaded flank, coarser below the other."""
 
     def size(x: float, factor: float) -> float:
@@ -186,7 +185,7 @@ def tooth_divisions(half_width: float, recipe: SectorRecipe) -> FloatArray:
     return np.concatenate([loaded, 2.0 * half_width - coast[-2::-1]]) / (2.0 * half_width)
 
 
-def body_divisions(gear: Toothing, recipe: SectorRecipe) -> tuple[FloatArray, tuple[int, int]]:
+def _body_divisions(gear: Toothing, recipe: SectorRecipe) -> tuple[FloatArray, tuple[int, int]]:
     """Divide 0 .. 1 from the root to the bore, and return the rows of the web (see `SectorGrid`).
 
     Deep in the body the field changes over its depth, and around a small bore over the radius. Rows end at

@@ -54,30 +54,30 @@ def tooth_outline(profile: ToothProfile, bottom_radius: float, recipe: MeshRecip
     recipe : MeshRecipe
         Element sizes.
     """
-    s_low = lowest_flank_node(profile, recipe)
-    ends = flank_divisions(profile, s_low, recipe)
+    s_low = _lowest_flank_node(profile, recipe)
+    ends = _flank_divisions(profile, s_low, recipe)
     flank = piece("flank", profile.flank, ends)
-    surface = [*root_pieces(profile, s_low, recipe), flank, tip_piece(profile, recipe)]
-    inner = inner_pieces(surface, 0.5 * profile.pitch_angle, bottom_radius, recipe)
+    surface = [*_root_pieces(profile, s_low, recipe), flank, _tip_piece(profile, recipe)]
+    inner = _inner_pieces(surface, 0.5 * profile.pitch_angle, bottom_radius, recipe)
     s = np.empty(2 * len(ends) - 1)
     s[::2], s[1::2] = ends, middles(ends)
     return ToothOutline(Outline((*inner[:2], *surface, inner[2])), s)
 
 
-def lowest_flank_node(profile: ToothProfile, recipe: MeshRecipe) -> float:
+def _lowest_flank_node(profile: ToothProfile, recipe: MeshRecipe) -> float:
     """Return where the fine division ends: the margin below the form point, or the end of the fillet."""
     end = profile.s_form - recipe.flank_margin
     return end if end > profile.s_root + SNAP * recipe.fillet_size else profile.s_root
 
 
-def rim_limit(profile: ToothProfile, recipe: MeshRecipe, s: FloatArray) -> FloatArray:
+def _rim_limit(profile: ToothProfile, recipe: MeshRecipe, s: FloatArray) -> FloatArray:
     """Return the largest element a thin rim admits: its thickness, growing away from the root."""
     gear = profile.gear
     thickness = max(gear.rim_thickness, THINNEST * gear.normal_module)
     return thickness + recipe.growth * np.maximum(s - profile.s_root, 0.0)
 
 
-def flank_divisions(profile: ToothProfile, s_low: float, recipe: MeshRecipe) -> FloatArray:
+def _flank_divisions(profile: ToothProfile, s_low: float, recipe: MeshRecipe) -> FloatArray:
     """Divide the flank from `s_low` to the tip edge.
 
     A corner is on the form point, where the curvature jumps, unless it is almost at `s_low`.
@@ -85,7 +85,7 @@ def flank_divisions(profile: ToothProfile, s_low: float, recipe: MeshRecipe) -> 
 
     def size(s: FloatArray) -> FloatArray:
         target = np.minimum(recipe.flank_size, recipe.tip_size + recipe.growth * (profile.s_tip - s))
-        return np.minimum(target, rim_limit(profile, recipe, s))
+        return np.minimum(target, _rim_limit(profile, recipe, s))
 
     if profile.s_form - s_low < SNAP * recipe.flank_size:
         return divide(s_low, profile.s_tip, size)
@@ -93,35 +93,35 @@ def flank_divisions(profile: ToothProfile, s_low: float, recipe: MeshRecipe) -> 
     return np.concatenate([below[:-1], above])
 
 
-def root_pieces(profile: ToothProfile, s_low: float, recipe: MeshRecipe) -> list[Piece]:
+def _root_pieces(profile: ToothProfile, s_low: float, recipe: MeshRecipe) -> list[Piece]:
     """Return the surface from the middle of the tooth space up to `s_low`: root land and fillet."""
 
     def size(s: FloatArray) -> FloatArray:
         target = np.minimum(recipe.fillet_size, recipe.flank_size + recipe.growth * (s_low - s))
-        return np.minimum(target, rim_limit(profile, recipe, s))
+        return np.minimum(target, _rim_limit(profile, recipe, s))
 
     land = profile.s_root - profile.s_space
     if s_low <= profile.s_root:
-        return [land_piece(profile, s_low, recipe)] if land > TINY * recipe.fillet_size else []
+        return [_land_piece(profile, s_low, recipe)] if land > TINY * recipe.fillet_size else []
     if land > SNAP * recipe.fillet_size:
         fillet = piece("fillet", profile.flank, divide(s_low, profile.s_root, size)[::-1])
-        return [land_piece(profile, s_low, recipe), fillet]
+        return [_land_piece(profile, s_low, recipe), fillet]
     # a land too short for an element of its own: the lowest element of the fillet reaches over it
     return [piece("fillet", profile.flank, divide(s_low, profile.s_space, size)[::-1])]
 
 
-def land_piece(profile: ToothProfile, s_low: float, recipe: MeshRecipe) -> Piece:
+def _land_piece(profile: ToothProfile, s_low: float, recipe: MeshRecipe) -> Piece:
     """Return the root circle from the middle of the tooth space to the fillet."""
     largest = min(recipe.body_size, LARGEST_ARC * profile.gear.root_radius)
 
     def size(s: FloatArray) -> FloatArray:
         target = np.minimum(recipe.flank_size + recipe.growth * (s_low - s), largest)
-        return np.minimum(target, rim_limit(profile, recipe, s))
+        return np.minimum(target, _rim_limit(profile, recipe, s))
 
     return piece("land", profile.flank, divide(profile.s_root, profile.s_space, size)[::-1])
 
 
-def tip_piece(profile: ToothProfile, recipe: MeshRecipe) -> Piece:
+def _tip_piece(profile: ToothProfile, recipe: MeshRecipe) -> Piece:
     """Return the tip circle from the tip edge to the center line."""
     radius, edge = profile.gear.tip_radius, profile.tip_angle
     largest = min(recipe.body_size / radius, LARGEST_ARC)
@@ -134,7 +134,7 @@ def tip_piece(profile: ToothProfile, recipe: MeshRecipe) -> Piece:
     return tip
 
 
-def inner_pieces(
+def _inner_pieces(
     surface: list[Piece], half_pitch_angle: float, bottom_radius: float, recipe: MeshRecipe
 ) -> list[Piece]:
     """Return bottom, side and center, which lie inside the material, sized by the distance to the surface."""

@@ -52,7 +52,7 @@ def tooth_sector(half: QuadraticMesh, outline: ToothOutline) -> ToothSector:
     center = boundary[outline.outline.positions("center")]
     points = half.points.copy()
     points[center, 0] = 0.0
-    image = mirror_image(len(points), center)
+    image = _mirror_image(len(points), center)
     others = np.setdiff1d(np.arange(len(points)), center)
     flank = boundary[outline.outline.positions("flank")]
     side = boundary[outline.outline.positions("side")]
@@ -69,7 +69,7 @@ def tooth_sector(half: QuadraticMesh, outline: ToothOutline) -> ToothSector:
     )
 
 
-def mirror_image(count: int, center: IntArray) -> IntArray:
+def _mirror_image(count: int, center: IntArray) -> IntArray:
     """Return the number of each node's mirror image; nodes on the center line are their own."""
     image = np.arange(count)
     others = np.setdiff1d(image, center)

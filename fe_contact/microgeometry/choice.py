@@ -106,7 +106,6 @@ class DesignMemory:
 
 
 def _name(values: FloatArray, position: FloatArray) -> bytes:
-    """Return the key of a record."""
     return hashlib.sha256(position.tobytes()).digest()[:_POSITIONS] + np.asarray(values, "<f8").tobytes()
 
 

@@ -226,6 +226,5 @@ def opened_by(strips: CarryingStrips, pair: ParallelAxes, name: str) -> FloatArr
 
 
 def _gap(pair: ParallelAxes, gear: str, figures: Mapping[str, Any]) -> ModificationGap:
-    """Return the gap of one flank alone, some figures of its modification changed."""
     changed = replace(getattr(pair, gear).modification, **figures)
     return ModificationGap(**(dict.fromkeys(GEARS, UNMODIFIED) | {gear: changed}))

@@ -114,7 +114,6 @@ class DesignProblem:
         return self._with_merit(objective, violation), merit
 
     def _with_merit(self, objective: float, violation: float) -> Assessed:
-        """Return a design of this objective in m and violation."""
         if not math.isfinite(objective):
             return Assessed(math.inf, math.inf, math.inf)
         return Assessed(objective, violation, objective / self.scale + PENALTY * violation)

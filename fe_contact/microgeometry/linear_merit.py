@@ -122,12 +122,10 @@ class _Program:
         return np.asarray(solution.x[: low.size]), float(solution.fun)
 
     def _add(self, row: IntArray, column: IntArray, value: FloatArray) -> None:
-        """Add entries."""
         self._row.append(row)
         self._column.append(column)
         self._value.append(value)
 
     def _end(self, right: FloatArray) -> None:
-        """End rows of these right-hand sides."""
         self._right.append(right)
         self._rows += right.size

@@ -102,14 +102,12 @@ def linearized(
 def _differentiated(
     pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution, names: tuple[str, ...]
 ) -> _Solved:
-    """Differentiate what was solved."""
     strips = CarryingStrips.of(pair, problem.candidates, adjoint(problem, solution))
     opened = np.stack([opened_by(strips, pair, name) for name in names])
     return _Solved(pair, problem, solution, figures(problem, solution), names, strips, opened)
 
 
 def _limit_rows(solved: _Solved, limits: Limits) -> list[Rows]:
-    """Return the rows of each limit that is set."""
     rows: list[Rows] = []
     if limits.max_pressure is not None:
         rows.append(_pressure(solved, limits.max_pressure))
@@ -130,7 +128,6 @@ def _pressure(solved: _Solved, limit: float) -> Rows:
 
 
 def _face_load(solved: _Solved, limit: float) -> Rows:
-    """Return how far the load at each point of the face exceeds its limit."""
     mean = over_face(solved.problem, solved.solution.force).mean(axis=1, keepdims=True) * limit
     by = [(over_face(solved.problem, each) / mean).ravel() for each in solved.force]
     return solved.figures.face_load.ravel() / limit - 1.0, np.stack(by, axis=-1)

@@ -154,7 +154,6 @@ class Scatter:
     def _of(
         spread: Mapping[str, float], rule: ScatterRule, finer: ScatterNodes | None = None
     ) -> ScatterNodes:
-        """Return the nodes of a rule."""
         point, weight = rule.nodes(len(spread))
         return ScatterNodes(tuple(spread), point * np.array(list(spread.values())), weight, finer)
 

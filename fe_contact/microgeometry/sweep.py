@@ -122,7 +122,7 @@ def sweep(request: SweepRequest, run: Run = Run()) -> Sweep:  # noqa: B008 (froz
     run.progress("compliance", 1.0)
     designs, rows = request.designs, []
     with clock.stage("contact"):
-        for row in run.workers.run(swept_design, swept, [tuple(design.items()) for design in designs]):
+        for row in run.workers.run(_swept_design, swept, [tuple(design.items()) for design in designs]):
             rows.append(row)
             run.progress("contact", len(rows) / len(designs))
     figures = _on_grid(request, np.stack(rows))
@@ -157,7 +157,7 @@ class SweptPair:
         return condense(self.request.pair, self.request.check(), cache)
 
 
-def swept_design(shared: SweptPair, design: tuple[tuple[str, float], ...]) -> FloatArray:
+def _swept_design(shared: SweptPair, design: tuple[tuple[str, float], ...]) -> FloatArray:
     """Return values and errors (2, L, Q) in SI of all quantities at all torques of a design: one task."""
     request, bodies, values = shared.request, shared.bodies, dict(design)
     question = request.flanks(values), request.torques, *request.alignment(values)

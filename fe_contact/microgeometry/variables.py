@@ -149,7 +149,6 @@ def modified(pair: ParallelAxes, values: Mapping[str, float]) -> ParallelAxes:
 
 
 def _with_gear(pair: ParallelAxes, name: str, values: Mapping[str, float]) -> ParallelAxes:
-    """Return the pair with one gear modified."""
     mine = {key.partition(".")[2]: float(value) for key, value in values.items() if key.startswith(name)}
     if not mine:
         return pair

@@ -13,7 +13,7 @@ OnPlan = Callable[[Mapping[str, float]], None]
 """Called with the predicted CPU seconds of the stages of a table, in their order, before it is computed."""
 
 
-def unplanned(_stages: Mapping[str, float]) -> None:
+def _unplanned(_stages: Mapping[str, float]) -> None:
     """Take no note of a plan."""
 
 
@@ -37,9 +37,9 @@ class Run:
     workers: Workers = InProcess()  # noqa: RUF009 (frozen)
     cache: Path | None = None
     progress: Progress = silent
-    on_plan: OnPlan = unplanned
+    on_plan: OnPlan = _unplanned
 
     @property
     def silent(self) -> Run:
         """The same without reports of progress."""
-        return replace(self, progress=silent, on_plan=unplanned)
+        return replace(self, progress=silent, on_plan=_unplanned)

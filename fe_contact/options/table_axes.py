@@ -64,7 +64,6 @@ class TableAxes:
 
     @property
     def _levels(self) -> FloatArray:
-        """Load levels as they are given."""
         return increasing(self.loads_as, getattr(self, self.loads_as))
 
     @property

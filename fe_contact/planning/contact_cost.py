@@ -85,13 +85,13 @@ def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, 
     if plan.positions is not None:
         middles, assessed = _SOLVED_MIDDLES * kept, min(alignments[0] * alignments[1], _JUDGED)
         seconds += work.of(middles * alignments[1], middles * period * assessed * some)
-    held = rows * (held_out_loads(loads) + (alignments[0] - 1) * some)
+    held = rows * (_held_out_loads(loads) + (alignments[0] - 1) * some)
     apart = _HELD_OUT_DISTANCES * (alignments[1] - 1)
     seconds += work.of(apart, held + apart * some)
     return _PLANE_CHECK + seconds + _TABLE_POINT * kept * period * alignments[0] * alignments[1] * loads
 
 
-def held_out_loads(loads: int) -> int:
+def _held_out_loads(loads: int) -> int:
     """Return how many loads are held out between so many."""
     return (loads - 1) * (WIDE_PROBES if loads - 1 <= WIDE_INTERVALS else 1)
 

@@ -209,7 +209,6 @@ def _free_ends(
 def _section(
     pair: ParallelAxes, gear: Toothing, recipe: MeshRecipe, hypothesis: PlaneHypothesis, cache: Path | None
 ) -> Cost:
-    """One gear in the plane."""
     if kept := section_kept(gear, recipe, hypothesis, condensed_teeth(pair), cache):
         return Cost(_READ_PLANE, 0.0, kept)
     return Cost(*section_cost(gear, recipe), 0.0)

@@ -187,7 +187,6 @@ def make_plan(
 
 
 def _support_loads(levels: FloatArray) -> FloatArray:
-    """Return loads below the lowest and above the highest of `levels`."""
     low, high = SMALLEST_SUPPORT * levels[-1], levels[0]
     below = max(math.ceil(math.log(high / low) / math.log(SUPPORT_RATIO)), 0) if high > low else 0
     return np.concatenate([np.geomspace(low, high, below + 1)[:-1], [LARGEST_SUPPORT * levels[-1]]])

@@ -302,12 +302,10 @@ def mesh_for_time(
 
 
 def _effort(option: MeshOption) -> float:
-    """Work of a run."""
     return option.effort
 
 
 def _percent(value: float) -> str:
-    """In per cent, two digits."""
     return engineering(100.0 * value, 2)
 
 

@@ -26,7 +26,7 @@ _NOTCH = (1.0, 8.0)
 """Where the stress correction factor holds: chord over twice the root radius [2]_."""
 
 
-def sharing_pairs(pair: ParallelAxes) -> float:
+def _sharing_pairs(pair: ParallelAxes) -> float:
     """Return how many pairs of teeth share the load where fewest do; of wide helical gears on average."""
     ratio, overlap = pair.transverse_contact_ratio, min(pair.overlap_ratio, 1.0)
     return (1.0 - overlap) * max(1.0, math.floor(ratio)) + overlap * max(1.0, ratio)
@@ -34,7 +34,7 @@ def sharing_pairs(pair: ParallelAxes) -> float:
 
 def line_load(pair: ParallelAxes, normal_force: float) -> float:
     """Return the load per length of contact, N/m."""
-    return normal_force * math.cos(pair.base_helix_angle) / (pair.face_width * sharing_pairs(pair))
+    return normal_force * math.cos(pair.base_helix_angle) / (pair.face_width * _sharing_pairs(pair))
 
 
 def pitch_point_pressure(pair: ParallelAxes, normal_force: float) -> float:

@@ -116,7 +116,6 @@ def _material(name: str, material: Material) -> Iterator[Finding]:
 
 
 def _shafts(pair: ParallelAxes) -> Iterator[Finding]:
-    """Check the shafts that bend."""
     for name, shaft in zip(("pinion", "wheel"), pair.shafts, strict=True):
         if shaft is not None:
             yield from _shaft(f"{name}.shaft", shaft)

@@ -46,7 +46,6 @@ def _transmission_error(values: FloatArray, module: float) -> Iterator[Finding]:
 
 
 def _pressure(values: FloatArray) -> Iterator[Finding]:
-    """Check the largest pressure."""
     largest = float(np.max(values[np.isfinite(values)], initial=0.0))
     reason = f"a contact pressure of {largest / 1e9:.3g} GPa is beyond the strength of any steel"
     yield from assessed("hertz_pressure", "max_pressure", largest, "Pa", reason=reason)

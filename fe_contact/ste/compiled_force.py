@@ -175,7 +175,7 @@ def _at_deflection(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def sample_forces(
+def _sample_forces(
     table: KernelTable,
     points: FloatArray,
     force: FloatArray,
@@ -257,7 +257,7 @@ class CompiledForce:
         """
         size = points.shape[1]
         forces = Forces(np.empty(size), np.empty(size), np.empty(size, np.int8))
-        sample_forces(self.table, points, *forces)
+        _sample_forces(self.table, points, *forces)
         return forces
 
 
@@ -268,5 +268,4 @@ def _widths(axis: Axis) -> FloatArray:
 
 
 def _packed(grid: LevelGrid) -> FloatArray:
-    """Return what a grid knows at its knots, the derivatives of one knot and level side by side."""
     return np.ascontiguousarray(np.stack(list(grid.nodal.values()), axis=-1)).ravel()

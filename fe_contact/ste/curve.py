@@ -21,7 +21,7 @@ from fe_contact.types import Estimate, FloatArray
 # Load shares and error bands between the stored points.
 
 
-def pairs_seen(database: SteFields, position: FloatArray) -> NDArray[np.int64]:
+def _pairs_seen(database: SteFields, position: FloatArray) -> NDArray[np.int64]:
     """List the pairs that can carry load at `position` (not wrapped).
 
     Where all teeth are alike (period 1) these are the stored pairs inside [0, 1); elsewhere the pair that is
@@ -35,7 +35,7 @@ def pairs_seen(database: SteFields, position: FloatArray) -> NDArray[np.int64]:
 
 
 def load_share(database: SteFields, position: FloatArray, point: OperatingPoint) -> FloatArray:
-    """Share of each of `pairs_seen` at (Q,) positions: (Q, pairs), >= 0, each row sums to 1.
+    """Share of each of `_pairs_seen` at (Q,) positions: (Q, pairs), >= 0, each row sums to 1.
 
     The share of a pair of teeth is one curve over its own phase, zero beyond the stored pairs; C1 and
     monotone between knots in phase. As many pairs as the period has pitches meet in turn. Below the smallest
@@ -45,8 +45,8 @@ def load_share(database: SteFields, position: FloatArray, point: OperatingPoint)
     pitch, fraction = np.floor(position).astype(np.int64), position
     if database.period > 1:
         fraction = position - pitch
-    query = fraction[:, None] + pairs_seen(database, position)
-    met = (pairs_seen(database, position) - pitch[:, None]) % database.period
+    query = fraction[:, None] + _pairs_seen(database, position)
+    met = (_pairs_seen(database, position) - pitch[:, None]) % database.period
     share = np.empty(query.shape)
     for teeth in np.unique(met):
         of_teeth = met == teeth
@@ -188,7 +188,7 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
         position=position,
         ste=values,
         error=sum(error_parts, np.zeros(position.size)),
-        pair=pairs_seen(database, position),
+        pair=_pairs_seen(database, position),
         load_share=load_share(database, position, point),
         mean=Estimate(float(np.mean(ste[: even.size])), mean_error, "m"),
         peak_to_peak=Estimate(float(ste[highest] - ste[lowest]), ripple_error, "m"),

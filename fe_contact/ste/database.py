@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 # The derivatives along all axes of a mesh-force table: plain arrays that make it C1 in every coordinate.
 
 
-def with_axis_derivatives(mesh_force: MeshForce) -> ForceTable:
+def _with_axis_derivatives(mesh_force: MeshForce) -> ForceTable:
     """Return the table of `mesh_force` with the derivatives that its interpolant uses.
 
     Stiffnesses come limited over all axes jointly, so that the force never falls with deflection; a table
@@ -160,7 +160,7 @@ class SteDatabase(SteFields):
         """Return the table of plain arrays for dynamics; raises as `extraction.force_table`."""
         if not allow_failed:
             return self._force_table
-        return with_axis_derivatives(MeshForce(extraction.force_table(repair.without_failed(self))))
+        return _with_axis_derivatives(MeshForce(extraction.force_table(repair.without_failed(self))))
 
     def monotone_repaired(self) -> tuple[SteDatabase, repair.Repair]:
         """Return a table whose transmission error increases with load, and the changes."""
@@ -186,18 +186,15 @@ class SteDatabase(SteFields):
 
     @cached_property
     def _force_table(self) -> ForceTable:
-        """The extraction with derivatives along all axes, one object for all who take it."""
-        return with_axis_derivatives(self._mesh_force)
+        return _with_axis_derivatives(self._mesh_force)
 
     @property
     def _to_transverse(self) -> float:
-        """F_bt / F_bn."""
         return math.cos(self.facts.base_helix_angle)
 
     def _alignment(
         self, misalignment: ArrayLike | None, center_distance_change: ArrayLike | None
     ) -> tuple[ArrayLike, ArrayLike]:
-        """Misalignment and center-distance change with their defaults."""
         return (
             default_value(None, self.misalignment) if misalignment is None else misalignment,
             default_value(None, self.center_distance_change)

@@ -88,7 +88,6 @@ def _on_branches(
 def _branch(
     levels: LoadLevels, k: int, exponent: FloatArray, force: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Deflection and stiffness at `force` from level k on, with stiffness growing as F^exponent."""
     ratio, stiffness = force / levels.force[k], levels.stiffness[..., k, None]
     power = 1.0 - exponent
     rise = levels.force[k] / (np.where(stiffness > 0.0, stiffness, np.inf) * power) * (ratio**power - 1.0)
@@ -110,7 +109,6 @@ def _exponent(levels: LoadLevels, pairs: IntArray, k: int) -> FloatArray:
 
 
 def _on_cubic(levels: LoadLevels, k: int, force: FloatArray) -> Pair:
-    """Deflection and stiffness at `force` on the cubic of step k."""
     shape = (*levels.deflection.shape[:-1], force.size)
     deflection, stiffness = (
         np.repeat(entry[..., k : k + 2].reshape(-1, 2), force.size, axis=0)

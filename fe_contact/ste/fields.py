@@ -315,7 +315,6 @@ def _status_name(code: int) -> str:
 
 
 def _same_bits(first: NDArray[Any], second: NDArray[Any]) -> bool:
-    """Whether two arrays have the same type, shape and bytes."""
     return first.dtype == second.dtype and first.shape == second.shape and first.tobytes() == second.tobytes()
 
 

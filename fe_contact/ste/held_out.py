@@ -76,7 +76,6 @@ def _require_inside(database: SteDatabase, other: SteDatabase) -> None:
 
 
 def _rms(values: FloatArray) -> float:
-    """Root mean square."""
     return float(np.sqrt(np.mean(values**2)))
 
 

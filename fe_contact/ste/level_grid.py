@@ -138,7 +138,6 @@ def _orders(axes: tuple[Axis, ...]) -> list[Order]:
 
 
 def _plain(order: Order, values: FloatArray, slopes: tuple[FloatArray, ...]) -> FloatArray:
-    """Return the values, or their slope along the one axis that `order` names."""
     return slopes[order.index(1)] if any(order) else values
 
 
@@ -167,7 +166,6 @@ def _largest_product(first: FloatArray, second: FloatArray, dims: int) -> FloatA
 
 
 def _product_weight(size: int, i: int, j: int) -> float:
-    """Weight of coefficients i and j in the product of two Bernstein forms of `size` coefficients."""
     degree = size - 1
     return comb(degree, i) * comb(degree, j) / comb(2 * degree, i + j)
 

@@ -76,6 +76,5 @@ def _normal_force(database: SteFields, torque: float | None, force: float | None
 
 
 def _inside(name: str, value: float | None, axis: FloatArray) -> float:
-    """Return a value inside the ends of its axis."""
     hint = "The table has no such axis; add values to the case." if axis.size == 1 else "Add it to the case."
     return within(name, default_value(value, axis), float(axis[0]), float(axis[-1]), hint)

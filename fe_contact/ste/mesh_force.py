@@ -152,7 +152,6 @@ class MeshForce:
         return deflection.reshape(shape), validity.astype(np.int8).reshape(shape)
 
     def _stencils(self, x: FloatArray, m: FloatArray, c: FloatArray) -> tuple[Stencil, Stencil, Stencil]:
-        """Stencils of the queries on the three axes."""
         first, second, third = self.axes
         return first.stencil(x), second.stencil(m), third.stencil(c)
 
@@ -199,5 +198,4 @@ def _position_first(entry: FloatArray) -> FloatArray:
 
 
 def _along(axis: Axis, number: int, rule: SlopeRule, values: FloatArray) -> FloatArray:
-    """Slopes by `rule` along one array axis."""
     return np.moveaxis(rule(axis, np.moveaxis(values, number, 0)), 0, number)

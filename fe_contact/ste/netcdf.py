@@ -113,7 +113,6 @@ def _global_attributes(database: SteFields) -> Json:
 
 
 def _stored(database: SteFields) -> dict[str, Any]:
-    """Arrays that are written, by name."""
     return {name: getattr(database, name) for name in database.stored}
 
 
@@ -131,7 +130,6 @@ def _before(period: int) -> str:
 
 
 def _facts(path: Path, attributes: Json) -> PairFacts:
-    """Read the pair facts of a file."""
     content = json_attribute(path, attributes, "facts")
     if not isinstance(content, dict):
         raise DatabaseError(f"{path.name}: damaged, its facts are no JSON object")

@@ -16,7 +16,7 @@ from fe_contact.types import Json
 from model_studies.netcdf_input import UnreadableFile, opened
 
 
-def read_variables(path: Path) -> tuple[dict[str, Any], Json]:
+def _read_variables(path: Path) -> tuple[dict[str, Any], Json]:
     """Return all variables and global attributes of a netCDF-4 file, undecoded.
 
     Raises
@@ -76,7 +76,7 @@ class FileFormat:
         DatabaseError
             The file is missing, no netCDF-4, of another kind, of a newer schema, or damaged.
         """
-        arrays, attributes = read_variables(path)
+        arrays, attributes = _read_variables(path)
         if attributes.get("format") != self.name:
             raise DatabaseError(f"{path.name}: a netCDF file, but no {self.content}")
         version, newest = attributes.get("schema_version"), self.schema_version

@@ -120,7 +120,6 @@ def _isotonic(levels: FloatArray, force: FloatArray, least: float) -> FloatArray
 
 
 def _report(table: SteFields, curves: int, change: FloatArray) -> Repair:
-    """Report the size and the position of the largest change."""
     worst = np.unravel_index(int(np.argmax(change)), change.shape)
     where = {name: float(getattr(table, name)[i]) for name, i in zip(GRID, worst, strict=True)}
     return Repair(curves, float(change[worst]), **where)

@@ -121,17 +121,14 @@ class ByDask:
 
     @property
     def _gone(self) -> bool:
-        """Whether the scheduler was lost for good."""
         return str(self.client.status) in ("closing", "closed")
 
     @property
     def _address(self) -> str:
-        """Address of the scheduler."""
         return str(self.client.scheduler.address) if self.client.scheduler else "the cluster"
 
 
 def _itself(packed: Packed) -> Packed:
-    """Return what was sent, on a worker."""
     return packed
 
 

@@ -67,7 +67,6 @@ def do_task(function: Callable[[Any, Any], R], packed: Packed, item: Any) -> Don
 
 
 def _cpu_seconds() -> float:
-    """CPU seconds of who works here, and of finished children."""
     alone = threading.current_thread() is threading.main_thread()
     own = time.process_time() if alone else time.thread_time()
     return own + children_cpu_seconds()

@@ -48,7 +48,7 @@ _AXES = {
 }
 
 
-def print_draft(table: SteDatabase, refining: str) -> None:
+def _print_draft(table: SteDatabase, refining: str) -> None:
     """Print the figures of a table that is being refined, on standard error: they are progress."""
     sys.stderr.write(f"{draft_line(table, refining)}\n")
     sys.stderr.flush()
@@ -139,7 +139,7 @@ def analyzed(
             analysis_options(case),
             Run(workers, cache_home() / "compliance", report),
             case=case_json(case),
-            on_draft=print_draft,
+            on_draft=_print_draft,
         )
     return phrased_database(database, case)
 

@@ -78,7 +78,6 @@ def limit_bytes() -> int:
 
 
 def _tell(removed: list[UsedFile], *, as_json: bool) -> None:
-    """Say what was removed."""
     if as_json:
         print_json({"removed_files": len(removed), "removed_bytes": sum(file.size for file in removed)})
         return
@@ -92,7 +91,6 @@ def _facts(held: dict[str, list[UsedFile]]) -> dict[str, object]:
 
 
 def _size(files: list[UsedFile]) -> str:
-    """Return the size of files in MB."""
     return engineering(sum(file.size for file in files) / 1e6, 4)
 
 

@@ -87,7 +87,6 @@ def _figures(pairs: tuple[DeformedPair, ...]) -> list[dict[str, float]]:
 
 
 def _largest(displacement: FloatArray) -> float:
-    """Return the largest magnitude in um."""
     return float(np.linalg.norm(displacement, axis=1).max() / UM)
 
 

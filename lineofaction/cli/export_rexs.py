@@ -92,5 +92,4 @@ def _calculated(document: Document) -> dict[str, list[str]]:
 
 
 def _is_calculated(attribute: Attribute) -> bool:
-    """Return whether an attribute is a result."""
     return attribute.origin == CALCULATED

@@ -96,7 +96,6 @@ def _text(error: ServiceError) -> str:
 
 
 def _notes(error: BaseException) -> list[str]:
-    """Return what was added to an error on its way."""
     return list(getattr(error, "__notes__", ()))
 
 

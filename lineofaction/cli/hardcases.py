@@ -16,7 +16,7 @@ from lineofaction.report.document.write import write_whole
 
 def run_hardcases(only: Sequence[str], output: Path | None, *, as_json: bool) -> None:
     """Run the scenes, write the page, print."""
-    scenes = chosen_scenes(only)
+    scenes = _chosen_scenes(only)
     if output is not None:
         check_writable(output)
     outcomes: list[Outcome] = []
@@ -34,7 +34,7 @@ def run_hardcases(only: Sequence[str], output: Path | None, *, as_json: bool) ->
         raise typer.Exit(EXIT_FAILED)
 
 
-def chosen_scenes(only: Sequence[str]) -> list[HardScene]:
+def _chosen_scenes(only: Sequence[str]) -> list[HardScene]:
     """Return the scenes of these names or families, in their own order; all if none are named.
 
     Raises

@@ -54,7 +54,6 @@ def run_list(path: Path | None, *, as_json: bool) -> None:
 
 
 def _row(key: AccessKey) -> list[str]:
-    """Return a key as a row of the table."""
     expires = "never" if key.expires is None else f"{key.expires}{' (expired)' if key.expired else ''}"
     limits = [f"{value} {name.replace('_', ' ')}" for name, value in key.limits.items() if value is not None]
     return [

@@ -68,7 +68,6 @@ def run_submit(
 
 
 def _further(request: ProcessRequest) -> dict[str, Any]:
-    """Return the further inputs of a process."""
     known = (*_OF_CASES, *_OF_SCENES, *_OF_BOTH)
     if request.process not in (None, *known):
         raise BadInput.of("--process", request.process, f"one of {', '.join(known)}", "Or leave it out.")
@@ -89,7 +88,6 @@ def _further(request: ProcessRequest) -> dict[str, Any]:
 def _submitted(
     client: LineOfActionClient, file: InputFile, process: str | None, further: dict[str, Any]
 ) -> JobState:
-    """Submit a file as what it holds."""
     content = read_table(file)
     if "shafts" in content and process not in _OF_CASES:
         return client.submit(process or "simulate", scene_inputs(file) | further)
@@ -129,7 +127,6 @@ def run_fetch(name: str, output: Path, service: str, *, wait: bool, as_json: boo
 
 
 def _ended(client: LineOfActionClient, job: str, *, wait: bool) -> Result:
-    """Return the result of a job that has ended, or does while it is waited for."""
     if not re.fullmatch(r"[0-9a-fA-F-]{1,64}", job):
         raise BadInput.of("name", job, "the identifier of a job or a content hash", "loa submit prints both.")
     try:
@@ -139,7 +136,6 @@ def _ended(client: LineOfActionClient, job: str, *, wait: bool) -> Result:
 
 
 def _show_result(key: str, kind: str, file: Path | None) -> None:
-    """Print which result it is, and of one in a file its main figures."""
     _tell(f"{kind} {key}")
     if file is not None:
         print_result(_headlines(file), [file])
@@ -156,5 +152,4 @@ def _headlines(file: Path) -> Sequence[Headline]:
 
 
 def _tell(line: str) -> None:
-    """Print a line for people."""
     console().print(line, highlight=False, soft_wrap=True)

@@ -71,7 +71,6 @@ def _checked(scene: SceneInput, tables: _Tables, folder: Path, report: Report) -
 
 
 def _written_out(scene: SceneInput, folder: Path) -> SceneInput:
-    """Return the scene with the cases in its files written out."""
     cases = [case_of_mesh(mesh, f"meshes[{i}]", folder) for i, mesh in enumerate(scene.meshes)]
     meshes = (
         mesh if case is None else mesh.model_copy(update={"case": case, "case_file": None})

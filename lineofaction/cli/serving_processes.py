@@ -148,7 +148,6 @@ class ServingProcesses:
             self._alive.append(self._started())
 
     def _started(self) -> BaseProcess:
-        """Start a process."""
         context = multiprocessing.get_context("forkserver")
         context.set_forkserver_preload([_APPLICATION, *HEAVY])
         process = context.Process(target=self.serve)

@@ -46,12 +46,10 @@ def grouped(verb: Callable[..., R]) -> Callable[..., R]:
 
 
 def _is_group(annotation: Any) -> bool:
-    """Whether a parameter is a dataclass of options."""
     return isinstance(annotation, type) and is_dataclass(annotation)
 
 
 def _options(group: Any) -> list[inspect.Parameter]:
-    """Return the fields of a group as parameters."""
     hints = get_type_hints(group, include_extras=True)
     return [
         inspect.Parameter(

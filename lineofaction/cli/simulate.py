@@ -48,7 +48,6 @@ def run_headlines(peaks: Mapping[str, Any]) -> tuple[Headline, ...]:
 
 
 def _largest(what: str, forces: dict[str, tuple[float, float]]) -> Headline:
-    """Name the part with the largest peak."""
     name = max(forces, key=lambda part: forces[part][0])
     peak, rms = forces[name]
     return Headline(f"largest {what} {name}", f"{number(peak, 4)} N", f"rms {number(rms, 4)} N")

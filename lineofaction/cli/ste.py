@@ -57,7 +57,6 @@ def open_ste(file: Path) -> SteDatabase:
 
 
 def _arguments(request: CurveRequest) -> dict[str, Any]:
-    """Return the checked arguments of the curve."""
     if (request.torque is None) == (request.force is None):
         both = None if request.torque is None else f"--torque {request.torque:g} --force {request.force:g}"
         raise BadInput.of(
@@ -96,12 +95,10 @@ def _rows(curve: dict[str, Any]) -> list[list[str]]:
 
 
 def _columns(curve: dict[str, Any]) -> list[str]:
-    """Heads of the table."""
     return ["position", "ste_um", *(f"load_share_{pair:+d}" for pair in curve["pair"])]
 
 
 def _write_csv(curve: dict[str, Any]) -> None:
-    """Print the curve as CSV."""
     writer = csv.writer(sys.stdout, lineterminator="\n")
     writer.writerow(_columns(curve))
     writer.writerows(_rows(curve))

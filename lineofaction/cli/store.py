@@ -104,7 +104,6 @@ def _show(items: Sequence[Leftover], quarantine_days: float, *, dry_run: bool) -
 
 
 def _opened(options: dict[str, object]) -> tuple[Settings, Machinery]:
-    """Open the database and the store of the settings."""
     settings = load_settings(**options)
     keep_private()
     return settings, job_machinery(settings, Registry(), works=False)

@@ -55,7 +55,7 @@ from service.version import solver_version
 
 
 @contextmanager
-def resumed_workers(
+def _resumed_workers(
     study: Study, subjects: Sequence[BoundaryModel], inputs: BoundaryModel, workers: Workers
 ) -> Iterator[Workers]:
     """Provide workers that keep what they did, for a study that can be resumed; else the same workers.
@@ -93,7 +93,7 @@ def run_study(study: Study, options: Json) -> None:
     stopping = until_interrupted if study.run.interruptible else nullcontext
     with (
         open_executor(executor) as others,
-        resumed_workers(study, [subject for subject, _ in subjects], inputs, others) as workers,
+        _resumed_workers(study, [subject for subject, _ in subjects], inputs, others) as workers,
         progress_bar() as report,
         stopping() as cancel,
     ):
@@ -132,7 +132,6 @@ def _tell(
 
 
 def _run(options: Json) -> RunResult | None:
-    """Return the run that was named."""
     return None if options.get("run") is None else read_run(options["run"], "run")
 
 
@@ -164,13 +163,11 @@ def _fields(study: Study, options: Json) -> Json:
 
 
 def _digest(file: Path) -> str:
-    """Return the hash of a file, which stands for it in the inputs."""
     with file.open("rb") as content:
         return hashlib.file_digest(content, "sha256").hexdigest()
 
 
 def _read(study: Study, file: InputFile) -> tuple[Case | SceneInput, Path]:
-    """Return the case or the scene in a file, and its folder."""
     if study.subject == "scene" or (study.subject != "case" and "shafts" in read_table(file)):
         return assessed_scene(file)
     return read_model(Case, file), file.folder
@@ -184,12 +181,10 @@ def _assessed(subject: Case | SceneInput) -> Case | SceneInput:
 
 
 def _runs_folder(targets: list[Path]) -> Path | None:
-    """Return the folder for runs beside the files to write."""
     return targets[0].with_name(f"{targets[0].stem}_runs") if targets else None
 
 
 def _made(subject: Case | SceneInput, folder: Path, service: str | None, report: Report) -> Any:
-    """Return the case, or the scene with its tables."""
     return subject if isinstance(subject, Case) else tabled_scene(subject, folder, service, report)
 
 

@@ -74,7 +74,6 @@ class BatchSurface(Followed, Generic[T, J]):
         return replace(state, parent=self.id, place=place), result
 
     def _job(self, state: JobState, result: Result | None) -> J:
-        """Return a job of the batch."""
         raise NotImplementedError
 
 

@@ -133,5 +133,4 @@ class _Begun(Generic[T]):
 
 
 def _due(begun: _Begun[Any]) -> float:
-    """Return when an operation wants to go on."""
     return begun.due

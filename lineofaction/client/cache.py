@@ -88,7 +88,6 @@ class ResultCache:
         return self._directory / kind / _plain(key)
 
     def _note(self, service: str, process: str, inputs: dict[str, Any]) -> Path:
-        """Return the file of the note of a request."""
         text = json.dumps({"service": service, "process": process, "inputs": inputs}, sort_keys=True)
         return self._directory / "requests" / f"{hashlib.sha256(text.encode()).hexdigest()}.json"
 

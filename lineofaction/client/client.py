@@ -122,32 +122,26 @@ class LookupCalls(Surface):
         return (yield from self._answer("/v1/units/open", body, UnitBody.model_validate))
 
     def _answer(self, path: str, body: dict[str, Any], reader: Callable[[Any], T]) -> Steps[T]:
-        """Return what `reader` makes of the answer to a body."""
         return (yield from self.session.exchange.read(reader, "POST", path, json=body))
 
 
 def _case(answer: dict[str, Any]) -> schemas.Case:
-    """Read a case."""
     return schemas.validated(schemas.Case, answer["case"])
 
 
 def _scene(answer: dict[str, Any]) -> schemas.SceneInput:
-    """Read a scene."""
     return schemas.validated(schemas.SceneInput, answer["scene"])
 
 
 def _text(answer: dict[str, Any]) -> str:
-    """Read the text of a file."""
     return str(answer["toml"])
 
 
 def _effects(answer: list[Any]) -> tuple[EffectBody, ...]:
-    """Read declarations of effects."""
     return tuple(map(EffectBody.model_validate, answer))
 
 
 def _examples(answer: list[Any]) -> tuple[ExampleBody, ...]:
-    """Read examples."""
     return tuple(map(ExampleBody.model_validate, answer))
 
 
@@ -157,7 +151,7 @@ def _examples(answer: list[Any]) -> tuple[ExampleBody, ...]:
 DEFAULT = "http://127.0.0.1:8321"
 
 
-def http_options(base_url: str | None, timeout: float, key: str | None) -> dict[str, Any]:
+def _http_options(base_url: str | None, timeout: float, key: str | None) -> dict[str, Any]:
     """Return the arguments of an httpx2 client, blocking or awaiting, of one service.
 
     Proxies and certificates are those of the environment (``HTTPS_PROXY``, ``NO_PROXY``, ``SSL_CERT_FILE``);
@@ -249,7 +243,7 @@ class Client(Processes, JobCalls, ResultCalls, LookupCalls, SceneCalls):
         key: str | None = None,
         progress: Watch | None = None,
     ) -> None:
-        options = http_options(base_url, timeout, key)
+        options = _http_options(base_url, timeout, key)
         cache = ResultCache(cache_home() / "results" if cache_dir is None else Path(cache_dir))
         self.session = Session(Exchange(options["base_url"], attempts), cache, patience, progress)
         self._connect(transport, options)
@@ -258,7 +252,6 @@ class Client(Processes, JobCalls, ResultCalls, LookupCalls, SceneCalls):
         return f"<{type(self).__name__} {self.session.exchange.base_url}>"
 
     def _connect(self, transport: Any, options: dict[str, Any]) -> None:
-        """Make the driver."""
         raise NotImplementedError
 
     def with_terms(

@@ -72,7 +72,6 @@ class Followed(Surface):
             yield from JobCalls.events(self, self.id)
 
     def _patiently(self, fetch: Callable[[], Steps[Fetched]]) -> Steps[Fetched]:
-        """Return what `fetch` returns, through restarts of the service."""
         return outlasting(fetch, self.session.patience)
 
     def _seen(self, progress: Watch | None) -> Watch:

@@ -63,7 +63,6 @@ class MeshTables:
             raise error.within(field if case is None else f"{field}.case") from None
 
     def _in_file(self, field: str, name: str) -> SteDatabase:
-        """Return the database in a file."""
         file = self._folder / name
         if not file.is_file():
             advice = "Check the path, or make one with: loa analyze"
@@ -72,7 +71,6 @@ class MeshTables:
         return database
 
     def _of_case(self, case: Case) -> Steps[SteDatabase]:
-        """Return the database of a case."""
         known = next((database for other, database in self._known if other == case), None)
         if known is not None:
             return known

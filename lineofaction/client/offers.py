@@ -54,7 +54,6 @@ class Offer:
 
 
 def _read_database(file: Path) -> Any:
-    """Read an STE database."""
     with libraries():
         from fe_contact.ste import SteDatabase  # noqa: PLC0415 (keeps the import of the client light)
 
@@ -62,7 +61,6 @@ def _read_database(file: Path) -> Any:
 
 
 def _read_run(file: Path) -> Any:
-    """Read a run."""
     with libraries():
         from dynamics.results import RunResult  # noqa: PLC0415 (keeps the import of the client light)
 
@@ -77,12 +75,10 @@ def _read_study(study: Study, file: Path) -> Any:
 
 
 def _signature(subject: str, *further: Parameter) -> Signature:
-    """Return the signature of calls about a subject."""
     return Signature([Parameter(subject, Parameter.POSITIONAL_OR_KEYWORD), *further])
 
 
 def _study_offer(study: Study) -> Offer:
-    """Return the process of a study."""
     to_inputs = {"case": case_inputs, "scene": scene_inputs, "case or scene": inputs_of}[study.subject]
     varied = (
         Parameter("study", Parameter.POSITIONAL_OR_KEYWORD, default={} if study.bare else Parameter.empty)

@@ -108,7 +108,6 @@ class _Calls(Generic[P, T, F]):
         self.__signature__ = offer.signature
 
     def _entered(self, subjects: Iterable[Any], options: dict[str, Any]) -> Steps[JobState]:
-        """Return the steps that enter a batch."""
         jobs = [self._offer.inputs(subject, **options) for subject in subjects]
         return JobCalls.submit_batch(self._client, self._offer.name, jobs)
 
@@ -179,7 +178,6 @@ class Process(_Calls[P, T, F]):
             raise
 
     def _job(self, state: JobState, result: Result | None = None) -> Job[T, F]:
-        """Return the job of a state."""
         return Job(self._client, state, self._offer.read, result)
 
 
@@ -226,7 +224,6 @@ class AsyncProcess(_Calls[P, T, F]):
             raise
 
     def _job(self, state: JobState, result: Result | None = None) -> AsyncJob[T, F]:
-        """Return the job of a state."""
         return AsyncJob(self._client, state, self._offer.read, result)
 
 

@@ -93,13 +93,11 @@ class LineChart:
         return f'<svg role="img" aria-label="{words}" {size} {look}>{"".join(parts)}</svg>'
 
     def _axes(self) -> tuple[Axis, Axis]:
-        """Return the axes, which the curves fill."""
         xs = [value for curve in self.curves for value in curve.x]
         ys = [value for curve in self.curves for value in curve.y]
         return Axis(min(xs), max(xs), LEFT, RIGHT), Axis(min(ys), max(ys), BOTTOM, TOP)
 
     def _titles(self) -> Iterator[str]:
-        """Yield the titles of the axes."""
         middle = (LEFT + RIGHT) / 2.0, (TOP + BOTTOM) / 2.0
         yield f'<text x="{middle[0]:g}" y="{HEIGHT - 8:g}" text-anchor="middle">{escape(self.across)}</text>'
         turn = f'transform="translate(14 {middle[1]:g}) rotate(-90)"'
@@ -159,7 +157,6 @@ def _section(section: Json) -> str:
 
 
 def _table(head: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
-    """Return a table."""
     top = "".join(f"<th>{escape(str(cell))}</th>" for cell in head)
     body = "".join(f"<tr>{''.join(f'<td>{escape(str(cell))}</td>' for cell in row)}</tr>" for row in rows)
     return f"<table><tr>{top}</tr>{body}</table>"
@@ -177,7 +174,6 @@ def _chart(figure: Json) -> LineChart | None:
 
 
 def _title(axis: Json) -> str:
-    """Return the title of an axis, whose text is HTML to plotly.js."""
     return unescape((axis.get("title") or {}).get("text") or "")
 
 

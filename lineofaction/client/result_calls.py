@@ -36,7 +36,7 @@ Column = float | Collection[float]
 """One value for all points, or a list or one-dimensional array with one for each."""
 
 
-def query_columns(columns: Mapping[str, Column]) -> bytes:
+def _query_columns(columns: Mapping[str, Column]) -> bytes:
     """Return columns one after the other; one value is repeated for all points.
 
     Raises
@@ -53,7 +53,7 @@ def query_columns(columns: Mapping[str, Column]) -> bytes:
     return b"".join(_swapped(v if len(v) == size else v * size).tobytes() for v in lists.values())
 
 
-def read_answer(content: bytes) -> QueryOutput:
+def _read_answer(content: bytes) -> QueryOutput:
     """Return force, stiffness and validity from their columns."""
     values = array("d")
     values.frombytes(content)
@@ -67,12 +67,10 @@ def read_answer(content: bytes) -> QueryOutput:
 
 
 def _values(column: Column) -> array[float]:
-    """Return a column as an array."""
     return array("d", [column] if isinstance(column, int | float) else column)
 
 
 def _swapped(values: array[float]) -> array[float]:
-    """Return the values in little-endian order, or from it."""
     if sys.byteorder == "big":
         values.byteswap()
     return values
@@ -249,9 +247,9 @@ class ResultCalls(Surface):
             "misalignment_um": misalignment_um,
             "center_distance_change_mm": center_distance_change_mm,
         }
-        path, content = f"/v1/databases/{key}/query", query_columns(columns)
+        path, content = f"/v1/databases/{key}/query", _query_columns(columns)
         raw = yield from self.session.exchange.columns(path, content, columns=",".join(columns))
-        return read_answer(raw)
+        return _read_answer(raw)
 
     @operation
     def ste(

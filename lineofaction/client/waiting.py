@@ -96,7 +96,6 @@ def outlasting(once: Callable[[], Steps[T]], patience: float) -> Steps[T]:
 
 
 def _ended(job: str, look: Callable[[], Steps[JobState]], pace: Pace) -> Steps[JobState]:
-    """Look until it has ended."""
     begin, answered, pause = time.monotonic(), pace.answered, pace.interval
     while True:
         try:

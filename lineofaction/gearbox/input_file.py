@@ -152,7 +152,6 @@ def _entries(owner: Any, override: Override, name: str) -> Iterator[tuple[Any, A
 
 
 def _parts(parts: list[Any], override: Override, name: str) -> list[int]:
-    """Return the indices of the parts of a name, all for ``*``."""
     names = [part.get("name") if isinstance(part, dict) else None for part in parts]
     chosen = [index for index, own in enumerate(names) if name in (_EVERY, own)]
     if not chosen:
@@ -162,5 +161,4 @@ def _parts(parts: list[Any], override: Override, name: str) -> list[int]:
 
 
 def _no_place(override: Override, bound: str, advice: str) -> BadInput:
-    """Refuse a path."""
     return BadInput.of(override.path, override.value, bound, advice)

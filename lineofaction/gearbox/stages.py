@@ -107,5 +107,4 @@ class TableFraction:
         return self._done
 
     def _reach(self, fraction: float) -> None:
-        """Note the fraction of the table."""
         self._done = max(self._done, fraction)

@@ -98,5 +98,4 @@ def even_positions(count: int) -> FloatArray:
 
 
 def _again(bodies: PairContact, pair: ParallelAxes, plan: Plan) -> PairContact:
-    """Return the same compliances under a pair of other modifications and loads."""
     return replace(bodies, pair=pair, plan=plan, _problems={})

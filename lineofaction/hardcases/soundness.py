@@ -18,7 +18,7 @@ COMPARED = 12
 def soundness(
     problem: ContactProblem, solution: ContactSolution, compared: int = COMPARED
 ) -> tuple[Measured, ...]:
-    """Return failed points, worst residual, most iterations, and the disagreement of two solvers.
+    """Return failed points, worst residual, most iterations, and the _disagreement of two solvers.
 
     The second one (`fe_contact.contact.interior_point`) shares no line with the first, not even the local
     law. `compared` points are spread evenly over positions and loads.
@@ -26,7 +26,7 @@ def soundness(
     total = solution.status.size
     chosen = np.unique(np.linspace(0, total - 1, min(compared, total)).astype(int))
     points = [tuple(map(int, np.unravel_index(i, solution.status.shape))) for i in chosen]
-    apart = [disagreement(problem, solution, position, load) for position, load in points]
+    apart = [_disagreement(problem, solution, position, load) for position, load in points]
     return (
         Measured("failed points", float(np.count_nonzero(solution.status)), most=0.0),
         Measured("largest residual", float(solution.residuals.max()), most=LARGEST_RESIDUAL),
@@ -35,7 +35,7 @@ def soundness(
     )
 
 
-def disagreement(problem: ContactProblem, solution: ContactSolution, position: int, load: int) -> float:
+def _disagreement(problem: ContactProblem, solution: ContactSolution, position: int, load: int) -> float:
     """Return the difference of both solvers' deflection over the elastic deflection."""
     answer = solve(_plain(problem, position), float(solution.load[load]))
     here = float(solution.deflection[position, load])

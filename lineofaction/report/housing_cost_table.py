@@ -34,7 +34,6 @@ def _work(facts: Mapping[str, Any]) -> Iterator[tuple[str, Json]]:
 
 
 def _row(name: str, cost: Json) -> tuple[str, ...]:
-    """Describe a cost."""
     seconds = amount(cost["seconds"]), amount(cost["predicted_seconds"])
     return name, *seconds, gigabytes(cost["bytes"]), gigabytes(cost["predicted_bytes"])
 

@@ -92,7 +92,7 @@ class OidcSettings(BaseSettings):
         return self
 
 
-def load_oidc_settings() -> OidcSettings:
+def _load_oidc_settings() -> OidcSettings:
     """Return the settings; raises `BadInput` of what cannot be."""
     try:
         return OidcSettings()
@@ -186,7 +186,6 @@ class Tokens:
         return key
 
     def _mapped(self, claims: Json) -> Holder:
-        """Return the holder that claims describe."""
         settings = self._settings
         name = _claim(claims, settings.name_claim)
         if not isinstance(name, str) or not 0 < len(name) <= _LONGEST_NAME:
@@ -259,7 +258,7 @@ def open_identities(settings: Settings) -> Identities:
         The address is not loopback and there are neither keys nor an issuer of tokens, or their file or its
         settings cannot be used.
     """
-    oidc = load_oidc_settings()
+    oidc = _load_oidc_settings()
     tokens = None if oidc.issuer is None else Tokens(oidc, Issuer(oidc.issuer, oidc.keys_url))
     identities = Identities(Keyring(KeyFile(settings.key_file)), tokens)
     if not settings.loopback and not identities:

@@ -70,7 +70,6 @@ class Issuer:
 
     @property
     def _age(self) -> float:
-        """Seconds since the keys were fetched."""
         return self._clock() - self._fetched
 
     def _good(self, identifier: str) -> bool:
@@ -107,7 +106,6 @@ class Issuer:
 
 
 def _host(url: str) -> tuple[str, str]:
-    """Return scheme and host of an address."""
     parts = urlsplit(url)
     return parts.scheme, parts.netloc
 

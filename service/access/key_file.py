@@ -165,7 +165,6 @@ def _ending(keys: Iterable[AccessKey], instant: datetime, rest: timedelta) -> tu
 
 
 def _life(key: AccessKey) -> timedelta | None:
-    """Return for how long a key was made."""
     return None if key.expires is None else read(key.expires) - read(key.created)
 
 

@@ -94,7 +94,6 @@ def problem(error: ServiceError) -> tuple[AnswerHead, bytes]:
 
 
 def _translated(error: Exception) -> ServiceError | None:
-    """Return an error of the libraries as the boundary's."""
     from lineofaction.gearbox.convert.errors import translated  # noqa: PLC0415 (start-up time; failures are rare)
 
     return translated(error)

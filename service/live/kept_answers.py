@@ -57,5 +57,4 @@ class KeptAnswers:
             logger.warning("answer not kept", error=str(error))
 
     def _path(self, tag: str) -> Path:
-        """Return the file of a tag."""
         return self._folder / f"{hashlib.sha256(tag.encode()).hexdigest()}.json"

@@ -293,7 +293,6 @@ class LivePool:
         return self._ready().ask(order, self._limits.answer_s)
 
     def _ready(self) -> LiveWorker:
-        """Return a worker that runs."""
         with self._changed:
             if self._stopping:
                 raise LiveUnavailable("The service stops.")
@@ -325,5 +324,4 @@ def live_pool(settings: Settings) -> LivePool:
 
 
 def _share(settings: Settings) -> int:
-    """Return the memory of one computation, MB."""
     return max(settings.memory_limit_mb or machine_memory_mb() // settings.workers, LEAST_MEMORY_MB)

@@ -42,7 +42,6 @@ def live_plan(inputs: Json) -> Json:
 
 
 def _bodies(key: str, file: Path, cache: Path, *, compute: bool) -> tuple[Case, CondensedPair]:
-    """Return the condensed pair of a database, from memory, from the cache on disk, or computed."""
     if key not in _pairs:
         _pairs[key] = condensed_of(file, cache, compute=compute)
     _pairs.move_to_end(key)

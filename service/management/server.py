@@ -161,5 +161,4 @@ def _absent() -> _Answer:
 
 
 def _document(status: HTTPStatus, facts: dict[str, str]) -> _Answer:
-    """Return facts as JSON."""
     return _Answer(status, "application/json", json.dumps(facts).encode())

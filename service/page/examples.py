@@ -55,5 +55,4 @@ def examples() -> tuple[Example, ...]:
 
 
 def _text(name: str) -> str:
-    """Return the text of a file."""
     return (_DIRECTORY / f"{name}.toml").read_text(encoding="utf-8")

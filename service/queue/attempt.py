@@ -135,7 +135,7 @@ def begun(
     settings: Settings, process: Process, claim: Claim, launch: Launch, figures: WorkerFigures
 ) -> Attempt:
     """Launch a worker for a claim; raises what keeps the system from it."""
-    workspace = workspace_of(settings, claim)
+    workspace = _workspace_of(settings, claim)
     log = settings.data_directory / "log" / f"{claim.id}.log"
     workspace.mkdir(parents=True, exist_ok=True)
     launched = time.time()  # before the worker can reach its first stage
@@ -148,19 +148,17 @@ def begun(
     return Attempt(claim, worker, workspace, log, figures, trace, PacedFraction(process.stages))
 
 
-def workspace_of(settings: Settings, claim: Claim) -> Path:
-    """Directory of a computation, the same for all its attempts."""
+def _workspace_of(settings: Settings, claim: Claim) -> Path:
     return settings.data_directory / "work" / claim.id
 
 
 def _order(settings: Settings, entry: str, claim: Claim) -> WorkOrder:
-    """Return the order of a claim."""
     return WorkOrder(
         entry=entry,
         inputs=claim.inputs,
         key=claim.key,
         project=claim.project,
-        workspace=workspace_of(settings, claim),
+        workspace=_workspace_of(settings, claim),
         data_directory=settings.data_directory,
         memory_limit_mb=_memory_mb(settings),
         database_url=settings.database_address,

@@ -146,7 +146,6 @@ class Claims:
             return None
 
     def _end(self, connection: Connection) -> float:
-        """Return when a lease that begins now ends, by the database's clock."""
         return dialect_of(connection).clock(connection) + self._lease_s
 
     @retried
@@ -204,13 +203,11 @@ class Claims:
 
     @retried
     def _end_with(self, claim: Claim, values: dict[str, Any]) -> None:
-        """End a computation that runs under the lease of `claim`, and count it."""
         with writing(self._engine) as connection:
             end_computations(connection, _under([claim]), values)
 
     @retried
     def _change(self, claim: Claim, values: dict[str, Any]) -> None:
-        """Change a computation that runs under the lease of `claim`."""
         with writing(self._engine) as connection:
             changed = update(computations).where(_under([claim])).values(updated=now(), **values)
             connection.execute(changed)
@@ -274,7 +271,6 @@ def _running(connection: Connection, which: ColumnElement[bool]) -> list[Claim]:
 
 
 def _claimed(row: Row[Any], requested: float) -> Claim:
-    """Return a row as a claim."""
     inputs, (project, key) = json.loads(row.inputs), at_address(row.key)
     facts = (row.id, row.process, key, inputs, row.attempts, row.lease, requested)
     return Claim(*facts, row.program, row.max_cost_s, row.traceparent, project=project)

@@ -39,7 +39,6 @@ def end_computations(connection: Connection, which: ColumnElement[bool], values:
 
 
 def _count(connection: Connection, row: Row[Any]) -> None:
-    """Count one computation."""
     span = datetime.fromisoformat(row.finished) - datetime.fromisoformat(row.started)
     seconds = max(span.total_seconds(), 0.0)  # machines' clocks differ
     key = {"process": row.process, "outcome": row.state, "le": bound_of(seconds)}

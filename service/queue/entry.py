@@ -80,7 +80,6 @@ def equal_job(
 
 
 def _live(key: str) -> ColumnElement[bool]:
-    """Condition of the computation of `key` that waits or runs."""
     return (computations.c.key == key) & computations.c.state.in_(LIVE)
 
 

@@ -120,7 +120,6 @@ class Retention:
 
     @retried
     def _states(self, *states: str) -> set[str]:
-        """Return the computations in these states."""
         with reading(self._engine) as connection:
             which = select(computations.c.id).where(computations.c.state.in_(states))
             return set(connection.execute(which).scalars())

@@ -25,7 +25,6 @@ def subject_of(inputs: str) -> str:
 
 
 def _pair(case: Json) -> str:
-    """Return the words for a case."""
     pair, load = case["pair"], case["load"]
     teeth = "/".join(str(pair[gear]["teeth"]) for gear in ("pinion", "wheel"))
     torques = load.get("torque_n_m") or ()

@@ -212,7 +212,6 @@ class Submissions:
 
     @retried
     def _relabel(self, identifier: str, label: Label) -> None:
-        """Write the label of a job."""
         with writing(self._engine) as connection:
             connection.execute(update(jobs).where(jobs.c.id == identifier).values(**label.columns()))
 
@@ -237,7 +236,6 @@ class Submissions:
             _abandon(connection, computations.c.id.in_(owners) & ~wanted)
 
     def _jobs(self) -> Any:
-        """Select the jobs of the project."""
         return select_jobs(self._project)
 
     @retried

@@ -127,7 +127,6 @@ def _durations(connection: Connection) -> tuple[Durations, ...]:
 
 
 def _results(connection: Connection) -> tuple[tuple[str, int, int], ...]:
-    """Add up the results of each kind."""
     statement = select(results.c.kind, func.count(), func.sum(results.c.size)).group_by(results.c.kind)
     rows = connection.execute(statement.order_by(results.c.kind))
     return tuple((row[0], row[1], int(row[2])) for row in rows)

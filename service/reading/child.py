@@ -41,7 +41,6 @@ def work(descriptor: int) -> None:
 
 
 def _answer() -> tuple[AnswerHead, bytes]:
-    """Return head and body of the answer."""
     try:
         order = LiveOrder.from_line(sys.stdin.buffer.read())
     except MemoryError:

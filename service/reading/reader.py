@@ -98,7 +98,6 @@ class Reader:
         self._stopping = False
 
     def _started(self, folder: Path) -> tuple[ChildProcess, _Pipes]:
-        """Start a child that works in a folder."""
         theirs, orders = os.pipe()
         answers, channel = os.pipe()
         self._log.parent.mkdir(parents=True, exist_ok=True)

@@ -88,13 +88,11 @@ def scene_of_toml(inputs: Json, folder: Path) -> Json:
 
 
 def _table(inputs: Json, folder: Path, with_files: Callable[[Json, Find], Json]) -> Json:
-    """Return the table of a text with what it names as files, which are written into a folder."""
     find = sent_files([validated(FileContentInput, file) for file in inputs["files"]], folder)
     return with_files(toml_table(inputs["toml"], "toml"), find)
 
 
 def _written_out(table: Json, find: Find) -> Json:
-    """Return a table with what its sender gives of what it names."""
     return written_out(table, find, SENT)
 
 

@@ -17,7 +17,7 @@ from service.routes.caching import for_one_caller
 # Whether a request was meant for this machine: what protects a service without keys from pages of others.
 
 
-def meant_for_us(scope: Scope) -> bool:
+def _meant_for_us(scope: Scope) -> bool:
     """Whether the header Host, if there is one, names this machine or the address that was connected to.
 
     A page of another site can let its own name point to 127.0.0.1 (DNS rebinding). To a browser the service
@@ -79,7 +79,7 @@ class Access:
             await self._app(scope, receive, send)
             return
         closed = self._always or bool(self._identities)
-        if not closed and not meant_for_us(scope):
+        if not closed and not _meant_for_us(scope):
             raise NotForUs("A service without access keys answers to localhost and its own address only.")
         scope.setdefault("state", {})["closed"] = closed
         if scope["path"] in VITAL_PATHS:

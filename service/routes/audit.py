@@ -56,6 +56,5 @@ class Visit:
         )
 
     def _who(self) -> dict[str, Any]:
-        """Return who calls, as far as that is known."""
         holder = self.holder
         return {"caller": holder and holder.name, "project": holder and holder.project}

@@ -116,7 +116,6 @@ def case_to_toml(body: CaseRequest) -> TomlBody:
 
 
 def _example(example: Example) -> ExampleBody:
-    """Return an example with all defaults."""
     case = case_json(validated(Case, example.content))
     facts = {"name": example.name, "title": example.title, "note": example.note}
     return ExampleBody(**facts, case=case, hash=ANALYZE.key({"case": case}))

@@ -30,18 +30,16 @@ def page_links(request: Request, path: str, last: Mark | None) -> list[Link]:
     parameters = [(name, value) for name, value in request.query_params.multi_items() if name != "cursor"]
     links = [Link(href=_href(path, request.query_params.multi_items()), rel="self", title="This page")]
     if last is not None:
-        following = _href(path, [*parameters, ("cursor", cursor_of(last))])
+        following = _href(path, [*parameters, ("cursor", _cursor_of(last))])
         links.append(Link(href=following, rel="next", title="Next page"))
     return links
 
 
 def _href(path: str, parameters: Sequence[tuple[str, str]]) -> str:
-    """Return a path with its parameters."""
     return f"{path}?{urlencode(parameters)}" if parameters else path
 
 
-def cursor_of(mark: Mark) -> str:
-    """Return the cursor of what follows a mark."""
+def _cursor_of(mark: Mark) -> str:
     return base64.urlsafe_b64encode(" ".join(mark).encode()).decode().rstrip("=")
 
 

@@ -134,5 +134,4 @@ def description_30(request: Request) -> Response:
 
 
 def _text(document: dict[str, Any]) -> bytes:
-    """Return a description as it is sent."""
     return json.dumps(document, ensure_ascii=False, allow_nan=False).encode()

@@ -20,7 +20,7 @@ from service.routes.caching import NO_STORE
 from service.routes.media_types import JSON, PROBLEM, media_type
 
 
-def problem_response(facts: Mapping[str, Any], headers: Mapping[str, str] | None = None) -> Response:
+def _problem_response(facts: Mapping[str, Any], headers: Mapping[str, str] | None = None) -> Response:
     """Return a problem, which no cache keeps, in ASCII, so that nothing a caller sent can break it."""
     body = json.dumps(facts, allow_nan=False, ensure_ascii=True).encode()
     fields = {"Cache-Control": NO_STORE, **(headers or {})}
@@ -34,7 +34,7 @@ def problem_of(error: ServiceError) -> Response:
         headers["WWW-Authenticate"] = error.challenge
     if error.accept_post is not None:
         headers["Accept-Post"] = error.accept_post
-    return problem_response(error.as_json(), headers)
+    return _problem_response(error.as_json(), headers)
 
 
 def install_error_handlers(app: FastAPI) -> None:
@@ -64,7 +64,6 @@ def _invalid_request(request: Request, error: Exception) -> Response:
 
 
 def _is_json(kind: str) -> bool:
-    """Whether the framework reads bodies of a media type."""
     return kind == JSON or (kind.startswith("application/") and kind.endswith("+json"))
 
 
@@ -102,7 +101,7 @@ def _refused_by_framework(request: Request, error: Exception) -> Response:
     headers = dict(error.headers or {})
     if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
         headers["Allow"] = ", ".join(_methods(request))
-    return problem_response(facts, headers)
+    return _problem_response(facts, headers)
 
 
 def _methods(request: Request) -> list[str]:

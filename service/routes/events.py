@@ -121,7 +121,6 @@ class _Latest:
 
 
 async def _changes(context: Context, job: Job, event: JobEvent, sent: str | None) -> AsyncIterator[bytes]:
-    """Yield events until the job has ended."""
     if event.last:
         yield event.text
         return

@@ -135,7 +135,6 @@ def batch_results(context: Context, batch: Job) -> BatchResults:
 
 
 def _in_batch(job: Job, output: str) -> BatchResult:
-    """Return what came of a job."""
     problem, results = problem_of(job), {output: reference_of(job)}
     if problem is None:
         return BatchResult(jobID=job.id, status="successful", results=results, problem=None)

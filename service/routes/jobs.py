@@ -110,7 +110,6 @@ def _interval(text: str) -> tuple[str | None, str | None]:
 
 
 def _instant(text: str) -> str:
-    """Return an instant as it is stored."""
     instant = datetime.fromisoformat(text)
     if instant.tzinfo is None:
         raise ValueError(text)
@@ -224,6 +223,5 @@ def status_info(job: Job, registry: Registry) -> StatusInfo:
 
 
 def _shown(differences: Differences) -> ShownDifferences:
-    """Return the differences of a job as they are shown."""
     facts = asdict(differences)
     return ShownDifferences.model_validate(facts | {"since": facts["since"] or None})

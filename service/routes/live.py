@@ -73,19 +73,16 @@ async def plan(body: PlanRequest, context: Ctx) -> Response:
 
 
 async def _answer(context: Context, order: LiveOrder, caller: str | None) -> Response:
-    """Ask the live worker and pass its answer on."""
     name = None if caller is None else f"{order.entry} {context.project} {caller}"
     body = await asyncio.wrap_future(context.live.ask(order, name))
     return Response(body, media_type="application/json")
 
 
 def _cache(context: Context) -> str:
-    """Directory of flank compliances, which the jobs fill."""
     return str(context.settings.data_directory / "compliance")
 
 
 def _documented(handler: Any, model: Any) -> None:
-    """Name the model by which the fields of refused bodies are explained."""
     handler.body_model = model
 
 

@@ -81,5 +81,4 @@ class Metrics:
 
 
 def _kinds(problem: type[ServiceError]) -> set[str]:
-    """Return the names of a kind of problem and of all below it, as `ServiceError.kind`."""
     return {last_part(problem.type)}.union(*(_kinds(below) for below in problem.__subclasses__()))

@@ -196,7 +196,6 @@ class _Exchange:
             raise UnsupportedMediaType("The body is compressed (Content-Encoding). Send it uncompressed.")
 
     def _too_large(self) -> TooLarge:
-        """Return the error of a body beyond the limit."""
         return TooLarge(f"The body has more than {self._body_limit} bytes, the limit of this service.")
 
     async def receive(self) -> Message:

@@ -102,7 +102,6 @@ def _complete(document: Json) -> None:
 
 
 def _operations(document: Json) -> Iterator[tuple[str, Json]]:
-    """Yield every operation with its path."""
     for path, methods in document["paths"].items():
         for operation in methods.values():
             yield path, operation
@@ -122,7 +121,6 @@ def _add_models(schemas: Json) -> None:
 
 
 def _show(content: Json, example: Any) -> None:
-    """Add an example to the bodies of a content."""
     for kind in _SHOWN:
         if kind in content and example is not None:
             content[kind] = {**content[kind], "example": example}

@@ -112,7 +112,6 @@ def _other_name(registry: Registry) -> Any:
 
 
 def _add_execution(router: APIRouter, process: Process) -> None:
-    """Add the execution route of one process."""
     body = execute_model(process.id, process.inputs, process.output)
 
     @needs(Scope.SUBMIT)
@@ -207,7 +206,6 @@ def _predicted(context: Context, process: Process, inputs: dict[str, Any]) -> di
 
 
 def _summary(process: Process) -> dict[str, Any]:
-    """Facts of a process summary."""
     path = f"/v1/processes/{process.id}"
     return {
         "id": process.id,
@@ -252,7 +250,6 @@ def _titled(inputs: type[BaseModel], within: str = "") -> Iterator[tuple[str, An
 
 
 def _description(process: Process) -> ProcessDescription:
-    """Return a process description."""
     schema = process.inputs.model_json_schema()
     inputs = {
         name: ValueDescription(

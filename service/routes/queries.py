@@ -43,7 +43,7 @@ _DEEPEST = 2
 _EMPTY_LIST = b"\x80"  # also a byte of numbers, but hardly of every other one
 
 
-def points_of_json(body: bytes, _columns: Sequence[str]) -> FloatArray:
+def _points_of_json(body: bytes, _columns: Sequence[str]) -> FloatArray:
     """Read a query in JSON; raises `BadInput`."""
     try:
         return points_of_model(QueryInput.model_validate_json(body))
@@ -51,7 +51,7 @@ def points_of_json(body: bytes, _columns: Sequence[str]) -> FloatArray:
         _refuse(error, "valid JSON")
 
 
-def points_of_cbor(body: bytes, _columns: Sequence[str]) -> FloatArray:
+def _points_of_cbor(body: bytes, _columns: Sequence[str]) -> FloatArray:
     """Read a query in CBOR, of the same shape as in JSON; lists may be typed arrays; raises `BadInput`."""
     try:
         if body.count(_EMPTY_LIST) > len(body) // 4 + 16:
@@ -71,7 +71,7 @@ def points_of_cbor(body: bytes, _columns: Sequence[str]) -> FloatArray:
         raise BadInput.of("body", f"{len(body)} bytes", "valid CBOR without other tags", advice) from None
 
 
-def points_of_raw(body: bytes, columns: Sequence[str]) -> FloatArray:
+def _points_of_raw(body: bytes, columns: Sequence[str]) -> FloatArray:
     """Read columns of little-endian float64, one after the other; raises `BadInput`."""
     check_columns(columns)
     width = 8 * len(columns)
@@ -88,22 +88,21 @@ def as_json(answer: ForceAnswer) -> bytes:
     return to_json(_plain(answer))
 
 
-def as_cbor(answer: ForceAnswer) -> bytes:
-    """Write an answer in CBOR, of the same shape as in JSON."""
+def _as_cbor(answer: ForceAnswer) -> bytes:
     return cbor2.dumps(_plain(answer))
 
 
-def as_raw(answer: ForceAnswer) -> bytes:
+def _as_raw(answer: ForceAnswer) -> bytes:
     """Write force, stiffness and validity (sum of flags) as columns of little-endian float64."""
     return np.array(answer, dtype="<f8").tobytes()
 
 
 READ: dict[str, Callable[[bytes, Sequence[str]], FloatArray]] = {
-    JSON: points_of_json,
-    CBOR: points_of_cbor,
-    RAW: points_of_raw,
+    JSON: _points_of_json,
+    CBOR: _points_of_cbor,
+    RAW: _points_of_raw,
 }
-WRITE: dict[str, Callable[[ForceAnswer], bytes]] = {JSON: as_json, CBOR: as_cbor, RAW: as_raw}
+WRITE: dict[str, Callable[[ForceAnswer], bytes]] = {JSON: as_json, CBOR: _as_cbor, RAW: _as_raw}
 
 
 def _plain(answer: ForceAnswer) -> dict[str, Any]:

@@ -79,7 +79,6 @@ def describe_refusals(document: Json) -> None:
 
 
 def _by_status(problems: Iterable[type[ServiceError]]) -> Kinds:
-    """Return types and titles of problems by status."""
     kinds: Kinds = {}
     for problem in problems:
         kinds.setdefault(problem.status, {})[problem.type] = problem.title
@@ -107,7 +106,6 @@ def _taken_out(responses: Json) -> Kinds:
 
 
 def _name(status: int) -> str:
-    """Return the name of a status among the responses."""
     return HTTPStatus(status).phrase.title().replace(" ", "")
 
 

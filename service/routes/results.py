@@ -135,7 +135,6 @@ def _metadata(stored: StoredResult, request: Request, facts: dict[str, Any]) -> 
 
 
 def _digest(sha256: bytes) -> dict[str, str]:
-    """Return the header with the digest of a body."""
     return {"Content-Digest": f"sha-256=:{base64.b64encode(sha256).decode()}:"}
 
 

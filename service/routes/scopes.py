@@ -57,7 +57,7 @@ class ScopedRoute(APIRoute):
         async def admitted(request: Request) -> Response:
             require(request, scope)
             if streams:
-                hold_stream(request)
+                _hold_stream(request)
             response: Response = await answer(request)
             return response
 
@@ -71,7 +71,7 @@ def require(request: Request, scope: Scope) -> None:
         raise MissingScope.of(key.name, scope, key.scopes)
 
 
-def hold_stream(request: Request) -> None:
+def _hold_stream(request: Request) -> None:
     """Count a stream of the caller until its last byte is sent; raises `TooManyHeld`."""
     key = key_of(request)
     if key is not None:

@@ -78,5 +78,4 @@ async def result_sound(
 
 
 def _wav(answer: bytes) -> bytes:
-    """Return the file in the answer of a worker."""
     return base64.b64decode(json.loads(answer)["wav"])

@@ -43,7 +43,7 @@ class BatchRequest(BoundaryModel):
 
     def inputs_of(self, index: int) -> dict[str, Any]:
         """Return the inputs of one job."""
-        merged: dict[str, Any] = merge_patch(self.inputs, self.jobs[index])
+        merged: dict[str, Any] = _merge_patch(self.inputs, self.jobs[index])
         return merged
 
 
@@ -62,7 +62,7 @@ class BatchResults(BaseModel):
     jobs: list[BatchResult]
 
 
-def merge_patch(target: Any, patch: Any, deepest: int = _DEEPEST) -> Any:
+def _merge_patch(target: Any, patch: Any, deepest: int = _DEEPEST) -> Any:
     """Return `target` with the changes of a JSON merge patch (RFC 7396): null removes a member.
 
     What lies deeper than any inputs do is replaced as it is.
@@ -74,5 +74,5 @@ def merge_patch(target: Any, patch: Any, deepest: int = _DEEPEST) -> Any:
         if value is None:
             merged.pop(name, None)
         else:
-            merged[name] = merge_patch(merged.get(name), value, deepest - 1)
+            merged[name] = _merge_patch(merged.get(name), value, deepest - 1)
     return merged

@@ -51,7 +51,6 @@ def _value(name: str, value: Any) -> Any:
 
 @lru_cache(maxsize=1)
 def _wanted_output() -> type[BoundaryModel]:
-    """Return the model of a request for an output."""
     type_field: Any = (Literal[NETCDF], Field(NETCDF, description="Media type of the output"))
     form = create_model("NcFormat", __base__=BoundaryModel, mediaType=type_field)
     text = "Default: value; in a document: reference"

@@ -55,7 +55,6 @@ def database_engine(where: Path | str, *, pooled: bool = True) -> Engine:
 
 
 def _file_url(file: Path) -> URL:
-    """URL of a SQLite file, whatever characters its name has."""
     return URL.create("sqlite", database=str(file))
 
 

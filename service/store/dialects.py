@@ -51,7 +51,6 @@ class SqliteCommits:
         return self._version != before
 
     def _data_version(self) -> int:
-        """Read the version."""
         cursor = self._connection.cursor()
         try:
             return int(cursor.execute("PRAGMA data_version").fetchone()[0])

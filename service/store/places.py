@@ -141,7 +141,6 @@ class ObjectFiles:
             draft.unlink(missing_ok=True)
 
     def _cached(self, name: str, sha256: str) -> Path:
-        """Return the path of a digest in the cache."""
         return self._cache / sha256[:2] / f"{sha256}{PurePosixPath(name).suffix}"
 
     def move(self, name: str, target: str) -> None:

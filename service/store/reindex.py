@@ -69,7 +69,6 @@ def reindex(store: ResultStore, deployment: Deployment) -> Reindexed:
 
 
 def _gone(store: ResultStore, line: IndexLine) -> bool:
-    """Strike a line whose file is gone."""
     return not store.files.has(line.file) and store.strike(line)
 
 

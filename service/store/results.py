@@ -208,7 +208,7 @@ class ResultStore:
 
     def find(self, key: str, kind: str) -> IndexLine | None:
         """Return the index's line, None if there is none or its file is gone."""
-        if not is_key(key):
+        if not _is_key(key):
             return None
         line = self._whole(key, kind)
         self.lookups.note(hit=line is not None)
@@ -249,7 +249,7 @@ class ResultStore:
         StoreUnavailable, DatabaseUnavailable
             Its place, or the index, does not answer.
         """
-        line = self._find(key, kind) if is_key(key) else None
+        line = self._find(key, kind) if _is_key(key) else None
         if line is None:
             raise self._missing(key, kind)
         try:
@@ -311,13 +311,12 @@ class ResultStore:
         return [_read(row) for row in rows]
 
 
-def is_key(key: str) -> bool:
+def _is_key(key: str) -> bool:
     """Whether `key` is a SHA-256 in hexadecimal."""
     return len(key) == hashlib.sha256().digest_size * 2 and set(key) <= set("0123456789abcdef")
 
 
 def _line(connection: Connection, address: str, kind: str | None) -> IndexLine | None:
-    """Return one line of the index."""
     statement = select(results).where(results.c.key == address).order_by(results.c.kind)
     if kind is not None:
         statement = statement.where(results.c.kind == kind)
@@ -326,6 +325,5 @@ def _line(connection: Connection, address: str, kind: str | None) -> IndexLine |
 
 
 def _read(row: Row[Any]) -> IndexLine:
-    """Return a row as a line."""
     project, key = at_address(row.key)
     return IndexLine(key, row.kind, row.sha256, row.size, row.file, row.used, row.reindexed, project)

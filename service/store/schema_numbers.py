@@ -68,6 +68,5 @@ def write_oldest(connection: Connection) -> None:
 
 
 def _number(connection: Connection, table: str) -> str | None:
-    """Read the one row of a table."""
     number = connection.execute(text(f"SELECT version_num FROM {table}")).scalar()
     return None if number is None else str(number)

@@ -75,7 +75,6 @@ class WriteCheck:
         return Writable() if waits else written
 
     def _try(self, outcome: Future[Writable]) -> None:
-        """Write."""
         begun = time.monotonic()
         results, _ = self._fault("results", self._deployment.write_place)
         database, late = self._fault("database", self._deployment.write_database)

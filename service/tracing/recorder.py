@@ -39,7 +39,6 @@ def recorder() -> Tracer:
 
 
 def _exporter(name: str) -> SpanExporter | None:
-    """Return the installed exporter of a name."""
     chosen = "otlp_proto_http" if name == "otlp" else name
     for entry in entry_points(group="opentelemetry_traces_exporter", name=chosen):
         exporter: SpanExporter = entry.load()()

@@ -147,7 +147,6 @@ def _due(connection: Connection) -> Select[Any]:
 
 
 def _now(status: ColumnElement[Any]) -> ColumnElement[bool]:
-    """Condition of calls that the state of their job asks for."""
     return or_(*(and_(webhooks.c.event == event, status.in_(EVENTS[event])) for event in EVENTS))
 
 

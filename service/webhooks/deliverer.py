@@ -53,7 +53,6 @@ class Outbox:
         return True
 
     def _make(self, call: Call) -> None:
-        """Make a call and note what came of it."""
         facts = {"job": call.job, "call": call.event, "attempt": call.attempts}
         try:
             status = self._sent(call)

@@ -13,8 +13,7 @@ _HOUSING = Stage("housing", 0.3)
 """Mesh and modes of solids; a stage that a scene does without has no share."""
 
 
-def of_scene(*stages: Stage) -> tuple[Stage, ...]:
-    """Return the stages of the work on a scene, which begins with its housings."""
+def _of_scene(*stages: Stage) -> tuple[Stage, ...]:
     return (_HOUSING, *(Stage(stage.name, (1.0 - _HOUSING.share) * stage.share) for stage in stages))
 
 
@@ -42,12 +41,11 @@ SIMULATE = Process(
     kind="run",
     prepare=on_demand("service.worker.preparations:prepare_scene"),
     entry="service.worker.simulation_work:simulate_scene",
-    stages=of_scene(Stage("analysis", 0.5), Stage("integration", 0.5)),
+    stages=_of_scene(Stage("analysis", 0.5), Stage("integration", 0.5)),
 )
 
 
-def study_process(study: Study) -> Process:
-    """Return the process of a study."""
+def _study_process(study: Study) -> Process:
     stages = tuple(Stage(*stage) for stage in study.stages)
     return Process(
         id=study.name,
@@ -59,12 +57,12 @@ def study_process(study: Study) -> Process:
         kind=study.kind,
         prepare=partial(on_demand("service.worker.study_work:prepare"), study),
         entry=f"service.worker.study_work:{study.name}",
-        stages=stages if study.subject == "case" else of_scene(*stages),
+        stages=stages if study.subject == "case" else _of_scene(*stages),
         action=study.action,
     )
 
 
 def default_registry() -> Registry:
     """Return the processes every service offers."""
-    studies = map(study_process, STUDIES.values())
+    studies = map(_study_process, STUDIES.values())
     return Registry(ANALYZE, SIMULATE, *studies)

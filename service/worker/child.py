@@ -87,7 +87,6 @@ def _watch_parent(until: float | None, rest: bytes) -> None:
 
 
 def _alone_in(workspace: Path) -> None:
-    """Wait until an earlier worker in the workspace, killed a moment ago, is gone."""
     lock(os.open(workspace, os.O_RDONLY), wait=True)  # open, and so locked, until we end
 
 
@@ -129,7 +128,6 @@ class _Reporter:
 
 
 def _send(channel: TextIO, message: dict[str, Any]) -> None:
-    """Write one line."""
     channel.write(json.dumps(message) + "\n")
 
 
@@ -161,7 +159,6 @@ def _stamp(order: WorkOrder, products: tuple[Product, ...]) -> None:
 
 
 def _translated(error: Exception) -> ServiceError | None:
-    """Return an error of the libraries as the boundary's."""
     from lineofaction.gearbox.convert.errors import translated  # noqa: PLC0415 (start-up time; failures are rare)
 
     return translated(error)

@@ -51,7 +51,6 @@ def cluster_of(order: WorkOrder) -> Iterator[Workers]:
 
 
 def _told(reason: WorkersLost) -> None:
-    """Say that the rest is done here, in the log of the service."""
     logger.warning("cluster away, the job goes on here: %s", reason)
 
 
@@ -80,7 +79,6 @@ class _WhenNeeded:
 
 
 def _connected(scheduler: str, cost: RunCost) -> ByDask:
-    """Connect."""
     try:
         return replace(dask_workers(scheduler), cost=cost)
     except InputError as error:

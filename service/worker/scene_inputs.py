@@ -29,7 +29,6 @@ def check_scene_inputs(scene: SceneInput, store: ResultStore) -> None:
 
 
 def _facts(field: str, mesh: MeshInput, store: ResultStore) -> PairFacts:
-    """Return the facts of a mesh's pair, from its case or its stored database."""
     _check_source(field, mesh, store)
     if mesh.case is not None:
         try:
@@ -58,6 +57,5 @@ def check_run(key: str | None, store: ResultStore) -> None:
 
 
 def _refuse_file(field: str, path: str, instead: str) -> NoReturn:
-    """Refuse the name of a file on the caller's disk."""
     bound = "left out: the service reads no files of its callers"
     raise BadInput.of(field, path, bound, f"{instead}; the client does this for you.")

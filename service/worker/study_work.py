@@ -63,7 +63,6 @@ def _work(study: Study, order: WorkOrder, progress: Progress) -> tuple[Product, 
 
 
 def _run(order: WorkOrder, inputs: Any) -> RunResult | None:
-    """Return the stored run that the inputs name."""
     key = getattr(inputs, "run", None)
     return None if key is None else RunResult.from_netcdf(store_of(order).verified(key, "run").path)
 

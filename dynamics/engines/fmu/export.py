@@ -46,7 +46,7 @@ _CAPABILITIES = (
 )
 
 
-def model_description(name: str, chosen: Sequence[Variable], guid: str, sources: Sequence[str]) -> bytes:
+def _model_description(name: str, chosen: Sequence[Variable], guid: str, sources: Sequence[str]) -> bytes:
     """Return the XML; it holds no date, so that the same table gives the same file.
 
     Parameters
@@ -162,7 +162,7 @@ def find_compiler() -> list[str]:
     raise InputError("CC", " ".join(requested) or None, "a C compiler on the path", advice)
 
 
-def compile_library(folder: Path, sources: Sequence[str], library: str) -> None:
+def _compile_library(folder: Path, sources: Sequence[str], library: str) -> None:
     """Compile `sources` in `folder` into the shared library of that name there.
 
     Raises
@@ -238,7 +238,7 @@ def _exact(value: float) -> str:
 MAGIC = b"LOAMESH1"
 
 
-def table_content(table: MeshTable) -> bytes:
+def _table_content(table: MeshTable) -> bytes:
     """Return five sizes (M, D, P, L, period) and the arrays: axes, positions, levels, nodes.
 
     Nodes (M, D, P, L, 4) hold deflection, its slope, stiffness, its slope.
@@ -255,7 +255,7 @@ def identity_of(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()[:32]
 
 
-def table_file(content: bytes) -> bytes:
+def _table_file(content: bytes) -> bytes:
     """Return the file: magic, identity, content."""
     return MAGIC + identity_of(content).encode("ascii") + content
 
@@ -317,19 +317,19 @@ def _check_machine() -> None:
 
 def _content(element: MeshElement, name: str) -> dict[str, bytes]:
     """Return everything but the binary, by its path in the file."""
-    chosen, table = variables(element), table_content(element.table)
+    chosen, table = variables(element), _table_content(element.table)
     own = {item.name: item.read_bytes() for item in files(__package__).joinpath("sources").iterdir()}
     compiled = sorted(file for file in own if file.endswith(".c"))
 
     def described(guid: str) -> dict[str, bytes]:
         return {
-            "modelDescription.xml": model_description(name, chosen, guid, compiled),
+            "modelDescription.xml": _model_description(name, chosen, guid, compiled),
             "sources/variables.h": header(element, chosen, guid, identity_of(table)).encode("ascii"),
         }
 
     content = {
         **{f"sources/{file}": text for file, text in own.items() if file.endswith((".c", ".h"))},
-        f"resources/{TABLE_FILE}": table_file(table),
+        f"resources/{TABLE_FILE}": _table_file(table),
     }
     return {**content, **described(_guid({**content, **described("")}))}
 
@@ -354,7 +354,7 @@ def _binary(content: Mapping[str, bytes], name: str) -> dict[str, bytes]:
         sources = {Path(file).name: text for file, text in content.items() if file.startswith("sources/")}
         for file, text in sources.items():
             (folder / file).write_bytes(text)
-        compile_library(folder, sorted(file for file in sources if file.endswith(".c")), f"{name}{ending}")
+        _compile_library(folder, sorted(file for file in sources if file.endswith(".c")), f"{name}{ending}")
         return {f"binaries/{platform}/{name}{ending}": (folder / f"{name}{ending}").read_bytes()}
 
 

@@ -30,13 +30,13 @@ OUTSIDE = 1e-3
 """Base pitches before A and after E at which the gap of an edge is assessed: it grows from there on."""
 
 
-def assemble_edges(points: OperatingPoints, solved: Sequence[tuple[ContactProblem, ContactSolution]]) -> None:
-    """Let workers assemble the compliance at the tip edges of all places, as `edge_depth` needs it."""
+def _put_edges(points: OperatingPoints, solved: Sequence[tuple[ContactProblem, ContactSolution]]) -> None:
+    """Let workers assemble the compliance at the tip edges of all places, as `_edge_depth` needs it."""
     models = [replace(point.model, corner_contact=True) for point in points.places]
     assemble_remotely(points, models, _phase(solved[0][0]))
 
 
-def deepest_edge(
+def _deepest_edge(
     point: OperatingPoint, load: FloatArray, problem: ContactProblem, solution: ContactSolution
 ) -> FloatArray:
     """Return how far tip edges would be inside the mating flanks (L,), m; 0 where they stay clear.
@@ -46,7 +46,7 @@ def deepest_edge(
     """
     position = handovers(point.contact.pair)
     meant = point.solve_pitches(position, load, np.arange(point.model.period))
-    return np.maximum(edge_depth(point, problem, solution), edge_depth(point, *meant))
+    return np.maximum(_edge_depth(point, problem, solution), _edge_depth(point, *meant))
 
 
 def handovers(pair: ParallelAxes) -> FloatArray:
@@ -56,7 +56,7 @@ def handovers(pair: ParallelAxes) -> FloatArray:
     return np.sort(np.array([start - OUTSIDE, end + OUTSIDE]) % 1.0)
 
 
-def edge_depth(point: OperatingPoint, problem: ContactProblem, solution: ContactSolution) -> FloatArray:
+def _edge_depth(point: OperatingPoint, problem: ContactProblem, solution: ContactSolution) -> FloatArray:
     """Return how far tip edges would be inside the mating flanks (L,), m; 0 where they stay clear.
 
     Under the forces as solved: what the loaded teeth move at the unloaded edges is in.
@@ -75,7 +75,6 @@ def edge_depth(point: OperatingPoint, problem: ContactProblem, solution: Contact
 
 
 def _phase(problem: ContactProblem) -> FloatArray:
-    """Return the positions of a problem in one base pitch."""
     return problem.candidates.position[: len(problem.compliance)] % 1.0
 
 
@@ -187,9 +186,9 @@ def _tip_edges(run: SolvedRun, size: FloatArray) -> Iterator[Assumption]:
     effect = request.named("corner_contact")
     if run.checked.model.corner_contact or effect in request.neglected:
         return
-    assemble_edges(run.places, run.solved)
+    _put_edges(run.places, run.solved)
     pairs = zip(run.places.places, run.solved, strict=True)
-    depth = np.stack([deepest_edge(point, run.plan.load, *solved) for point, solved in pairs], axis=1)
+    depth = np.stack([_deepest_edge(point, run.plan.load, *solved) for point, solved in pairs], axis=1)
     change = float(np.max(depth / np.maximum(allowed(run).scale(size), 1e-12 * np.abs(_means(run)))))
     deepest = 1e6 * float(depth.max())
     reason = "the gaps at the tip edges stay open"
@@ -270,7 +269,6 @@ def _closing(point: OperatingPoint) -> float:
 
 
 def _load_patches(run: SolvedRun) -> Assumption:
-    """Contact strips stay within the load patches of the finite elements."""
     grown = sum(int(solution.beyond.sum()) for _, solution in run.solved)
     reason = f"strips are wider at {grown} points" if grown else "all strips are narrower"
     return Assumption("", "contact strips within the load patches", grown == 0, float("nan"), reason)

@@ -119,7 +119,6 @@ def _started_influences(planned: SolvedTable, run: Run, before: RunCost) -> Iter
 
 
 def _full(made: SolvedTable) -> bool:
-    """Whether the receipt measures the errors."""
     return made.checked.request.options.receipt == "full"
 
 

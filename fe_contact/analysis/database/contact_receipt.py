@@ -40,7 +40,7 @@ def contact_receipt(
         "newton_iterations_mean": float(iterations.mean()),
         f"newton_points_over_{FEW_ITERATIONS}": int(np.count_nonzero(iterations > FEW_ITERATIONS)),
         "residuals_max": max(worst_residual(solution) for solution in solutions),
-        "condition_number_max": worst_condition(solved, known) if condition else None,
+        "condition_number_max": _worst_condition(solved, known) if condition else None,
         "patch_outgrown_points": sum(int(solution.beyond.sum()) for solution in solutions),
         "failed_points": failed_points(solutions),
         "support_loads_left_out": support[0][1].load[left_out].tolist(),
@@ -53,7 +53,7 @@ def failed_points(solutions: Sequence[ContactSolution]) -> dict[str, int]:
     return {Status(code).name: count for code, count in sorted(codes.items())}
 
 
-def worst_condition(solved: Solved, known: FloatArray | None = None) -> float | None:
+def _worst_condition(solved: Solved, known: FloatArray | None = None) -> float | None:
     """Return the largest condition number of the compliance between candidates; None if one is not definite.
 
     Operating points of one center distance share their compliance, which is assessed once.

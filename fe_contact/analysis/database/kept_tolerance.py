@@ -75,7 +75,7 @@ class Pass:
         }
 
 
-def of_all_passes(passes: Sequence[Pass], kept: SteDatabase, reason: str) -> SteDatabase:
+def _of_all_passes(passes: Sequence[Pass], kept: SteDatabase, reason: str) -> SteDatabase:
     """Return the table of one pass with the receipt of all of them.
 
     Parameters
@@ -187,15 +187,15 @@ def _refined(checked: Checked, shared: _Passes) -> SteDatabase:
             made = _following(table, best)
             reason = made if isinstance(made, str) else _ended(made, passes, shared.run.cache)
         if isinstance(made, str) or reason:
-            return of_all_passes(passes, table, reason)
+            return _of_all_passes(passes, table, reason)
         shared.on_draft(table, made.words)
         last = shared.refined(made, clock)
         passes.append(last)
         if last.table is None:
-            return of_all_passes(passes, table, f"pass {len(passes)} ({last.name}) failed: {last.failure}")
+            return _of_all_passes(passes, table, f"pass {len(passes)} ({last.name}) failed: {last.failure}")
         if last.used >= best.used:
             reason = f"pass {len(passes)} ({made.words}) did not lower the measured errors"
-            return of_all_passes(passes, table, reason)
+            return _of_all_passes(passes, table, reason)
         best, table = last, last.table
 
 

@@ -121,7 +121,6 @@ class _Resolution:
         return finer and (finer if finer.slices > self.slices else finer._more_slices())
 
     def _slices_that_fit(self, slices: int, level: str) -> int:
-        """Return how many of the wanted slices the layers of a mesh resolve."""
         return face_discretization(self.decided.checked.request.pair, level, slices).slices
 
     def _in_slices(self, count: int) -> _Resolution:
@@ -144,7 +143,6 @@ class _Resolution:
         return replace(self._with(_POSITION, CLOSER, step), nodes=nodes)
 
     def _with(self, source: int, part: float, step: str) -> _Resolution:
-        """Return the same with one source a part of what it was."""
         factors = np.ones(len(AT_NODES))
         factors[source] = part
         shares = self.shares * _by_source(factors, self.shares)
@@ -215,7 +213,6 @@ def _barrier(begun: _Resolution, finest: _Resolution) -> int | None:
 
 
 def _by_source(values: FloatArray, shares: FloatArray) -> FloatArray:
-    """Return a value of each source in the shape of the shares."""
     return values.reshape(-1, *[1] * (shares.ndim - 1))
 
 
@@ -228,7 +225,6 @@ def _of_model(model: Decided, begun: _Resolution) -> Refinement:
 
 
 def _no_way(finest: _Resolution, source: int) -> str:
-    """Say what stands in the way."""
     plan = finest.decided.plan
     fixed = f"{plan.positions} positions were requested; leave positions out or request more"
     why = {

@@ -202,12 +202,10 @@ class _Assessed:
         return quantity_changes(self.table.position[self.rows], *curves, 1)
 
     def _nearest(self, name: str) -> FloatArray:
-        """Return the node of an axis nearest to zero, as an axis of one."""
         nodes: FloatArray = getattr(self.table, name)
         return nodes[[int(np.argmin(np.abs(nodes)))]]
 
     def _held_out(self, misalignment: FloatArray, change: FloatArray) -> tuple[OperatingPoint, ...]:
-        """Lay out held-out places like those of the table."""
         here = replace(self.scene, misalignment=misalignment, center_distance_change=change)
         return operating_points(here, self.choices, self.places.nominal).places
 
@@ -238,5 +236,4 @@ def _telling(table: SteDatabase) -> list[IntArray]:
 
 
 def _middles(nodes: FloatArray) -> FloatArray:
-    """Return the middles of the intervals."""
     return np.asarray(0.5 * (nodes[:-1] + nodes[1:]))

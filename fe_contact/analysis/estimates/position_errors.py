@@ -185,5 +185,4 @@ def _told(nodes: PositionNodes, curves: FloatArray, loads: int) -> PositionError
 
 
 def _knots(nodes: PositionNodes, period: int) -> FloatArray:
-    """Return the positions of all base pitches."""
     return (np.arange(period)[:, None] + nodes.position).ravel()

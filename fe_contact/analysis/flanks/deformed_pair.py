@@ -123,7 +123,7 @@ def deformed_pairs(
     position, deflection = solved.problem.candidates.position, solved.solution.deflection[:, 0]
     here = solved.contact.pair
     return tuple(
-        placed_pair(here, float(x), float(ste), both)
+        _placed_pair(here, float(x), float(ste), both)
         for x, ste, both in zip(position, deflection, gears, strict=True)
     )
 
@@ -154,7 +154,7 @@ def deformed_gears(solved: SolvedOperatingPoint, beside: int = 1) -> tuple[Both,
     return tuple(zip(first, second, strict=True))
 
 
-def placed_pair(pair: ParallelAxes, position: float, deflection: float, gears: Both) -> DeformedPair:
+def _placed_pair(pair: ParallelAxes, position: float, deflection: float, gears: Both) -> DeformedPair:
     """Turn both gears so that their flanks touch on the line of action, at mid-face of the pinion."""
     sign = pair.wheel.sign
     center = (0.0, sign * pair.center_distance, pair.axial_offset)
@@ -186,7 +186,6 @@ def mesh_angles(pair: ParallelAxes, position: float) -> tuple[float, float]:
 
 
 def _write(path: Path, gear: DeformedGear, in_mesh: FloatArray) -> None:
-    """Write one gear with its fields."""
     stress, principal = gear.stress, gear.principal_stress
     write_cells(
         path,

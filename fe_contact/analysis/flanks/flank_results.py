@@ -70,7 +70,6 @@ def flank_results(
 
 
 def _findings(results: LoadDistribution) -> tuple[Finding, ...]:
-    """Return what is implausible about the pressures."""
     return flank_findings(float(np.max(results.clear_pressure, initial=0.0)))
 
 

@@ -54,7 +54,7 @@ class CondensedRun:
     solved: Sequence[tuple[ContactProblem, ContactSolution]]
 
 
-def check_condensed(run: SolvedRun, neglected: Mapping[str, str]) -> tuple[Assumption, ...]:
+def _check_condensed(run: SolvedRun, neglected: Mapping[str, str]) -> tuple[Assumption, ...]:
     """Check what can be checked on the solution alone.
 
     Parameters
@@ -89,7 +89,7 @@ def _neglected(neglected: Mapping[str, str]) -> Iterator[Assumption]:
 # The receipt of a condensed pair's table: errors by source, cost by stage, assumptions.
 
 
-def condensed_receipt(
+def _condensed_receipt(
     plan: Plan,
     solution: ContactSolution,
     assessed: AssessedTable,
@@ -211,8 +211,8 @@ class CondensedPair:
             table = assembled_table(checked.request, points, nodes, pairs, [])
         with clock.stage("error estimate"):
             assessed = condensed_errors(table, points, solved.solution, contacts, sample, plan)
-        assumptions = check_condensed(CondensedRun(checked, plan, points, pairs), self.neglected)
-        receipt = condensed_receipt(plan, solved.solution, assessed, assumptions, clock)
+        assumptions = _check_condensed(CondensedRun(checked, plan, points, pairs), self.neglected)
+        receipt = _condensed_receipt(plan, solved.solution, assessed, assumptions, clock)
         receipt["discretisation_error"] = "expected" if contacts.coarse is None else "measured"
         ledger = [{"name": entry.name, "on": entry.on} for entry in checked.ledger]
         metadata = Metadata(effect_ledger=ledger, receipt=receipt)
@@ -276,7 +276,6 @@ class CondensedPair:
             raise InputError("pair", "another", bound, "Analyze the other pair first.")
 
     def _refuse_beyond_patches(self, pair: ParallelAxes, torques: FloatArray, load: FloatArray) -> None:
-        """Refuse loads that outgrow the load patches."""
         if load[-1] > self.largest_load * (1.0 + 1e-9):
             most = float(pair.torque(np.array([self.largest_load]))[0])
             bound = at_most(most, note=f": {LARGEST_SUPPORT:g} times the highest load of the table")
@@ -305,7 +304,6 @@ class CondensedPair:
         )
 
     def _laid_out(self, checked: Checked) -> tuple[PositionNodes, Plan]:
-        """Return the positions, and the plan with them and the loads."""
         most = FACE_POSITIONS if checked.model.across_face else PLANE_POSITIONS
         count = int(np.clip(MOST_ROWS // checked.model.period, FEWEST_POSITIONS, most))
         load = checked.request.load

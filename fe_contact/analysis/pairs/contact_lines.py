@@ -117,7 +117,7 @@ def solve_block(bodies: Bodies, block: ContactBlock) -> SolvedBlock:
     return SolvedBlock(problems, solutions, condition)
 
 
-def deflect_block(bodies: Bodies, block: ContactBlock) -> tuple[tuple[FloatArray, ...], ...]:
+def _deflect_block(bodies: Bodies, block: ContactBlock) -> tuple[tuple[FloatArray, ...], ...]:
     """Return the STE (rows, L) in m of each model for each set of loads alone: one task."""
     solved = solve_block(bodies, block).solutions
     return tuple(tuple(solution.deflection for solution in each) for each in solved)
@@ -215,7 +215,7 @@ def deflections(lines: Sequence[Line], workers: Workers) -> list[list[FloatArray
     """Solve lines of one set of loads; of each line the STE (T P, L) in m of every model."""
     return [
         [_rows([block[k][0] for block in blocks], line) for k in range(len(line.models))]
-        for line, blocks in zip(lines, _by_line(lines, workers, deflect_block, False), strict=True)
+        for line, blocks in zip(lines, _by_line(lines, workers, _deflect_block, False), strict=True)
     ]
 
 

@@ -164,7 +164,6 @@ class PairContact:
         return self._problems[key]
 
     def _located(self, model: ContactModel, position: FloatArray) -> Candidates:
-        """Find the candidates of plain involutes."""
         slices = Slices.of_pair(self.pair, self.plan.discretization.slices)
         return contact_candidates(self.pair, model, position, self.plan.patch, slices)
 
@@ -179,7 +178,6 @@ class PairContact:
         self._store(model, with_compliances(self.pair, bodies, model))
 
     def _store(self, model: ContactModel, problem: ContactProblem) -> None:
-        """Keep a problem."""
         self._make_room()
         self._problems[self.key(model, problem.candidates.position)] = problem
 
@@ -189,7 +187,6 @@ class PairContact:
             self._problems.pop(next(iter(self._problems)))
 
     def _assembled(self, candidates: Candidates, couple_teeth: bool) -> ContactProblem:
-        """Assemble the compliance between the candidates."""
         if self.face is not None:
             return face_contact_problem(candidates, self.face, self.pair.axial_offset, couple_teeth)
         if self.plane is not None:
@@ -259,7 +256,6 @@ def bodies_are_kept(
 
 
 def _teeth(pair: ParallelAxes, distance_changes: FloatArray | None) -> int:
-    """Return the number of teeth that can touch at once, at any of the center distances."""
     changes = () if distance_changes is None else distance_changes.tolist()
     others = [pair.at_center_distance(pair.center_distance + change) for change in changes if change]
     return max(condensed_teeth(each) for each in (pair, *others))

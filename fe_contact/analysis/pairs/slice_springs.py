@@ -80,7 +80,7 @@ class SpringContact(PairContact):
         if pitch is not None or seen.tooth_gaps:
             problem = in_pitches(problem, seen, np.zeros_like(position, int) if pitch is None else pitch)
         stiffness = slice_stiffness(self.pair, problem.candidates, self.law)
-        return problem, solve_springs(problem.candidates, stiffness, load)
+        return problem, _solve_springs(problem.candidates, stiffness, load)
 
 
 def slice_stiffness(pair: ParallelAxes, candidates: Candidates, law: SliceLaw) -> FloatArray:
@@ -94,7 +94,7 @@ def slice_stiffness(pair: ParallelAxes, candidates: Candidates, law: SliceLaw) -
     )
 
 
-def solve_springs(candidates: Candidates, stiffness: FloatArray, load: FloatArray) -> ContactSolution:
+def _solve_springs(candidates: Candidates, stiffness: FloatArray, load: FloatArray) -> ContactSolution:
     """Solve positions (P,) at normal forces (L,) in N, exactly.
 
     Parameters

@@ -134,7 +134,6 @@ def _deflected_here(
 
 
 def _started(line: Line, numbers: Sequence[int], starts: Sequence[Start]) -> Line:
-    """Return the line of numbered places with what they start from."""
     return replace(line, starts=tuple(starts[k].on(line.candidates) for k in numbers))
 
 
@@ -171,7 +170,6 @@ def _sent_lines(
 def _each_place(
     lines: Lines, solved: Sequence[SolvedLine]
 ) -> list[tuple[ContactProblem, tuple[ContactSolution, ...]]]:
-    """Return problem and solutions of every place, in the order of the places."""
     by_place = {
         k: (problem, solutions)
         for (_, members), line in zip(lines.values(), solved, strict=True)

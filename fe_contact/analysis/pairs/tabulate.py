@@ -35,7 +35,7 @@ def table_fields(
     """Arrays of the database at the requested loads, (P, F, M, D, ...), and its pair axis."""
     seen = np.concatenate([problem.candidates.pair for problem, _ in solved])
     pairs = np.arange(seen.min(), seen.max() + 1)
-    fields = [contact_fields(problem, solution, pairs) for problem, solution in solved]
+    fields = [_contact_fields(problem, solution, pairs) for problem, solution in solved]
     no_load = points.gathered([solution.no_load[:, None] for _, solution in solved])[:, 0]
     gathered = {name: points.gathered([field[name] for field in fields]) for name in fields[0]}
     return gathered | {"pair": pairs, "no_load_transmission_error": no_load}
@@ -45,13 +45,13 @@ def table_support(
     points: OperatingPoints, solved: list[tuple[ContactProblem, ContactSolution]]
 ) -> dict[str, NDArray[Any]]:
     """Support loads that converged everywhere, and their arrays (P, S, M, D)."""
-    fields = [support_fields(problem, solution) for problem, solution in solved]
+    fields = [_support_fields(problem, solution) for problem, solution in solved]
     good = np.all([solution.status == Status.CONVERGED for _, solution in solved], axis=(0, 1))
     gathered = {name: points.gathered([field[name][:, good] for field in fields]) for name in fields[0]}
     return gathered | {"support_force": solved[0][1].load[good]}
 
 
-def contact_fields(
+def _contact_fields(
     problem: ContactProblem, solution: ContactSolution, pairs: IntArray
 ) -> dict[str, NDArray[Any]]:
     """Arrays (P, F, ...) of one operating point of the table, by name in the database.
@@ -85,7 +85,7 @@ def contact_fields(
     }
 
 
-def support_fields(problem: ContactProblem, solution: ContactSolution) -> dict[str, NDArray[Any]]:
+def _support_fields(problem: ContactProblem, solution: ContactSolution) -> dict[str, NDArray[Any]]:
     """Arrays (P, S) of one place at the support loads."""
     pair = problem.candidates.pair
     of_pair = pair[:, None] == np.unique(pair)

@@ -69,7 +69,6 @@ class Decided:
         return predict_run(request.pair, self.plan, self.checked.model, request.alignments, cache)
 
     def _plan(self, level: str, slices: int | None) -> Plan:
-        """Plan the request on another mesh."""
         request = self.checked.request
         return make_plan(request.pair, request.load, request.options, self.checked.model, level, slices)
 

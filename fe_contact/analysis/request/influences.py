@@ -62,7 +62,6 @@ def influences_of_request(_shared: object, checked: Checked) -> Influences:
 
 
 def _influence(influence: EstimatedInfluence, scene: ContactScene) -> Influence:
-    """Return an estimate at the nominal load of a scene."""
     changes = (influence.mean, influence.peak_to_peak, influence.whole.mean, influence.whole.peak_to_peak)
     torque, misalignment = float(scene.torque[-1]), scene.largest_misalignment
     return Influence(torque, misalignment, *(float(values[-1]) for values in changes))

@@ -73,7 +73,7 @@ def _reason(influence: EstimatedInfluence, tolerance: AllowedError) -> str:
 # Limits of a plane model: all that acts across the face.
 
 
-def refuse_beyond_plane(scene: ContactScene, model: ContactModel, ledger: Sequence[LedgerEntry]) -> None:
+def _refuse_beyond_plane(scene: ContactScene, model: ContactModel, ledger: Sequence[LedgerEntry]) -> None:
     """Refuse what acts across the face, and what effects that are on have there, where the model is a plane.
 
     Raises
@@ -103,7 +103,6 @@ def _refuse_face_effects(scene: ContactScene) -> None:
 
 
 def _refuse_varying_flanks(field: str, along_face: FlankModification, advice: str) -> None:
-    """Refuse what a flank has along the face, by the amount that varies."""
     bound = "constant along the face for a plane model"
     for name in fields_of(*DEPTHS):
         if amount := getattr(along_face, name):
@@ -160,7 +159,7 @@ def check_asked(request: Request, *, whole_table: bool = True, spare: bool = Tru
     With a tolerance, automatic effects that it does not need are then neglected.
     """
     composed, ledger = _composed(request)
-    refuse_beyond_plane(request.scene, composed, ledger)
+    _refuse_beyond_plane(request.scene, composed, ledger)
     if spare and not (request.neglected or request.turned_on):
         request = replace(
             request, neglected=neglected_effects(request.scene, ledger, request.options.tolerance)

@@ -55,5 +55,4 @@ def expected_curves(checked: Checked) -> ExpectedCurves | None:
 
 
 def _some(axis: FloatArray, most: int) -> FloatArray:
-    """Return some nodes of an axis."""
     return axis[sample_of(axis.size, most)]

@@ -143,10 +143,10 @@ def ablate(
         replace(axes, center_distance_changes=(0.0,)),
         replace(options, receipt="minimal", on_violation="report"),
     )
-    return ablate_checked(checked, chosen("only", only, [effect.name for effect in EFFECTS]), run)
+    return _ablate_checked(checked, chosen("only", only, [effect.name for effect in EFFECTS]), run)
 
 
-def ablate_checked(checked: Checked, names: Sequence[str], run: Run) -> Ablation:
+def _ablate_checked(checked: Checked, names: Sequence[str], run: Run) -> Ablation:
     """Toggle the named effects of a checked request; parameters of `ablate`."""
     checked = _on_one_mesh(checked, run.cache)
     nominal = _figures(checked, run)

@@ -86,7 +86,7 @@ class FidelityResult(model_studies.FidelityResult):
     peak_to_peak_error: float = NAN
 
 
-def fidelity_results(outcomes: Sequence[Outcome[Fidelity, SteDatabase]]) -> tuple[FidelityResult, ...]:
+def _fidelity_results(outcomes: Sequence[Outcome[Fidelity, SteDatabase]]) -> tuple[FidelityResult, ...]:
     """Measure every table against the last one, and that one by its convergence."""
     read = [Outcome(outcome.fidelity, _result(outcome), outcome.cpu_seconds) for outcome in outcomes]
     errors = against_finest(read, _errors, _remaining)
@@ -214,7 +214,7 @@ def frontier(
         (MeshError, SolveError),
         progress,
     )
-    results = fidelity_results(outcomes)
+    results = _fidelity_results(outcomes)
     solves = outcomes[-1].result.status.size
     known = known_full_contact(checked.request.pair)
     study = Frontier(
@@ -225,7 +225,6 @@ def frontier(
 
 
 def _warm_up(fidelities: Sequence[Fidelity]) -> None:
-    """Load and compile what the fidelities run."""
     warm_up(across_face=any(fidelity.name.startswith("3d") for fidelity in fidelities))
 
 

@@ -86,7 +86,6 @@ def study_sensitivity(
 
 
 def _with_corners(options: AnalysisOptions, choice: str) -> AnalysisOptions:
-    """Return the options with corner contact on or off."""
     return replace(options, effects={**options.effects, named(EFFECTS, "corner_contact"): choice})
 
 
@@ -102,7 +101,6 @@ def _curves(
 
 
 def _ripple(table: SteDatabase, axis: str) -> RippleCurve:
-    """Peak-to-peak along the axis of a table of one load."""
     deviation: FloatArray = getattr(table, axis)
     ripples = [table.peak_to_peak(force=float(table.force[0]), **{axis: float(x)}) for x in deviation]
     return RippleCurve(deviation, np.array([e.value for e in ripples]), np.array([e.error for e in ripples]))

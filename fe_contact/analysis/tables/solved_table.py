@@ -40,7 +40,7 @@ from model_studies.progress import Report, by_cost, unreported
 # The positions of a table: one set for all its alignments and base pitches.
 
 
-def table_nodes(points: OperatingPoints, plan: Plan, report: Report = unreported) -> PositionNodes:
+def _table_nodes(points: OperatingPoints, plan: Plan, report: Report = unreported) -> PositionNodes:
     """Place the positions: the number requested, or where the assessed curves bend.
 
     What is missed between fixed ones is not measured here (`position_errors`). `report` is called with the
@@ -161,7 +161,7 @@ def solve_table(
     points = operating_points(request.scene, request.choices, nominal, run.workers)
     with clock.stage("contact"):
         progress = by_cost(partial(run.progress, "contact"), prediction.parts["contact"])
-        nodes = table_nodes(points, plan, partial(progress, "positions"))
+        nodes = _table_nodes(points, plan, partial(progress, "positions"))
         loads, report = (plan.load, plan.support), partial(progress, "table")
         (solved, support), condition = solve_operating_points(
             points, nodes.position, loads, conditioned=full, report=report

@@ -102,7 +102,6 @@ def slice_compliances(
 def _of_gear(
     gear: Toothing, slices: LoadedSlices, model: ContactModel, s: FloatArray, patch: FloatArray
 ) -> GearCompliance:
-    """One gear's compliance on its own line of action."""
     bending = tooth_bending(gear)
     blank = blank_factor(gear.with_parts(model.parts))
     root = np.sqrt(bending.at(bending.tooth, s) + bending.at(bending.foundation, s) / blank)

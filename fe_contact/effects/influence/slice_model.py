@@ -104,5 +104,4 @@ class Springs:
 
 
 def _positions(model: ContactModel) -> int:
-    """Return the number of positions in a base pitch."""
     return FACE_POSITIONS if model.across_face else PLANE_POSITIONS

@@ -80,7 +80,6 @@ def _energy(
 
 
 def _up_to(lever: FloatArray, height: FloatArray, values: FloatArray) -> FloatArray:
-    """Integrate values over the height from the root up to each lever."""
     steps = 0.5 * (values[1:] + values[:-1]) * np.diff(height)
     return np.asarray(np.interp(lever, height, np.concatenate([[0.0], np.cumsum(steps)])))
 

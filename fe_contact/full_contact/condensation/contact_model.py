@@ -128,7 +128,7 @@ def _trailing_product(factor: SuperLU, count: int) -> FloatArray:
 Bodies = tuple[CondensedBody, CondensedBody]
 
 
-def bore_checks(bodies: Bodies, solutions: Sequence[Solution]) -> list[tuple[float, float]]:
+def _bore_checks(bodies: Bodies, solutions: Sequence[Solution]) -> list[tuple[float, float]]:
     """Return the largest relative breach of the laws, and the torque of gear 2 over that of gear 1.
 
     The moment of the reactions at gear 1's bore is the torque, at gear 2's bore that of the contact forces;
@@ -197,8 +197,8 @@ class PairGeometry:
         return self.pair.face_width
 
     def checks(self, solutions: Sequence[Solution]) -> list[tuple[float, float]]:
-        """Return breach of the laws and ratio of the torques, as `bore_checks`."""
-        return bore_checks(self.bodies, solutions)
+        """Return breach of the laws and ratio of the torques, as `_bore_checks`."""
+        return _bore_checks(self.bodies, solutions)
 
     def linearized(self, at: Configuration) -> LinearizedContact:
         """Return the contact with the geometry and the forces of a configuration."""

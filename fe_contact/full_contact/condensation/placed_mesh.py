@@ -54,7 +54,7 @@ class GearBoundary:
     s: Mapping[int, FloatArray]
 
 
-def gear_boundary(
+def _gear_boundary(
     gear: Toothing, teeth: IntArray, strips: Mapping[int, SizedStrip], resolution: Resolution
 ) -> GearBoundary:
     """Divide the boundary of a gear.
@@ -80,7 +80,6 @@ def gear_boundary(
 
 
 def _size_near(gear: Toothing, strips: Mapping[int, SizedStrip], resolution: Resolution) -> Size:
-    """Return the size that grows from the strips."""
     pitch = tooth_profile(gear).pitch_angle
     points, sizes = [], []
     for tooth, strip in strips.items():
@@ -174,7 +173,6 @@ def _plain_ring(gear: Toothing, pieces: Sequence[Piece], missing: int, resolutio
 
 
 def _held_circle(gear: Toothing, resolution: Resolution) -> Outline:
-    """Return the circle that the gear is held by, clockwise."""
     radius = gear.held_radius
     size = min(2.0 * resolution.part(BODY, gear.normal_module), HALF * gear.body_depth)
     step = min(size / radius, LARGEST_ARC)
@@ -251,7 +249,7 @@ def placed_bodies(
     """
     gears = (pair.pinion, pair.wheel)
     boundaries = [
-        gear_boundary(
+        _gear_boundary(
             gear,
             real_teeth(gear.teeth, _teeth(pair, gear, sites)),
             {AHEAD[number] * site.ahead: site.strips[number] for site in sites},

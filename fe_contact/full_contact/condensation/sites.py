@@ -140,7 +140,6 @@ def _widths(pair: ParallelAxes, roll: float, held: Range, sharing: int) -> _Widt
 
 
 def _corner(pair: ParallelAxes, roll: float) -> CornerContact:
-    """Return the corner contact of a pair off the path of contact."""
     path = pair.path_of_contact
     if roll < path.start:
         return corner_contact(pair, "approach", path.start - roll)

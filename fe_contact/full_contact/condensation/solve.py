@@ -35,7 +35,7 @@ MOST_EVALUATIONS, SETTLED, ENOUGH = 6, 1e-6, 2e-4
 LARGEST_RESIDUAL = 1e-8
 
 
-def solve_loads(
+def _solve_loads(
     geometry: ContactGeometry, torques: Sequence[float], position: float
 ) -> tuple[FullContactPoint, ...]:
     """Solve all torques from the same compliance, then check them together."""
@@ -196,7 +196,7 @@ def _solved(
         sites = contact_sites(pair, phase, held, resolution)
         meshes = placed_bodies(pair, phase, sites, resolution)
         geometries, unknowns = model.geometries(pair, sites, meshes, resolution.layers)
-        solved = tuple(solve_loads(geometry, torques, position) for geometry in geometries)
+        solved = tuple(_solve_loads(geometry, torques, position) for geometry in geometries)
         points = [point for contact in solved for point in contact]
         lags = [point.transmission_error for point in points if point.status.usable]
         lag = max(lags, default=0.0) + closer
@@ -309,7 +309,6 @@ def _check(torques: Sequence[float], positions: Sequence[float]) -> None:
 
 
 def _with_error(fine: SolvedPosition, coarse: SolvedPosition) -> SolvedPosition:
-    """State the difference of two meshes of the same position as the error of the finer one."""
     contacts = zip(fine.contacts, coarse.contacts, strict=True)
     return replace(fine, contacts=tuple(_apart(own, other) for own, other in contacts))
 

@@ -283,7 +283,6 @@ def _bordered(matrix: sp.csc_array, free: IntArray, turned: FloatArray) -> sp.cs
 
 
 def _with_circle(graph: sp.csr_array, order: IntArray, held: IntArray) -> sp.csr_array:
-    """Return the graph in the order of elimination, with one node more beside all that touch held ones."""
     beside = sp.csr_array((graph[held].sum(axis=0)[order] > 0.0).astype(float)[None])
     own = sp.hstack([graph[order][:, order], beside.T])
     return sp.csr_array(sp.vstack([own, sp.hstack([beside, sp.csr_array(np.ones((1, 1)))])], format="csr"))

@@ -37,7 +37,6 @@ torque_n_m = [{torques}] # on the pinion, to {LOAD:g} N/mm^2 of tangential force
 
 
 def _wheel(pair: PairSketch) -> str:
-    """Return the fields of the wheel."""
     if not pair.internal:
         return _gear(pair, pair.wheel)
     wheel = pair.wheel

@@ -40,7 +40,7 @@ level = "draft" # a table for a first run; "standard" or a tolerance once the sc
 """
 
 
-def pair_scene_text(pair: PairSketch, head: str) -> str:
+def _pair_scene_text(pair: PairSketch, head: str) -> str:
     """Return a motor, a pair between two shafts on two bearings each, and a brake; the motor runs up."""
     length = 4.0 * pair.width
     sides = (("input", "pinion", pair.pinion, 0.0), ("output", "wheel", pair.wheel, pair.center_distance))
@@ -79,7 +79,6 @@ bearing_forces = true
 
 
 def _shaft(name: str, length: float, diameter: float, origin: float) -> str:
-    """Return a shaft of one diameter."""
     return f"""
 [[shafts]]
 name = "{name}"
@@ -159,7 +158,7 @@ def planetary_stage(wanted: Wanted) -> StageSketch:
     return StageSketch(pair, ring, 2.0 + 2.0 * planet / teeth)
 
 
-def planetary_text(stage: StageSketch, head: str) -> str:
+def _planetary_text(stage: StageSketch, head: str) -> str:
     """Return a stage whose sun is driven, whose carrier is braked, and whose ring is held."""
     length = 2.0 * stage.sun.width
     middle = 0.5 * length
@@ -295,31 +294,27 @@ axial_stiffness_n_per_m = 1e8
 
 
 def _spur(wanted: Wanted) -> str:
-    """Return an industrial spur pair."""
     return case_text(external_pair(wanted, teeth=24, ratio=1.5, helix=0.0, module=3.0), "A spur pair")
 
 
 def _helical(wanted: Wanted) -> str:
-    """Return a helical pair as in an EV reducer."""
     pair = external_pair(wanted, teeth=23, ratio=67 / 23, helix=22.0, module=1.8)
     return case_text(pair, "A helical pair")
 
 
 def _internal(wanted: Wanted) -> str:
-    """Return a pinion in a ring gear."""
     return case_text(internal_pair(wanted, teeth=36, ratio=96 / 36, module=2.0), "A pinion in a ring gear")
 
 
 def _planetary(wanted: Wanted) -> str:
-    """Return a planetary stage."""
     head = "A planetary stage: the sun drives, the carrier is braked, the ring is held"
-    return planetary_text(planetary_stage(wanted), head)
+    return _planetary_text(planetary_stage(wanted), head)
 
 
 def _scene(wanted: Wanted) -> str:
     """Return a helical pair between two shafts."""
     pair = external_pair(wanted, teeth=23, ratio=67 / 23, helix=22.0, module=1.8)
-    return pair_scene_text(pair, "A helical pair between two shafts: motor, brake, four bearings")
+    return _pair_scene_text(pair, "A helical pair between two shafts: motor, brake, four bearings")
 
 
 KINDS: Mapping[str, Callable[[Wanted], str]] = {

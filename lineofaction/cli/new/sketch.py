@@ -66,7 +66,7 @@ def external_pair(wanted: Wanted, *, teeth: int, ratio: float, helix: float, mod
     module = wanted.module or module
     helix = helix if wanted.helix is None else wanted.helix
     first = wanted.teeth or teeth
-    second = hunting_teeth(first, wanted.ratio or ratio)
+    second = _hunting_teeth(first, wanted.ratio or ratio)
     width = wanted.width or face_width(module, helix)
     pinion, wheel = (_blank(count, module, helix, width) for count in (first, second))
     distance = _round_up(reference_center_distance(pinion, wheel) / MM, 0.5 if module >= 1.0 else 0.1)
@@ -115,7 +115,7 @@ def _ring_addendum(pinion: Gear, ring_teeth: int, distance: float) -> float:
     return min(0.9, math.floor(20.0 * (free - 0.02)) / 20.0)
 
 
-def hunting_teeth(teeth: int, ratio: float) -> int:
+def _hunting_teeth(teeth: int, ratio: float) -> int:
     """Return the teeth of the wheel nearest to a ratio that have no divisor in common with the pinion's."""
     wished = teeth * ratio
     counts = sorted(range(max(4, int(wished) - 4), int(wished) + 6), key=lambda count: abs(count - wished))
@@ -141,7 +141,6 @@ def bore_of(teeth: int, module: float, helix: float, width: float) -> float:
 
 
 def _bore(gear: Gear, shift: float) -> float:
-    """Return the bore in mm."""
     shifted = replace(gear, profile_shift_coefficient=round(shift, 4))
     diameter = 2.0 * _BORE * shifted.root_radius / MM
     return float(math.floor(diameter)) if diameter > 5.0 else round(diameter, 2)
@@ -155,5 +154,4 @@ def _torques(pinion: Gear) -> tuple[float, ...]:
 
 
 def _round_up(value: float, step: float) -> float:
-    """Return a length in mm rounded up to a step."""
     return round(math.ceil(value / step - 1e-9) * step, 6)

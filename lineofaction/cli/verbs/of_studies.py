@@ -38,7 +38,6 @@ class StudyGroup(TyperGroup):
 
 
 def _command(study: Study) -> Any:
-    """Return the verb of a study."""
     verb = typer.Typer(add_completion=False, rich_markup_mode=None)
     example = f"Example: loa {study.name} {study.example}"
     called = overridable(study.argument, study.subject)(_verb(study))
@@ -112,5 +111,4 @@ def _typed(default: Any) -> Any:
 
 
 def _parameter(name: str, annotation: Any, default: Any = Parameter.empty) -> Parameter:
-    """Return a parameter that is given by its name."""
     return Parameter(name, Parameter.KEYWORD_ONLY, annotation=annotation, default=default)

@@ -91,7 +91,6 @@ def _spellings(option: inspect.Parameter) -> list[str]:
 
 
 def _with(files: InputFile | list[InputFile], overrides: tuple[Override, ...]) -> Any:
-    """Return a file, or several, with the overrides."""
     if isinstance(files, InputFile):
         return replace(files, overrides=overrides)
     return [replace(file, overrides=overrides) for file in files]

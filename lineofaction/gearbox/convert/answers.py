@@ -96,7 +96,6 @@ def _orders(curve: Curve) -> Json:
 
 
 def _um(estimate: Estimate) -> tuple[float, float]:
-    """Return value and error in um."""
     return estimate.value / UM, estimate.error / UM
 
 

@@ -45,7 +45,6 @@ def rolling_bearing_of(index: int, bearing: RollingBearingInput) -> RollingBeari
 
 
 def _row(bearing: RollingBearingInput) -> BallBearing | RollerBearing:
-    """Return the row of a bearing."""
     if bearing.ball is not None:
         with inside("ball"):
             return BallBearing(**in_si(BallBearing, bearing.ball))
@@ -99,6 +98,5 @@ def planet_bearing_of(index: int, bearing: PlanetBearingInput) -> PlanetBearing:
 
 
 def _bearings(scene: SceneInput) -> Iterator[tuple[str, BearingInput]]:
-    """Yield all bearings with their fields."""
     yield from ((f"bushings[{index}]", part) for index, part in enumerate(scene.bushings))
     yield from ((f"planet_bearings[{index}]", part) for index, part in enumerate(scene.planet_bearings))

@@ -91,7 +91,6 @@ def _shaft(name: str, gear: ToothingInput) -> Shaft | None:
 
 
 def _modification(toothing: ToothingInput) -> FlankModification:
-    """Return the flank modification of a gear."""
     return FlankModification(**in_si(FlankModification, toothing), flank_grid=_flank_grid(toothing))
 
 

@@ -55,7 +55,6 @@ def _facts(field: str, mesh: StiffnessMeshInput) -> PairFacts:
 
 
 def _table(index: int, mesh: StiffnessMeshInput) -> MeshTable:
-    """Return the table of the mesh `index`."""
     stiffness, error = mesh.stiffness_n_per_m, mesh.transmission_error_um
     where = f"meshes[{index}].stiffness"
     with named(f"{where}.stiffness_n_per_m"):
@@ -67,7 +66,6 @@ def _table(index: int, mesh: StiffnessMeshInput) -> MeshTable:
 
 
 def _curve(law: PeriodicInput, unit: float) -> PeriodicCurve:
-    """Return the curve, its values in `unit`."""
     value = [number * unit for number in law.value]
     if law.position is not None:
         return PeriodicCurve.tabulated(law.position, value)

@@ -16,5 +16,4 @@ def draft_line(table: SteDatabase, refining: str) -> str:
 
 
 def _figure(estimate: Estimate) -> str:
-    """Return a value in um with its error."""
     return f"{estimate.value / UM:.4g} +- {engineering(estimate.error / UM, 1)}"

@@ -20,14 +20,14 @@ def ledger_lines(ledger: Iterable[Mapping[str, Any]]) -> Iterator[str]:
         if entry["decision"].startswith(("neglected", "on after")):
             yield f"       {entry['decision']}"
         if entry["on"] or entry["called_for"]:
-            yield f"       without it {influence_words(entry)}; cost {cost_words(entry)}"
+            yield f"       without it {influence_words(entry)}; cost {_cost_words(entry)}"
         if entry["price"] and entry["on"]:
             yield f"       price of the choice: {entry['price']}"
     if trifles:
         yield f"{trifles_title(trifles)}: {', '.join(entry['name'] for entry in trifles)}"
 
 
-def cost_words(entry: Mapping[str, Any]) -> str:
+def _cost_words(entry: Mapping[str, Any]) -> str:
     """Say what an effect costs."""
     seconds = entry["cost_cpu_seconds"]
     return str(entry["cost"]) if seconds is None else f"{engineering(seconds, 2)} CPU s ({entry['cost']})"

@@ -93,7 +93,6 @@ def named(part: str) -> Iterator[None]:
 
 
 def _fault(error: RefusedValue, reader: CaseReader) -> Fault:
-    """One input error as it is reported to its reader."""
     bound = error.bound.worded(reader)
     if isinstance(error, InfeasibleGeometry):
         bound = f"{bound} ({error.name})"

@@ -52,7 +52,7 @@ def reduced_in(scene: SceneInput, home: Path, progress: Progress = silent) -> di
     return reduced_housings(scene, home / FOLDER, progress)
 
 
-def modes_in_files(scene: SceneInput, folder: Path) -> dict[str, ReducedHousing]:
+def _modes_in_files(scene: SceneInput, folder: Path) -> dict[str, ReducedHousing]:
     """Return the housings in files of modes, by name; `folder` is what the names of files are relative to."""
     files = {part.name: part.modes_file for part in scene.housings if part.modes_file is not None}
     if not files:
@@ -66,7 +66,7 @@ def housings_in(
     scene: SceneInput, home: Path, folder: Path, progress: Progress = silent
 ) -> dict[str, ReducedHousing]:
     """Return the housings of a scene file by name: solids reduced, modes from their files."""
-    return reduced_in(scene, home, progress) | modes_in_files(scene, folder)
+    return reduced_in(scene, home, progress) | _modes_in_files(scene, folder)
 
 
 def housing_of(index: int, housing: HousingInput, reduced: ReducedHousing | None) -> Housing:
@@ -102,7 +102,6 @@ def stand_in(index: int, housing: HousingInput) -> Housing:
 
 
 def _of_matrices(index: int, housing: HousingInput) -> Housing:
-    """Return a housing by its matrices."""
     assert housing.stiffness_matrix is not None  # the schema comes first
     positions = housing.seat_positions_mm
     with named(f"housings[{index}]"):
@@ -118,5 +117,4 @@ def _of_matrices(index: int, housing: HousingInput) -> Housing:
 
 
 def _point(x: float, y: float, z: float) -> tuple[float, float, float]:
-    """Return a point given in mm."""
     return x * MM, y * MM, z * MM

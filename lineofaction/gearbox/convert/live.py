@@ -36,8 +36,7 @@ from lineofaction.gearbox.units import MM, UM, factor
 Json = dict[str, Any]
 
 
-def derivatives_json(derivatives: CurveDerivatives) -> Iterator[Json]:
-    """Yield the derivatives of the curve at each torque."""
+def _derivatives_json(derivatives: CurveDerivatives) -> Iterator[Json]:
     names = [boundary_name(name) for name in derivatives.names]
     flanks = {gear: derivatives.on_flank(gear) for gear in ("pinion", "wheel")}
     for k in range(derivatives.torque.size):
@@ -72,7 +71,7 @@ _N_PER_MM = 1e3
 _DIGITS = 5
 
 
-def flanks_json(flanks: LoadDistribution) -> Json:
+def _flanks_json(flanks: LoadDistribution) -> Json:
     """Return the results on the flanks; K_Hbeta is null in the plane, whose load is even by assumption."""
     roll, pressure = pressure_map(flanks, flanks.roll_length_1)
     load = flanks.face_load
@@ -128,7 +127,7 @@ def condensed_of(file: Path, cache: Path, *, compute: bool = False) -> tuple[Cas
 def live_curves(case: Case, bodies: CondensedPair, change: LiveInput) -> Json:
     """Return the curves of the changed flanks; raises `BadInput` by the fields of the question."""
     try:
-        pair = gear_pair(changed_case(case, change))
+        pair = gear_pair(_changed_case(case, change))
         with boundary_errors():
             return _answer(bodies, pair, change)
     except BadInput as error:
@@ -145,10 +144,10 @@ def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput) -> Jso
 
     def on_flanks() -> Iterator[Json]:
         for k in range(table.force.size):
-            yield flanks_json(load_distribution(solved.pair, solved.problem, solved.solution, k))
+            yield _flanks_json(load_distribution(solved.pair, solved.problem, solved.solution, k))
 
     def derivatives() -> Iterator[Json]:
-        return iter(derivatives_json(curve_derivatives(bodies, pair, torques, None, *alignment)))
+        return iter(_derivatives_json(curve_derivatives(bodies, pair, torques, None, *alignment)))
 
     for name, made in (("flanks", on_flanks), ("derivatives", derivatives)):
         if getattr(change, name):
@@ -193,7 +192,7 @@ def _known(value: float) -> float | None:
     return value if np.isfinite(value) else None
 
 
-def changed_case(case: Case, change: LiveInput) -> Case:
+def _changed_case(case: Case, change: LiveInput) -> Case:
     """Return the case with the flanks of a question, checked as a case is."""
     facts = case.model_dump(mode="json")
     for name in ("pinion", "wheel"):

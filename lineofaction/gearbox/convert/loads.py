@@ -54,7 +54,6 @@ def unbalance_of(index: int, part: UnbalanceInput) -> Unbalance:
 
 
 def _course(force: ForceInput) -> Course:
-    """Return the course of a force's factor."""
     shaft, factor = force.of_shaft or force.shaft, force.factor or ()
     if force.time_s is not None:
         return TimeLaw(force.time_s, factor, force.course)

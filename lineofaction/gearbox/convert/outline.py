@@ -94,5 +94,4 @@ def _figures(pair: ParallelAxes) -> Json:
 
 
 def _points(points: FloatArray) -> list[list[float]]:
-    """Return points in mm, to a tenth of a micrometer."""
     return [[round(float(x) / MM, 4), round(float(y) / MM, 4)] for x, y in points]

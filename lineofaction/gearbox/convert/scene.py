@@ -59,7 +59,7 @@ if TYPE_CHECKING:
 # Shafts of a scene file, and the discs on them, in the terms of dynamics.
 
 
-def shaft_of(index: int, shaft: ShaftInput) -> Shaft:
+def _shaft_of(index: int, shaft: ShaftInput) -> Shaft:
     """Return a shaft; a diameter is one section of steel, an inertia alone is rigid."""
     x, y, z = shaft.origin_mm
     sections = _sections(index, shaft)
@@ -88,8 +88,7 @@ def _sections(index: int, shaft: ShaftInput) -> tuple[BeamSection, ...]:
     return tuple(sections)
 
 
-def disc_of(index: int, disc: DiscInput) -> DiscBody:
-    """Return a disc."""
+def _disc_of(index: int, disc: DiscInput) -> DiscBody:
     field = f"discs[{index}]"
     with named(field):
         inertia = declared_part(Inertia, disc.inertia, "inertia") or Inertia()
@@ -102,7 +101,7 @@ def disc_of(index: int, disc: DiscInput) -> DiscBody:
         return replace(placed, inertia=steel)
 
 
-def has_bent_shafts(database: SteDatabase) -> bool:
+def _has_bent_shafts(database: SteDatabase) -> bool:
     """Return whether a table has the bending of its gears' shafts in it."""
     ledger = database.metadata.effect_ledger
     entries = ledger if isinstance(ledger, list) else ledger.get("entries", [])
@@ -167,7 +166,7 @@ def dynamic_scene(
         tables: dict[str, MeshTable] = {name: table.force_table() for name, table in databases.items()}
     housings = [housing_of(i, part, reduced.get(part.name)) for i, part in enumerate(scene.housings)]
     moving = _moving(scene, facts, tables, housings)
-    bent = {name for name, database in databases.items() if has_bent_shafts(database)}
+    bent = {name for name, database in databases.items() if _has_bent_shafts(database)}
     meshes = tuple(replace(mesh, bent_shafts=mesh.name in bent) for mesh in moving.meshes)
     return replace(moving, meshes=meshes)
 
@@ -232,9 +231,9 @@ def _assembled(
         integration = Integration(**in_si(Integration, scene.integration))
     with named(""):
         return Scene(
-            shafts=tuple(shaft_of(i, shaft) for i, shaft in enumerate(scene.shafts)),
+            shafts=tuple(_shaft_of(i, shaft) for i, shaft in enumerate(scene.shafts)),
             gears=gears,
-            discs=tuple(disc_of(i, disc) for i, disc in enumerate(scene.discs)),
+            discs=tuple(_disc_of(i, disc) for i, disc in enumerate(scene.discs)),
             bushings=tuple(bushing_of(i, bushing) for i, bushing in enumerate(scene.bushings)),
             meshes=meshes,
             drives=tuple(_drive(i, drive) for i, drive in enumerate(scene.drives)),
@@ -260,7 +259,6 @@ def _assembled(
 
 
 def _gear(index: int, gear: GearBodyInput, teeth: Teeth) -> GearBody:
-    """Return a gear with the teeth of its mesh."""
     with named(f"gears[{index}]"):
         inertia = declared_part(Inertia, gear.inertia, "inertia")
         if inertia is None:
@@ -279,7 +277,6 @@ def _gear(index: int, gear: GearBodyInput, teeth: Teeth) -> GearBody:
 
 
 def _coupling(index: int, coupling: CouplingInput) -> Coupling:
-    """Return a coupling."""
     with named(f"couplings[{index}]"):
         return Coupling(
             name=coupling.name,
@@ -306,7 +303,6 @@ def _with_all_planets(inputs: SceneInput, scene: Scene) -> Scene:
 
 
 def _mesh(index: int, mesh: MeshInput, table: MeshTable, base_pitch: float) -> GearMesh:
-    """Return a mesh with its force table."""
     with named(f"meshes[{index}]"):
         return GearMesh(
             name=mesh.name,
@@ -336,7 +332,6 @@ def _coast_flank(flank: CoastFlankInput | None, base_pitch: float) -> CoastFlank
 
 
 def _drive(index: int, drive: DriveInput) -> ImposedRotation:
-    """Return a drive."""
     with named(f"drives[{index}]"):
         law: TimeLaw | AngleLaw
         if drive.angle_deg is not None:
@@ -347,6 +342,5 @@ def _drive(index: int, drive: DriveInput) -> ImposedRotation:
 
 
 def _free_rotation(index: int, rotation: FreeRotationInput) -> FreeRotation:
-    """Return a free rotation."""
     with named(f"free_rotations[{index}]"):
         return FreeRotation(rotation.name, rotation.shaft, **in_si(FreeRotation, rotation))

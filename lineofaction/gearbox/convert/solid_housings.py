@@ -155,7 +155,6 @@ def _placed(housing: HousingInput, mesh: TetrahedralMesh) -> TetrahedralMesh:
 
 
 def _meshed(housing: HousingInput, scene: SceneInput, mesh: TetrahedralMesh) -> MeshedHousing:
-    """Return the housing on its mesh."""
     loss, ratio = housing.loss_factor, housing.damping_ratio
     assert housing.material is not None  # the schema comes first
     return MeshedHousing(
@@ -180,7 +179,6 @@ def _seat(seat: HousingSeatInput, scene: SceneInput) -> SeatBore:
 
 
 def _foot(foot: HousingFootInput) -> Foot:
-    """Return a foot."""
     stiffness, damping = foot.mount_stiffness_n_per_m, foot.mount_damping_n_s_per_m
     mount = None
     if stiffness is not None:
@@ -189,7 +187,6 @@ def _foot(foot: HousingFootInput) -> Foot:
 
 
 def _face(foot: HousingFootInput) -> Plane | Box | BoundedPlane | Group:
-    """Return the face of a foot."""
     if foot.group is not None:
         return Group(foot.group)
     plane = box = None
@@ -205,7 +202,6 @@ def _face(foot: HousingFootInput) -> Plane | Box | BoundedPlane | Group:
 
 
 def _si(point: tuple[float, ...]) -> Vector:
-    """Return a point given in mm."""
     return _vector(tuple(value * MM for value in point))
 
 
@@ -216,5 +212,4 @@ def _vector(values: tuple[float, ...]) -> Vector:
 
 
 def _diagonal(values: tuple[float, ...]) -> Matrix:
-    """Return the matrix that has values on its diagonal alone."""
     return tuple(tuple(row) for row in np.diag(values).tolist())

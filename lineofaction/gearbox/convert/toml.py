@@ -30,14 +30,12 @@ def _table(content: Mapping[str, Any], path: tuple[str, ...], head: str = "[{}]"
 
 
 def _holds_tables(value: Any) -> bool:
-    """Whether it is a table, or a list of tables."""
     return isinstance(value, Mapping) or (
         isinstance(value, list | tuple) and bool(value) and all(isinstance(item, Mapping) for item in value)
     )
 
 
 def _value(value: Any) -> str:
-    """Write one value."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, list | tuple):

@@ -51,7 +51,6 @@ _CASE = {figure.name: f"pair.{figure.field}" for figure in (*SHARED, *figures(Ge
 
 
 def _with_parts(parts: Mapping[str, Declared]) -> Iterator[type]:
-    """Yield the dataclasses of parts, and of their parts."""
     for kind in (fact.part for fact in parts.values() if fact.part is not None):
         yield kind
         yield from _with_parts(parts_of(kind))
@@ -72,7 +71,6 @@ DECLARED = (*_ANYWHERE, *_OF_TABLE.values())
 
 
 def _fields_of(*kinds: type) -> dict[str, str]:
-    """Return the boundary's names of declared fields."""
     return {figure.name: figure.field for kind in kinds for figure in figures(kind)}
 
 

@@ -97,7 +97,6 @@ class Account:
             yield self._line(part, item, fate, words)
 
     def _line(self, part: Component, item: str, fate: Fate, words: str) -> Line:
-        """Return a line of a component."""
         return Line(self.place(part), part.id, part.type, part.name or "", item, fate, words, part.line)
 
 

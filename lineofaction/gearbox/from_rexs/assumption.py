@@ -89,7 +89,6 @@ def mend(error: BadInput) -> str:
 
 
 def _with(model: Model, assumption: Assumption) -> Model:
-    """Return a model with one value."""
     spectra = tuple(
         replace(
             spectrum,

@@ -65,7 +65,7 @@ def _way_to_contact(part: Part, contact_angle: float) -> float:
         along = _stated(part, f"{stage}axial_bearing_clearance", meaning)
         if along is not None:
             return along
-        across = _stated(part, f"{stage}radial_bearing_clearance", words)
+        across = _stated(part, f"{stage}radial_bearing_clearance", meaning)
         if across is not None:
             way = 0.5 * across / math.tan(contact_angle)
             item = f"{stage}axial_bearing_clearance"
@@ -151,7 +151,6 @@ def _catalog_bearing(part: Part) -> BearingGeometry | str:
 
 
 def _detailed_bearing(unit: GearUnit, part: Part) -> BearingGeometry | str:
-    """Return a bearing of one row by its internal geometry."""
     kind, rows = bearing_type(part), unit.children(part, "rolling_bearing_row")
     rating = part.number(_RATING, "static load rating, kN")
     if kind not in (*BALLS, *ROLLERS):

@@ -75,7 +75,6 @@ def bearing_stiffness(unit: GearUnit, part: Part) -> BearingStiffness:
 
 
 def _radial(part: Part, tangent: FloatArray | None) -> float:
-    """Return the radial stiffness."""
     item = "radial_stiffness"
     absorbs = part.attribute("radial_force_absorption")
     if absorbs is not None and absorbs.value is False:

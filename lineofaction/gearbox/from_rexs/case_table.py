@@ -29,7 +29,7 @@ from lineofaction.gearbox.units import DEGREE, GPA, MM, UM
 _STEP = 0.01 * MM  # tip diameters are rounded up to it
 
 
-def clearing_tip(pair: ToothedPair, depths: Sequence[ToothDepth], shifts: Mapping[int, float]) -> ToothDepth:
+def _clearing_tip(pair: ToothedPair, depths: Sequence[ToothDepth], shifts: Mapping[int, float]) -> ToothDepth:
     """Return the ring gear's depth with a tip that stays on the involute of its mate.
 
     The tip meets the mate's form circle at the roll length l_F1 + a sin(alpha_wt) of the ring gear.
@@ -164,7 +164,7 @@ def case_of(unit: GearUnit, pair: PairData, pairs: Sequence[PairData], shifts: M
     _refuse_strangers(pair)
     depths = [_depth(unit, gear, loaded, pairs, shifts) for gear, loaded in pair.gears]
     if pair.meshing.internal and not depths[1].tip_given:
-        depths[1] = clearing_tip(pair.toothed, depths, shifts)
+        depths[1] = _clearing_tip(pair.toothed, depths, shifts)
     first, second = (
         _gear(unit, gear, depth, shifts[gear.part.id])
         for (gear, _), depth in zip(pair.gears, depths, strict=True)
@@ -262,7 +262,6 @@ def _depth(
 
 
 def _gear(unit: GearUnit, gear: ToothingData, depth: ToothDepth, shift: float) -> Table:
-    """Return the table of a gear."""
     held = "rim_diameter_mm" if gear.sign < 0 else "bore_diameter_mm"
     return {
         "teeth": gear.teeth,
@@ -321,7 +320,6 @@ def _blank(unit: GearUnit, gear: ToothingData) -> Table:
 
 
 def _material(stiffness: tuple[float, float]) -> Table:
-    """Return the table of a material."""
     return {"youngs_modulus_gpa": rounded(stiffness[0] / GPA), "poissons_ratio": rounded(stiffness[1])}
 
 

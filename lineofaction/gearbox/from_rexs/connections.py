@@ -70,7 +70,6 @@ def _connections(unit: GearUnit, types: tuple[str, ...]) -> Iterator[Connection]
 
 
 def _engaged(unit: GearUnit, part: Part) -> bool:
-    """Return whether a coupling is engaged in the gear that the unit runs in."""
     attribute = part.attribute("is_engaged")
     if attribute is None or attribute.value is None:
         return True

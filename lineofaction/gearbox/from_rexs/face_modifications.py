@@ -131,7 +131,6 @@ def end_relief(place: FlankPlace, part: Part) -> Modification:
 def _end(
     depth: float, shape: str, start: float, stated: float, _roll: FloatArray, face: FloatArray
 ) -> FloatArray:
-    """Material removed by a relief towards one face."""
     return depth * relative_depth(shape, (face - start) / (stated - start))
 
 
@@ -153,7 +152,6 @@ def at_both_ends(place: FlankPlace, modifications: Sequence[Modification]) -> li
 
 
 def _both(name: str) -> str:
-    """Return the field of both faces for one of a face."""
     return name.replace("_non_datum_face", "").replace("_datum_face", "")
 
 

@@ -24,7 +24,7 @@ def unit_files(unit: OpenedUnit) -> dict[str, str]:
         files[SCENE_FILE] = toml_text(_plain(unit.scene))
     if unit.load_cases:
         files[LOAD_CASES_FILE] = toml_text(load_case_tables(unit.load_cases))
-    files[ACCOUNT_FILE] = account_csv(unit.lines)
+    files[ACCOUNT_FILE] = _account_csv(unit.lines)
     return files
 
 
@@ -33,8 +33,7 @@ def load_case_tables(cases: Iterable[LoadCase]) -> dict[str, Any]:
     return {"load_cases": [case.table() for case in cases]}
 
 
-def account_csv(lines: Iterable[Line]) -> str:
-    """Return the account as CSV, a row a line."""
+def _account_csv(lines: Iterable[Line]) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     names = [field.name for field in fields(Line)]

@@ -73,7 +73,6 @@ def _datum_along_u(gear: Part) -> float:
 
 
 def _flank(unit: GearUnit, gear: Part, side: str) -> Part | None:
-    """Return a flank of a gear."""
     for relation in unit.relations("flank"):
         number = relation.of_role(side)
         if relation.of_role("gear") == gear.id and number is not None:

@@ -43,7 +43,6 @@ def held_diameter(unit: GearUnit, gear: ToothingData, root: float) -> float:
 
 
 def _rim_diameter(unit: GearUnit, gear: ToothingData, root: float) -> float:
-    """Return the outside of the rim."""
     for part in (gear.part, *bodies(unit, gear.part)):
         value = part.number("outer_diameter", "rim_diameter_mm")
         if value is not None and value > root:

@@ -25,7 +25,7 @@ from lineofaction.gearbox.from_rexs.shafts import SAME_PLACE, PlacedShaft, place
 _ANGLE = "rotating_angle_around_neg_u_axis"
 
 
-def shaft_places(unit: GearUnit, stages: Sequence[GearStage]) -> dict[int, Placement]:
+def _shaft_places(unit: GearUnit, stages: Sequence[GearStage]) -> dict[int, Placement]:
     """Return the places of the shafts by their ids; those that nothing places are left out.
 
     A shaft without a place of its own follows from a placed one: in a stage at the center distance, in the
@@ -70,7 +70,6 @@ def _spread(unit: GearUnit, stages: Sequence[GearStage], places: dict[int, Place
 
 
 def _by_set(shaft: Part, pins: set[int], central: Sequence[Part], places: dict[int, Placement]) -> None:
-    """Place a carrier's shaft on the axis of the central shafts."""
     base = next((places[part.id] for part in central if part.id in places), None)
     if shaft.type == "shaft" and shaft.id not in places and shaft.id not in pins and base is not None:
         places[shaft.id] = base
@@ -78,7 +77,6 @@ def _by_set(shaft: Part, pins: set[int], central: Sequence[Part], places: dict[i
 
 
 def _by_stage(stage: GearStage, places: dict[int, Placement]) -> None:
-    """Place one shaft of a stage by the other."""
     known = [shaft.id in places for shaft in stage.shafts]
     if not stage.is_cylindrical or known[0] == known[1]:
         return
@@ -100,7 +98,6 @@ def _by_stage(stage: GearStage, places: dict[int, Placement]) -> None:
 
 
 def _by_coupling(coupling: Connection, places: dict[int, Placement]) -> None:
-    """Place a shaft coaxial with the one it is coupled to."""
     sides = (coupling.inner, coupling.outer)
     known = [side.id in places for side in sides]
     if known[0] == known[1] or any(side.type != "shaft" for side in sides):
@@ -122,7 +119,6 @@ def _u(part: Part, item: str) -> float:
 def _place(
     shaft: Part, base: Placement, offset: FloatArray, words: str, places: dict[int, Placement]
 ) -> None:
-    """Enter a derived place."""
     places[shaft.id] = Placement(np.asarray(base.origin + offset), base.axes)
     shaft.say("support_vector", "derived", words)
 
@@ -203,7 +199,7 @@ def layout_of(unit: GearUnit) -> Layout:
         Places or sections of shafts are no such thing.
     """
     stages = gear_stages(unit)
-    places = shaft_places(unit, stages)
+    places = _shaft_places(unit, stages)
     axes = scene_axes(_root(unit), _by_stages(stages, places))
     shafts = {}
     for part in unit.of_type("shaft"):
@@ -220,7 +216,6 @@ def layout_of(unit: GearUnit) -> Layout:
 
 
 def _root(unit: GearUnit) -> Placement | None:
-    """Return the place of the gear unit."""
     units = unit.of_type("gear_unit")
     return placement(unit, units[0]) if units else None
 

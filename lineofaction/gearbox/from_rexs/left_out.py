@@ -70,11 +70,9 @@ def _statement(group: list[Line], reason: str) -> str:
 
 
 def _named(line: Line) -> str:
-    """Return a component by type, id and name."""
     return f"{line.kind} {line.component}" + (f' "{line.name}"' if line.name else "")
 
 
 def _brackets(items: Iterable[str]) -> str:
-    """Return attributes in brackets, nothing for none."""
     text = ", ".join(dict.fromkeys(items))
     return f" ({text})" if text else ""

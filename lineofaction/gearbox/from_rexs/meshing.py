@@ -24,7 +24,7 @@ class Rotation:
     source: str
 
 
-def stage_gears(unit: GearUnit, stage: Part) -> tuple[Part, Part] | None:
+def _stage_gears(unit: GearUnit, stage: Part) -> tuple[Part, Part] | None:
     """Return gear 1 and gear 2 of a stage, None if the file does not relate them."""
     for relation in unit.relations("stage"):
         first, second = relation.of_role("gear_1"), relation.of_role("gear_2")
@@ -82,7 +82,7 @@ def _in_mesh(unit: GearUnit) -> list[tuple[Part, Part, float]]:
     """Return mating gears with the ratio of their senses."""
     links = []
     for stage in unit.of_type("cylindrical_stage"):
-        gears = stage_gears(unit, stage)
+        gears = _stage_gears(unit, stage)
         if gears is not None:
             same = "ring_gear" in (gears[0].type, gears[1].type)
             links.append((*gears, _aligned(unit, *gears) * (1.0 if same else -1.0)))
@@ -153,7 +153,7 @@ def meshing_of(
     BadInput
         No two gears, two ring gears, a driver that is none of them, or torques of both signs.
     """
-    gears = stage_gears(unit, stage)
+    gears = _stage_gears(unit, stage)
     if gears is None or all(gear.type == "ring_gear" for gear in gears):
         raise BadInput.of(f"{stage.place}, stage", None, "a relation to two gears, one of them external")
     driving = _driver(unit, stage, gears, driver)
@@ -167,12 +167,10 @@ def meshing_of(
 
 
 def _other(gears: tuple[Part, Part], gear: Part) -> Part:
-    """Return the mate."""
     return gears[1] if gear is gears[0] else gears[0]
 
 
 def _driver(unit: GearUnit, stage: Part, gears: tuple[Part, Part], driver: int | None) -> Part:
-    """Return the driving gear."""
     if driver is not None:
         chosen = next((gear for gear in gears if gear.id == driver), None)
         if chosen is None:

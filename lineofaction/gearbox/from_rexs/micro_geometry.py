@@ -51,7 +51,7 @@ class Raster:
     counts: tuple[int, int]
 
 
-def rasterized(place: FlankPlace, modifications: Sequence[Modification]) -> Raster:
+def _rasterized(place: FlankPlace, modifications: Sequence[Modification]) -> Raster:
     """Return the sum of modifications on a grid over the involute and the face.
 
     The grid is refined until it differs from the sum by less than 0.05 um, or has 129 lines each way. The
@@ -137,7 +137,7 @@ _FACES = "coordinates_of_topographical_modification"
 _DIAMETERS, _LENGTHS = "diameters_of_topographical_modification", "length_of_topographical_modification"
 
 
-def topography(place: FlankPlace, part: Part) -> Modification:
+def _topography(place: FlankPlace, part: Part) -> Modification:
     """Return a topographical modification: an amount for each pair of a coordinate and a diameter.
 
     The three lists have an entry for each node. Between the nodes the amounts are linear, beyond them those
@@ -194,7 +194,7 @@ READERS: dict[str, Callable[[FlankPlace, Part], Modification]] = {
     "end_relief_datum_face": end_relief,
     "end_relief_non_datum_face": end_relief,
     "profile_twist": profile_twist,
-    "topographical_modification": topography,
+    "topographical_modification": _topography,
 }
 """What reads each component that modifies a flank."""
 
@@ -237,7 +237,7 @@ def micro_geometry(unit: GearUnit, gear: Toothing, loaded: LoadedFlank) -> Table
         else:
             rest.append(entry)
     if rest:
-        raster = rasterized(place, rest)
+        raster = _rasterized(place, rest)
         fields["flank_grid"] = raster.table
         lines = f"{raster.counts[0]} roll lengths by {raster.counts[1]} face positions"
         words = f"{', '.join(entry.part.name for entry in rest)} on {lines}; differs by at most"

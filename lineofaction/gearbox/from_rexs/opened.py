@@ -114,7 +114,6 @@ def _flows(layout: Layout) -> list[PowerFlow]:
 
 
 def _drivers(layout: Layout, flows: Sequence[PowerFlow]) -> dict[int, int]:
-    """Return the driving gear of each stage."""
     return {s.stage.id: s.gears[flows[0].driver(s)].id for s in layout.stages} if flows else {}
 
 
@@ -148,7 +147,6 @@ def _scene(layout: Layout, table: SceneTable) -> SceneInput | None:
 
 
 def _load_cases(flows: Sequence[PowerFlow], table: SceneTable | None) -> tuple[LoadCase, ...]:
-    """Return the load cases of the scene, in the order of the file."""
     if table is None or table.leader is None:
         return ()
     leader: AppliedTorque = table.leader

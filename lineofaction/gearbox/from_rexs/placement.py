@@ -110,7 +110,6 @@ def _stated(unit: GearUnit, part: Part, inner: tuple[int, ...]) -> Placement | N
 
 
 def _in_reference(unit: GearUnit, part: Part, origin: FloatArray, inner: tuple[int, ...]) -> Placement:
-    """Return a place whose origin is stated in the frame of its reference."""
     u = _unit(part, "u_axis_vector", np.array([1.0, 0.0, 0.0]))
     w = _across(part, u)
     own, outer = Placement(origin, np.array([u, np.cross(w, u), w])), _reference(unit, part)

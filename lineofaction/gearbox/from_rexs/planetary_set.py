@@ -58,5 +58,4 @@ def _carrier(unit: GearUnit, stage: Part) -> Iterable[Part]:
 
 
 def _unique(parts: Iterable[Part]) -> tuple[Part, ...]:
-    """Return each part once."""
     return tuple({part.id: part for part in parts}.values())

@@ -87,7 +87,6 @@ class PowerFlow:
         return 1 if self.on_gear(stage, 0) * speed > 0.0 else 0
 
     def _columns(self, stage: GearStage) -> tuple[int, int]:
-        """Return the columns of the rotors of both gears."""
         first, second = (self.train.rotors.index(self.layout.rotor(s.id)) for s in stage.shafts)
         return first, second
 

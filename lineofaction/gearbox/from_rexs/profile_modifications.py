@@ -52,7 +52,6 @@ def _relief(place: FlankPlace, part: Part, name: str, end: float) -> Modificatio
 def _grown(
     depth: float, shape: str, start: float, stated: float, roll: FloatArray, _face: FloatArray
 ) -> FloatArray:
-    """Material removed by a relief."""
     return depth * relative_depth(shape, (roll - start) / (stated - start))
 
 
@@ -64,7 +63,6 @@ def _blended(
     roll: FloatArray,
     _face: FloatArray,
 ) -> FloatArray:
-    """Material removed by a linear relief with a tangential transition."""
     return depth * blended_depth((roll - start) / (stated - start), *transition)
 
 
@@ -150,7 +148,6 @@ def _bowed(
     roll: FloatArray,
     _face: FloatArray,
 ) -> FloatArray:
-    """Material removed by two half parabolas from the highest point."""
     return two_parabolas(roll, highest, ends, amounts)
 
 

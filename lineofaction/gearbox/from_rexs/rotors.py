@@ -71,7 +71,6 @@ def rotors_of(unit: GearUnit, sets: Sequence[PlanetarySet]) -> Rotors:
 
 
 def _turn(entry: Connection, of: Mapping[int, int]) -> bool:
-    """Return whether both sides are shafts or side plates."""
     return entry.inner.id in of and entry.outer.id in of
 
 

@@ -83,7 +83,7 @@ class SceneForce:
         return {**self.stated(point), "shaft": self.shaft, "position_mm": self.position_mm}
 
 
-def scene_forces(
+def _scene_forces(
     layout: Layout, points: Sequence[OperatingPoint], shafts: SceneShafts
 ) -> tuple[SceneForce, ...]:
     """Return the external loads that push or tilt a shaft at any of some operating points.
@@ -95,7 +95,6 @@ def scene_forces(
 
 
 def _forces(layout: Layout, loads: Sequence[Part], shafts: SceneShafts) -> Iterator[SceneForce]:
-    """Yield the forces of external loads on shafts of the scene."""
     names = Names()
     for part in loads:
         placed, reason = _placed(layout, part, shafts)
@@ -129,7 +128,6 @@ def _placed(layout: Layout, load: Part, shafts: SceneShafts) -> tuple[PlacedShaf
 
 
 def _coaxial(placed: PlacedShaft, shaft: SceneShaft) -> bool:
-    """Return whether a shaft of the file is on the axis of the scene's shaft that it is part of."""
     apart = np.array(placed.origin[:2]) - MM * np.array(shaft.table["origin_mm"][:2])
     return bool(np.hypot(*apart) <= 1e2 * SAME_PLACE)
 
@@ -210,7 +208,7 @@ def scene_table(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[Stag
     gears, meshes = scene_gears(layout, shafts, by_stage, Names())
     torques = applied_torques(layout, flow, shafts, cut)
     drivers = driving(torques, flow, trains_of(layout, shafts))
-    forces = scene_forces(layout, [each.point for each in flows], shafts)
+    forces = _scene_forces(layout, [each.point for each in flows], shafts)
     table: dict[str, Any] = {
         "run": {"duration_s": _duration(layout, slowest_mesh(layout, flow, shafts))},
         "gravity_m_per_s2": _gravity(layout),

@@ -40,7 +40,7 @@ _LOCATING = {"both_directions": BOTH, "positive": POSITIVE, "negative": NEGATIVE
 _OPPOSITE = {POSITIVE: NEGATIVE, NEGATIVE: POSITIVE}
 
 
-def axial_location(part: Part, sense: int, item: str = ITEM) -> str | None:
+def _axial_location(part: Part, sense: int, item: str = ITEM) -> str | None:
     """Return the directions along z in which a bearing, or its row, holds its shaft.
 
     Parameters
@@ -64,14 +64,14 @@ def axial_location(part: Part, sense: int, item: str = ITEM) -> str | None:
     return stated
 
 
-def contact_side(part: Part, row: Part | None, sense: int) -> int | str:
+def _contact_side(part: Part, row: Part | None, sense: int) -> int | str:
     """Return the sign of the contact angle of a row, +1 where it holds a shaft that is pushed along z.
 
     The row's own direction counts, else that of the bearing; the reason where neither says or they differ.
     """
     senses = {POSITIVE: 1, NEGATIVE: -1}
-    own = senses.get(axial_location(part, sense) or "")
-    of_row = None if row is None else senses.get(axial_location(row, sense, ROW_ITEM) or "")
+    own = senses.get(_axial_location(part, sense) or "")
+    of_row = None if row is None else senses.get(_axial_location(row, sense, ROW_ITEM) or "")
     if own is not None and of_row is not None and own != of_row:
         return f"{ITEM} of the bearing and of its row are opposite"
     side = of_row or own
@@ -118,7 +118,7 @@ def _located(layout: Layout, entry: Connection, geometry: BearingGeometry) -> di
     if geometry.row.contact_angle == 0.0:
         return _without_angle(entry.part, geometry, sense)
     rows = layout.unit.children(entry.part, "rolling_bearing_row")
-    side = contact_side(entry.part, rows[0] if rows else None, sense)
+    side = _contact_side(entry.part, rows[0] if rows else None, sense)
     if isinstance(side, str):
         return side
     row = replace(geometry.row, contact_angle=side * geometry.row.contact_angle)
@@ -127,7 +127,7 @@ def _located(layout: Layout, entry: Connection, geometry: BearingGeometry) -> di
 
 def _without_angle(part: Part, geometry: BearingGeometry, sense: int) -> dict[str, Any] | str:
     """Return a deep groove ball or cylindrical roller bearing."""
-    locating, table = axial_location(part, sense), _table(geometry.line or geometry.row)
+    locating, table = _axial_location(part, sense), _table(geometry.line or geometry.row)
     if isinstance(geometry.row, RollerBearing):
         ribs = "its ribs carry axial force, which rollers by their geometry do not"
         return table if locating in (NONE, None) else ribs
@@ -328,7 +328,6 @@ def _joint(layout: Layout, shafts: SceneShafts, names: Names, entry: Connection)
 def _enter_coupling(
     layout: Layout, shafts: SceneShafts, tables: SceneBearings, names: Names, entry: Connection
 ) -> None:
-    """Enter a coupling between two shafts."""
     if any(_rotor(layout, shafts, side) is None for side in (entry.inner, entry.outer)):
         return
     radial = _limited(entry.part, "radial_stiffness", RIGID_COUPLING)

@@ -89,7 +89,6 @@ def _housing(layout: Layout, group: Part, seats: dict[int, str], names: Names) -
 
 
 def _bushing(layout: Layout, point: Part, seats: dict[int, str]) -> str | None:
-    """Return the bushing on a reduction point."""
     for part in layout.unit.related(point, "reference", "origin", "referenced"):
         if part.id in seats:
             point.say("", "taken", f"seat of {seats[part.id]}")

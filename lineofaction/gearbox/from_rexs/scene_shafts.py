@@ -54,7 +54,7 @@ class _Piece:
     end: float
 
 
-def carrier_body(layout: Layout, rotor: int) -> CarrierBody:
+def _carrier_body(layout: Layout, rotor: int) -> CarrierBody:
     """Return the body of a carrier.
 
     A piece off the axis adds m r^2 about it and, as one of several around it, m r^2 / 2 across it.
@@ -218,14 +218,12 @@ def _joined(layout: Layout, stages: Sequence[GearStage]) -> set[int]:
 
 
 def _meshes_outside(layout: Layout, stages: Sequence[GearStage], shaft: Part, carrier: int) -> bool:
-    """Return whether a shaft also carries a gear that meshes outside of the carrier's set."""
     return any(
         shaft.id in {own.id for own in stage.shafts} and layout.carrier(stage) != carrier for stage in stages
     )
 
 
 def _shaft(layout: Layout, rotor: int, names: Names) -> SceneShaft:
-    """Return the shaft of a rotor."""
     part = layout.unit.part(rotor)
     if rotor in {layout.rotor(planets.carrier[0].id) for planets in layout.rotors.sets}:
         return _carrier(layout, rotor, names)
@@ -267,8 +265,7 @@ def _section(section: BeamSection) -> dict[str, Any]:
 
 
 def _carrier(layout: Layout, rotor: int, names: Names) -> SceneShaft:
-    """Return a planet carrier as a rigid shaft."""
-    body = carrier_body(layout, rotor)
+    body = _carrier_body(layout, rotor)
     members = [layout.unit.part(member) for member in layout.rotors.members(rotor)]
     for member in members:
         member.say("", "derived", f"part of the rigid planet carrier of {len(members)} parts")
@@ -283,7 +280,6 @@ def _carrier(layout: Layout, rotor: int, names: Names) -> SceneShaft:
 
 
 def _stub(layout: Layout, shaft: Part, gear: Part, names: Names) -> SceneShaft:
-    """Return a stub at a gear."""
     placed = layout.shafts[shaft.id]
     z = layout.z_on(placed, gear)
     x, y = (float(value) / MM for value in placed.origin[:2])

@@ -27,7 +27,7 @@ from lineofaction.gearbox.units import MM
 # Center distance and axial offset of a stage.
 
 
-def center_distance_of(unit: GearUnit, stage: Part, meshing: Meshing) -> float:
+def _center_distance_of(unit: GearUnit, stage: Part, meshing: Meshing) -> float:
     """Return the center distance in m: the stage's own, else the distance of the gears' axes.
 
     Raises
@@ -46,8 +46,7 @@ def center_distance_of(unit: GearUnit, stage: Part, meshing: Meshing) -> float:
     return distance
 
 
-def axial_offset_of(unit: GearUnit, meshing: Meshing) -> float:
-    """Return the distance in m of the wheel's mid-face from the pinion's, towards +z."""
+def _axial_offset_of(unit: GearUnit, meshing: Meshing) -> float:
     return float(_apart(unit, meshing) @ meshing.z)
 
 
@@ -146,9 +145,9 @@ def _pair(unit: GearUnit, stage: Part, torques: tuple[float, ...], driver: int |
     meshing = meshing_of(unit, stage, driver, torques)
     loaded = (loaded_flank(unit, meshing, meshing.pinion), loaded_flank(unit, meshing, meshing.wheel))
     gears = (toothing_of(meshing.pinion, loaded[0]), toothing_of(meshing.wheel, loaded[1]))
-    toothed = ToothedPair(stage, *gears, center_distance_of(unit, stage, meshing))
+    toothed = ToothedPair(stage, *gears, _center_distance_of(unit, stage, meshing))
     _ = toothed.working_pressure_angle  # raises if there is none
-    return PairData(meshing, toothed, loaded, axial_offset_of(unit, meshing), torques)
+    return PairData(meshing, toothed, loaded, _axial_offset_of(unit, meshing), torques)
 
 
 def _enter(cases: list[StageCase], pair: PairData, case: Case) -> None:

@@ -68,7 +68,6 @@ def _given_tip(gear: ToothingData, shift: float) -> float | None:
 
 
 def _is_tip(gear: ToothingData, diameter: float, shift: float) -> bool:
-    """Return whether the addendum that a tip diameter means is one of a basic rack."""
     return _ADDENDUM_BOUND[0] <= _implied_addendum(gear, diameter, shift) <= _ADDENDUM_BOUND[1]
 
 
@@ -146,13 +145,11 @@ def _say_ignored(tool: Part) -> None:
 
 
 def _cutter_teeth(cutter: Part) -> int | None:
-    """Return the number of teeth of a pinion cutter."""
     value = cutter.number("number_of_teeth", "cutter_teeth")
     return None if value is None else abs(round(value))
 
 
 def _cutter_shift(cutter: Part) -> float | None:
-    """Return the profile shift of a pinion cutter."""
     return cutter.number("addendum_modification_coefficient", "cutter_profile_shift_coefficient")
 
 

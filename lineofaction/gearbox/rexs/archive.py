@@ -61,7 +61,6 @@ def inside(name: str) -> bool:
 
 
 def _files(archive: zipfile.ZipFile, size: int) -> dict[str, bytes]:
-    """Return the files of an archive by name."""
     entries = [entry for entry in archive.infolist() if not entry.is_dir()]
     if len(entries) > MOST_FILES:
         raise refused("archive", f"{len(entries)} files", f"at most {MOST_FILES}")

@@ -36,7 +36,7 @@ _STEP = "  "
 _NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
-def xml_of(model: Model) -> bytes:
+def _xml_of(model: Model) -> bytes:
     """Return a model as XML in UTF-8, the same bytes at every time.
 
     Raises
@@ -51,7 +51,6 @@ def xml_of(model: Model) -> bytes:
 
 
 def _lines(model: Model) -> Iterator[str]:
-    """Yield the lines of a model."""
     fields = {
         "version": model.version,
         "applicationId": model.application,
@@ -70,7 +69,6 @@ def _lines(model: Model) -> Iterator[str]:
 
 
 def _written_relation(relation: Relation) -> Iterator[str]:
-    """Yield the lines of a relation."""
     order = None if relation.order is None else str(relation.order)
     fields = {"id": str(relation.id), "type": relation.type, "order": order}
     yield _start("relation", fields, relation.extra)
@@ -81,7 +79,6 @@ def _written_relation(relation: Relation) -> Iterator[str]:
 
 
 def _written_component(component: Component) -> Iterator[str]:
-    """Yield the lines of a component."""
     fields = {"id": str(component.id), "type": component.type, "name": component.name}
     yield _start("component", fields, component.extra)
     for attribute in component.attributes:
@@ -90,7 +87,6 @@ def _written_component(component: Component) -> Iterator[str]:
 
 
 def _written_spectrum(spectrum: LoadSpectrum) -> Iterator[str]:
-    """Yield the lines of a load spectrum."""
     yield _start("load_spectrum", {"id": str(spectrum.id)}, spectrum.extra)
     for case in spectrum.cases:
         yield _STEP + _start("load_case", {"id": str(case.id)}, case.extra)
@@ -104,7 +100,6 @@ def _written_spectrum(spectrum: LoadSpectrum) -> Iterator[str]:
 
 
 def _written_attribute(attribute: Attribute) -> str:
-    """Return an attribute on one line."""
     fields = {
         "id": attribute.id,
         "unit": attribute.unit,
@@ -127,7 +122,6 @@ def _hidden(attribute: Attribute) -> str | None:
 
 
 def _body(kind: str, value: Value, code: str | None) -> str:
-    """Return the text of a value."""
     if value is None:
         return ""
     if not isinstance(value, tuple):
@@ -154,7 +148,6 @@ def _written_coded(kind: str, value: tuple[object, ...], rows: list[Array], code
 
 
 def _cells(values: tuple[object, ...]) -> str:
-    """Return the cells of an array or a row."""
     return "".join(f"<c>{escape(text_of(value))}</c>" for value in values)  # type: ignore[arg-type]  # scalars
 
 
@@ -166,7 +159,6 @@ def _group(name: str, lines: Iterator[str]) -> Iterator[str]:
 
 
 def _within(lines: Iterator[str]) -> Iterator[str]:
-    """Yield lines a step further in."""
     return (_STEP + line for line in lines)
 
 
@@ -184,7 +176,7 @@ def _quoted(text: str) -> str:
 # REXS's JSON form of a model.
 
 
-def json_of(model: Model) -> bytes:
+def _json_of(model: Model) -> bytes:
     """Return a model as JSON in UTF-8, the same bytes at every time.
 
     Raises
@@ -210,7 +202,6 @@ def json_of(model: Model) -> bytes:
 
 
 def _relation(relation: Relation) -> dict[str, Any]:
-    """Return a relation."""
     refs = [
         _given({"id": ref.id, "role": ref.role, "hint": ref.hint, **dict(ref.extra)}) for ref in relation.refs
     ]
@@ -219,7 +210,6 @@ def _relation(relation: Relation) -> dict[str, Any]:
 
 
 def _component(component: Component) -> dict[str, Any]:
-    """Return a component."""
     own = {"id": component.id, "type": component.type, "name": component.name}
     attributes = [_attribute(attribute) for attribute in component.attributes]
     return _given({**own, **dict(component.extra), "attributes": attributes})
@@ -258,7 +248,6 @@ def _coded(attribute: Attribute, code: str) -> dict[str, Any]:
 
 
 def _given(table: dict[str, Any]) -> dict[str, Any]:
-    """Return the fields that have a value."""
     return {name: value for name, value in table.items() if value is not None}
 
 
@@ -390,10 +379,10 @@ def serialized(document: Document, name: str) -> bytes:
         raise refused("file", name, "a name that ends in one of " + ", ".join(ENDINGS))
     check(document.model)
     if ending in (".rexsz", ".rexs.zip"):
-        return write_archive(xml_of(document.model), document.files)
+        return write_archive(_xml_of(document.model), document.files)
     if document.files:
         raise refused("file", name, "an archive (.rexsz): other files belong to the model")
-    return json_of(document.model) if ending == ".rexsj" else xml_of(document.model)
+    return _json_of(document.model) if ending == ".rexsj" else _xml_of(document.model)
 
 
 def _model(data: bytes) -> Model:

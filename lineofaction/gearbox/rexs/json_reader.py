@@ -59,7 +59,6 @@ def read_json(data: bytes) -> Model:
 
 
 def _relation(table: Table) -> Relation:
-    """Return a relation."""
     refs = tuple(
         Reference(
             ref.number("id"), ref.text("role"), ref.optional_text("hint"), ref.extra("id", "role", "hint")
@@ -110,7 +109,6 @@ def _spectra(model: Table, types: dict[int, str]) -> tuple[LoadSpectrum, ...]:
 
 
 def _attribute(table: Table) -> Attribute:
-    """Return an attribute."""
     name = table.text("id")
     kinds = [field for field in table.fields if _is_kind(field)]
     if len(kinds) != 1:
@@ -128,12 +126,10 @@ def _attribute(table: Table) -> Attribute:
 
 
 def _is_kind(field: str) -> bool:
-    """Return whether a field of an attribute is its value."""
     return field not in _OWN and entry_kind(field.removesuffix(_CODED)) in KINDS
 
 
 def _value(kind: str, plain: Any, place: str) -> Value:
-    """Return the value of a kind."""
     entry = entry_kind(kind)
     if plain is None or (isinstance(plain, str) and not plain.strip()):
         return None
@@ -171,7 +167,6 @@ def _scalar(kind: str, plain: Any, place: str) -> Scalar:
 
 
 def _list(plain: Any, place: str) -> list[Any]:
-    """Return a list, refuse what is none."""
     if not isinstance(plain, list):
         raise refused(place, type(plain).__name__, "a list")
     return plain

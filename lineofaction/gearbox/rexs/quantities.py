@@ -64,7 +64,6 @@ def _only(component: Component, name: str, place: str) -> Attribute | None:
 
 
 def _number(value: object, attribute: Attribute, place: str) -> float:
-    """Return a number in SI."""
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise refused(place, value, "a number")
     return si_value(float(value), attribute.unit, _units()[attribute.id], place)

@@ -67,14 +67,14 @@ def upgrade(model: Model, version: str = NEWEST) -> tuple[Model, tuple[Change, .
     BadInput
         The model's version is not known.
     """
-    start, end = version_number(model.version), version_number(version)
+    start, end = _version_number(model.version), _version_number(version)
     changes: list[Change] = []
     for old, new in zip(VERSIONS[start:end], VERSIONS[start + 1 : end + 1], strict=True):
         model = _stepped(model, _step(old, new), changes)
     return model, tuple(changes)
 
 
-def version_number(version: str) -> int:
+def _version_number(version: str) -> int:
     """Return the index of a version in `VERSIONS`; 2.0 is 2.0.0.
 
     Raises
@@ -155,7 +155,6 @@ _Changed = tuple[Attribute, str, bool]
 
 
 def _name(component: str, name: str, step: _Step, names: set[str]) -> tuple[str, str]:
-    """Return the name of an attribute, and what to say of it."""
     own = f"{component}.{name}"
     if own in step.moved:
         targets = ", ".join(step.moved[own])

@@ -34,7 +34,7 @@ def integer_of(text: str, place: str) -> int:
     return int(plain)
 
 
-def float_of(text: str, place: str) -> float:
+def _float_of(text: str, place: str) -> float:
     """Return a finite number.
 
     Raises
@@ -51,7 +51,7 @@ def float_of(text: str, place: str) -> float:
     return number
 
 
-def boolean_of(text: str, place: str) -> bool:
+def _boolean_of(text: str, place: str) -> bool:
     """Return true or false, in any case.
 
     Raises
@@ -66,16 +66,15 @@ def boolean_of(text: str, place: str) -> bool:
 
 
 def _words(text: str, place: str) -> str:
-    """Return the text as it is."""
     del place
     return text
 
 
 OF_TEXT: dict[str, Callable[[str, str], Scalar]] = {
-    "floating_point": float_of,
+    "floating_point": _float_of,
     "integer": integer_of,
     "reference_component": integer_of,
-    "boolean": boolean_of,
+    "boolean": _boolean_of,
 }
 
 

@@ -47,7 +47,7 @@ class Element:
         return "".join(self.words)
 
 
-def element_of(data: bytes) -> Element:
+def _element_of(data: bytes) -> Element:
     """Return the root of an XML text in an encoding of its own: no codec is looked up by a name of the file.
 
     Raises
@@ -131,7 +131,7 @@ def read_xml(data: bytes) -> Model:
     BadInput
         It is no XML that may be read, or no REXS.
     """
-    root = element_of(data)
+    root = _element_of(data)
     if root.name.rpartition(":")[2] != "model":
         raise refused(_place(root), root.name, "model, the root of a REXS file")
     parts = _parts(root, {"relations": 1, "components": 1, "load_spectrum": None})
@@ -153,7 +153,6 @@ def read_xml(data: bytes) -> Model:
 
 
 def _relation(element: Element) -> Relation:
-    """Return a relation."""
     order = element.fields.get("order")
     return Relation(
         id=_number(element, "id"),
@@ -171,7 +170,6 @@ def _reference(element: Element) -> Reference:
 
 
 def _component(element: Element) -> Component:
-    """Return a component."""
     return Component(
         id=_number(element, "id"),
         type=_text(element, "type"),
@@ -183,7 +181,6 @@ def _component(element: Element) -> Component:
 
 
 def _spectrum(element: Element) -> LoadSpectrum:
-    """Return a load spectrum."""
     parts = _parts(element, {"load_case": None, "accumulation": 1})
     cases = tuple(
         LoadCase(_number(case, "id"), tuple(map(_component, _only(case, "component"))), _extra(case, "id"))
@@ -194,7 +191,6 @@ def _spectrum(element: Element) -> LoadSpectrum:
 
 
 def _attribute(element: Element) -> Attribute:
-    """Return an attribute."""
     name = _text(element, "id")
     shapes = _parts(element, {"array": 1, "matrix": 1, "array_of_arrays": 1})
     bodies = [part for group in shapes.values() for part in group]
@@ -246,7 +242,6 @@ def _coded(body: Element, code: str, place: str) -> tuple[str, Value, str]:
 
 
 def _cells(element: Element) -> list[str]:
-    """Return the texts of the cells of an array or a row."""
     return [cell.text for cell in _only(element, "c")]
 
 

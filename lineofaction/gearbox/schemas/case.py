@@ -167,7 +167,6 @@ class ErrorsInput(BoundaryModel):
 
     @model_validator(mode="after")
     def _axes_increase(self) -> Self:
-        """Both are axes of a table."""
         _increasing("misalignment_um", self.misalignment_um)
         _increasing("center_distance_change_mm", self.center_distance_change_mm)
         return self

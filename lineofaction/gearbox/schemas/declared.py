@@ -94,7 +94,6 @@ class Figure:
         return self.accepted, field
 
     def _unsaid(self, value: Any) -> bool:
-        """Whether a value of the boundary is the default."""
         return bool(value == self.own(self.default))
 
 
@@ -138,14 +137,12 @@ def parts_in(parts: Mapping[str, Declared]) -> Fields:
 
 @cache
 def _model_of(part: Any) -> Any:
-    """Return the model of a part."""
     name, doc = f"{part.__name__}Input", str(part.__doc__).partition("\n")[0]
     facts: Any = declared_in(part)
     return create_model(name, __base__=BoundaryModel, __module__=__name__, __doc__=doc, **facts)
 
 
 def _example(part: type) -> dict[str, Any]:
-    """Return a usual part."""
     return {figure.field: figure.own(figure.what.example) for figure in figures(part)}
 
 
@@ -162,5 +159,4 @@ def with_fields(further: Fields) -> Callable[[type[Model]], type[Model]]:
 
 
 def _names(along: Direction) -> list[str]:
-    """Return the names of directions."""
     return [direction.name.lower() for direction in along if direction.name]

@@ -180,7 +180,6 @@ def field_advice(model: type[BaseModel], field: str) -> str:
 
 
 def _described(info: FieldInfo | None) -> str:
-    """Describe a field, with an example."""
     if info is None:
         return ""
     example = f"For example {info.examples[0]!r}" if info.examples else ""

@@ -79,7 +79,6 @@ def _is_content(value: object) -> bool:
 
 
 def _matrices(file: Path, field: str) -> Content:
-    """Return the matrices of a CSV or NPZ file."""
     from dynamics.errors import InputError  # noqa: PLC0415 - the client reads scenes too, and stays light
     from dynamics.joints.housing import read_housing_matrices  # noqa: PLC0415
 
@@ -114,7 +113,6 @@ def _modes(file: Path, field: str) -> Content:
 
 
 def _solid(file: Path, field: str) -> Content:
-    """Return the content of a STEP file or a mesh."""
     name = field.rpartition(".")[2]
     suffixes = STEP_SUFFIXES if name == STEP_FILE else MESH_SUFFIXES
     if file.suffix.lower() not in suffixes:

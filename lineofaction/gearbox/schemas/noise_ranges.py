@@ -21,7 +21,6 @@ RANGES = (
 
 
 def _range(low: float, high: float, text: str) -> Factors:
-    """Declare a range of factors."""
     described = f"{text}: lowest and highest factor on what the scene states"
     field: Factors = Field(
         default=(low, high), min_length=2, max_length=2, description=described, examples=[[low, high]]

@@ -16,7 +16,6 @@ ONE, MANY = Tag("[one]"), Tag("[many]")
 
 
 def _shape(value: object) -> str:
-    """Tell one value from a list of them."""
     return (MANY if isinstance(value, list | tuple) else ONE).tag
 
 
@@ -43,7 +42,6 @@ def validity_words(flags: int) -> str:
 
 
 def _limit(name: str) -> Any:
-    """Return the bounds of one value of a column."""
     return Field(ge=-LIMITS[name], le=LIMITS[name])
 
 

@@ -28,7 +28,7 @@ _HELP = "See docs/case-file.md: one row per node, in any order."
 Table = dict[str, Any]
 
 
-def with_flank_grids(
+def _with_flank_grids(
     table: Table, find: Find, read_text: Callable[[Path, str], str], prefix: str = ""
 ) -> dict[str, Any]:
     """Return `table` with `flank_grid` in place of every `flank_grid_csv`, at any depth.
@@ -68,14 +68,13 @@ def with_flank_grids(
 def _inside(value: object, find: Find, read_text: Callable[[Path, str], str], prefix: str) -> object:
     """Look for grids inside a table or a list."""
     if isinstance(value, dict):
-        return with_flank_grids(value, find, read_text, prefix)
+        return _with_flank_grids(value, find, read_text, prefix)
     if isinstance(value, list):
         return [_inside(item, find, read_text, f"{prefix}[{i}]") for i, item in enumerate(value)]
     return value
 
 
 def _joined(prefix: str, key: str) -> str:
-    """Dotted name of a field."""
     return f"{prefix}.{key}" if prefix else key
 
 
@@ -134,7 +133,6 @@ def _nodes(text: str) -> dict[tuple[float, float], float]:
 
 
 def _cells(line: str) -> list[str]:
-    """Cells of a line."""
     return [cell.strip() for cell in next(csv.reader([line]))]
 
 
@@ -148,14 +146,12 @@ def _order(heading: list[str]) -> list[int]:
 
 
 def _row(cells: list[str], order: list[int], number: int) -> list[float]:
-    """Return the three numbers of a row."""
     if len(cells) != len(COLUMNS):
         raise ValueError(f"a file with {len(COLUMNS)} values in each row; line {number} has {len(cells)}")
     return [_number(cells[index], column, number) for index, column in zip(order, COLUMNS, strict=True)]
 
 
 def _number(cell: str, column: str, line: int) -> float:
-    """Return a finite number."""
     try:
         value = float(cell)
     except ValueError:
@@ -271,4 +267,4 @@ def written_out(table: dict[str, Any], find: Find, housings: Collection[str]) ->
     BadInput
         A file is missing, or holds something else.
     """
-    return with_housing_files(with_flank_grids(table, find, read_text), find, housings)
+    return with_housing_files(_with_flank_grids(table, find, read_text), find, housings)

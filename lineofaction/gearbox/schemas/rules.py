@@ -53,5 +53,4 @@ def both(first: Json, second: Json) -> Json:
 
 
 def _with(name: str, *names: str) -> Json:
-    """Return the schema of tables that have one of some fields."""
     return both(given(name), left_out(*(other for other in names if other != name)))

@@ -180,7 +180,6 @@ def _further_shafts(scene: SceneInput) -> Iterator[tuple[str, str]]:
 
 
 def _refuse_repeated(kind: str, names: list[str]) -> None:
-    """Names of one kind are unique."""
     for index, name in enumerate(names):
         if name in names[:index]:
             refuse(f"{kind}[{index}].name", name, "a name that no other one of them has")

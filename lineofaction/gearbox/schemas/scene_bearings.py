@@ -58,7 +58,6 @@ class RollingBearingInput(BoundaryModel):
 
     @model_validator(mode="after")
     def _one_row(self) -> Self:
-        """Exactly one row."""
         rows = [name for name in ROWS if getattr(self, name) is not None]
         if len(rows) != 1:
             refuse("ball", rows or None, f"given once, as one of {', '.join(ROWS)}", "Keep one of them.")

@@ -43,7 +43,6 @@ class DiscInput(BoundaryModel):
 
     @model_validator(mode="after")
     def _one_inertia(self) -> Self:
-        """Exactly one source of inertia."""
         if (self.inertia is None) == (self.cylinder is None):
             refuse("inertia", self.inertia, "given, or cylinder instead, but not both", "Keep one of them.")
         return self

@@ -15,7 +15,7 @@ from lineofaction.gearbox.schemas.rules import exactly_one_of, stated
 from lineofaction.gearbox.schemas.scene_types import Coordinate, Course, Name, Numbers, Times
 
 
-def place_of(subject: str) -> Any:
+def _place_of(subject: str) -> Any:
     """Return the field of a place along a flexible shaft."""
     text = f"Where along a flexible shaft {subject}, in mm from its left end"
     return Field(default=0.0, description=text, examples=[0.0])
@@ -73,7 +73,7 @@ class LoadTorqueInput(BoundaryModel):
 
     name: Name = Field(description="Name of the load", examples=["brake"])
     shaft: Name = Field(description="The loaded shaft", examples=["output"])
-    position_mm: Coordinate = place_of("it acts")
+    position_mm: Coordinate = _place_of("it acts")
     time_s: Times = Field(
         default=(0.0,), min_length=1, max_length=100_000, description="Times in s", examples=[[0.0]]
     )
@@ -96,7 +96,7 @@ class SpeedTorqueInput(BoundaryModel):
 
     name: Name = Field(description="Name of the torque", examples=["fan"])
     shaft: Name = Field(description="The shaft it acts on", examples=["output"])
-    position_mm: Coordinate = place_of("it acts")
+    position_mm: Coordinate = _place_of("it acts")
     kind: Literal["table", "quadratic", "constant"] = Field(
         description="Law: a table, the square of the speed, or a constant against either sense of rotation",
         examples=["table"],
@@ -129,7 +129,6 @@ class SpeedTorqueInput(BoundaryModel):
 
 
 def _check_law(field: str, times: tuple[float, ...], values: tuple[float, ...]) -> None:
-    """As many values as times, and times that increase."""
     if any(later <= earlier for earlier, later in pairwise(times)):
         refuse("time_s", list(times), "strictly increasing", "Sort the list and drop repeats.")
     if len(times) != len(values):

@@ -33,7 +33,7 @@ SETTINGS = ("run", "accuracy", "outputs", "integration", "effects", "left_out")
 _ADVICE = "Deflect the scene and the load cases that `loa open` writes of this unit, as they are."
 
 
-def check_same_scene(unit: OpenedUnit, result: GearboxDeflection) -> None:
+def _check_same_scene(unit: OpenedUnit, result: GearboxDeflection) -> None:
     """Refuse a result of another scene than the unit's, or of load cases that it has not.
 
     Raises
@@ -46,25 +46,25 @@ def check_same_scene(unit: OpenedUnit, result: GearboxDeflection) -> None:
     if not result.scene:
         advice = "It is of an older version: repeat the deflection."
         raise BadInput.of("deflection", "no scene", "a result that keeps its scene", advice)
-    _refuse(first_difference(_bodies(scene_of(unit.scene)), _bodies(result.scene), "scene"))
+    _refuse(_difference(_bodies(scene_of(unit.scene)), _bodies(result.scene), "scene"))
     pairs = {case.name: case.case.pair.model_dump(mode="json") for case in unit.cases}
     for name, part in unit.parts.meshes.items():
         own = pairs[part.case]
-        _refuse(first_difference(own, result.cases.get(name, {}).get("pair"), f'case of mesh "{name}", pair'))
+        _refuse(_difference(own, result.cases.get(name, {}).get("pair"), f'case of mesh "{name}", pair'))
     _check_load_cases(unit, result.deflection.cases)
 
 
-def first_difference(unit: Any, result: Any, path: str) -> tuple[str, Any, Any] | None:
+def _difference(unit: Any, result: Any, path: str) -> tuple[str, Any, Any] | None:
     """Return the path at which two values of JSON differ first with both values, None if they are equal."""
     if isinstance(unit, Mapping) and isinstance(result, Mapping):
         return _first(
-            first_difference(unit.get(key), result.get(key), f"{path}.{key}") for key in {**unit, **result}
+            _difference(unit.get(key), result.get(key), f"{path}.{key}") for key in {**unit, **result}
         )
     if isinstance(unit, list) and isinstance(result, list):
         if len(unit) != len(result):
             return f"length of {path}", len(unit), len(result)
         pairs = enumerate(zip(unit, result, strict=True))
-        return _first(first_difference(one, other, f"{path}[{k}]") for k, (one, other) in pairs)
+        return _first(_difference(one, other, f"{path}[{k}]") for k, (one, other) in pairs)
     return None if _equal(unit, result) else (path, unit, result)
 
 
@@ -84,7 +84,6 @@ def _bodies(scene: Json) -> Json:
 
 
 def _refuse(difference: tuple[str, Any, Any] | None) -> None:
-    """Raise the error of a difference."""
     if difference is not None:
         path, own, other = difference
         raise BadInput.of(f"rexs, {path}", _shown(own), f"{_shown(other)}, as in the deflection", _ADVICE)
@@ -110,18 +109,16 @@ def _check_load_cases(unit: OpenedUnit, cases: Sequence[CaseDeflection]) -> None
         _check_load(own, case)
         forces = {part.name: _vectors(part.force.tolist(), part.moment.tolist()) for part in case.forces}
         path = f'load case "{case.name}", forces'
-        _refuse(first_difference(_forces_under(unit, own), forces, path))
+        _refuse(_difference(_forces_under(unit, own), forces, path))
 
 
 def _forces_under(unit: OpenedUnit, case: LoadCase) -> Json:
-    """Return the forces of a unit's scene under a load case by name."""
     forces = () if unit.scene is None else unit.scene.forces
     of_scene = {part.name: _vectors(part.force_n, part.moment_n_m) for part in forces}
     return of_scene | {part["name"]: _vectors(part["force_n"], part["moment_n_m"]) for part in case.forces}
 
 
 def _vectors(force: Iterable[float], moment: Iterable[float]) -> Json:
-    """Return a force and a moment as they are compared."""
     return {"force_n": list(force), "moment_n_m": list(moment)}
 
 
@@ -182,7 +179,6 @@ def bearing_results(part: BearingPart, load: BearingLoad) -> tuple[Attribute, ..
 
 
 def _turned(part: BearingPart, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the vectors along u, v, w of x, y, z and of tilt_x, tilt_y."""
     return part.turn.T @ values[:3], part.turn.T @ np.array([*values[3:5], 0.0])
 
 
@@ -208,7 +204,7 @@ def _displacements(side: str, displacement: FloatArray, tilt: FloatArray) -> Ite
 _PA_PER_MPA, _N_PER_M = 1e6, 1e3
 
 
-def alignment_results(mesh: MeshAlignment, sense: int) -> tuple[Attribute, ...]:
+def _alignment_results(mesh: MeshAlignment, sense: int) -> tuple[Attribute, ...]:
     """Return the misalignment of a stage, mean over the mesh cycle.
 
     The attribute of ISO 6336 is its size without running-in allowance; signed it is a custom one: > 0 where
@@ -235,7 +231,7 @@ def flank_results(flanks: MeshFlanks, sense: int) -> tuple[Attribute, ...]:
     ----------
     flanks : MeshFlanks
     sense : int
-        As of `alignment_results`.
+        As of `_alignment_results`.
     """
     order = slice(None, None, sense)
     along = sense * flanks.face_position[order]
@@ -260,7 +256,7 @@ def flank_results(flanks: MeshFlanks, sense: int) -> tuple[Attribute, ...]:
 # Results of a shaft: its deflection line.
 
 
-def shaft_results(part: ShaftPart, position: FloatArray, motion: FloatArray) -> tuple[Attribute, ...]:
+def _shaft_results(part: ShaftPart, position: FloatArray, motion: FloatArray) -> tuple[Attribute, ...]:
     """Return the deflection line of a shaft along its own u, v, w, by increasing u, mean over the mesh cycle.
 
     Parameters
@@ -305,7 +301,7 @@ def deflected(document: Document, unit: OpenedUnit, result: GearboxDeflection) -
     BadInput
         The result is of another scene or of other load cases, or a case was not found.
     """
-    check_same_scene(unit, result)
+    _check_same_scene(unit, result)
     numbers = {case.name: case.number for case in unit.load_cases}
     written = replace(document, model=upgrade(document.model)[0])
     for case in result.deflection.cases:
@@ -333,17 +329,15 @@ Part = tuple[int, tuple[Attribute, ...]]
 
 
 def _shafts(parts: SceneParts, names: tuple[str, ...], case: CaseDeflection) -> Iterator[Part]:
-    """Yield the deflection lines of the shafts."""
     lines = case.shafts
     for index, name in enumerate(names):
         if name in parts.shafts:
             at = np.flatnonzero(lines.shaft == index)
             part = parts.shafts[name]
-            yield part.component, shaft_results(part, lines.position[at], lines.motion[at])
+            yield part.component, _shaft_results(part, lines.position[at], lines.motion[at])
 
 
 def _bearings(parts: SceneParts, case: CaseDeflection) -> Iterator[Part]:
-    """Yield the loads and deflections of the bearings on the ground."""
     for load in case.bearings:
         if load.name in parts.bearings:
             part = parts.bearings[load.name]
@@ -359,4 +353,4 @@ def _meshes(parts: SceneParts, result: GearboxDeflection, case: CaseDeflection) 
             part = parts.meshes[mesh.name]
             sense = turned * part.sense
             own = flank_results(flanks[mesh.name], sense) if mesh.name in flanks else ()
-            yield part.component, (*alignment_results(mesh, sense), *own)
+            yield part.component, (*_alignment_results(mesh, sense), *own)

@@ -26,7 +26,7 @@ POSITIONS = 64
 _N_PER_MM = 1e3
 
 
-def stage_results(
+def _stage_results(
     pair: ParallelAxes, database: SteDatabase, torque: float | None = None
 ) -> tuple[Attribute, ...]:
     """Return the attributes of a ``cylindrical_stage``.
@@ -112,14 +112,13 @@ def exported(
     results: dict[int, tuple[Attribute, ...]] = {}
     for database in databases:
         stage = _stage_of(cases, database)
-        attributes = stage_results(gear_pair(stage.case), database, torque)
+        attributes = _stage_results(gear_pair(stage.case), database, torque)
         results |= dict.fromkeys((stage.stage, *stage.equal), attributes)
     newest = replace(document, model=upgrade(document.model)[0])
     return with_calculated(newest, results)
 
 
 def _stage_of(cases: Sequence[StageCase], database: SteDatabase) -> StageCase:
-    """Return the stage whose pair a database is of."""
     pair = validated(Case, database.metadata.case).pair
     stage = next((stage for stage in cases if stage.case.pair == pair), None)
     if stage is None:

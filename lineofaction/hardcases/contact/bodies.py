@@ -50,7 +50,7 @@ def plastic_on_steel() -> Sequence[Measured]:
     )
 
 
-def nearly_incompressible() -> Sequence[Measured]:
+def _nearly_incompressible() -> Sequence[Measured]:
     """Give both gears Poisson's ratio 0.49 in plane strain, on three meshes and in three dimensions."""
     pair = nominal_pair(material=_RUBBERY)
     position = even_positions(96)
@@ -114,7 +114,7 @@ NEARLY_INCOMPRESSIBLE = HardScene(
     "contact",
     "Poisson's ratio 0.49 in plane strain: elements of low order lock, and read far too stiff.",
     "Three meshes in the plane and two in three dimensions agree.",
-    nearly_incompressible,
+    _nearly_incompressible,
 )
 THIN_RIM = HardScene(
     "thin_rim",

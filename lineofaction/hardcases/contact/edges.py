@@ -27,7 +27,7 @@ _ROUNDING = 0.15e-3
 """Radial height of the rounded tip edge in m."""
 
 
-def tip_edge_at_high_load() -> Sequence[Measured]:
+def _tip_edge_at_high_load() -> Sequence[Measured]:
     """Load the nominal pair tenfold and look at how its tip edges enter and leave."""
     case = posed(nominal_pair(), [10.0 * NOMINAL_TORQUE])
     problem, solution = case.solve(even_positions(400), case.plan.load)
@@ -103,17 +103,14 @@ def _smoothness(case: Posed) -> Measured:
 
 
 def _largest(values: FloatArray) -> float:
-    """Largest size."""
     return float(np.abs(values).max())
 
 
 def _apart(first: FloatArray, second: FloatArray) -> float:
-    """Relative difference of the means."""
     return abs(float(first.mean() / second.mean()) - 1.0)
 
 
 def _ranges_apart(first: FloatArray, second: FloatArray) -> float:
-    """Relative difference of the peak-to-peak values."""
     return abs(float(np.ptp(first) / np.ptp(second)) - 1.0)
 
 
@@ -123,7 +120,7 @@ TIP_EDGE = HardScene(
     "At ten times the nominal load whole pairs hang on a tip edge, off the line of action, with arms that "
     "differ between the gears.",
     "More places to touch never raise STE; the curve is continuous; two solvers agree.",
-    tip_edge_at_high_load,
+    _tip_edge_at_high_load,
 )
 SHARP_TIPS = HardScene(
     "sharp_tips",

@@ -18,7 +18,7 @@ _MISALIGNMENT = 300e-6
 _WIDE = 60e-3
 
 
-def five_per_cent() -> Sequence[Measured]:
+def _five_per_cent() -> Sequence[Measured]:
     """Misalign a wide pair until one slice of nineteen carries all, to either side."""
     case, other = (
         posed(
@@ -77,7 +77,7 @@ def single_slice() -> Sequence[Measured]:
     )
 
 
-def duplicates() -> Sequence[Measured]:
+def _duplicates() -> Sequence[Measured]:
     """Ask for the same position several times, in any order, alone and among others."""
     case = posed(nominal_pair())
     positions = np.array([0.3, 0.3, 0.0, 0.97, 0.3, 0.0, 0.5, 0.5])
@@ -123,7 +123,7 @@ FIVE_PER_CENT = HardScene(
     "deflection.",
     "The side that comes closer carries; both sides are mirror images, in STE and in the place of the load; "
     "the rigid gap is that of the wedge.",
-    five_per_cent,
+    _five_per_cent,
 )
 SINGLE_SLICE = HardScene(
     "single_slice",
@@ -138,5 +138,5 @@ DUPLICATES = HardScene(
     "contact",
     "Positions given twice make spacings of zero.",
     "Equal positions have equal STE to the last bit, whatever stands beside them.",
-    duplicates,
+    _duplicates,
 )

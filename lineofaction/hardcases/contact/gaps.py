@@ -97,7 +97,6 @@ def noisy_flanks() -> Sequence[Measured]:
 
 
 def _with_gap(problem: ContactProblem, gap: FloatArray) -> ContactProblem:
-    """Return the problem with other rigid gaps."""
     return problem.touching(problem.candidates.touching(replace(problem.candidates.touch, gap=gap)))
 
 
@@ -123,7 +122,6 @@ def _heights(gear: Gear) -> FloatArray:
 
 
 def _largest(values: FloatArray) -> float:
-    """Largest size."""
     return float(np.abs(values).max())
 
 

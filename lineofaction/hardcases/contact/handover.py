@@ -20,7 +20,7 @@ _LENGTH = 2.5e-3
 _NUDGES = np.array([-1e-3, -1e-6, -1e-9, -1e-12, -1e-15, 0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3])
 
 
-def relief_that_touches() -> Sequence[Measured]:
+def _relief_that_touches() -> Sequence[Measured]:
     """Find the tip relief with which the second pair carries nothing and gapes nowhere; nudge it."""
     case = posed(nominal_pair())
     exact = brentq(lambda relief: _reach(case, relief), 1e-6, 100e-6, xtol=1e-18, rtol=1e-15)
@@ -98,5 +98,5 @@ RELIEF_THAT_TOUCHES = HardScene(
     "The gap is that of a straight ramp; STE rises with relief and never faster than it (the deflection is "
     "non-expansive in the gaps), and the pair carries a millionth above the load that brings it into touch; "
     "through nudges of 1e-15 to 1e-3; two solvers agree.",
-    relief_that_touches,
+    _relief_that_touches,
 )

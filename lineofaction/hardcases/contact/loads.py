@@ -16,7 +16,7 @@ from lineofaction.hardcases.soundness import soundness
 _DECADES = np.geomspace(1e-4, 1e3, 29)
 
 
-def seven_decades() -> Sequence[Measured]:
+def _seven_decades() -> Sequence[Measured]:
     """Solve one table over seven decades of load, and its nominal curve alone."""
     wide = posed(nominal_pair(), NOMINAL_TORQUE * _DECADES)
     problem, solution = wide.solve(even_positions(48), wide.plan.load)
@@ -74,7 +74,7 @@ SEVEN_DECADES = HardScene(
     "the tooth, and forces differ by 1e7.",
     "STE grows with load, the tangent compliance never does, two solvers agree, and the curve at nominal "
     "load is that of a table which holds nothing else.",
-    seven_decades,
+    _seven_decades,
 )
 ZERO_LOAD = HardScene(
     "zero_load",

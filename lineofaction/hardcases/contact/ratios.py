@@ -19,9 +19,9 @@ _COUNTED = 2000
 _TIP_CLEARANCE = 0.25
 
 
-def handover_at_ratio(ratio: float) -> Sequence[Measured]:
+def _handover_at_ratio(ratio: float) -> Sequence[Measured]:
     """Choose the addendum for the contact ratio, load the pair, and follow it past the end of the pitch."""
-    pair = pair_of_ratio(ratio)
+    pair = _pair_of_ratio(ratio)
     case = posed(pair, NOMINAL_TORQUE * pair.pinion.base_radius / 0.0376 * np.array([1e-3, 1.0]))
     position = even_positions(240)
     problem, solution = case.solve(position, case.plan.load)
@@ -46,7 +46,7 @@ def handover_at_ratio(ratio: float) -> Sequence[Measured]:
     )
 
 
-def pair_of_ratio(ratio: float) -> GearPair:
+def _pair_of_ratio(ratio: float) -> GearPair:
     """Return two equal gears whose tips are as high as the contact ratio asks for."""
     low, high = (0.587, 1.0) if ratio < 1.5 else (1.0, 1.75)
     addendum = brentq(
@@ -72,19 +72,17 @@ def _pair(addendum: float, ratio: float) -> GearPair:
 
 
 def _mean_pairs(case: Posed) -> float:
-    """Return how many pairs touch on the line of action, in the mean."""
     without = case.with_model(corner_contact=False)
     _, solution = without.solve(even_positions(_COUNTED), case.plan.load[:1])
     return float((solution.force[:, 0] > 0.0).sum(axis=1).mean())
 
 
 def _scene(name: str, ratio: float, hard_because: str) -> HardScene:
-    """Return the scene of one contact ratio."""
     criterion = (
         "The mean number of touching pairs is the contact ratio; STE repeats after one base pitch; load "
         "shares are positive and sum to one; two solvers agree."
     )
-    return HardScene(name, "contact", hard_because, criterion, partial(handover_at_ratio, ratio))
+    return HardScene(name, "contact", hard_because, criterion, partial(_handover_at_ratio, ratio))
 
 
 RATIO_1_01 = _scene(

@@ -25,7 +25,7 @@ _MODULE = 4e-3
 _WIDTH = 25e-3
 
 
-def module_of(module: float) -> Sequence[Measured]:
+def _module_of(module: float) -> Sequence[Measured]:
     """Scale the nominal pair to another module, in the plane and in three dimensions."""
     scale = module / _MODULE
     figures = []
@@ -67,7 +67,7 @@ def faces() -> Sequence[Measured]:
     )
 
 
-def slight_helix() -> Sequence[Measured]:
+def _slight_helix() -> Sequence[Measured]:
     """Turn a spur pair by a tenth of a degree, to either hand."""
     position = even_positions(48)
     spur, right, left = (_helical(degrees) for degrees in (0.0, 0.1, -0.1))
@@ -85,7 +85,7 @@ def slight_helix() -> Sequence[Measured]:
     )
 
 
-def steep_helix() -> Sequence[Measured]:
+def _steep_helix() -> Sequence[Measured]:
     """Turn the teeth by 40 degrees."""
     position = even_positions(48)
     right, left = _helical(40.0), _helical(-40.0)
@@ -120,10 +120,9 @@ def _helical(degrees: float) -> Posed:
 
 
 def _module_scene(module: float, hard_because: str) -> HardScene:
-    """Return the scene of one module."""
     criterion = "All lengths by s and forces by s^2: STE by s, in the plane and in three dimensions."
     name = f"module_{1e3 * module:g}_mm"
-    return HardScene(name, "contact", hard_because, criterion, partial(module_of, module))
+    return HardScene(name, "contact", hard_because, criterion, partial(_module_of, module))
 
 
 MODULE_0_2 = _module_scene(
@@ -143,12 +142,12 @@ HELIX_0_1 = HardScene(
     "A tenth of a degree: contact lines enter the mesh nearly all at once, where a spur pair's do so "
     "exactly.",
     "The spur pair's mean within 0.2 %, no value below the spur pair's least, both hands alike.",
-    slight_helix,
+    _slight_helix,
 )
 HELIX_40 = HardScene(
     "helix_40_deg",
     "contact",
     "At 40 degrees contact lines cross three teeth, and layers of elements are turned against each other.",
     "Both hands alike, periodic, load shares sum to one, two solvers agree.",
-    steep_helix,
+    _steep_helix,
 )

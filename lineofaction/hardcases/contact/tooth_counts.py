@@ -14,9 +14,9 @@ from lineofaction.hardcases.scene import HardScene, Measured
 from lineofaction.hardcases.soundness import soundness
 
 
-def undercut_pinion() -> Sequence[Measured]:
+def _undercut_pinion() -> Sequence[Measured]:
     """Drive 60 teeth by 9 that the tool has undercut."""
-    pair = undercut_pair()
+    pair = _undercut_pair()
     cases = [posed(pair, [0.2 * NOMINAL_TORQUE], level=level) for level in ("draft", "standard", "fine")]
     position = even_positions(240)
     curves = [case.solve(position, case.plan.load)[1].deflection[:, 0] for case in cases]
@@ -36,7 +36,7 @@ def undercut_pinion() -> Sequence[Measured]:
     )
 
 
-def undercut_pair() -> GearPair:
+def _undercut_pair() -> GearPair:
     """Return 9 teeth of little profile shift, and a wheel whose tip spares what is left of them."""
     module, shift = 3e-3, 0.15
     common = {"normal_module": module, "face_width": 20e-3, "root_radius_coefficient": 0.3}
@@ -47,7 +47,7 @@ def undercut_pair() -> GearPair:
     return GearPair(pinion, replace(wheel, tip_diameter=2.0 * (highest - 1e-3 * module)))
 
 
-def twenty_to_two_hundred() -> Sequence[Measured]:
+def _twenty_to_two_hundred() -> Sequence[Measured]:
     """Drive 200 teeth by 20, and back."""
     common = {"normal_module": 2e-3, "face_width": 20e-3}
     pinion = Gear(teeth=20, bore_diameter=20e-3, **common)  # type: ignore[arg-type]
@@ -76,12 +76,12 @@ UNDERCUT = HardScene(
     "flank, and the tooth is softer than any formula knows.",
     "Three meshes converge to one curve; the mean number of touching pairs is the contact ratio; two "
     "solvers agree.",
-    undercut_pinion,
+    _undercut_pinion,
 )
 TWENTY_TO_TWO_HUNDRED = HardScene(
     "teeth_20_to_200",
     "contact",
     "One gear is ten times as large as the other, with ten times the elements, and nearly rigid beside it.",
     "STE is the same whichever gear drives: position x by the one is -x by the other.",
-    twenty_to_two_hundred,
+    _twenty_to_two_hundred,
 )

@@ -34,7 +34,7 @@ _PERIODS, _SAMPLES = 60, 64
 _IMPACTS, _SPEED, _TOLERANCE = 40, 0.1, 1e-9
 
 
-def no_mean_load() -> Sequence[Measured]:
+def _no_mean_load() -> Sequence[Measured]:
     """Throw an unloaded gear to and fro by the other's transmission error."""
     frequency = 6000.0 / 60.0 * TEETH
     scene = torsional(
@@ -133,7 +133,6 @@ def _place(run: Trajectory) -> FloatArray:
 
 
 def _lost(run: Trajectory) -> float:
-    """Return the change of energy over what there is."""
     return abs(float(np.diff(run.stored.sum(axis=1))[0] - run.work.sum())) / (0.5 * MASS * _SPEED**2)
 
 
@@ -144,7 +143,7 @@ NO_MEAN_LOAD = HardScene(
     "impact starts anew.",
     "Steady rattle is mirrored in the gap half a period later, and repeats; integrators agree to their "
     "measured errors, energy balances.",
-    no_mean_load,
+    _no_mean_load,
 )
 REVERSAL = HardScene(
     "torque_reversal",

@@ -20,7 +20,7 @@ from lineofaction.hardcases.scene import HardScene, Measured
 _BACKLASH, _RIPPLE = 20e-6, 30e-6
 
 
-def taken_up_again() -> Sequence[Measured]:
+def _taken_up_again() -> Sequence[Measured]:
     """Cancel a chaotic rattle every few blocks and resume it, until it has ended."""
     scene = torsional(
         spring(_RIPPLE), speed=1000.0 * RPM, torque=0.0, back=coast(_BACKLASH, _RIPPLE),
@@ -63,12 +63,10 @@ def _after(blocks: int) -> Callable[[], bool]:
 
 
 def _arrays(result: RunResult) -> list[str]:
-    """Return the names of all series."""
     return [entry.name for entry in fields(result) if isinstance(getattr(result, entry.name), np.ndarray)]
 
 
 def _bits(result: RunResult, name: str) -> bytes:
-    """Return a series bit by bit."""
     return bytes(getattr(result, name).tobytes())
 
 
@@ -77,5 +75,5 @@ TAKEN_UP_AGAIN = HardScene(
     "dynamics",
     "In chaotic rattle one bit lost at an interruption is another motion a few impacts later.",
     "Interrupted every seventh block and taken up again, all series are those of the whole run, bit by bit.",
-    taken_up_again,
+    _taken_up_again,
 )

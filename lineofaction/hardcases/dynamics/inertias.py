@@ -21,7 +21,7 @@ from lineofaction.hardcases.scene import HardScene, Measured
 _RATIO, _SPEED, _BEGIN, _RISE, _STEP = 1e4, 50.0, 1e-3, 1e-6, 20.0
 
 
-def unlike_masses() -> Sequence[Measured]:
+def _unlike_masses() -> Sequence[Measured]:
     """Kick a free train of two gears by a step of the motor's torque."""
     figures: list[Measured] = []
     for name, polar in (("light drives", (1.0, _RATIO)), ("heavy drives", (_RATIO, 1.0))):
@@ -79,5 +79,5 @@ UNLIKE_MASSES = HardScene(
     "matrix loses four digits.",
     "The closed form of two masses on a spring to the measured error; momentum gained is the impulse; "
     "integrators agree, energy balances.",
-    unlike_masses,
+    _unlike_masses,
 )

@@ -64,7 +64,7 @@ def common_figures(runs: Runs, scene: Scene) -> tuple[Measured, ...]:
             Measured("two integrators apart, rms over both tolerances", apart / (2.0 * tolerance), 1.0),
             energy,
         )
-    errors = [measured_error(run) for run in runs.both]
+    errors = [_measured_error(run) for run in runs.both]
     return (
         Measured("two integrators apart, rms over their measured errors", apart / sum(errors), LARGEST_RATIO),
         Measured("larger measured error over the tolerance", max(errors) / tolerance, LARGEST_GROWTH),
@@ -79,11 +79,11 @@ def off_closed_form(runs: Runs, scene: Scene, exact: Callable[[FloatArray], Floa
         return Measured(
             "off the closed form, rms over the tolerance", max(off) / scene.integration.tolerance, 1.0
         )
-    ratio = max(distance / measured_error(run) for distance, run in zip(off, runs.both, strict=True))
+    ratio = max(distance / _measured_error(run) for distance, run in zip(off, runs.both, strict=True))
     return Measured("off the closed form, rms over the measured error", ratio, LARGEST_RATIO)
 
 
-def measured_error(run: RunResult) -> float:
+def _measured_error(run: RunResult) -> float:
     """Return what a run says its rms error is, m."""
     return float(run.receipt["error"]["time_step"]["rms"])
 

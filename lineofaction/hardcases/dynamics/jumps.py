@@ -47,7 +47,7 @@ _CONVERGED = {
 _JUMP_UP, _JUMP_DOWN = 0.8285, 0.7080
 
 
-def both_sweeps() -> Sequence[Measured]:
+def _both_sweeps() -> Sequence[Measured]:
     """Sweep up and down through the jumps by shooting, and find where the branch turns back."""
     by_method = {method: [_sweep(method, side) for side in (0, 1)] for method in METHODS}
     off = max(
@@ -131,5 +131,5 @@ BOTH_SWEEPS = HardScene(
     "matrix is singular.",
     "Sixteen converged rms values of rising and falling speeds to 0.05 %, both jumps to 3e-4; integrators "
     "agree.",
-    both_sweeps,
+    _both_sweeps,
 )

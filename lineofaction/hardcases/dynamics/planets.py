@@ -22,7 +22,7 @@ _STIFFNESS, _BEARING, _ALPHA = 5e8, 1e8, math.radians(24.6)
 _SUN_FORCE, _ERROR, _RIPPLE = 8000.0, 200e-6, 0.2e-6
 
 
-def one_without_load() -> Sequence[Measured]:
+def _one_without_load() -> Sequence[Measured]:
     """Set one pin back so far that its planet touches nothing, and run."""
     gears = _set()
     scene = _driven(gears)
@@ -90,5 +90,5 @@ ONE_WITHOUT_LOAD = HardScene(
     "A pin 0.2 mm back takes its planet out of both meshes: it turns as it likes, and its row of the "
     "stiffness matrix is zero.",
     "The others carry a third each; integrators agree, energy balances.",
-    one_without_load,
+    _one_without_load,
 )

@@ -27,7 +27,7 @@ _FASTEST = 100.0  # rad/s
 _LARGE_RIPPLE = 1.5e-6
 
 
-def rest_to_rest() -> Sequence[Measured]:
+def _rest_to_rest() -> Sequence[Measured]:
     """Start from rest, turn, stop, and stand still for a while."""
     top = _FASTEST
     law = TimeLaw((0.0, 0.05, 0.1, 0.15), (0.0, top, top, 0.0), "smooth")
@@ -63,7 +63,7 @@ def rest_to_rest() -> Sequence[Measured]:
     )
 
 
-def contact_lost() -> Sequence[Measured]:
+def _contact_lost() -> Sequence[Measured]:
     """Run up with a ripple that in resonance exceeds the load: teeth part, with nothing behind them."""
     fastest = 1.3 * NATURAL / TEETH
     duration, rate = 0.2, 2e5
@@ -98,7 +98,7 @@ REST_TO_REST = HardScene(
     "no speed to scale by.",
     "The driven gear ends at rest, at the static deflection of the place to which the law's integral leads; "
     "integrators agree, energy balances.",
-    rest_to_rest,
+    _rest_to_rest,
 )
 CONTACT_LOST = HardScene(
     "contact_lost_in_run_up",
@@ -107,5 +107,5 @@ CONTACT_LOST = HardScene(
     "is gone.",
     "In flight the gear falls with the acceleration of its load; integrators agree to their measured errors, "
     "energy balances.",
-    contact_lost,
+    _contact_lost,
 )

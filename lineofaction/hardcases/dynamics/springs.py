@@ -93,7 +93,6 @@ def damping_of(ratio: float) -> float:
 
 
 def _law(value: TimeLaw | float) -> TimeLaw:
-    """Return a number as the law that never changes."""
     return value if isinstance(value, TimeLaw) else TimeLaw.constant(value)
 
 
@@ -105,7 +104,6 @@ def _table(
     stiffness: FloatArray | float,
     stiffness_slope: FloatArray | float,
 ) -> PlainTable:
-    """Return the table of fields that broadcast to positions by levels."""
 
     def spread(values: FloatArray | float) -> FloatArray:
         return np.broadcast_to(np.asarray(values, float), (position.size, level.size))[None, None].copy()

@@ -35,7 +35,7 @@ _STEP_TIME, _STEP_TORQUE, _RISE = 1e-3, 150.0, 1e-7
 _MANY, _ROUNDING = 10_000_000, 1e-9
 
 
-def extreme_speeds() -> Sequence[Measured]:
+def _extreme_speeds() -> Sequence[Measured]:
     """Mesh once in half a minute, and ten thousand times a second."""
     figures: list[Measured] = []
     for speed, periods in ((0.1, 1.0), (30_000.0, 100.0)):
@@ -119,13 +119,11 @@ def tolerances() -> Sequence[Measured]:
     return figures
 
 
-def implicit_steps() -> Sequence[Measured]:
-    """Take ten million steps by the implicit integrator."""
+def _implicit_steps() -> Sequence[Measured]:
     return _many_steps("implicit")
 
 
-def explicit_steps() -> Sequence[Measured]:
-    """Take ten million steps by the explicit integrator."""
+def _explicit_steps() -> Sequence[Measured]:
     return _many_steps("explicit")
 
 
@@ -167,7 +165,7 @@ EXTREME_SPEEDS = HardScene(
     "A tooth passes in 30 s or in 100 us, the gear rings in 0.3 ms: steps too short or too long by 1e5 if "
     "chosen by the wrong of the two.",
     "The closed form of a damped oscillator to the tolerance; integrators agree, energy balances.",
-    extreme_speeds,
+    _extreme_speeds,
 )
 TORQUE_STEP = HardScene(
     "torque_step",
@@ -191,5 +189,5 @@ IMPLICIT_STEPS, EXPLICIT_STEPS = (
         "Energy drifts by less than 1e-6 of the vibration's, and no faster than in proportion to the steps.",
         measure,
     )
-    for method, measure in (("implicit", implicit_steps), ("explicit", explicit_steps))
+    for method, measure in (("implicit", _implicit_steps), ("explicit", _explicit_steps))
 )

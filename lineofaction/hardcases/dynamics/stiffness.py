@@ -20,7 +20,7 @@ _FREQUENCIES = (1.5, 2.0)
 """Of the mesh over that of the gear on the mean stiffness: stable, and in the widest unstable band."""
 
 
-def threefold() -> Sequence[Measured]:
+def _threefold() -> Sequence[Measured]:
     """Compare the multipliers of the motion with Mathieu's equation, in and out of its unstable band."""
     figures: list[Measured] = []
     for frequency in _FREQUENCIES:
@@ -68,5 +68,5 @@ THREEFOLD = HardScene(
     "motions grow without an error of the teeth.",
     "Floquet multipliers are those of Mathieu's equation, their product is one (Liouville); integrators "
     "agree, energy balances.",
-    threefold,
+    _threefold,
 )

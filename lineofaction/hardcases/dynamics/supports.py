@@ -25,7 +25,7 @@ _LENGTH, _SHAFT = 0.2, Inertia(2.0, 1e-3, 8e-3)
 _MASS, _WALL, _CLEARANCE, _SPEED, _TOLERANCE, _BOUNCES = 2.0, 5e8, 20e-6, 0.05, 1e-9, 20
 
 
-def unlike_bushings() -> Sequence[Measured]:
+def _unlike_bushings() -> Sequence[Measured]:
     """Hold shafts at one end by 1e5 and at the other by 1e12 N/m, free to tilt."""
     scene = _on_bushings()
     runs = run_both(scene)
@@ -125,7 +125,7 @@ UNLIKE_BUSHINGS = HardScene(
     "shaft that all but pivots about one end.",
     "Each bushing carries half the load, gears move apart by F/2 (1/k1 + 1/k2); integrators agree, energy "
     "balances.",
-    unlike_bushings,
+    _unlike_bushings,
 )
 UNLOADED = HardScene(
     "unloaded_in_clearance",

@@ -27,7 +27,7 @@ _SETTLING_S = 2.0
 _GEAR = {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0, "thickness_allowance_um": 90.0}
 
 
-def case_of(model: str, level: str, torques: tuple[float, ...] = (40.0,), positions: int = 16) -> Json:
+def _case_of(model: str, level: str, torques: tuple[float, ...] = (40.0,), positions: int = 16) -> Json:
     """Return the nominal pair with this model, level, torques in N m and number of positions."""
     return {
         "pair": {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": _GEAR, "wheel": _GEAR},
@@ -36,13 +36,13 @@ def case_of(model: str, level: str, torques: tuple[float, ...] = (40.0,), positi
     }
 
 
-SMALL = case_of("plane_strain", "draft")
+SMALL = _case_of("plane_strain", "draft")
 """Done in a second, of which half is the start of its worker."""
-MEDIUM = case_of("plane_strain", "standard")
+MEDIUM = _case_of("plane_strain", "standard")
 """Other meshes than those of the small one."""
-LARGE = case_of("3d", "fine")
+LARGE = _case_of("3d", "fine")
 """Needs 1.1 GB where the small one needs 270 MB."""
-LONG = case_of("3d", "fine", tuple(float(torque) for torque in range(10, 40)), 1000)
+LONG = _case_of("3d", "fine", tuple(float(torque) for torque in range(10, 40)), 1000)
 """Needs fifty times as long as the small one."""
 
 
@@ -82,7 +82,7 @@ def aftermath(
     """
     before = undisturbed()
     with fresh_service(**settle(before.seconds)) as service:
-        jobs = [service.submit(case), service.submit(case_of("plane_strain", "draft", (30.0,)))]
+        jobs = [service.submit(case), service.submit(_case_of("plane_strain", "draft", (30.0,)))]
         service.submissions.dismiss(jobs[1].id)
         jobs.append(service.submit(SMALL))
         ended = [service.ended(job, disturb if job is jobs[0] else None) for job in jobs]

@@ -23,7 +23,7 @@ MESHER_COMMAND, WORKER_COMMAND = "gmsh_worker", "service.worker."
 """What their commands hold; a worker is started anew or forked."""
 
 
-def kill_meshers(times: int, killed: list[int]) -> Disturb:
+def _kill_meshers(times: int, killed: list[int]) -> Disturb:
     """Return what kills so many meshers as they run, and notes them."""
 
     def kill(service: JobService, _job: Job) -> None:
@@ -33,7 +33,7 @@ def kill_meshers(times: int, killed: list[int]) -> Disturb:
     return kill
 
 
-def kill_workers(times: int, killed: list[int]) -> Disturb:
+def _kill_workers(times: int, killed: list[int]) -> Disturb:
     """Return what kills so many workers while their mesher runs, and notes them.
 
     The mesher is stopped first: it would be left for ever if nobody ended it.
@@ -56,10 +56,9 @@ def _reached(act: Callable[[int], None], processes: Sequence[int]) -> list[int]:
     return reached
 
 
-def mesher_killed() -> Sequence[Measured]:
-    """Kill the mesher."""
+def _mesher_killed() -> Sequence[Measured]:
     killed: list[int] = []
-    outcome = aftermath(MEDIUM, kill_meshers(1, killed))
+    outcome = aftermath(MEDIUM, _kill_meshers(1, killed))
     stated = "gmsh worker: killed by SIGKILL" in outcome.job.message
     return (
         Measured("meshers killed", float(len(killed)), 1.0, 1.0),
@@ -72,7 +71,7 @@ def mesher_killed() -> Sequence[Measured]:
 def worker_killed_once() -> Sequence[Measured]:
     """Kill the first worker in mid-mesh."""
     killed: list[int] = []
-    outcome = aftermath(MEDIUM, kill_workers(1, killed))
+    outcome = aftermath(MEDIUM, _kill_workers(1, killed))
     off = np.inf if outcome.errors is None else largest_difference(outcome.errors, of_python())
     return (
         Measured("workers killed", float(len(killed)), 1.0, 1.0),
@@ -82,10 +81,10 @@ def worker_killed_once() -> Sequence[Measured]:
     )
 
 
-def worker_killed_always() -> Sequence[Measured]:
+def _worker_killed_always() -> Sequence[Measured]:
     """Kill every worker in mid-mesh."""
     killed: list[int] = []
-    outcome = aftermath(MEDIUM, kill_workers(2, killed))
+    outcome = aftermath(MEDIUM, _kill_workers(2, killed))
     message = outcome.job.message
     stated = "ended by SIGKILL" in message and message.endswith("That was attempt 2 of 2.")
     return (
@@ -107,7 +106,7 @@ MESHER = HardScene(
     "service",
     "The mesher is killed in mid-mesh: a process started by the worker, of which the service knows nothing.",
     f"The job fails at its first attempt and says that the mesher was killed; {AFTER}",
-    mesher_killed,
+    _mesher_killed,
 )
 WORKER_ONCE = HardScene(
     "worker_killed_once",
@@ -121,5 +120,5 @@ WORKER_ALWAYS = HardScene(
     "service",
     "Every worker of the job is killed while its mesher hangs: tried for ever, it would block all others.",
     f"The job fails at its second attempt, with the signal and the number of attempts; {AFTER}",
-    worker_killed_always,
+    _worker_killed_always,
 )

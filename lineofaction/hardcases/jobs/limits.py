@@ -11,7 +11,7 @@ MEMORY_MB = 384
 """Half-way, in proportion, between what the small job needs and what the large one does."""
 
 
-def out_of_memory() -> Sequence[Measured]:
+def _out_of_memory() -> Sequence[Measured]:
     """Run the large job with little memory."""
     outcome = aftermath(LARGE, settle=lambda _seconds: {"memory_limit_mb": MEMORY_MB})
     job = outcome.job
@@ -23,7 +23,7 @@ def out_of_memory() -> Sequence[Measured]:
     )
 
 
-def past_the_deadline() -> Sequence[Measured]:
+def _past_the_deadline() -> Sequence[Measured]:
     """Run the large job with a deadline of a few times what the small one takes."""
     allowed = []
 
@@ -53,12 +53,12 @@ OUT_OF_MEMORY = HardScene(
     "A three-dimensional analysis that needs three times the memory a worker may have: an allocation fails "
     "somewhere in numerical libraries.",
     f"The job fails at its first attempt, with the limit and what to try; {AFTER}",
-    out_of_memory,
+    _out_of_memory,
 )
 DEADLINE = HardScene(
     "job_past_deadline",
     "service",
     "A job that is inside compiled code when its deadline passes, and hears of nothing.",
     f"The job fails at its first attempt, with the deadline and what to try; {AFTER}",
-    past_the_deadline,
+    _past_the_deadline,
 )

@@ -27,7 +27,7 @@ while True:
 """Stands in the mesher's way as the module that it loads first."""
 
 
-def no_room(held: list[int]) -> Disturb:
+def _no_room(held: list[int]) -> Disturb:
     """Return what keeps the first worker from writing to any file, by the system's limit on their size."""
 
     def fill(service: JobService, _job: Job) -> None:
@@ -39,10 +39,10 @@ def no_room(held: list[int]) -> Disturb:
     return fill
 
 
-def disk_full() -> Sequence[Measured]:
+def _disk_full() -> Sequence[Measured]:
     """Let no write of the worker succeed, then submit the job again."""
     held: list[int] = []
-    outcome = aftermath(MEDIUM, no_room(held), resubmit=True)
+    outcome = aftermath(MEDIUM, _no_room(held), resubmit=True)
     stated = "no space left" in outcome.job.message and "Make room" in outcome.job.message
     off = np.inf if outcome.errors is None else largest_difference(outcome.errors, of_python())
     return (
@@ -68,7 +68,7 @@ def _devouring_mesher() -> Iterator[Path]:
             os.environ.pop("PYTHONPATH") if before is None else os.environ.update(PYTHONPATH=before)
 
 
-def greedy_mesher() -> Sequence[Measured]:
+def _greedy_mesher() -> Sequence[Measured]:
     """Let the first mesher take memory until the system gives it no more."""
     undisturbed()
     most = [0.0]
@@ -102,7 +102,7 @@ DISK_FULL = HardScene(
     "No write of the worker succeeds any more, as on a full disk: libraries that write may crash.",
     "The job fails at its first attempt, with the cause and what to try, and serves nothing; submitted again "
     f"with room it gives what Python gives, to the last bit; {AFTER}",
-    disk_full,
+    _disk_full,
 )
 GREEDY_MESHER = HardScene(
     "mesher_without_end",
@@ -110,5 +110,5 @@ GREEDY_MESHER = HardScene(
     "The mesher, a process started by the worker that the service knows nothing of, takes memory without "
     "end.",
     f"It never has more than a worker may; the job fails at its first attempt, with the cause; {AFTER}",
-    greedy_mesher,
+    _greedy_mesher,
 )

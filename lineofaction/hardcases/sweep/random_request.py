@@ -66,14 +66,12 @@ def random_request(kind: Kind, seed: int) -> tuple[ParallelAxes, Fields]:
 
 
 def _external(draw: _Draw, rack: Fields, pinion: Gear) -> GearPair:
-    """Return the pinion with its like, or with another gear."""
     if draw.sometimes(0.3):
         return GearPair(pinion, replace(pinion, helix_angle=-pinion.helix_angle))
     return GearPair(pinion, _gear(draw, rack | {"helix_angle": -rack["helix_angle"]}))
 
 
 def _internal(draw: _Draw, rack: Fields, pinion: Gear) -> InternalGearPair:
-    """Return the pinion inside a ring gear."""
     module = pinion.normal_module
     teeth = round(pinion.teeth * draw.between((1.6, 4.0), (0.8, 8.0)))
     shift = draw.between((-0.3, 0.2), (-2.0, 2.0))
@@ -106,7 +104,6 @@ def _rack(draw: _Draw) -> Fields:
 
 
 def _gear(draw: _Draw, rack: Fields) -> Gear:
-    """Return one gear of the rack."""
     module = float(rack["normal_module"])
     teeth = round(draw.power((1.0, 1.8), (0.3, 3.5)))
     shift = draw.between((-0.2, 0.5), (-2.0, 2.0))

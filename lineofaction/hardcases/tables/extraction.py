@@ -39,7 +39,7 @@ def square_wave_ste() -> Sequence[Measured]:
     )
 
 
-def two_loads() -> Sequence[Measured]:
+def _two_loads() -> Sequence[Measured]:
     """Extract forces from a table of two loads, and of one."""
     position = even_positions(16)
     compliance = COMPLIANCE * (1.0 + 0.3 * np.cos(2.0 * np.pi * position))
@@ -62,7 +62,7 @@ def two_loads() -> Sequence[Measured]:
     return figures
 
 
-def lift_off() -> Sequence[Measured]:
+def _lift_off() -> Sequence[Measured]:
     """Move across lift-off, where the force sets in, with a gap that varies over the pitch."""
     position = even_positions(32)
     gap = 20e-6 * np.sin(2.0 * np.pi * position)
@@ -138,7 +138,7 @@ def _along_the_axis(table: SteDatabase, x: FloatArray) -> tuple[Measured, ...]:
     )  # fmt: skip
 
 
-def nearly_parallel() -> Sequence[Measured]:
+def _nearly_parallel() -> Sequence[Measured]:
     """Keep loads apart whose curves run a picometer from each other over a square wave."""
     position = even_positions(48)
     force = 1000.0 + np.array([0.0, 1e-3, 2e-3, 1.0])
@@ -186,7 +186,6 @@ def _slope_error(table: SteDatabase) -> Measured:
 
 
 def _relative(values: FloatArray, expected: FloatArray) -> float:
-    """Largest relative difference."""
     return float(np.abs(values / expected - 1.0).max())
 
 
@@ -197,7 +196,6 @@ def _above(table: SteDatabase, straight: FloatArray, force: FloatArray) -> float
 
 
 def _refused(table: SteDatabase, position: float, deflection: float) -> bool:
-    """Whether a query is refused as one."""
     try:
         table.force_at(position, deflection)
     except InputError:
@@ -218,14 +216,14 @@ TWO_LOADS = HardScene(
     "table",
     "Two stored loads, or one, leave nothing to take a curvature from, and lift-off below them.",
     "Force and STE are inverse to each other; a linear table stays linear between its loads.",
-    two_loads,
+    _two_loads,
 )
 LIFT_OFF = HardScene(
     "force_at_lift_off",
     "table",
     "The force sets in along a curve in position and approach; at it stiffness is zero by convention.",
     "Force and stiffness are zero at and below lift-off, continuous through it, and positive above.",
-    lift_off,
+    _lift_off,
 )
 OUTSIDE = HardScene(
     "queries_outside",
@@ -240,5 +238,5 @@ NEARLY_PARALLEL = HardScene(
     "Curves of neighboring loads lie a picometer apart over a wave of microns: where they cross a force "
     "has two values.",
     "Their order holds everywhere, and force and STE are inverse to each other.",
-    nearly_parallel,
+    _nearly_parallel,
 )

@@ -16,7 +16,7 @@ _SEED = 20260103
 _AMPLITUDE = 0.4e-6
 
 
-def broken_monotonicity() -> Sequence[Measured]:
+def _broken_monotonicity() -> Sequence[Measured]:
     """Add noise of a fraction of a micrometer to a table of close loads; refuse it, then repair it."""
     position, force = even_positions(32), np.linspace(500.0, 3000.0, 26)
     clean = COMPLIANCE * force * (1.0 + 0.2 * np.cos(2.0 * np.pi * position))[:, None]
@@ -71,5 +71,5 @@ NOISE = HardScene(
     "Noise larger than what STE gains from load to load: there is no force to a given STE.",
     "Refused with place and amount; repaired by isotonic regression STE grows with load, no value moves by "
     "more than the noise, the table comes nearer to the truth, and the change is reported.",
-    broken_monotonicity,
+    _broken_monotonicity,
 )

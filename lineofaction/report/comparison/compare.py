@@ -234,7 +234,6 @@ def read_universal(path: Path, teeth: int, unit: str) -> MeasuredCurve | Measure
 
 
 def _datasets(path: Path) -> list[Dataset]:
-    """Return all datasets of a file."""
     if not path.is_file():
         raise BadInput.of("measured", str(path), "a universal file", "Check the path.")
     try:
@@ -253,21 +252,18 @@ def _datasets(path: Path) -> list[Dataset]:
 
 
 def _known(read: list[Any]) -> Iterator[Dataset]:
-    """Yield the datasets that were understood."""
     for each in read:
         if isinstance(each, Mapping) and "type" in each:
             yield each
 
 
 def _fits(function: Dataset, unit: str) -> bool:
-    """Whether a function is in the unit, over orders, positions or angles."""
     known = _OF_TYPE.get(int(function["ordinate_spec_data_type"]), ("",))
     over = function["abscissa_spec_data_type"] == ORDER or _label(function).startswith(("position", "angle"))
     return known[0] == unit and over
 
 
 def _label(function: Dataset) -> str:
-    """Return the label of the abscissa."""
     return str(function["abscissa_axis_lab"]).strip().lower()
 
 

@@ -121,7 +121,6 @@ def _estimate(value: Estimate) -> str:
 
 
 def _decimals(error: float) -> int:
-    """Decimals that show two digits of an error."""
     if error == 0.0 or not math.isfinite(error):
         return 3
     return max(1 - math.floor(math.log10(abs(error))), 0)

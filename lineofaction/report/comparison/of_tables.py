@@ -91,7 +91,6 @@ def _limits(tables: Sequence[SteDatabase]) -> tuple[float, float]:
 
 
 def _inside(torque: float, tables: Named) -> float:
-    """Return a torque that all tables hold."""
     low, high = _limits(tuple(tables.values()))
     if not low <= torque <= high:
         raise BadInput.of("--torque", torque, f"{low:g} to {high:g} N m, which all tables hold")
@@ -111,7 +110,6 @@ def _curves(tables: Named, torque: float) -> dict[str, Curve]:
 
 
 def _ripple(curve: Curve) -> FloatArray:
-    """STE less its mean over one base pitch, µm."""
     return np.asarray(_UM * (curve.ste - curve.ste.mean()))
 
 
@@ -130,13 +128,11 @@ def _differences(curves: dict[float, dict[str, Curve]]) -> Iterator[Difference]:
 
 
 def _peak_to_peak(curves: dict[str, Curve], torque: float) -> Difference:
-    """Return the difference of peak-to-peak."""
     first, second = (_um(curve.peak_to_peak) for curve in curves.values())
     return Difference("peak to peak", f"{torque:g} N m", first, second)
 
 
 def _um(estimate: Estimate) -> Estimate:
-    """Write an estimate in micrometers."""
     return Estimate(_UM * estimate.value, _UM * estimate.error, "µm")
 
 
@@ -168,7 +164,6 @@ def _ripples(curves: dict[str, Curve], torque: float, measured: MeasuredCurve | 
 
 
 def _twice(ripple: FloatArray) -> FloatArray:
-    """Repeat one base pitch and close it."""
     return np.concatenate([ripple, ripple, ripple[:1]])
 
 
@@ -192,7 +187,6 @@ def _how_alike(name: str, curve: Curve, moved: Aligned) -> str:
 
 
 def _over_torque(curves: dict[float, dict[str, Curve]]) -> Figure:
-    """Draw peak-to-peak over torque."""
     torque = np.array(list(curves))
     names = tuple(next(iter(curves.values())))
     lines = []

@@ -76,10 +76,8 @@ def _figure(figure: Figure) -> Json:
 
 
 def _tables(tables: Iterable[Table]) -> list[Json]:
-    """Several tables."""
     return [_table(table) for table in tables]
 
 
 def _table(table: Table) -> Json:
-    """One table, its cells as they are read."""
     return {"caption": table.caption, "head": list(table.head), "rows": [list(row) for row in table.rows]}

@@ -137,7 +137,6 @@ def file_attributes(file: Path) -> dict[str, str]:
 
 
 def _read(file: Path, kind: str) -> Any:
-    """Read a file of a known kind."""
     try:
         return _READERS[kind][1](file)
     except (FeContactError, DynamicsError) as error:

@@ -22,5 +22,4 @@ def envelope(time: FloatArray, values: FloatArray, columns: int = 1200) -> tuple
 
 
 def _extremes(values: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
-    """Places of the lowest and the highest value."""
     return np.array([np.argmin(values), np.argmax(values)], dtype=np.int64)

@@ -49,7 +49,6 @@ def _rows(content: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, s
 
 
 def _is_record_list(value: object) -> bool:
-    """Whether a value is a list of mappings."""
     return isinstance(value, list | tuple) and bool(value) and all(isinstance(v, Mapping) for v in value)
 
 
@@ -62,7 +61,6 @@ def _words(name: str) -> str:
 
 
 def _cell(value: object) -> str:
-    """Write one value for reading."""
     if value is None:
         return "none"
     if isinstance(value, bool):

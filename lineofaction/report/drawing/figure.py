@@ -266,7 +266,6 @@ def panel_height(panel: Panel) -> float:
 
 
 def _extent(panel: Panel, axis: Literal["x", "y"]) -> float:
-    """Return what an axis covers."""
     own: Axis = getattr(panel, axis)
     values = own.limits or np.concatenate([getattr(line, axis) for line in panel.lines])
     return float(np.nanmax(values) - np.nanmin(values))

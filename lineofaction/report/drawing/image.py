@@ -49,12 +49,11 @@ from lineofaction.report.drawing.words import rewritten
 THIN, THICK = 0.7, 4.0  # points
 
 
-def color_map(colors: Sequence[str] = palette.CIVIDIS) -> LinearSegmentedColormap:
-    """Return colors that change evenly along a palette, by default the ordered one."""
+def _color_map(colors: Sequence[str] = palette.CIVIDIS) -> LinearSegmentedColormap:
     return LinearSegmentedColormap.from_list("palette", colors)
 
 
-def draw_shade(ax: Axes, shade: HeatMap | Strokes) -> None:
+def _draw_shade(ax: Axes, shade: HeatMap | Strokes) -> None:
     """Draw values as colors, with their scale beside the panel."""
     drawn = _cells(ax, shade) if isinstance(shade, HeatMap) else _strokes(ax, shade)
     figure: Any = ax.get_figure()
@@ -62,19 +61,18 @@ def draw_shade(ax: Axes, shade: HeatMap | Strokes) -> None:
 
 
 def _cells(ax: Axes, shade: HeatMap) -> Any:
-    """Draw a heat map."""
     if shade.isolines:
         return _smooth(ax, shade)
     z = np.ma.masked_invalid(shade.z)
     x, y, span = _edges(shade.x), _edges(shade.y), Normalize(shade.least, shade.largest)
-    return ax.pcolormesh(x, y, z, cmap=color_map(shade.colors), norm=span, rasterized=True)
+    return ax.pcolormesh(x, y, z, cmap=_color_map(shade.colors), norm=span, rasterized=True)
 
 
 def _smooth(ax: Axes, shade: HeatMap) -> Any:
     """Draw colors that change smoothly, and isolines with their values."""
     (left, *_, right), (low, *_, high) = _edges(shade.x), _edges(shade.y)
     span = Normalize(BLANK * shade.largest, shade.largest)
-    colors = color_map().with_extremes(under=(1.0, 1.0, 1.0, 0.0))
+    colors = _color_map().with_extremes(under=(1.0, 1.0, 1.0, 0.0))
     look: dict[str, Any] = {"cmap": colors, "norm": span, "origin": "lower", "aspect": "auto", "zorder": 1}
     smooth: dict[str, Any] = {"interpolation": "bilinear", "interpolation_stage": "data"}
     drawn = ax.imshow(shade.z, extent=(left, right, low, high), **look, **smooth)
@@ -100,7 +98,7 @@ def _strokes(ax: Axes, shade: Strokes) -> Any:
     ax.add_collection(LineCollection(list(ends[bare]), colors=palette.MUTED, linewidths=THIN, alpha=0.6))
     loaded = LineCollection(
         list(ends[~bare]),
-        cmap=color_map(),
+        cmap=_color_map(),
         linewidths=THIN + (THICK - THIN) * value[~bare] / shade.largest,
         array=value[~bare],
         capstyle="butt",
@@ -158,13 +156,11 @@ def _drawable(text: str) -> str:
 
 
 def _shortened(word: re.Match[str]) -> str:
-    """Return the beginning of a word."""
     return f"{word[0][: _LONGEST_WORD - 1]}\N{HORIZONTAL ELLIPSIS}"
 
 
 @cache
 def _glyphs() -> frozenset[int]:
-    """Return the characters of the font."""
     return frozenset(get_font(findfont(FontProperties())).get_charmap())
 
 
@@ -177,7 +173,7 @@ def _panel_sheet(panels: tuple[Panel, ...]) -> Sheet:
     names = legend_names(panels)
     for index, (panel, ax) in enumerate(zip(panels, axes, strict=True)):
         if panel.shade is not None:
-            draw_shade(ax, panel.shade)
+            _draw_shade(ax, panel.shade)
         drawn = [(line.name, _draw(ax, line)) for line in panel.lines]
         drawn += [(bars.name, _draw_bars(ax, bars)) for bars in panel.bars]
         for name, handle in drawn:
@@ -217,7 +213,6 @@ def _draw(ax: Axes, line: Line) -> Any:
 
 
 def _draw_bars(ax: Axes, bars: Bars) -> Any:
-    """Draw bars and return their handle."""
     look: dict[str, Any] = {"color": bars.color, "alpha": 0.35 if bars.veiled else 1.0, "lw": 0}
     return ax.bar(bars.x, bars.top - bars.base, bars.width, bars.base, **look)
 
@@ -272,7 +267,6 @@ def _finish(ax: Axes, panel: Panel) -> None:
 
 
 def _is_whole(values: Any) -> bool:
-    """Whether all values are whole numbers and few, as orders are."""
     return bool(np.all(values == np.round(values)) and np.ptp(values) <= _MOST_WHOLE)
 
 

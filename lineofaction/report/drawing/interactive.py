@@ -40,13 +40,11 @@ STEPS = 12  # colors of strokes: a curve of plotly has one color
 THIN, THICK = 1.0, 6.0  # pixels
 
 
-def color_scale(colors: Sequence[str] = palette.CIVIDIS) -> list[list[Any]]:
-    """Return colors that change evenly along a palette, by default the ordered one."""
+def _color_scale(colors: Sequence[str] = palette.CIVIDIS) -> list[list[Any]]:
     return [[i / (len(colors) - 1), color] for i, color in enumerate(colors)]
 
 
-def shade_traces(shade: HeatMap | Strokes, suffix: str, domain: list[float]) -> list[Json]:
-    """Return the traces of one panel whose axes carry `suffix` and which spans `domain` of the height."""
+def _shade_traces(shade: HeatMap | Strokes, suffix: str, domain: list[float]) -> list[Json]:
     axes = {"xaxis": "x" + suffix, "yaxis": "y" + suffix, "showlegend": False}
     traces = [_cells(shade, domain)] if isinstance(shade, HeatMap) else _strokes(shade, domain)
     return [axes | trace for trace in traces]
@@ -75,7 +73,7 @@ def _cells(shade: HeatMap, domain: list[float]) -> Json:
         "zmin": shade.least,
         "zmax": shade.largest,
         "hoverongaps": False,
-        "colorscale": color_scale(shade.colors),
+        "colorscale": _color_scale(shade.colors),
         "colorbar": _color_bar(shade.label, domain),
         "hovertemplate": f"x %{{x:.4g}}<br>y %{{y:.4g}}<br>%{{z:.4g}} {unit_of(shade.label)}<extra></extra>",
     }
@@ -88,7 +86,7 @@ def _isolines(shade: HeatMap) -> Json:
     ends = {"start": shade.isolines[0], "end": shade.isolines[-1], "size": step}
     look = {"coloring": "heatmap", "showlabels": True, "labelfont": {"size": 11, "color": "#FFFFFF"}}
     clear = "rgba(255,255,255,0)"
-    scale = [[0.0, clear], [BLANK, clear], *([BLANK + (1.0 - BLANK) * at, c] for at, c in color_scale())]
+    scale = [[0.0, clear], [BLANK, clear], *([BLANK + (1.0 - BLANK) * at, c] for at, c in _color_scale())]
     line = {"color": "#FFFFFF", "width": 1}
     return {"type": "contour", "contours": ends | look, "line": line, "colorscale": scale}
 
@@ -108,7 +106,7 @@ def _strokes(shade: Strokes, domain: list[float]) -> list[Json]:
             "color": [0.0],
             "cmin": 0.0,
             "cmax": shade.largest,
-            "colorscale": color_scale(),
+            "colorscale": _color_scale(),
             "showscale": True,
             "colorbar": _color_bar(shade.label, domain),
         },
@@ -173,7 +171,7 @@ def plotly_figure(figure: Figure) -> Json:
         layout["annotations"] += _panel_title(panel, suffix) + _notes(panel, suffix)
         layout["annotations"] += _line_labels(panel, suffix)
         if panel.shade is not None:
-            data += shade_traces(panel.shade, suffix, domain)
+            data += _shade_traces(panel.shade, suffix, domain)
         for line in panel.lines:
             data += _band(line, suffix)
             data.append(_line(line, suffix, show=line.name in unnamed))
@@ -192,7 +190,6 @@ def _plain(text: str) -> str:
 
 
 def _legend_rows(names: list[str]) -> int:
-    """Rows that the legend takes on a page of full width."""
     return max(math.ceil(sum(len(name) + _HANDLE_CHARACTERS for name in names) / _ROW_CHARACTERS), 1)
 
 
@@ -259,7 +256,6 @@ def _layout(height: int) -> Json:
 
 
 def _axis(axis: Axis) -> Json:
-    """One axis of a panel."""
     made: Json = {
         "title": {"text": axis.label, "standoff": 10, "font": {"size": 14}},
         "type": axis.scale,

@@ -80,5 +80,4 @@ def vertical_limits(panel: Panel) -> tuple[float, float]:
 
 
 def _shown(values: FloatArray, axis: Axis) -> FloatArray:
-    """Return the values that an axis can show."""
     return values[np.isfinite(values) & ((values > 0.0) | (axis.scale == "linear"))]

@@ -71,7 +71,6 @@ def _frequencies(run: RunResult, mesh_frequency: FloatArray) -> tuple[FloatArray
 
 
 def _name(whirl: float) -> str:
-    """Name the sense of whirl."""
     if abs(whirl) < CIRCULAR:
         return "whirl in a plane"
     return "forward whirl" if whirl > 0.0 else "backward whirl"
@@ -157,5 +156,4 @@ def _meeting(mesh: FloatArray, gap: FloatArray) -> float | None:
 
 
 def _met(met: list[tuple[int, float]]) -> str:
-    """Write orders and mesh frequencies."""
     return ", ".join(f"{k} at {number(where, 3)} Hz" for k, where in met) or "none"

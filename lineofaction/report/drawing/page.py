@@ -82,7 +82,7 @@ footer { margin-top: 4rem; color: var(--muted); font-size: .88rem; border-top: 1
 # The JavaScript of plotly, from its wheel.
 
 
-def plotly_script() -> str:
+def _plotly_script() -> str:
     """Return plotly.js, whole and minified; of the Python package nothing else is loaded."""
     return (files("plotly") / "package_data" / "plotly.min.js").read_text("utf-8")
 
@@ -160,7 +160,7 @@ def html(page: Page, images: dict[str, bytes]) -> str:
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
             f'<title>{escape(page.title)}</title>\n<link rel="icon" href="data:,">\n<style>{style}</style>',
             "<noscript><style>.plot { display: none; } .still { display: block; }</style></noscript>",
-            f"<script>{plotly_script()}</script>\n</head>\n<body>",
+            f"<script>{_plotly_script()}</script>\n</head>\n<body>",
             '<a class="skip" href="#main">Skip to the results</a>',
             _header(page),
             f'<main id="main">\n{body}\n</main>',
@@ -223,7 +223,6 @@ def _embedded(figure: Figure) -> str:
 
 
 def _folded(table: Table, name: str = "") -> str:
-    """Write a table that opens when requested."""
     return f"<details><summary>{escape(name or table.caption)}</summary>{_table(table)}</details>"
 
 
@@ -244,7 +243,6 @@ def _table(table: Table) -> str:
 
 
 def _row(row: Sequence[str], marks: Sequence[str]) -> str:
-    """Write one row."""
     cells = "".join(f"<td{m}>{escape(cell)}</td>" for m, cell in zip(marks[1:], row[1:], strict=True))
     return f'<tr><th scope="row"{marks[0]}>{escape(row[0])}</th>{cells}</tr>'
 

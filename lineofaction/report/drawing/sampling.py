@@ -54,10 +54,8 @@ def peak_table(run: RunResult) -> Table:
 
 
 def _each(value: Any) -> list[float]:
-    """Return the values of one or several directions."""
     return [float(entry) for entry in value] if isinstance(value, list) else [float(value)]
 
 
 def _axes(count: int) -> tuple[str, ...]:
-    """Name the directions."""
     return ("",) if count == 1 else tuple(f" {axis}" for axis in "xyz"[:count])

@@ -28,7 +28,6 @@ def dynamic_error(run: RunSeries) -> Figure:
 
 
 def _panel(run: RunSeries, speed: float, window: slice) -> Panel:
-    """Draw one speed."""
     position = run.position[window] - np.floor(run.position[window][0] + 1e-6)
     lines = (
         Line("dynamic", position, 1e6 * run.dynamic_error[window], palette.BLUE),
@@ -65,5 +64,4 @@ def _table(run: RunSeries, speeds: tuple[float, ...], windows: list[slice]) -> T
 
 
 def _um(value: np.floating) -> str:
-    """Write meters as micrometers."""
     return number(1e6 * float(value))

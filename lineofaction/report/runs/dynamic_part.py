@@ -159,7 +159,6 @@ def sideband_tables(run: RunResult, signal: Signal) -> tuple[Table, ...]:
 
 
 def _row(line: Sideband) -> tuple[str, ...]:
-    """One line."""
     offset = f"{line.number:+d} × {line.source}"
     return str(line.mesh_order), offset, number(line.order, 5), number(line.amplitude, 3)
 
@@ -186,7 +185,6 @@ def mode_shares(run: RunResult, signal: Signal, made: Waterfall) -> Figure | Non
 
 
 def _words(mode: ModeLine, name: str) -> str:
-    """Say what moves in the lowest mode."""
     part, share = max(mode.shares.items(), key=lambda item: item[1])
     return f"In the lowest mode, {name}, {number(100.0 * share, 2)} % of the kinetic energy are of {part}."
 
@@ -359,6 +357,5 @@ def _seconds(run: RunResult) -> Table:
 
 
 def _energy(run: RunResult) -> Table:
-    """Tabulate the energy audit."""
     audit = {} if run.energy is None else run.energy.to_json()
     return facts("Energy audit, J", {name: value for name, value in audit.items() if "relative" not in name})

@@ -44,12 +44,10 @@ def octave_bands(run: RunResult, signal: Signal, blocks: Waterfall) -> Figure | 
 
 
 def _steps(name: str, made: ThirdOctaves, level: FloatArray, color: str) -> Line:
-    """Draw a level across each band."""
     return Line(name, np.repeat(made.edges, 2)[1:-1], np.repeat(level, 2), color)
 
 
 def _nominal(frequency: float) -> str:
-    """Write a nominal frequency."""
     return f"{frequency:g}" if frequency < 1000.0 else f"{frequency / 1000.0:g}k"
 
 

@@ -184,7 +184,6 @@ def same_view(view: RunView, signal: Signal) -> RunView:
 
 
 def _index(field: str, name: str, names: tuple[str, ...]) -> int:
-    """Find a part by its name."""
     if name not in names:
         raise BadInput.of(field, name, str(one_of(names)))
     return names.index(name)

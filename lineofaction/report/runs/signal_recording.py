@@ -72,5 +72,4 @@ def _axis(run: RunResult, signal: Signal) -> tuple[FloatArray, str]:
 
 
 def _silent(signal: Signal, reason: object) -> BadInput:
-    """Return the error of what cannot be heard."""
     return BadInput.of("quantity", signal.name, "one that varies over the run", f"{reason}")

@@ -111,7 +111,6 @@ def _track(heard: Heard, axis: Axis) -> Track:
 
 
 def _caption(heard: tuple[Heard, ...], recordings: list[Recording], scale: float) -> str:
-    """Say what is heard, and at which level."""
     what = ". ".join(dict.fromkeys(one.quantity for one in recordings))
     together = " of all, which play at their true relative level" if len(heard) > 1 else ""
     return (

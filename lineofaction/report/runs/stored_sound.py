@@ -50,7 +50,6 @@ def _of_runs(files: Sequence[Path], named: Mapping[str, Any]) -> list[Recording]
 
 
 def _recordings(files: Sequence[Path], named: Mapping[str, Any]) -> list[Recording]:
-    """Return stored recordings."""
     for name, value in named.items():
         if value:
             raise BadInput.of(name, value, "left out of a recording", "It holds one quantity.")

@@ -51,7 +51,6 @@ def ablation_page(ablation: Ablation | SceneAblation) -> Page:
 
 
 def _look(ablation: Ablation | SceneAblation) -> Look:
-    """Return how a case, or a scene, is shown."""
     return of_case.LOOK if isinstance(ablation, Ablation) else of_scene.LOOK
 
 

@@ -38,7 +38,6 @@ def _where(ablation: Ablation) -> str:
 
 
 def _trifle(ablation: Ablation, entry: EffectAblation) -> bool:
-    """Whether an effect is computed and estimated to change next to nothing."""
     return ablation.measured(entry).trifle and (entry.estimate is None or entry.estimate.trifle)
 
 
@@ -56,7 +55,6 @@ def _cells(influence: Influence | None) -> tuple[str, ...]:
 
 
 def _row(ablation: Ablation, entry: EffectAblation) -> tuple[str, ...]:
-    """One effect."""
     pairs = zip(_cells(ablation.measured(entry)), _cells(entry.estimate), strict=True)
     return (
         entry.name,

@@ -25,7 +25,6 @@ def _table(ablation: Ablation) -> Table:
 
 
 def _row(entry: EffectAblation) -> tuple[str, ...]:
-    """One effect."""
     estimate = entry.estimate
     return (
         entry.name,
@@ -66,7 +65,6 @@ def _panels(ablation: Ablation) -> tuple[Panel, ...]:
 
 
 def _most(values: FloatArray) -> float:
-    """Return the largest in size."""
     return float(values[np.argmax(np.abs(values))])
 
 

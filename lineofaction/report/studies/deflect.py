@@ -35,7 +35,7 @@ COLORS = (palette.BLUE, palette.VERMILLION, palette.GREEN, palette.PURPLE, palet
 LOADED = 1e-3  # of the largest pressure: less is blank
 
 
-def causes_figure(result: GearboxDeflection) -> Figure:
+def _causes_figure(result: GearboxDeflection) -> Figure:
     """Draw the parts of the misalignments as stacked bars, a panel a mesh."""
     names, cases = meshes_worst_first(result), result.deflection.cases
     worst = worst_case(result, names[0])
@@ -67,7 +67,7 @@ def _causes_panel(name: str, cases: tuple[CaseDeflection, ...]) -> Panel:
     return Panel(axis, Axis("misalignment, µm"), (total,), title=name, bars=tuple(bars))
 
 
-def face_load_figure(result: GearboxDeflection) -> Figure | None:
+def _face_load_figure(result: GearboxDeflection) -> Figure | None:
     """Draw the load along the face of every mesh; None where no model has it."""
     names = [
         name
@@ -102,7 +102,7 @@ def face_load_figure(result: GearboxDeflection) -> Figure | None:
     )
 
 
-def pattern_figure(result: GearboxDeflection) -> Figure | None:
+def _pattern_figure(result: GearboxDeflection) -> Figure | None:
     """Draw the contact pattern of every mesh under its worst load case; None without flanks."""
     panels, texts = [], []
     for name in meshes_worst_first(result):
@@ -160,11 +160,11 @@ def headlines(result: GearboxDeflection) -> tuple[Headline, ...]:
 
 def page(result: GearboxDeflection) -> Page:
     """Return the report: the gearbox under the worst load case, then its meshes and bearings."""
-    contact = tuple(figure for figure in (face_load_figure(result), pattern_figure(result)) if figure)
+    contact = tuple(figure for figure in (_face_load_figure(result), _pattern_figure(result)) if figure)
     sections = [
         Section("Gearbox", figures=(figure(result),)),
         *(
-            [Section("Meshes", figures=(causes_figure(result),), tables=(mesh_table(result),))]
+            [Section("Meshes", figures=(_causes_figure(result),), tables=(mesh_table(result),))]
             if mesh_names(result)
             else []
         ),

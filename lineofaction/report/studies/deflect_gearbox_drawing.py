@@ -139,7 +139,6 @@ def view_direction(outline: Outline, case: CaseDeflection) -> FloatArray:
 
 
 def _label(direction: FloatArray) -> str:
-    """Label the axis of a direction across z."""
     angle = round(math.degrees(math.atan2(direction[1], direction[0])))
     return {0: "x, mm", 90: "y, mm"}.get(angle, f"across z, {angle}° from x, mm")
 
@@ -174,7 +173,6 @@ def _shaft_names(outline: Outline, heights: FloatArray) -> tuple[Note, ...]:
 
 
 def _shafts(outline: Outline, heights: FloatArray) -> list[Line]:
-    """Outline the pieces of the shafts."""
     lines = []
     for k, (start, length, left, right) in zip(outline.piece_shaft, outline.piece, strict=True):
         z = (outline.origin[k, 2] + start + length * np.array([0.0, 0.0, 1.0, 1.0, 0.0])) / MM
@@ -235,7 +233,6 @@ def _end_view(outline: Outline, case: CaseDeflection, scale: float) -> Panel:
 
 
 def _limits(lines: Sequence[Line], names: Sequence[GearName], axis: int) -> tuple[float, float]:
-    """Return the ends of an axis that holds lines and names, mm."""
     values = np.concatenate(
         [*((line.x, line.y)[axis] for line in lines), *(n.points[:, axis] / MM for n in names)]
     )

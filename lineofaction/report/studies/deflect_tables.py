@@ -90,12 +90,10 @@ def force_table(result: GearboxDeflection) -> Table | None:
 
 
 def _component(value: float) -> str:
-    """Write a component of a force."""
     return "0" if value == 0.0 else number(float(value), 4)
 
 
 def _row(name: str, case: CaseDeflection, flanks: MeshFlanks | None, acting: BoolArray) -> tuple[str, ...]:
-    """One mesh under one load case."""
     mesh = mesh_of(case, name)
     own = (name, _titled(case), number(case.torque), number(mesh.misalignment / UM, 3))
     parts = tuple("0" if part == 0.0 else number(float(part) / UM, 3) for part in mesh.causes[acting])
@@ -143,7 +141,6 @@ def bearing_table(result: GearboxDeflection) -> Table:
 
 
 def _bearing_row(bearing: Json, case: CaseDeflection) -> tuple[str, ...]:
-    """One bearing under one load case."""
     moved = (float(np.hypot(*bearing[f"{part}_um"][:2])) for part in ("elastic", "clearance", "seat"))
     return (
         bearing["name"],
@@ -152,12 +149,11 @@ def _bearing_row(bearing: Json, case: CaseDeflection) -> tuple[str, ...]:
         number(bearing["radial_force_n"]),
         number(bearing["axial_force_n"]),
         *(number(value, 3) for value in moved),
-        life_text(bearing),
+        _life_text(bearing),
     )
 
 
-def life_text(bearing: Json) -> str:
-    """Write the life of a bearing in h, or why there is none."""
+def _life_text(bearing: Json) -> str:
     hours = bearing["rating_life_hours"]
     return str(bearing["rating_life"]) if hours is None else number(float(f"{hours:.3g}"), 3)
 
@@ -177,7 +173,7 @@ def life_table(result: GearboxDeflection) -> Table:
         (
             part["name"],
             number(part["mean_speed_rpm"]),
-            life_text(part),
+            _life_text(part),
             *(
                 number(part[f"equivalent_{way}_force_n"][kind])
                 for way in ("radial", "axial")

@@ -49,7 +49,6 @@ class Look:
 
 
 def _case_caption(study: Frontier) -> str:
-    """Say what the errors of a case are."""
     return (
         f"Largest relative difference to the finest fidelity ({study.reference.title}) over all curves of "
         f"the table of {study.solves} positions x loads; the point of that fidelity is what its mesh leaves "
@@ -58,7 +57,6 @@ def _case_caption(study: Frontier) -> str:
 
 
 def _scene_caption(study: SceneFrontier) -> str:
-    """Say what the errors of a scene are."""
     return (
         f"Root of the sum of squared differences to the finest fidelity ({study.reference.title}), "
         f"relative, over {study.blocks} blocks of the run and {study.orders} mesh orders; the point of that "
@@ -127,14 +125,13 @@ _SCENE = Look(
 )
 
 
-def look_of(study: Study) -> Look:
-    """Return the words of a case, or of a scene."""
+def _look_of(study: Study) -> Look:
     return _CASE if isinstance(study, Frontier) else _SCENE
 
 
 def frontier_figure(study: Study) -> Figure:
     """Draw the errors of every fidelity over its time, log-log."""
-    look = look_of(study)
+    look = _look_of(study)
     peers = look.peers(study)
     times = [
         *(result.cpu_seconds for result in study.results),
@@ -153,7 +150,7 @@ def frontier_figure(study: Study) -> Figure:
 
 def frontier_table(study: Study) -> Table:
     """Return every fidelity, and what stands beside them."""
-    look = look_of(study)
+    look = _look_of(study)
     figures = [figure for figure, *_ in look.panels]
     rows = [
         (
@@ -182,7 +179,7 @@ def frontier_table(study: Study) -> Table:
 
 def frontier_page(study: Study) -> Page:
     """Return the page of an accuracy study."""
-    look, table, figure = look_of(study), frontier_table(study), frontier_figure(study)
+    look, table, figure = _look_of(study), frontier_table(study), frontier_figure(study)
     by_name = {result.name: result for result in study.results}
     heads = [
         Headline(text, by_name[name].title, f"{number(by_name[name].cpu_seconds, 2)} CPU s")
@@ -228,7 +225,6 @@ def _mark(study: Study, name: str) -> str:
 
 
 def _marked_name(study: Study, name: str) -> str:
-    """Return the name of a fidelity with its marks."""
     marks, words = _mark(study, name), name.replace("_", " ")
     return f"{words} ({marks})" if marks else words
 

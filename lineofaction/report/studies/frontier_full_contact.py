@@ -32,7 +32,6 @@ def _known_cost(study: Frontier) -> list[Peer]:
 
 
 def _of_case(measured: MeasuredFullContact, solves: int) -> Peer:
-    """Return what it took on the case."""
     title = f"full contact of this case, {measured.unknowns // 1000} k unknowns"
     mark = f"{len(measured.solved)} of {len(measured.points)} positions x loads solved"
     names = ("mean_error", "peak_to_peak_error")
@@ -49,7 +48,6 @@ def _own(measured: MeasuredFullContact) -> str:
 
 
 def _left_out(measured: MeasuredFullContact) -> str:
-    """Say what its errors hold besides those of the solution."""
     return ", and hold what plane strain leaves out" if measured.solved_in == PLANE else ""
 
 

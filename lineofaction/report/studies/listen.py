@@ -25,13 +25,13 @@ LEAST_SPAN, DEPTH, MARGIN = 20.0, 60.0, 2.0
 """dB shown below the loudest, at least and at most; beyond both ends."""
 
 
-def level_figure(heard: HeardRun) -> Figure:
+def _level_figure(heard: HeardRun) -> Figure:
     """Draw the level over speed or time, with its sound."""
-    time, level = block_levels(heard)
+    time, level = _block_levels(heard)
     axis, track = speed_axis(heard.time, heard.speed)
     along = np.interp(time, heard.time, track)
     ends = (float(track.min()), float(track.max()))
-    x, unit = replace(axis, limits=ends if ends[1] > ends[0] else None), level_unit(heard)
+    x, unit = replace(axis, limits=ends if ends[1] > ends[0] else None), _level_unit(heard)
     name, loudest = _noun(heard), int(np.argmax(level))
     top = float(level[loudest])
     lowest = min(top - LEAST_SPAN, max(float(level.min()), top - DEPTH))
@@ -49,7 +49,7 @@ def level_figure(heard: HeardRun) -> Figure:
     )
 
 
-def block_levels(heard: HeardRun) -> tuple[FloatArray, FloatArray]:
+def _block_levels(heard: HeardRun) -> tuple[FloatArray, FloatArray]:
     """Return the middles of blocks, s, and the level of each: dB(A), of a velocity dB re 1 nm/s."""
     recording = heard.recording
     duration = recording.samples.size / recording.sample_rate
@@ -61,18 +61,15 @@ def block_levels(heard: HeardRun) -> tuple[FloatArray, FloatArray]:
     return time, np.array([sound_pressure_level(part, weighted=True) for part in parts])
 
 
-def level_unit(heard: HeardRun) -> str:
-    """Return the unit of the levels."""
+def _level_unit(heard: HeardRun) -> str:
     return "dB re 1 nm/s" if heard.figures is None else "dB(A) re 20 µPa"
 
 
 def _noun(heard: HeardRun) -> str:
-    """Return what is heard."""
     return "velocity" if heard.figures is None else "sound pressure"
 
 
 def _table(time: FloatArray, along: FloatArray, level: FloatArray, label: str, unit: str) -> Table:
-    """List the levels."""
     rows = tuple(
         (f"{t:.3f}", number(float(x), 5), f"{dB:.1f}") for t, x, dB in zip(time, along, level, strict=True)
     )
@@ -114,21 +111,20 @@ def page(heard: HeardRun) -> Page:
     """Return the report."""
     title = f"{_noun(heard).capitalize()} of the run"
     text = f"{heard.remark[0].upper()}{heard.remark[1:]}."
-    section = Section(title, text, figures=(level_figure(heard),))
+    section = Section(title, text, figures=(_level_figure(heard),))
     return Page("A run heard through its housing", "", headlines(heard), (section,))
 
 
 def _text(heard: HeardRun) -> Iterator[Table | str]:
-    """Yield what is heard, and what it leaves out."""
     yield heard.recording.quantity
     yield heard.remark
 
 
 def series(heard: HeardRun) -> Table:
     """Return the numbers of the plot."""
-    table = level_figure(heard).table
+    table = _level_figure(heard).table
     assert table is not None
     return table
 
 
-PAGE = Presentation(level_figure, page, _text, series=series)
+PAGE = Presentation(_level_figure, page, _text, series=series)

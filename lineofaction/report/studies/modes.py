@@ -41,13 +41,12 @@ WHIRLS: dict[str, tuple[str, Dash]] = {
 }
 
 
-def modal_figures(modes: ModalAnalysis) -> tuple[Figure, ...]:
+def _modal_figures(modes: ModalAnalysis) -> tuple[Figure, ...]:
     """Draw the Campbell diagram, if there are speeds, and the energies."""
     return (_campbell(modes), *_energies(modes)) if modes.speed.size > 1 else _energies(modes)
 
 
-def whirl_name(whirl: float) -> str:
-    """Name the sense of whirl of a mode."""
+def _whirl_name(whirl: float) -> str:
     if abs(whirl) < CIRCULAR:
         return "in a plane"
     return "forward whirl" if whirl > 0.0 else "backward whirl"
@@ -73,7 +72,7 @@ def _campbell(modes: ModalAnalysis) -> Figure:
         "terms of each speed. Dotted: multiples of the mesh frequency. Points: critical speeds.",
         alternative=_words(modes),
         content=(Panel(x, y, tuple(lines), notes=tuple(_order_notes(modes, speed, top))),),
-        table=critical_table(modes),
+        table=_critical_table(modes),
     )
 
 
@@ -112,7 +111,7 @@ def _modes(modes: ModalAnalysis, speed: FloatArray) -> Iterator[Line]:
     """Every mode by its sense of whirl; points between two speeds take that of the first."""
     for name, (color, dash) in WHIRLS.items():
         for mode in range(modes.frequency.shape[1]):
-            here = np.array([whirl_name(w) == name for w in modes.whirl[:, mode]])
+            here = np.array([_whirl_name(w) == name for w in modes.whirl[:, mode]])
             if not np.any(here):
                 continue
             shown = here | np.append(False, here[:-1])
@@ -135,7 +134,7 @@ def _energies(modes: ModalAnalysis) -> tuple[Figure, Figure]:
             caption=f"Strain energy by mesh, bearing, coupling and drive. {alike}",
             alternative=_energy_words(names, held, "strain"),
             content=(mode_bars(names, held, "strain energy"),),
-            table=modes_table(modes),
+            table=_modes_table(modes),
         ),
         Figure(
             key="modal_motion",
@@ -155,7 +154,7 @@ def _energy_words(names: list[str], shares: list[dict[str, float]], energy: str)
     return f"The lowest mode, {names[0]}, has {number(100.0 * share, 2)} % of its {energy} energy in {part}."
 
 
-def modes_table(modes: ModalAnalysis) -> Table:
+def _modes_table(modes: ModalAnalysis) -> Table:
     """List the natural modes at rest; those of one frequency are still one line each."""
     rows = []
     for mode, frequency in enumerate(modes.natural_frequency):
@@ -175,12 +174,11 @@ def modes_table(modes: ModalAnalysis) -> Table:
 
 
 def _shares(parts: dict[str, float]) -> str:
-    """Write the largest shares."""
     shown = [f"{name} {100.0 * share:.0f} %" for name, share in parts.items() if share >= 0.005]
     return ", ".join(shown[:SHOWN_PARTS]) or "none"
 
 
-def critical_table(modes: ModalAnalysis) -> Table:
+def _critical_table(modes: ModalAnalysis) -> Table:
     """List the critical speeds; modes that an order meets together share a line."""
     groups: list[list[int]] = []
     for index, speed in enumerate(modes.critical_speed):
@@ -195,7 +193,6 @@ def critical_table(modes: ModalAnalysis) -> Table:
 
 
 def _together(modes: ModalAnalysis, first: int, other: int, speed: float) -> bool:
-    """Whether two crossings are of one order at one speed."""
     same = modes.critical_order[first] == modes.critical_order[other]
     same = same and modes.critical_mesh[first] == modes.critical_mesh[other]
     return bool(same and abs(modes.critical_speed[first] - speed) <= ALIKE * speed)
@@ -210,7 +207,7 @@ def _critical_row(modes: ModalAnalysis, group: list[int]) -> tuple[str, ...]:
         known = np.isfinite(modes.frequency[:, mode])
         row = int(np.argmin(np.where(known, np.abs(modes.speed - modes.critical_speed[index]), np.inf)))
         kinds[modes.kind(modes.strain_energy[row, mode], modes.kinetic_energy[row, mode])] = None
-        senses[whirl_name(float(modes.whirl[row, mode])).removesuffix(" whirl")] = None
+        senses[_whirl_name(float(modes.whirl[row, mode])).removesuffix(" whirl")] = None
     first = group[0]
     return (
         number(float(modes.critical_speed[first]) / RPM, 5),
@@ -267,16 +264,16 @@ def _text(modes: ModalAnalysis) -> Iterator[Table | str]:
     start = modes.facts["equilibrium"]
     forces = ", ".join(f"{name} {force:.5g} N" for name, force in start["mesh_force"].items())
     yield f"static equilibrium {start['status'].lower()}, {leftover(start['residual'])} N left; {forces}"
-    yield modes_table(modes)
+    yield _modes_table(modes)
     if modes.speed.size:
         yield ""
-        yield critical_table(modes)
+        yield _critical_table(modes)
     yield from cost_tables(modes.facts)
     yield from model_lines(modes.facts)
 
 
 PAGE = Presentation(
-    lambda modes: modal_figures(modes)[0],
-    lambda modes: dynamics_page("Modes", modal_figures(modes), headlines(modes), modes.facts),
+    lambda modes: _modal_figures(modes)[0],
+    lambda modes: dynamics_page("Modes", _modal_figures(modes), headlines(modes), modes.facts),
     _text,
 )

@@ -34,15 +34,15 @@ BAND_HEAD = ("largest over the speeds", "dB(A)", "from", "to", "most by, dB")
 COST_HEAD = ("figure", "value", "step", "change, dB", "two steps, dB", "for -1 dB about", "linear within")
 
 
-def uncertainty_tables(facts: Json) -> Iterator[Table]:
+def _uncertainty_tables(facts: Json) -> Iterator[Table]:
     """Yield the tables of what was computed."""
     if facts["band"] is not None:
-        yield band_table(facts["band"])
+        yield _band_table(facts["band"])
     if facts["sensitivities"]:
-        yield cost_table(facts["sensitivities"])
+        yield _cost_table(facts["sensitivities"])
 
 
-def band_table(band: Json) -> Table:
+def _band_table(band: Json) -> Table:
     """List the bands of the total and of the loudest orders."""
     loudest = sorted(band["orders"], key=lambda row: -row["largest"]["level_db_a"])[:SHOWN_ORDERS]
     rows = [("all orders", band["largest_total"])]
@@ -55,7 +55,6 @@ def band_table(band: Json) -> Table:
 
 
 def _band_row(name: str, level: Json) -> tuple[str, ...]:
-    """Describe a band and its largest contributions."""
     ends = (level[key] for key in ("level_db_a", "low_db_a", "high_db_a"))
     return (name, *(f"{end:.1f}" for end in ends), ", ".join(_causes(level)))
 
@@ -69,7 +68,7 @@ def _causes(level: Json) -> Iterator[str]:
             yield f"{name.replace('_', ' ')} -{below[name]:.1f} +{above[name]:.1f}"
 
 
-def cost_table(rows: list[Json]) -> Table:
+def _cost_table(rows: list[Json]) -> Table:
     """List what steps change of the largest level, the largest change first."""
     caption = "What 1 dB costs: largest level of all orders; factors are on what the scene states"
     return Table(caption, COST_HEAD, tuple(_cost(row) for row in rows))
@@ -105,13 +104,11 @@ HEAD = (
 )
 
 
-def loudest_table(sound: RadiatedSound) -> Table:
-    """List the loudest orders and speeds."""
+def _loudest_table(sound: RadiatedSound) -> Table:
     return Table("Loudest points, A-weighted", HEAD, tuple(_row(point) for point in loudest(sound)))
 
 
 def _row(point: LoudPoint) -> tuple[str, ...]:
-    """Describe a point."""
     return (
         f"{point.order:.4g}",
         number(point.speed / RPM, 5),
@@ -162,11 +159,10 @@ def headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
 
 
 def _figures(sound: RadiatedSound) -> tuple[Figure, ...]:
-    """Return all figures."""
     points = loudest(sound, 1)
     panels = panel_intensity(sound, where(points[0]), region_table(sound)) if points else None
     figures = (
-        sound_map(sound, loudest_table(sound), sentences(sound)),
+        sound_map(sound, _loudest_table(sound), sentences(sound)),
         level_over_speed(sound),
         third_octaves(sound),
         bearing_levels(sound),
@@ -191,7 +187,6 @@ def limits(sound: RadiatedSound) -> Iterator[tuple[str, str]]:
 
 
 def _radiation_limits(sound: RadiatedSound, housing: str) -> Iterator[tuple[str, str]]:
-    """Say the same of one housing."""
     about, compared = sound.facts["radiation"][housing], sound.facts["models"][housing]
     resolved, valid, highest = about["resolved_frequency"], about["valid_frequency"], sound.frequency.max()
     yield (
@@ -211,12 +206,12 @@ def _radiation_limits(sound: RadiatedSound, housing: str) -> Iterator[tuple[str,
 
 def _text(sound: RadiatedSound) -> Iterator[Table | str]:
     """Yield the loudest points, what the levels rest on, bands, sensitivities and the cost."""
-    yield loudest_table(sound)
+    yield _loudest_table(sound)
     yield region_table(sound)
     yield from sentences(sound)
     yield from (f"{what}: {words}" for what, words in limits(sound))
     yield from model_tables(sound)
-    yield from uncertainty_tables(sound.facts)
+    yield from _uncertainty_tables(sound.facts)
     yield from (f"no sensitivity to {name}: {why}" for name, why in _missing(sound))
     yield from cost_tables(sound.facts)
     yield from model_lines(sound.facts)
@@ -230,7 +225,7 @@ def _missing(sound: RadiatedSound) -> tuple[tuple[str, str], ...]:
 def page(sound: RadiatedSound) -> Page:
     """Return the report: figures, bands and sensitivities, effects, and what the levels rest on."""
     whole = dynamics_page("Sound power", _figures(sound), headlines(sound), sound.facts)
-    tables = tuple(uncertainty_tables(sound.facts))
+    tables = tuple(_uncertainty_tables(sound.facts))
     if missing := _missing(sound):
         tables += (Table("No sensitivity", ("to", "because"), missing),)
     bands = (Section("Bands, and what 1 dB costs", tables=tables),) if tables else ()
@@ -240,7 +235,7 @@ def page(sound: RadiatedSound) -> Page:
 
 
 PAGE = Presentation(
-    lambda sound: sound_map(sound, loudest_table(sound), sentences(sound)),
+    lambda sound: sound_map(sound, _loudest_table(sound), sentences(sound)),
     page,
     _text,
 )

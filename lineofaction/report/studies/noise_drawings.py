@@ -189,10 +189,8 @@ def _levels_table(sound: RadiatedSound, level: FloatArray, total: FloatArray) ->
 
 
 def _rpm(sound: RadiatedSound, row: int) -> str:
-    """Write the speed of a row."""
     return f"{number(float(sound.speed[row]) / RPM, 4)} rpm"
 
 
 def _above(level: FloatArray, floor: float) -> FloatArray:
-    """Leave out what is too quiet to be shown."""
     return np.where(level < floor, np.nan, level)

@@ -30,7 +30,6 @@ def _models(housing: str, compared: Json) -> Table:
 
 
 def _model(name: str, compared: Json) -> tuple[str, ...]:
-    """Describe a model."""
     level, spent = compared["level"].get(name), compared["seconds"].get(name)
     low, high = compared["error_band"][name]
     predicted = compared["predicted"][name]

@@ -31,7 +31,7 @@ from lineofaction.report.tables.harris_map import MOST_CURVES, HarrisScale, harr
 _POSITION = "position, base pitches"
 
 
-def harris_figure(result: Optimization) -> Figure:
+def _harris(result: Optimization) -> Figure:
     """Draw both Harris maps on one scale, and peak-to-peak over torque."""
     designs = {"before": result.start, "after": result.optimum}
     curves = {name: _shown(result, design) for name, design in designs.items()}
@@ -76,7 +76,6 @@ def _map(
 
 
 def _scattered(result: Optimization) -> str:
-    """Say what the lines of the scatter are."""
     if result.nodes.weight.size == 1:
         return "Nothing scatters."
     count = result.nodes.weight.size
@@ -130,11 +129,10 @@ def ripple_table(result: Optimization) -> Table:
 
 
 def _value(value: float, error: float) -> tuple[str, str]:
-    """Write a length and its error in um."""
     return number(value / UM, 3), number(error / UM, 2)
 
 
-def optimum_table(result: Optimization) -> Table:
+def _optimum_table(result: Optimization) -> Table:
     """Return the variables, and what a perturbation changes."""
     rows = []
     for var, step in zip(result.variables, result.sensitivity, strict=True):
@@ -150,7 +148,7 @@ def optimum_table(result: Optimization) -> Table:
     return Table("Design, and the change of the objective by a perturbation", head, tuple(rows))
 
 
-def node_table(result: Optimization) -> Table:
+def _node_table(result: Optimization) -> Table:
     """Return every node of the scatter with the ripple at the torques that count."""
     head = [*(f"{boundary_name(name)} by" for name in result.nodes.names), "weight"]
     for word in ("before", "after"):
@@ -167,7 +165,7 @@ def node_table(result: Optimization) -> Table:
     return Table("Robustness: peak to peak at every node of the scatter", tuple(head), tuple(rows))
 
 
-def run_table(result: Optimization) -> Table:
+def _run_table(result: Optimization) -> Table:
     """Return the searches."""
     rows = tuple(
         (
@@ -184,15 +182,14 @@ def run_table(result: Optimization) -> Table:
     return Table("Searches", ("start", "objective, µm", "designs", "ended", "CPU s"), rows)
 
 
-def cost_table(result: Optimization) -> Table:
+def _cost_table(result: Optimization) -> Table:
     """Return the CPU time of the stages."""
     stages = result.cost["stages"].items()
     rows = tuple((name, number(float(cost["cpu_seconds"]), 3)) for name, cost in stages)
     return Table("Cost", ("stage", "CPU s"), rows)
 
 
-def optimization_page(result: Optimization) -> Page:
-    """Return the page of an optimization."""
+def _optimization_page(result: Optimization) -> Page:
     before, after = result.start.objective, result.optimum.objective
     heads = (
         Headline("before", f"{number(before.value / UM, 3)} µm", f"± {number(before.error / UM, 2)} µm"),
@@ -200,21 +197,21 @@ def optimization_page(result: Optimization) -> Page:
         Headline("gain", f"{number(result.gain.value / UM, 3)} µm", result.outcome.replace("_", " ")),
     )
     lead = f"{result.reason}; {result.evaluations} designs of {len(result.variables)} variables"
-    figure = Section("Harris map", "", (replace(harris_figure(result), table=None),), (ripple_table(result),))
-    design = Section("Design", "", tables=(optimum_table(result),))
+    figure = Section("Harris map", "", (replace(_harris(result), table=None),), (ripple_table(result),))
+    design = Section("Design", "", tables=(_optimum_table(result),))
     tried = f"Not tried: {'; '.join(result.not_tried)}."
-    search = Section("Search", tried, tables=(run_table(result), cost_table(result)))
-    robust = Section("Scatter", "", tables=(node_table(result),))
+    search = Section("Search", tried, tables=(_run_table(result), _cost_table(result)))
+    robust = Section("Scatter", "", tables=(_node_table(result),))
     return Page("Microgeometry of least transmission error", lead, heads, (figure, design, robust, search))
 
 
 def _text(result: Optimization) -> Iterator[Table | str]:
     """Yield the design, its ripple, and how the search ended."""
-    yield optimum_table(result)
+    yield _optimum_table(result)
     yield ripple_table(result)
     for line in result.not_tried:
         yield f"not tried: {line}"
     yield f"{result.outcome.replace('_', ' ')}: {result.reason}; {result.evaluations} designs"
 
 
-PAGE = Presentation(harris_figure, optimization_page, _text)
+PAGE = Presentation(_harris, _optimization_page, _text)

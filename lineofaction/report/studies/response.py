@@ -26,7 +26,7 @@ WITH_MESHES = (
 WITHOUT_MESHES = "Peak amplitudes of the orders of the leading shaft about the static equilibrium, linear."
 
 
-def response_figure(response: ForcedResponse, mesh: int = 0) -> Figure:
+def _response_figure(response: ForcedResponse, mesh: int = 0) -> Figure:
     """Draw the largest orders of one mesh and of the bearing that feels most."""
     speed = response.speed / RPM
     ends = (float(speed[0]), float(speed[-1])) if speed.size > 1 else None
@@ -42,7 +42,7 @@ def response_figure(response: ForcedResponse, mesh: int = 0) -> Figure:
         caption=WITH_MESHES if response.mesh else WITHOUT_MESHES,
         alternative=_words(response),
         content=tuple(panels),
-        table=peak_table(response),
+        table=_peak_table(response),
     )
 
 
@@ -85,14 +85,13 @@ def _panel(
 
 
 def _least(x: Axis, speed: FloatArray, response: ForcedResponse, mesh: int) -> Panel:
-    """Least mesh force."""
     line = Line("least mesh force", speed, response.least_mesh_force[mesh], palette.INK, width=1.4)
     return Panel(
         x, Axis("least mesh force, N"), (line,), (Reference("flanks part", 0.0, "horizontal", 0.12),)
     )
 
 
-def peak_table(response: ForcedResponse) -> Table:
+def _peak_table(response: ForcedResponse) -> Table:
     """List the largest peaks of mesh and bearing forces."""
     rows: list[tuple[str, ...]] = []
     every = peaks(response)
@@ -160,13 +159,13 @@ def _largest(what: str, names: Sequence[str], size: FloatArray, response: Forced
 
 def _figures(response: ForcedResponse) -> tuple[Figure, ...]:
     """Return amplitudes, and the power lost if any is."""
-    figure = response_figure(response)
+    figure = _response_figure(response)
     return (figure, power_figure(response)) if loses_power(response) else (figure,)
 
 
 def _text(response: ForcedResponse) -> Iterator[Table | str]:
     """Peaks, and what the linear answer does not hold."""
-    yield peak_table(response)
+    yield _peak_table(response)
     parting = response.speed[~response.in_contact] / RPM
     if parting.size:
         where = f"{parting[0]:.5g} to {parting[-1]:.5g} rpm"
@@ -185,7 +184,7 @@ def _text(response: ForcedResponse) -> Iterator[Table | str]:
 
 
 PAGE = Presentation(
-    response_figure,
+    _response_figure,
     lambda response: dynamics_page(
         "Forced response", _figures(response), headlines(response), response.facts
     ),

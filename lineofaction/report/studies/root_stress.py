@@ -40,7 +40,6 @@ def root_stress_figure(stresses: Json) -> Figure:
 
 
 def _passage(gear: str, history: Json) -> Panel:
-    """Draw one gear."""
     way = {name: np.array(values) for name, values in history["passage"].items()}
     peak = history["tension"]
     lines = (
@@ -56,11 +55,10 @@ def _passage(gear: str, history: Json) -> Panel:
 
 
 def _said(peak: Json) -> str:
-    """Return stress and place of a peak in words."""
     return f"{number(peak['stress_mpa'])} MPa at the {number(peak['tangent_angle_deg'], 2)} degree tangent"
 
 
-def peak_table(stresses: Json) -> Table:
+def _peak_table(stresses: Json) -> Table:
     """Return the stress of every root with its error, and where it is."""
     rows = tuple(
         (
@@ -78,7 +76,7 @@ def peak_table(stresses: Json) -> Table:
     return Table("Tooth-root stress", _HEAD, rows)
 
 
-def passage_table(stresses: Json) -> Table:
+def _passage_table(stresses: Json) -> Table:
     """Return what one tooth of each gear meets."""
     rows = []
     for gear in GEARS:
@@ -94,14 +92,13 @@ def page(stresses: Json) -> Page:
     heads = tuple(_headline(gear, stresses[gear]["tension"]) for gear in GEARS)
     cost = {name: value for name, value in stresses["receipt"].items() if name != "plan"}
     sections = (
-        Section("Tooth roots", "", (root_stress_figure(stresses),), (peak_table(stresses),)),
+        Section("Tooth roots", "", (root_stress_figure(stresses),), (_peak_table(stresses),)),
         Section("Receipt of the root stress", tables=(facts("Cost", cost),), part=Part.RECEIPT),
     )
     return Page("Tooth-root stress", _point(stresses), heads, sections)
 
 
 def _headline(gear: str, peak: Json) -> Headline:
-    """Return the largest stress of a gear."""
     value, error = f"{number(peak['stress_mpa'])} MPa", f"± {engineering(peak['error_mpa'], 1)} MPa"
     return Headline(f"largest root stress, {gear}", value, error)
 
@@ -116,13 +113,12 @@ def _point(stresses: Json) -> str:
 
 def text(stresses: Json) -> Iterator[Table | str]:
     """Yield the peaks for people."""
-    yield peak_table(stresses)
+    yield _peak_table(stresses)
     yield f"\n{_point(stresses)}"
     yield from assumption_lines(stresses["receipt"])
 
 
 def _of_figures(shown: Callable[[Json], Any]) -> Callable[[Roots], Any]:
-    """Return what shows the roots by their figures."""
     return lambda roots: shown(root_stress_json(roots))
 
 
@@ -130,5 +126,5 @@ PAGE = Presentation(
     _of_figures(root_stress_figure),
     _of_figures(page),
     _of_figures(text),
-    series=_of_figures(passage_table),
+    series=_of_figures(_passage_table),
 )

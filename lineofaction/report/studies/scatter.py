@@ -17,7 +17,7 @@ from lineofaction.report.presentation import Presentation
 _STEPS = 400
 
 
-def scatter_figure(study: ToleranceStudy) -> Figure:
+def _scatter_figure(study: ToleranceStudy) -> Figure:
     """Draw the distribution at every torque, and its quantiles over torque."""
     count = study.peak_to_peak.shape[0]
     return Figure(
@@ -28,7 +28,7 @@ def scatter_figure(study: ToleranceStudy) -> Figure:
         "pair as designed (dashed).",
         alternative=_words(study),
         content=(_distribution(study), _over_torque(study)),
-        table=quantile_table(study),
+        table=_quantile_table(study),
     )
 
 
@@ -45,7 +45,6 @@ def _distribution(study: ToleranceStudy) -> Panel:
 
 
 def _over_torque(study: ToleranceStudy) -> Panel:
-    """Draw quantiles over torque."""
     lines = []
     for k, quantile in enumerate(study.quantiles):
         color, name = palette.category(k), f"{100 * quantile.fraction:g} %"
@@ -58,7 +57,7 @@ def _over_torque(study: ToleranceStudy) -> Panel:
     return Panel(across, Axis("peak to peak, µm"), tuple(lines), title="Quantiles")
 
 
-def quantile_table(study: ToleranceStudy) -> Table:
+def _quantile_table(study: ToleranceStudy) -> Table:
     """Return mean and quantiles at every torque."""
     head = ["torque, N m", "as designed, µm", "± µm", "mean, µm", "± µm (1 s)"]
     for quantile in study.quantiles:
@@ -81,7 +80,7 @@ def quantile_table(study: ToleranceStudy) -> Table:
     return Table(caption, tuple(head), tuple(rows))
 
 
-def influence_table(study: ToleranceStudy) -> Table:
+def _influence_table(study: ToleranceStudy) -> Table:
     """Return the rank correlation of each deviation, the strongest at the highest load first."""
     head = ("deviation", *(f"{name} N m" for name in thousands(study.torque.tolist())))
     order = np.argsort(-np.abs(study.influence[:, -1]), kind="stable")
@@ -99,8 +98,8 @@ def page(study: ToleranceStudy) -> Page:
         Headline("mean", f"{number(study.mean[-1] / UM, 3)} µm"),
         Headline(f"{100 * last.fraction:g} % of all pairs below", f"{number(last.value[-1] / UM, 3)} µm"),
     )
-    tables = (quantile_table(study), influence_table(study))
-    section = Section("Distribution", "", (replace(scatter_figure(study), table=None),), tables)
+    tables = (_quantile_table(study), _influence_table(study))
+    section = Section("Distribution", "", (replace(_scatter_figure(study), table=None),), tables)
     lead = f"{study.peak_to_peak.shape[0]} pairs sampled within their tolerances"
     return Page("Transmission error within tolerances", lead, heads, (section,))
 
@@ -113,4 +112,4 @@ def _words(study: ToleranceStudy) -> str:
     return f"At the highest torque {part} of all pairs stay below {size} µm; as designed {designed} µm."
 
 
-PAGE = Presentation(scatter_figure, page, lambda study: (quantile_table(study), influence_table(study)))
+PAGE = Presentation(_scatter_figure, page, lambda study: (_quantile_table(study), _influence_table(study)))

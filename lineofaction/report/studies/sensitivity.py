@@ -57,12 +57,10 @@ def sensitivity_table(studies: Sequence[PairStudy]) -> Table:
 
 
 def _over_misalignment(_study: PairStudy, curves: Sensitivity) -> Curve:
-    """Misalignment in um, and its curve."""
     return 1e6 * curves.misalignment.deviation, curves.misalignment
 
 
 def _over_distance(study: PairStudy, curves: Sensitivity) -> Curve:
-    """Change of the center distance in per cent, and its curve."""
     change = curves.center_distance_change
     return 100.0 * change.deviation / study.center_distance, change
 

@@ -33,7 +33,7 @@ MARKED = 80  # sweeps of more motions are drawn as lines
 _SWEEPS = ((UP, "rising speed", palette.BLUE), (DOWN, "falling speed", palette.ORANGE))
 
 
-def steady_figure(states: SteadyStates, mesh: int = 0) -> Figure:
+def _steady_figure(states: SteadyStates, mesh: int = 0) -> Figure:
     """Draw one mesh: stable motions of the branch solid, unstable ones dashed, both sweeps as points."""
     swept = states.speed[states.curve != BRANCH] / RPM
     ends = (float(swept.min()), float(swept.max()))
@@ -48,7 +48,7 @@ def steady_figure(states: SteadyStates, mesh: int = 0) -> Figure:
         "not. Points: steady states at slowly rising and falling speeds. Error: alternating part.",
         alternative=_words(states),
         content=panels,
-        table=steady_table(states),
+        table=_steady_table(states),
     )
 
 
@@ -107,7 +107,7 @@ def _lines(states: SteadyStates, values: FloatArray) -> Iterator[Line]:
             )
 
 
-def steady_table(states: SteadyStates) -> Table:
+def _steady_table(states: SteadyStates) -> Table:
     """List both sweeps, one line per speed and mesh, or without meshes per speed and bearing."""
     if not states.mesh:
         return _bearing_table(states)
@@ -172,12 +172,12 @@ def _row(states: SteadyStates, index: int, mesh: int) -> tuple[str, ...]:
         number(1e6 * float(states.peak_to_peak_error[index, mesh]), 4),
         number(float(states.least_force[index, mesh]), 4),
         number(float(states.largest_force[index, mesh]), 4),
-        contact_name(float(states.parted[index, mesh]), float(states.coasting[index, mesh])),
+        _contact_name(float(states.parted[index, mesh]), float(states.coasting[index, mesh])),
         number(1e9 * float(states.step_error[index]), 2),
     )
 
 
-def contact_name(parted: float, coasting: float) -> str:
+def _contact_name(parted: float, coasting: float) -> str:
     """Say which flanks touch over a period."""
     if coasting > 0.0:
         return f"both flanks, apart from the driving one {100.0 * parted:.0f} %"
@@ -229,7 +229,7 @@ def _largest(
 
 def _text(states: SteadyStates) -> Iterator[Table | str]:
     """Both sweeps, jumps, and what the branch came to."""
-    yield steady_table(states)
+    yield _steady_table(states)
     answer = facts(states)
     for jump in answer["jumps"]:
         before, behind = jump["between_rpm"]
@@ -244,7 +244,7 @@ def _text(states: SteadyStates) -> Iterator[Table | str]:
 
 
 PAGE = Presentation(
-    steady_figure,
-    lambda states: dynamics_page("Steady states", (steady_figure(states),), headlines(states), states.facts),
+    _steady_figure,
+    lambda states: dynamics_page("Steady states", (_steady_figure(states),), headlines(states), states.facts),
     _text,
 )

@@ -33,7 +33,7 @@ def unit(study: Study, response: int) -> str:
     return {"um": "µm", "": "ratio"}.get(symbol, symbol)
 
 
-def grid_figures(study: Study) -> tuple[Figure, ...]:
+def _grid_figures(study: Study) -> tuple[Figure, ...]:
     """Draw means over the grid: over one factor curves, over two a map; nothing without a grid."""
     axes = [k for k in varied(study) if study.kind[k] == "grid"]
     shown = range(min(len(study.response), SHOWN_RESPONSES))
@@ -50,7 +50,6 @@ def grid_figures(study: Study) -> tuple[Figure, ...]:
 
 
 def _over(study: Study, axes: list[int]) -> str:
-    """Name a figure by its axes."""
     return f"Responses over {' and '.join(study.factor[k] for k in axes)}"
 
 
@@ -109,12 +108,11 @@ def _lines(study: Study, axis: int, response: int) -> tuple[Line, ...]:
 
 
 def _quantile(row: FloatArray, fraction: float) -> float:
-    """Quantile of what is usable."""
     usable = row[np.isfinite(row)]
     return float(np.quantile(usable, fraction)) if usable.size else float("nan")
 
 
-def distribution_figure(study: Study) -> Figure:
+def _distribution_figure(study: Study) -> Figure:
     """Draw the share of the runs below each value of the responses, at some combinations of the grid."""
     panels = tuple(
         Panel(
@@ -151,7 +149,6 @@ def _cumulative(study: Study, response: int) -> list[Line]:
 
 
 def _combination(study: Study, row: int) -> str:
-    """Name a combination by its levels."""
     value = study.value[row * study.samples]
     levels = [k for k in varied(study) if study.kind[k] in ("grid", "list")]
     return ", ".join(f"{short(study, k)} {value[k]:.6g}" for k in levels) or "all samples"
@@ -168,7 +165,7 @@ def short(study: Study, factor: int) -> str:
     return ends[factor] if ends.count(ends[factor]) == 1 else study.factor[factor]
 
 
-def tornado_figure(study: Study) -> Figure:
+def _tornado_figure(study: Study) -> Figure:
     """Draw what each factor does to the first response: by means of its levels, or by rank correlation."""
     return Figure(
         "study_tornado",
@@ -232,15 +229,15 @@ SHOWN = 12
 """Lines of the tables of worst and failed runs."""
 
 
-def study_figures(study: Study) -> tuple[Figure, ...]:
+def _study_figures(study: Study) -> tuple[Figure, ...]:
     """Draw maps or curves over the grid, the distribution and the tornado."""
     if not study.usable:
-        return (distribution_figure(study),)
-    figures = (*grid_figures(study), distribution_figure(study), tornado_figure(study))
+        return (_distribution_figure(study),)
+    figures = (*_grid_figures(study), _distribution_figure(study), _tornado_figure(study))
     return tuple(figure for figure in figures if figure.content)
 
 
-def summary_table(study: Study) -> Table:
+def _summary_table(study: Study) -> Table:
     """Return least, mean and largest value of each response, with the mean of the stated errors."""
     rows = []
     for k in range(len(study.response)):
@@ -257,7 +254,7 @@ def summary_table(study: Study) -> Table:
     return Table("Responses of all runs", head, tuple(rows))
 
 
-def extreme_table(study: Study) -> Table:
+def _extreme_table(study: Study) -> Table:
     """Return the points of the largest first response."""
     first = study.figure[:, 0]
     usable = np.flatnonzero(np.isfinite(first))
@@ -283,7 +280,7 @@ def extreme_table(study: Study) -> Table:
     return Table(f"Worst cases: runs of the largest {study.response[0]}", head, rows)
 
 
-def failed_table(study: Study) -> Table:
+def _failed_table(study: Study) -> Table:
     """Return the runs without figures, and why."""
     failed = [k for k, reason in enumerate(study.reason) if reason]
     rows = tuple(
@@ -304,10 +301,10 @@ def page(study: Study) -> Page:
         Headline("largest", _largest(study), study.response[0]),
         Headline("cost of a run", f"{1e3 * float(study.seconds[:, 0].mean()):.0f} ms", "CPU time, mean"),
     )
-    tables = (extreme_table(study), *((failed_table(study),) if failed else ()))
+    tables = (_extreme_table(study), *((_failed_table(study),) if failed else ()))
     sections = (
-        Section("Responses", "", tuple(replace(f, table=None) for f in study_figures(study))),
-        Section("Figures", "", (), (summary_table(study), *tables)),
+        Section("Responses", "", tuple(replace(f, table=None) for f in _study_figures(study))),
+        Section("Figures", "", (), (_summary_table(study), *tables)),
     )
     return Page("Many scenes", _lead(study), heads, sections)
 
@@ -329,12 +326,12 @@ def _largest(study: Study) -> str:
 
 def _text(study: Study) -> Iterator[Table | str]:
     """Responses, worst and failed runs, cost."""
-    yield summary_table(study)
-    yield extreme_table(study)
+    yield _summary_table(study)
+    yield _extreme_table(study)
     if study.usable < len(study.reason):
-        yield failed_table(study)
+        yield _failed_table(study)
     yield f"neglected in the runs: {', '.join(study.facts['neglected'])}"
     yield f"cost {engineering(1e3 * float(study.seconds[:, 0].mean()), 3)} ms CPU a run"
 
 
-PAGE = Presentation(lambda study: study_figures(study)[0], page, _text)
+PAGE = Presentation(lambda study: _study_figures(study)[0], page, _text)

@@ -35,7 +35,7 @@ def where(found: VibrationAnalysis) -> str:
     return f"order {vibration.order[h]:.4g} at {speed} rpm, {hertz} Hz"
 
 
-def largest_table(result: HousingVibrationResult) -> Table:
+def _largest_table(result: HousingVibrationResult) -> Table:
     """List the largest velocity of every point and of the outer hull, with the nearest mode."""
     vibration = result.analysis.vibration
     sizes = [(name, vibration.rms[k]) for k, name in enumerate(vibration.point)]
@@ -63,7 +63,7 @@ def largest_table(result: HousingVibrationResult) -> Table:
     return Table("Largest velocity of every point", tuple(head), tuple(rows))
 
 
-def contribution_table(result: HousingVibrationResult) -> Table:
+def _contribution_table(result: HousingVibrationResult) -> Table:
     """List the contributions of bearings and of the largest modes."""
     found = result.analysis
     head = ["part", "frequency, Hz", *(f"{point}, %" for point in found.vibration.point)]
@@ -116,7 +116,7 @@ DRAWN = 0.06
 """Largest motion as it is drawn, over the size of the housing."""
 
 
-def velocity_figure(result: HousingVibrationResult) -> Figure:
+def _velocity_figure(result: HousingVibrationResult) -> Figure:
     """Draw the velocities of the fastest points and of the surface by order over speed."""
     found = result.analysis
     vibration = found.vibration
@@ -132,7 +132,7 @@ def velocity_figure(result: HousingVibrationResult) -> Figure:
         f"{number(vibration.highest_valid_frequency, 4)} Hz, 0.7 of the highest mode kept.",
         alternative=_words(result),
         content=tuple(_velocity_panel(found, name, rms / MM_PER_S) for name, rms in size.items()),
-        table=largest_table(result),
+        table=_largest_table(result),
     )
 
 
@@ -152,7 +152,7 @@ def _velocity_panel(found: VibrationAnalysis, name: str, rms: FloatArray) -> Pan
     return Panel(x, Axis("rms velocity, mm/s"), tuple(lines), title=name)
 
 
-def transfer_figure(result: HousingVibrationResult) -> Figure:
+def _transfer_figure(result: HousingVibrationResult) -> Figure:
     """Draw the transfer functions from the seats that act most to the fastest point, and to the surface."""
     found = result.analysis
     mobilities = found.mobilities
@@ -198,11 +198,10 @@ def _fastest(found: VibrationAnalysis) -> tuple[int, int]:
 
 
 def _line(name: str, x: FloatArray, y: FloatArray, color: int) -> Line:
-    """Return a thin line of a category."""
     return Line(name, x, np.asarray(y, dtype=np.float64), palette.category(color), width=1.2)
 
 
-def contribution_figure(result: HousingVibrationResult) -> Figure:
+def _contribution_figure(result: HousingVibrationResult) -> Figure:
     """Draw the contributions of bearings and of the largest modes."""
     found = result.analysis
     of_surface = found.deflection is not None
@@ -218,12 +217,11 @@ def contribution_figure(result: HousingVibrationResult) -> Figure:
             for shares, part in both
         ),
         content=tuple(_share_panel(*each) for each in both),
-        table=contribution_table(result),
+        table=_contribution_table(result),
     )
 
 
 def _both(found: VibrationAnalysis) -> tuple[Shares, Shares]:
-    """Return the contributions of bearings and modes."""
     return found.bearings, found.modes
 
 
@@ -247,7 +245,7 @@ def _name(shares: Shares, index: int) -> str:
     return f"{number(hertz, 4)} Hz" if np.isfinite(hertz) else shares.name[index]
 
 
-def shape_figure(result: HousingVibrationResult) -> Figure | None:
+def _shape_figure(result: HousingVibrationResult) -> Figure | None:
     """Draw the mode or the operating deflection from two sides; None without a surface."""
     shape = result.shape
     if shape is None:
@@ -287,13 +285,13 @@ def _words(result: HousingVibrationResult) -> str:
 
 def figure(result: HousingVibrationResult) -> Figure:
     """Draw the mode or the deflection; without a surface the velocities."""
-    return shape_figure(result) or velocity_figure(result)
+    return _shape_figure(result) or _velocity_figure(result)
 
 
 def page(result: HousingVibrationResult) -> Page:
     """Return the report."""
-    shape = shape_figure(result)
-    figures = (velocity_figure(result), contribution_figure(result), transfer_figure(result))
+    shape = _shape_figure(result)
+    figures = (_velocity_figure(result), _contribution_figure(result), _transfer_figure(result))
     drawn = figures if shape is None else (figures[0], shape, *figures[1:])
     whole = dynamics_page("Vibration of the housing", drawn, headlines(result), result.analysis.facts)
     rests = Table("Forces that move the housing", ("what", "how"), force_words(result.analysis.facts))
@@ -324,15 +322,14 @@ def headlines(result: HousingVibrationResult) -> tuple[Headline, ...]:
 
 
 def _speed(rms: float) -> str:
-    """Write a velocity."""
     return f"{number(rms / MM_PER_S, 3)} mm/s rms"
 
 
 def _text(result: HousingVibrationResult) -> Iterator[Table | str]:
     """Yield the largest velocities, the contributions, what holds no more, and the cost."""
     found, vibration = result.analysis, result.analysis.vibration
-    yield largest_table(result)
-    yield contribution_table(result)
+    yield _largest_table(result)
+    yield _contribution_table(result)
     beyond = vibration.order[~np.all(vibration.valid, axis=0)]
     if beyond.size:
         orders = ", ".join(f"{order:.4g}" for order in beyond)

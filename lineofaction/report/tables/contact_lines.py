@@ -82,12 +82,10 @@ def _strokes(flanks: LoadDistribution, chosen: IntArray, values: FloatArray, lab
 
 
 def _strip(flanks: LoadDistribution) -> str:
-    """Say over what a stroke is a mean."""
     return f"One stroke is {number(1e3 * flanks.slice_width, 2)} mm of the face, its color the mean there."
 
 
 def _carrying(flanks: LoadDistribution, position: int) -> int:
-    """Count the pairs that carry load."""
     return int(np.count_nonzero(flanks.force[position].sum(axis=-1)))
 
 

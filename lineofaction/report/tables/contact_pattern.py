@@ -59,7 +59,7 @@ def _stretches(flanks: LoadDistribution) -> str:
     return f" and {count} stretches of the face; blank: nothing touches" if count > 1 else ""
 
 
-def roll_marks(
+def _roll_marks(
     flanks: LoadDistribution, gear: Gear, direction: Literal["horizontal", "vertical"]
 ) -> tuple[Reference, ...]:
     """Mark start of active profile, pitch point and tip with their diameters."""
@@ -77,14 +77,13 @@ def roll_marks(
 
 
 def _shaded(flanks: LoadDistribution, gear: Gear, one: _Map) -> Panel:
-    """One unrolled flank."""
     roll, pressure = one
     largest = 1e-6 * float(flanks.pressure.max())
     face = 1e3 * flanks.face_position
     return Panel(
         face_axis(flanks),
         Axis("roll length, mm", limits=_extent(flanks, gear, roll)),
-        references=roll_marks(flanks, gear, "horizontal"),
+        references=_roll_marks(flanks, gear, "horizontal"),
         title=_title(flanks, gear),
         shade=HeatMap(face, roll, pressure, PRESSURE, largest, isolines=isolines(largest)),
     )
@@ -115,7 +114,7 @@ def _curve(flanks: LoadDistribution, gear: Gear, one: _Map) -> Panel:
         Axis("roll length, mm", limits=_extent(flanks, gear, roll)),
         Axis(PRESSURE, limits=(0.0, 1.15e-6 * float(flanks.pressure.max()))),
         (line,),
-        roll_marks(flanks, gear, "vertical"),
+        _roll_marks(flanks, gear, "vertical"),
         title,
     )
 

@@ -55,12 +55,10 @@ class Entry:
 
 
 def _both(of: Callable[[Toothing], float]) -> Callable[[ParallelAxes], Sequence[float]]:
-    """Return what asks both gears."""
     return lambda pair: (of(pair.pinion), of(pair.wheel))
 
 
 def _pair(of: Callable[[ParallelAxes], float]) -> Callable[[ParallelAxes], Sequence[float]]:
-    """Return what asks the pair."""
     return lambda pair: (of(pair),)
 
 
@@ -138,7 +136,7 @@ class PathPoint:
     specific_sliding: tuple[float, float]
 
 
-def path_points(pair: ParallelAxes) -> list[PathPoint]:
+def _path_points(pair: ParallelAxes) -> list[PathPoint]:
     """Return A to E of the usable flanks."""
     radii = pair.pinion.base_radius, pair.wheel.base_radius
     points = []
@@ -164,7 +162,7 @@ def data_sheet(pair: ParallelAxes) -> tuple[Table, Table, Table]:
     return (
         Table("Gears", ("quantity", "symbol", "pinion", "wheel", "unit"), gears),
         Table("Mesh", ("quantity", "symbol", "value", "unit"), mesh),
-        Table("Path of contact", _POINT_HEAD, tuple(_point_row(point) for point in path_points(pair))),
+        Table("Path of contact", _POINT_HEAD, tuple(_point_row(point) for point in _path_points(pair))),
     )
 
 
@@ -181,7 +179,6 @@ _POINT_HEAD = (
 
 
 def _point_row(point: PathPoint) -> tuple[str, ...]:
-    """Return a point as words."""
     lengths = [diameter / MM for diameter in point.diameter]
     angles = [angle / DEGREE for angle in point.roll_angle]
     sliding = (point.sliding_factor, *point.specific_sliding)
@@ -210,7 +207,7 @@ def data_sheet_json(pair: ParallelAxes) -> Json:
             "sliding_factor": point.sliding_factor,
             "specific_sliding": list(point.specific_sliding),
         }
-        for point in path_points(pair)
+        for point in _path_points(pair)
     }
     return sides | {"mesh": {entry.name: entry.values(pair)[0] for entry in MESH}, "path_of_contact": points}
 

@@ -75,7 +75,6 @@ def _parts(budget: DeflectionBudget) -> dict[str, tuple[float, ...]]:
 
 
 def _counts(sides: tuple[float, ...], mean: float) -> bool:
-    """Whether a part is large enough for a bar."""
     return abs(sum(sides)) > _LEAST * mean
 
 

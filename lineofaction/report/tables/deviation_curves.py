@@ -67,7 +67,6 @@ def _deviations(database: SteDatabase) -> list[_Deviation]:
 
 
 def _curves(database: SteDatabase, misalignment: float, change: float) -> tuple[Curve, ...]:
-    """Return the curves of all loads at one alignment."""
     point = {"misalignment": misalignment, "center_distance_change": change}
     return tuple(database.curve(force=float(force), **point, allow_failed=True) for force in database.force)
 

@@ -83,7 +83,6 @@ def _panel(database: SteDatabase, load: int) -> Panel:
 
 
 def _name(pair: int, *, short: bool = False) -> str:
-    """Name a pair."""
     number_of_pair = f"{pair:+d}" if pair else "0"
     return number_of_pair if short else f"pair {number_of_pair}"
 
@@ -147,5 +146,4 @@ def _table(database: SteDatabase) -> Table:
 
 
 def _both(force: float, share: float) -> str:
-    """Write the force on a pair and its share of the load."""
     return f"{number(force * share, 3)} ({100.0 * share:.1f} %)"

@@ -66,7 +66,6 @@ def _from_si(case: Json) -> ParallelAxes | None:
 
 
 def _fields(content: Json) -> Json:
-    """Fields of one gear, its parts rebuilt."""
     parts = {name: kind(**content[name]) for name, kind in _PARTS.items() if content.get(name) is not None}
     return content | parts
 

@@ -124,7 +124,6 @@ def _lead(gears: dict[str, Toothing]) -> Panel:
 
 
 def _removed(gear: Toothing, roll: FloatArray, face: FloatArray | float) -> FloatArray:
-    """Material removed in um."""
     return gear.modification.material_removed(gear, roll, face) / UM
 
 

@@ -283,7 +283,6 @@ def contact_effects(ledger: Any) -> Section:
 
 
 def _effect_row(entry: Mapping[str, Any]) -> EffectRow:
-    """Return an effect of the contact."""
     return EffectRow(entry["name"], "contact", entry["on"], influence_words(entry), entry["reason"])
 
 
@@ -340,10 +339,8 @@ def _accuracy(database: SteDatabase) -> Table:
 
 
 def _band(estimate: Estimate) -> str:
-    """Half-width of the error band."""
     return "not estimated" if math.isnan(estimate.error) else f"± {_um(estimate.error, 2)} µm"
 
 
 def _um(value: float, digits: int = 4) -> str:
-    """Write meters as micrometers."""
     return number(1e6 * value, digits)

@@ -54,13 +54,13 @@ def _ripple(database: SteDatabase, curves: list[Curve]) -> Panel:
     )
     return Panel(
         position_axis(database),
-        Axis("STE less its mean, µm", limits=ripple_limits(lines)),
+        Axis("STE less its mean, µm", limits=_ripple_limits(lines)),
         lines,
         title="Ripple",
     )
 
 
-def ripple_limits(lines: tuple[Line, ...]) -> tuple[float, float]:
+def _ripple_limits(lines: tuple[Line, ...]) -> tuple[float, float]:
     """Return the ends of an axis that holds the curves and, as far as they fill half of it, their bands."""
     values = np.concatenate([line.y for line in lines])
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
@@ -113,7 +113,6 @@ def _bands(ripple: Panel) -> str:
 
 
 def _pitches(database: SteDatabase) -> str:
-    """Say how many pitches are shown."""
     shown = pitches_shown(database)
     return "two base pitches" if shown == 2 else f"{shown} base pitches"
 
@@ -166,5 +165,4 @@ def _band(estimate: Estimate, digits: int = 4) -> str:
 
 
 def _um(value: float, digits: int = 4) -> str:
-    """Write meters as micrometers."""
     return number(value * 1e6, digits)

@@ -20,7 +20,7 @@ def ste_spectrum(database: SteDatabase) -> Figure:
     """Draw the amplitude of every order at the middle load, what is below its error veiled."""
     load = middle_load(database)
     curve, label = load_curve(database, load), load_labels(database)[load]
-    order, amplitude, error = spectrum_of(curve)
+    order, amplitude, error = _spectrum_of(curve)
     return Figure(
         key="ste_spectrum",
         title=f"Spectrum of the transmission error at {label}",
@@ -33,7 +33,7 @@ def ste_spectrum(database: SteDatabase) -> Figure:
     )
 
 
-def spectrum_of(curve: Curve) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _spectrum_of(curve: Curve) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return orders (K,), amplitudes and errors, m: the mesh harmonics, or all orders of a long period."""
     if curve.period == 1:
         values = np.array([[e.value, e.error] for e in curve.harmonics[:ORDERS]])
@@ -44,7 +44,6 @@ def spectrum_of(curve: Curve) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 
 def _panel(order: FloatArray, amplitude: FloatArray, error: FloatArray) -> Panel:
-    """Draw amplitudes, and their errors over them."""
     level, limit = _level(amplitude), _level(error)
     top = float(np.nanmax(np.concatenate([level, limit])))
     least = np.nanmin(limit) if np.isfinite(limit).any() else top + _UNKNOWN

@@ -30,7 +30,7 @@ ROUNDING, ROUNDING_OF_ALL = 1e-9, 1e-12
 Displacements as forces of all bearings."""
 
 
-def loads_by_case(cases: Sequence[CaseDeflection]) -> list[list[BearingLoad]]:
+def _loads_by_case(cases: Sequence[CaseDeflection]) -> list[list[BearingLoad]]:
     """Return the loads of all bearings in every case, forces and displacements within rounding zero."""
     largest = [
         max(float(np.max(np.abs(load.force[:3]))) for load in loads)
@@ -71,8 +71,7 @@ def _at_least(values: FloatArray, least: float) -> FloatArray:
     return np.asarray(np.where(np.abs(values) < least, 0.0, values))
 
 
-def bearing_in_case(load: BearingLoad) -> Json:
-    """Return one bearing under one load case."""
+def _bearing_in_case(load: BearingLoad) -> Json:
     return {
         "name": load.name,
         "shaft": load.shaft,
@@ -90,8 +89,7 @@ def bearing_in_case(load: BearingLoad) -> Json:
     }
 
 
-def bearing_over_cases(loads: Sequence[BearingLoad], weights: Sequence[float]) -> Json:
-    """Return the life of a bearing over all load cases, and the constant loads of the same life."""
+def _bearing_over_cases(loads: Sequence[BearingLoad], weights: Sequence[float]) -> Json:
     speed = [load.speed for load in loads]
     radial, axial = [load.radial for load in loads], [abs(load.axial) for load in loads]
     return {
@@ -133,7 +131,7 @@ def facts(result: GearboxDeflection) -> Json:
     """Return all figures; lines of shafts and patterns are in the file."""
     flanks = {(own.case, own.mesh): own for own in result.flanks}
     cases = result.deflection.cases
-    by_case = loads_by_case(cases)
+    by_case = _loads_by_case(cases)
     weights = shares(result)
     return {
         "leading_shaft": result.deflection.leading_shaft,
@@ -144,7 +142,7 @@ def facts(result: GearboxDeflection) -> Json:
         },
         "load_cases": [_case(case, flanks, loads) for case, loads in zip(cases, by_case, strict=True)],
         "meshes": [_over_cases(result, name) for name in mesh_names(result)],
-        "bearings": [bearing_over_cases(loads, weights) for loads in zip(*by_case, strict=True)],
+        "bearings": [_bearing_over_cases(loads, weights) for loads in zip(*by_case, strict=True)],
         "cpu_seconds": result.seconds,
     }
 
@@ -163,7 +161,6 @@ def shares(result: GearboxDeflection) -> list[float]:
 def _case(
     case: CaseDeflection, flanks: dict[tuple[str, str], MeshFlanks], loads: Sequence[BearingLoad]
 ) -> Json:
-    """Return one load case."""
     return {
         "name": case.name,
         "direction": case.direction,
@@ -174,12 +171,11 @@ def _case(
         "residual": known(case.residual),
         "forces": [_force(force) for force in case.forces],
         "meshes": [_mesh(mesh, flanks.get((case.name, mesh.name))) for mesh in case.meshes],
-        "bearings": [bearing_in_case(load) for load in loads],
+        "bearings": [_bearing_in_case(load) for load in loads],
     }
 
 
 def _force(force: ForceUnderCase) -> Json:
-    """Return one force of the scene under one load case."""
     return {
         "name": force.name,
         "shaft": force.shaft,
@@ -205,7 +201,6 @@ def _mesh(mesh: MeshAlignment, flanks: MeshFlanks | None) -> Json:
 
 
 def _flanks(flanks: MeshFlanks) -> Json:
-    """Return what happens on the flanks."""
     return {
         "torque_n_m": flanks.torque,
         "k_h_beta": known(flanks.face_load_factor),

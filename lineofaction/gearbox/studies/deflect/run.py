@@ -87,13 +87,12 @@ def load_cases(inputs: Inputs) -> tuple[LoadCase, ...]:
 
 
 def _force(index: int, force: CaseForceInput) -> CaseForce:
-    """Return a force under a load case."""
     with inside(f"forces[{index}]"):
         own: Any = {"force": force.force_n, "moment": force.moment_n_m}
         return CaseForce(force.name, **own, **in_si(CaseForce, force))
 
 
-def check_cases(scene: SceneInput, inputs: Inputs) -> None:
+def _check_cases(scene: SceneInput, inputs: Inputs) -> None:
     """Refuse load cases that cannot be, or that ask for what the scene lacks, before tables are computed.
 
     Raises
@@ -148,7 +147,6 @@ def _torque(tabled: TabledScene, inputs: Mapping[str, MeshInput], mesh: MeshAlig
 def _flanks(
     scene: Scene, agreed: Agreement, contacts: Mapping[str, MeshContact], means: Means
 ) -> Iterator[MeshFlanks]:
-    """Yield what happens on the flanks of every mesh with a contact, case by case."""
     count = len(agreed.deflection.cases) * max(len(scene.meshes), 1)
     done = 0
     for case in agreed.deflection.cases:
@@ -160,7 +158,6 @@ def _flanks(
 
 
 def _on_flanks(case: str, mesh: MeshAlignment, contact: MeshContact) -> MeshFlanks:
-    """Solve the contact of one mesh under one load case."""
     across = contact.across_face
     torque = mesh.force * contact.pair.pinion.base_radius
     misalignment = mesh.misalignment if across else 0.0
@@ -233,7 +230,7 @@ RUN = Computation(
     deflection_of,
     facts,
     record_file(("deflection", GearboxDeflection)),
-    check=check_cases,
+    check=_check_cases,
     writers={".toml": write_spectrum},
     failure=failure,
 )

@@ -39,7 +39,6 @@ def optimization_inputs(result: GearboxDeflection, mesh: str) -> Json:
 
 
 def _in_plane(result: GearboxDeflection, mesh: str) -> bool:
-    """Return whether the load was taken as even over the face."""
     return all(np.isnan(flanks.face_load_factor) for flanks in result.flanks if flanks.mesh == mesh)
 
 

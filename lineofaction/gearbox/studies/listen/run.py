@@ -21,7 +21,7 @@ from lineofaction.gearbox.studies.result_file import record_file
 Json = dict[str, Any]
 
 
-def listen_to(subject: HousedScene, inputs: Inputs, means: Means) -> HeardRun:
+def _listen_to(subject: HousedScene, inputs: Inputs, means: Means) -> HeardRun:
     """Return the run as it is heard.
 
     Raises
@@ -57,7 +57,7 @@ def facts(heard: HeardRun) -> Json:
 
 
 RUN = Computation(
-    listen_to,
+    _listen_to,
     facts,
     record_file(("recording", HeardRun)),
     tables=False,

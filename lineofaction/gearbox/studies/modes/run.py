@@ -55,7 +55,6 @@ def facts(modes: ModalAnalysis) -> Json:
 
 
 def _at_rest(modes: ModalAnalysis, mode: int) -> Json:
-    """One natural mode."""
     strain, kinetic = modes.natural_strain_energy[mode], modes.natural_kinetic_energy[mode]
     return {
         "mode": mode + 1,

@@ -137,7 +137,6 @@ def _housing(about: Json, name: str) -> Json:
 
 
 def _figures_region(region: Json) -> Json:
-    """Return a region of a housing."""
     return {
         "housing": region["housing"],
         "facing": region["facing"],
@@ -151,7 +150,6 @@ def _figures_region(region: Json) -> Json:
 
 
 def _point(point: LoudPoint, regions: list[Json]) -> Json:
-    """Return a loudest point."""
     return {
         "order": point.order,
         "speed_rpm": point.speed / RPM,
@@ -184,10 +182,9 @@ class SoundingHousing:
     radiation: HousingRadiation
 
 
-def with_regions(
+def _with_regions(
     sound: RadiatedSound, response: BearingHarmonics, housings: Sequence[SoundingHousing], model: PanelModel
 ) -> RadiatedSound:
-    """Return a sound with the panels of its loudest point, and the fact `regions` of all of `loudest`."""
     told: list[list[Json]] = []
     for point in loudest(sound):
         at = point.speed_index, point.order_index
@@ -206,18 +203,15 @@ def with_regions(
 def _panels(
     response: BearingHarmonics, housing: SoundingHousing, at: tuple[int, int], model: PanelModel
 ) -> PanelSound:
-    """Return the power of the panels of a housing."""
     return panel_sound(response, housing.body, housing.bearings, housing.radiation, at, model)
 
 
 def _with_panels(sound: RadiatedSound, panels: PanelSound) -> RadiatedSound:
-    """Return a sound with the panels of its loudest point."""
     hull = panels.hull
     return replace(sound, panel_node=hull.nodes, panel_corner=hull.triangles, panel_power=panels.power)
 
 
 def _region(housing: str, region: Region, whole: float) -> Json:
-    """Return a region as plain JSON, SI, with its share of the power of the point."""
     plain = {name: np.asarray(getattr(region, name)).tolist() for name in ("normal", "center")}
     own = {"facing": region.facing, "points": list(region.points), "area": region.area, "power": region.power}
     return {"housing": housing, **own, **plain, "share": region.power / whole}
@@ -226,7 +220,7 @@ def _region(housing: str, region: Region, whole: float) -> Json:
 # Sound power over the time of a run, all that it holds: figures and the plot of its third octaves.
 
 
-def run_frequencies(run: RunResult, frequency: FloatArray) -> FloatArray:
+def _run_frequencies(run: RunResult, frequency: FloatArray) -> FloatArray:
     """Return frequencies of orders (S, H) with the ends of what is heard of a run, Hz."""
     ends = [LOWEST, float(run.receipt["sampling"]["pass_frequency"])]
     return np.append(frequency.ravel(), ends)
@@ -246,7 +240,7 @@ def over_time(
     return SoundOverTime.of_all(sounds)
 
 
-def over_time_json(sound: SoundOverTime | None) -> Json | None:
+def _over_time_json(sound: SoundOverTime | None) -> Json | None:
     """Return levels over time in the units of the boundary."""
     if sound is None:
         return None
@@ -291,13 +285,13 @@ def noise_of(subject: TabledScene, inputs: Inputs, means: Means) -> RadiatedSoun
             housing.name: _compared(response, housing, sound, inputs, means)
             for housing, sound in zip(housings, sounds, strict=True)
         }
-        whole = with_regions(together(sounds), response, housings, MODELS[inputs.radiation])
+        whole = _with_regions(together(sounds), response, housings, MODELS[inputs.radiation])
         radiation = {housing.name: housing.radiation for housing in housings}
         heard = None if means.run is None else over_time(subject, means.run, radiation)
     about = response.facts
     seconds = {**about["seconds"], "sound": cpu_seconds() - began}
     own = {name: about.get(name) for name in ("leading_shaft", "equilibrium", "effect_ledger", "forces")}
-    own["over_time"] = over_time_json(heard)
+    own["over_time"] = _over_time_json(heard)
     own["reduction_cost"] = reduction_costs(subject)
     known = {**whole.facts, **own, "models": compared, "seconds": seconds}
     whole = replace(whole, facts=known)
@@ -307,14 +301,12 @@ def noise_of(subject: TabledScene, inputs: Inputs, means: Means) -> RadiatedSoun
 def _radiation(
     response: BearingHarmonics, body: ReducedHousing, inputs: Inputs, means: Means
 ) -> HousingRadiation:
-    """Return the radiation resistance of one housing."""
     model, cache = MODELS[inputs.radiation], means.home / FOLDER
-    hertz = response.frequency if means.run is None else run_frequencies(means.run, response.frequency)
+    hertz = response.frequency if means.run is None else _run_frequencies(means.run, response.frequency)
     return kept_radiation(body, model, hertz, cache=cache, progress=means.report)
 
 
 def _sound(response: BearingHarmonics, housing: SoundingHousing) -> RadiatedSound:
-    """Return the sound of one housing."""
     return radiated_sound(response, housing.body, housing.bearings, housing.radiation, housing.name)
 
 
@@ -364,7 +356,7 @@ def check(subject: SceneInput, inputs: Inputs) -> None:
     require_surface(subject)
 
 
-def write_panels(sound: RadiatedSound, _scene: Any, file: Path) -> None:
+def _write_panels(sound: RadiatedSound, _scene: Any, file: Path) -> None:
     """Write power and intensity of the panels at the loudest point for ParaView."""
     panels = sound.panels
     if panels is None:
@@ -378,5 +370,5 @@ RUN = Computation(
     facts,
     array_file(RadiatedSound),
     check=check,
-    writers={".vtu": write_panels},
+    writers={".vtu": _write_panels},
 )

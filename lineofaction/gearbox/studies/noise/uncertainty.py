@@ -131,7 +131,6 @@ def band_json(band: SoundBand) -> Json:
 
 
 def _level_json(band: LevelBand) -> Json:
-    """Return a level with its band and its contributions."""
     return {
         "level_db_a": band.nominal,
         "low_db_a": band.low,

@@ -35,7 +35,6 @@ def _ends(figure: Figure) -> tuple[Any, Any]:
 
 
 def _deviation(figure: Figure) -> tuple[Any, Any]:
-    """Return the field of a figure's standard deviation."""
     text = figure.with_unit(f"Standard deviation of the {figure.words}")
     return Optional[Deviation], Field(default=None, description=text, examples=[3.0])  # noqa: UP045
 

@@ -74,7 +74,7 @@ def check(case: Case, study: Inputs) -> None:
         _request(case, study).check()
 
 
-def with_variables(case: Case, study: Inputs) -> Inputs:
+def _with_variables(case: Case, study: Inputs) -> Inputs:
     """Return a study with the usual variables of a case, if it names none."""
     variables = study.variables
     if any(gear.model_dump(exclude_none=True) for gear in (variables.pinion, variables.wheel)):
@@ -92,7 +92,7 @@ def with_variables(case: Case, study: Inputs) -> Inputs:
 
 def _request(case: Case, study: Inputs) -> OptimizationRequest:
     """Return what is requested of the library, in SI."""
-    pair, study = gear_pair(case), with_variables(case, study)
+    pair, study = gear_pair(case), _with_variables(case, study)
     torques = study.torque_n_m or case.load.torque_n_m
     if torques is None:
         torques = tuple(float(pair.torque(force)) for force in case.load.normal_force_n or ())
@@ -101,7 +101,7 @@ def _request(case: Case, study: Inputs) -> OptimizationRequest:
         pair,
         list(torques),
         tuple(_variables(study)),
-        scatter_of(study.scatter, study.search.seed),
+        _scatter_of(study.scatter, study.search.seed),
         np.asarray(study.misalignment_um) * UM,
         objective,
         _limits(study),
@@ -120,8 +120,7 @@ def _variables(study: Inputs) -> list[DesignVariable]:
     ]
 
 
-def scatter_of(scatter: ScatterInput, seed: int) -> Scatter:
-    """Return the scatter in SI."""
+def _scatter_of(scatter: ScatterInput, seed: int) -> Scatter:
     hermite = scatter.rule == "gauss_hermite"
     rule = GaussHermite(scatter.points) if hermite else SobolSample(scatter.log2_size, seed)
     gears = {"pinion": scatter.pinion, "wheel": scatter.wheel}
@@ -141,7 +140,6 @@ def _given(gear: str, inputs: GearVariablesInput | GearScatterInput) -> list[tup
 
 
 def _limits(study: Inputs) -> Limits:
-    """Return the limits in SI."""
     pressure = study.limits.max_pressure_mpa
     return Limits(
         None if pressure is None else pressure * MPA,
@@ -151,7 +149,6 @@ def _limits(study: Inputs) -> Limits:
 
 
 def _search(search: SearchInput) -> Search:
-    """Return how it is searched."""
     methods: dict[str, Method] = {
         "sequential_linear_programming": SequentialLinearProgramming(search.sample, search.trials),
         "differential_evolution": DifferentialEvolution(search.population),
@@ -186,19 +183,20 @@ def _scatter_json(result: Optimization) -> Json:
     """Return what scatters, by the fields of a case file."""
     scatter = result.asked["scatter"]
     rule = {name: value for name, value in scatter.items() if not name.endswith("_m")}
-    spread = {"misalignment_um": scatter["misalignment_m"] / UM, **boundary_values(scatter["modification_m"])}
+    spread = {
+        "misalignment_um": scatter["misalignment_m"] / UM,
+        **_at_boundary(scatter["modification_m"]),
+    }
     return {**spread, **rule}
 
 
 def _limits_json(result: Optimization) -> Json:
-    """Return the limits that were requested."""
     limits = dict(result.asked["limits"])
     pressure = limits.pop("max_pressure_pa")
     return {"max_pressure_mpa": None if pressure is None else pressure / MPA, **limits}
 
 
 def _nodes_json(result: Optimization) -> Json:
-    """Return the nodes of the scatter."""
     names = result.nodes.names
     return {
         "names": [boundary_name(name) for name in names],
@@ -215,10 +213,10 @@ def _design_json(design: ConfirmedDesign) -> Json:
     plain: Json = in_um(design.to_json())
     pressure = [value / MPA for value in plain.pop("max_pressure_pa")]
     plain.pop("values_um")
-    return {"values": boundary_values(design.values), **plain, "max_pressure_mpa": pressure}
+    return {"values": _at_boundary(design.values), **plain, "max_pressure_mpa": pressure}
 
 
-def boundary_values(values: Mapping[str, float]) -> dict[str, dict[str, float]]:
+def _at_boundary(values: Mapping[str, float]) -> dict[str, dict[str, float]]:
     """Return the values of a design by gear and field, as a case file has them."""
     out: dict[str, dict[str, float]] = {}
     for name, value in values.items():
@@ -261,10 +259,10 @@ def _worse(before: HarrisMap, after: HarrisMap, index: int) -> Json:
     }
 
 
-def write_case(result: Optimization, case: Case, target: Path) -> None:
+def _write_case(result: Optimization, case: Case, target: Path) -> None:
     """Write the case with the best design as a case file: what was given of the case, and the best flanks."""
     content = case.model_dump(mode="json", exclude_unset=True)
-    for gear, fields in boundary_values(result.optimum.values).items():
+    for gear, fields in _at_boundary(result.optimum.values).items():
         content["pair"][gear] |= {name: float(f"{value:.6g}") for name, value in fields.items()}
     target.write_text(f"# {result.reason}\n\n{toml_text(content)}", encoding="utf-8")
 
@@ -274,8 +272,8 @@ RUN = Computation(
     optimization_json,
     record_file(("optimization", Optimization)),
     check=check,
-    normalized=lambda case, study: with_defaults(with_variables(case, study)),
+    normalized=lambda case, study: with_defaults(_with_variables(case, study)),
     warnings=worse_loads,
     interruptible=True,
-    writers={".toml": write_case},
+    writers={".toml": _write_case},
 )

@@ -56,7 +56,6 @@ def facts(response: ForcedResponse) -> Json:
 
 
 def _mesh_json(response: ForcedResponse, mesh: int) -> Json:
-    """One mesh."""
     return {
         "mean_force_n": float(response.mean_force[mesh]),
         "mean_stiffness_n_per_um": float(response.mean_stiffness[mesh]) / N_PER_UM,
@@ -79,7 +78,6 @@ def _power_json(power: PowerBalance) -> Json:
 
 
 def _peak_json(peak: Peak) -> Json:
-    """One peak."""
     return {
         "quantity": peak.quantity,
         "name": peak.name,

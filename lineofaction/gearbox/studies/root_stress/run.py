@@ -98,7 +98,6 @@ def root_stress_of(case: Case, _inputs: Inputs, means: Means) -> Roots:
 
 
 def _roots(history: RootStressHistory, nominal: float | None) -> GearRoots:
-    """One gear."""
     tension, compression = (history.peak(root) for root in ROOTS)
     return GearRoots(tension, compression, history.critical_coordinate, history.passage(), nominal)
 
@@ -117,7 +116,6 @@ def root_stress_json(roots: Roots) -> Json:
 
 
 def _gear_json(roots: GearRoots) -> Json:
-    """One gear."""
     passage = roots.passage
     return {
         **{root: _peak_json(getattr(roots, root)) for root in ROOTS},

@@ -53,7 +53,6 @@ def normalized(_case: Case, inputs: Inputs) -> Json:
 
 
 def _drawn(case: Case, inputs: Inputs) -> Json:
-    """Return what is drawn from what, in SI."""
     pair, load = gear_pair(case), case.load
     tolerances = iso1328_tolerances(
         pair,

@@ -70,7 +70,7 @@ def across_face(case: Case, _inputs: Inputs) -> Case:
     return case.model_copy(update={"accuracy": case.accuracy.model_copy(update={"model": "3d"})})
 
 
-def check_study(case: Case, inputs: Inputs) -> None:
+def _check_study(case: Case, inputs: Inputs) -> None:
     """Refuse what a study cannot compute, without computing anything.
 
     Raises
@@ -90,7 +90,6 @@ def joined(studies: Mapping[str, Studies]) -> Studies:
 
 
 def _highest_force(case: Case, pair: ParallelAxes) -> float:
-    """Return the highest load of the case as a normal force in N."""
     torques, forces = case.load.torque_n_m, case.load.normal_force_n
     return float(pair.normal_force(torques[-1])) if torques else float((forces or ())[-1])
 
@@ -111,7 +110,6 @@ def studies_json(studies: Sequence[PairStudy]) -> Json:
 
 
 def _pair_json(study: PairStudy) -> Json:
-    """One pair."""
     return {
         "name": study.name,
         "normal_force_n": study.normal_force,
@@ -147,7 +145,7 @@ RUN = Computation(
     studies_json,
     ResultFile("format", (FORMAT,), write_studies, read_studies, tuple[PairStudy, ...]),
     narrowed=across_face,
-    check=check_study,
+    check=_check_study,
     joined=joined,
     resumed=True,
 )

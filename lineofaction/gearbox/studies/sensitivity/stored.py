@@ -115,6 +115,5 @@ def _study(name: str, content: dict[str, Any], pair: int) -> PairStudy:
 
 
 def _curve(content: dict[str, Any], axis: str, pair: int, model: int) -> RippleCurve:
-    """Build one curve again."""
     sizes = (content[f"{name}_over_{axis}"][pair, model] for name in ("peak_to_peak", "error"))
     return RippleCurve(content[axis][pair], *sizes)

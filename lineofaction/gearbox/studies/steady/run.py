@@ -21,8 +21,7 @@ Json = dict[str, Any]
 KINDS = ("stable", "fold", "period doubling", "Neimark-Sacker")
 
 
-def steady_of(scene: Scene, inputs: Inputs, means: Means) -> SteadyStates:
-    """Return the steady states of a scene."""
+def _steady_of(scene: Scene, inputs: Inputs, means: Means) -> SteadyStates:
     with boundary_errors():
         return steady_states(
             assemble(scene),
@@ -95,7 +94,6 @@ def _point(states: SteadyStates, index: int) -> Json:
 
 
 def _mesh(states: SteadyStates, index: int, mesh: int) -> Json:
-    """One mesh of one motion."""
     return {
         "mean_error_um": float(states.mean_error[index, mesh]) / UM,
         "rms_error_um": float(states.rms_error[index, mesh]) / UM,
@@ -107,7 +105,7 @@ def _mesh(states: SteadyStates, index: int, mesh: int) -> Json:
     }
 
 
-def not_found(states: SteadyStates) -> str:
+def _not_found(states: SteadyStates) -> str:
     """Say at how many speeds a sweep found no motion."""
     missing = (states.status != 0) & (states.curve != BRANCH)
     if not missing.any():
@@ -121,8 +119,8 @@ def not_found(states: SteadyStates) -> str:
 
 
 RUN = Computation(
-    with_housing_costs(steady_of),
+    with_housing_costs(_steady_of),
     facts,
     array_file(SteadyStates),
-    failure=not_found,
+    failure=_not_found,
 )

@@ -80,7 +80,6 @@ def _point_json(result: Study, point: int) -> Json:
 
 
 def _values(result: Study, point: int) -> dict[str, float]:
-    """Return the values of the factors at a point."""
     return dict(zip(result.factor, map(float, result.value[point]), strict=True))
 
 

@@ -80,7 +80,6 @@ def _below(model: type[BaseModel], field: str, path: str, rest: str) -> Iterator
 
 
 def _unknown(field: str, path: str, name: str, known: Sequence[str] | Mapping[str, Any]) -> BadInput:
-    """Refuse a name, and suggest the nearest."""
     close = difflib.get_close_matches(name[:64], list(known), n=3)
     advice = f"Did you mean {' or '.join(close)}?" if close else f"Known here: {', '.join(known)}."
     return BadInput.of(field, path, f'a path of the scene file: there is no "{name}"', advice)
@@ -115,7 +114,7 @@ def with_value(table: Json, place: Place, value: float) -> None:
         at = at[key]
     if isinstance(last, int):
         if last >= len(at):
-            raise BadInput.of(path_of(place), last, f"an entry below {len(at)}")
+            raise BadInput.of(_path_of(place), last, f"an entry below {len(at)}")
         at[last] = value
     elif isinstance(at.get(last), list):
         at[last] = [value] * max(len(at[last]), 1)
@@ -123,7 +122,7 @@ def with_value(table: Json, place: Place, value: float) -> None:
         at[last] = value
 
 
-def path_of(place: Place) -> str:
+def _path_of(place: Place) -> str:
     """Return a place as faults name it."""
     text = ""
     for key in place:

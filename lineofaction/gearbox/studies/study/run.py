@@ -58,7 +58,6 @@ def responses_of(scene: Scene, inputs: Inputs) -> tuple[Response, ...]:
 
 
 def _factor(index: int, factor: FactorInput, scene: SceneInput, places: tuple[Place, ...]) -> Factor:
-    """Return a factor of the library."""
     if factor.levels is not None:
         return Levels(factor.levels)
     if factor.values is not None:
@@ -172,7 +171,7 @@ def _ends(factor: FactorInput) -> tuple[float, ...]:
     return (factor.normal.mean,) if factor.normal is not None else ()
 
 
-def study_of(tabled: TabledScene, inputs: Inputs, means: Means) -> Study:
+def _study_of(tabled: TabledScene, inputs: Inputs, means: Means) -> Study:
     """Run a study of a scene.
 
     Raises
@@ -215,7 +214,7 @@ def missing(result: Study) -> str:
 
 
 RUN = Computation(
-    study_of,
+    _study_of,
     facts,
     array_file(Study),
     check=check,

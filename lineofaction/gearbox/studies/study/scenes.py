@@ -97,12 +97,10 @@ class VariedScene:
 
     @cached_property
     def _table(self) -> Json:
-        """The scene as JSON."""
         return dict(json.loads(self.written))
 
     @cached_property
     def _of_flanks(self) -> tuple[str, ...]:
-        """Names of the factors that change flanks."""
         return tuple(name for name, at in self.places.items() if any(mesh_of_case(p) is not None for p in at))
 
     @cached_property

@@ -128,7 +128,6 @@ def axis_of(case: Case, text: str) -> SweepAxis:
 
 
 def _named(text: str, name: str) -> Swept:
-    """Return what a name stands for."""
     for swept in SWEEPABLE.values():
         if name in swept.spellings:
             return swept
@@ -263,7 +262,7 @@ class SweepResult(Record):
         return np.unique(self.sweep.point[:, axis]) / self.axes[axis].factor
 
 
-def sweep_of(case: Case, inputs: Inputs, means: Means) -> SweepResult:
+def _sweep_of(case: Case, inputs: Inputs, means: Means) -> SweepResult:
     """Sweep a case; what is not swept is at its highest load, its deviations nearest to zero.
 
     Raises
@@ -280,13 +279,12 @@ def sweep_of(case: Case, inputs: Inputs, means: Means) -> SweepResult:
 
 
 def check(case: Case, inputs: Inputs) -> None:
-    """Raise `BadInput` for what `sweep_of` would, without computing anything."""
+    """Raise `BadInput` for what `_sweep_of` would, without computing anything."""
     with boundary_errors():
         _request(case, inputs).check()
 
 
 def _request(case: Case, inputs: Inputs) -> SweepRequest:
-    """Return what is requested of the library, in SI."""
     axes = tuple(axis_of(case, text) for text in inputs.over)
     point = operating_point(case_at(case, FlankPoint()))
     return SweepRequest(gear_pair(case), axes, point, analysis_options(case))
@@ -329,7 +327,6 @@ def _at(result: SweepResult, point: int) -> Json:
 
 
 def _figures(swept: Sweep, point: int) -> Json:
-    """Return the figures of a point, each with its error."""
     return {
         QUANTITIES[quantity.name].field.format(suffix): float(values[point]) / QUANTITIES[quantity.name].one
         for quantity in swept.quantities
@@ -348,7 +345,7 @@ def missing(result: SweepResult) -> str:
 
 
 RUN = Computation(
-    sweep_of,
+    _sweep_of,
     facts,
     record_file(("sweep", SweepResult)),
     check=check,

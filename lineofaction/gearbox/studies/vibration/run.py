@@ -61,7 +61,7 @@ class HousingVibrationResult:
         return self.mode_shape or self.analysis.deflection
 
 
-def vibration_of(tabled: TabledScene, inputs: Inputs, means: Means) -> HousingVibrationResult:
+def _vibration_of(tabled: TabledScene, inputs: Inputs, means: Means) -> HousingVibrationResult:
     """Return the vibration of a housing.
 
     Raises
@@ -99,7 +99,6 @@ def chosen(tabled: TabledScene, name: str | None) -> tuple[str, ReducedHousing]:
 
 
 def _mode(housing: ReducedHousing, number: int) -> SurfaceShape:
-    """Return a mode by its number."""
     if number > len(housing.frequency):
         kept = f"from 1 to {len(housing.frequency)}, the modes kept"
         raise BadInput.of("mode", number, kept, "Keep more modes of the housing.")
@@ -171,7 +170,7 @@ def _number(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
-def write_shape(result: HousingVibrationResult, _scene: Any, file: Path) -> None:
+def _write_shape(result: HousingVibrationResult, _scene: Any, file: Path) -> None:
     """Write the shape that is drawn for ParaView: in phase, out of phase, and the size of both."""
     shape = result.shape
     if shape is None:
@@ -186,9 +185,9 @@ def write_shape(result: HousingVibrationResult, _scene: Any, file: Path) -> None
 
 
 RUN = Computation(
-    vibration_of,
+    _vibration_of,
     facts,
     record_file(("housing vibration", HousingVibrationResult)),
     check=check,
-    writers={".vtu": write_shape},
+    writers={".vtu": _write_shape},
 )

@@ -57,7 +57,6 @@ def _make_computations() -> None:
 
 
 def _make_jobs() -> None:
-    """Make the table of jobs."""
     op.create_table(
         "job",
         sa.Column("id", sa.String, primary_key=True),
