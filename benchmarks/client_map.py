@@ -16,7 +16,7 @@ from benchmarks.figures import Figure
 from benchmarks.fresh_process import measure
 from benchmarks.service_process import cpu_seconds, memory_mb, running
 from lineofaction.client import AsyncLineOfActionClient
-from lineofaction.client.portable import case_inputs
+from lineofaction.gearbox.subjects import case_inputs
 from service.page.examples import examples
 from service.store import stored_results
 from service.worker.catalogue import ANALYZE

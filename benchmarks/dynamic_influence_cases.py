@@ -18,7 +18,7 @@ from dynamics.scene import Outputs, Scene, pair_scene
 from dynamics.types import FloatArray
 from fe_contact import GearPair, analyze
 from lineofaction.cli.scene_tables import scene_with_tables
-from lineofaction.client.portable import scene_of
+from lineofaction.gearbox.subjects import scene_of
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 RPM = math.pi / 30.0

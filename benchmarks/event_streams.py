@@ -17,7 +17,7 @@ from statistics import median
 
 from benchmarks.figures import Figure
 from benchmarks.service_process import cpu_seconds, memory_mb, running
-from lineofaction.client.portable import case_inputs
+from lineofaction.gearbox.subjects import case_inputs
 from service.page.examples import examples
 from service.queue.claims import Claims
 from service.queue.machinery import Machinery, job_machinery

@@ -13,7 +13,7 @@ from dynamics.joints import Housing
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
 from lineofaction.cli.scene_tables import scene_with_tables
-from lineofaction.client.portable import scene_of
+from lineofaction.gearbox.subjects import scene_of
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "palermo_scene.toml"
 SEATS, MODES = 12, 80

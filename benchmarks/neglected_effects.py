@@ -22,8 +22,8 @@ from dynamics.simulation import simulate
 from fe_contact import Gear, GearPair, analyze
 from fe_contact.analysis.request import request
 from fe_contact.effects import EFFECTS
-from lineofaction.client.portable import scene_of
 from lineofaction.gearbox.convert.scene import dynamic_scene
+from lineofaction.gearbox.subjects import scene_of
 
 SUBJECT = "neglected effects against a build without them, CPU time"
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)

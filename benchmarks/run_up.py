@@ -24,7 +24,7 @@ import time
 from pathlib import Path
 from dynamics.simulation import simulate
 from fe_contact.ste import SteDatabase
-from lineofaction.client.portable import scene_of
+from lineofaction.gearbox.subjects import scene_of
 from lineofaction.gearbox.convert.scene import dynamic_scene
 given, _ = scene_of(Path({scene!r}))
 scene = dynamic_scene(given, {{mesh.name: SteDatabase.from_netcdf({table!r}) for mesh in given.meshes}})

@@ -24,9 +24,9 @@ from dynamics.motion.motion import add_motion
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
 from fe_contact import ste_database
-from lineofaction.client.portable import case_of_mesh, scene_of
 from lineofaction.gearbox.convert.case import analysis_options, gear_pair, table_axes
 from lineofaction.gearbox.convert.scene import dynamic_scene
+from lineofaction.gearbox.subjects import case_of_mesh, scene_of
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 LOOPS, REPEATS = 1000, 30

@@ -15,7 +15,7 @@ from benchmarks.boxed_scene import boxed_scene
 from benchmarks.figures import Figure
 from benchmarks.service_process import cpu_seconds, running
 from lineofaction.client import LineOfActionClient
-from lineofaction.client.portable import case_of, scene_inputs
+from lineofaction.gearbox.subjects import case_of, scene_inputs
 
 _EXAMPLES = Path(__file__).parents[1] / "examples"
 _SUBJECT = "workers of the service"

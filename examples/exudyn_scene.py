@@ -22,8 +22,8 @@ from dynamics.engines.exudyn_scene import run_in_exudyn
 from dynamics.scene import Outputs, Scene
 from dynamics.simulation import simulate
 from fe_contact.ste import SteDatabase
-from lineofaction.client.portable import scene_of
 from lineofaction.gearbox.convert.scene import dynamic_scene
+from lineofaction.gearbox.subjects import scene_of
 
 SCENE = Path(__file__).parent / "palermo_scene.toml"
 

@@ -11,9 +11,9 @@ from __future__ import annotations
 import sys
 from importlib.util import find_spec
 
-from host.cache_directory import default_cache_directory
 from host.child_environment import child_environment
 from host.confinement import READING, Limits, confine, missing_protections
+from host.directories import default_cache_directory
 from host.ending import Ended, ending_signal
 from host.extras import MissingExtra, missing_extra, require
 from host.json_child import ChildFailed, ChildOutOfMemory, ask_child

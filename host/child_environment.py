@@ -6,7 +6,7 @@ import os
 from fnmatch import fnmatchcase
 from pathlib import Path
 
-from host.cache_directory import ENVIRONMENT
+from host.directories import ENVIRONMENT
 from host.threads import ONE_THREAD
 
 _ROOT = str(Path(__file__).resolve().parents[1])

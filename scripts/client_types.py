@@ -37,7 +37,7 @@ class Processes(Surface):
 OWN = {
     "from dynamics.results import RunResult",
     "from fe_contact.ste import SteDatabase",
-    "from lineofaction.client.portable import CaseLike, SceneLike, StudyLike",
+    "from lineofaction.gearbox.subjects import CaseLike, SceneLike, StudyLike",
     "from lineofaction.client.process import Offered",
     "from lineofaction.client.surface import Surface",
     "from lineofaction.gearbox.schemas.figures import Figures, RunFigures, TableFigures",

@@ -21,8 +21,8 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 from pydantic_settings import BaseSettings, PydanticBaseSettingsSource, SettingsConfigDict
 
+from host.directories import absolute, data_home
 from lineofaction.gearbox.problems import BadInput, Fault
-from service.directories import absolute, data_home
 from service.origin import Origin
 from service.signature import secret_bytes
 

@@ -12,6 +12,7 @@ from fe_contact.analysis import ste_database
 from fe_contact.options import Run
 from fe_contact.ste import SteDatabase
 from fe_contact.workers import InProcess, Workers
+from host.directories import cache_home
 from lineofaction.cli.assessed_case import assessed_case
 from lineofaction.cli.output import (
     Report,
@@ -35,7 +36,6 @@ from lineofaction.gearbox.problems import JobFailed
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.units import MM, NM, UM
 from lineofaction.report.tables.static_part import static_headlines
-from service.directories import cache_home
 
 # Lines of `loa analyze` about a tolerance: drafts while it refines, its passes, and whether it is met.
 

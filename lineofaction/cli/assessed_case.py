@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 from lineofaction.cli.warned import warn
-from lineofaction.client.portable import scene_of
 from lineofaction.gearbox.convert.case import case_at
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.input_file import InputFile
@@ -14,6 +13,7 @@ from lineofaction.gearbox.schemas.flank import FlankPoint
 from lineofaction.gearbox.schemas.lines import located
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.warning import left_out_warnings
+from lineofaction.gearbox.subjects import scene_of
 
 
 def assessed_case(file: InputFile, point: FlankPoint | None = None) -> Case:

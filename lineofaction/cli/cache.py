@@ -7,10 +7,10 @@ import shutil
 import time
 
 from bounds import engineering
+from host.directories import cache_home
 from lineofaction.cli.output import console, print_json, table
 from lineofaction.gearbox.problems import BadInput
 from service.bounded_folder import DEFAULT_BYTES, UsedFile, evict, files_in
-from service.directories import cache_home
 
 LIMIT = "LOA_CACHE_BYTES"
 KINDS = {

@@ -6,9 +6,9 @@ from typing import Any
 
 import typer
 
+from host.directories import keep_private
 from lineofaction.cli.output import print_json
 from lineofaction.gearbox.problems import EXIT_FAILED
-from service.directories import keep_private
 from service.settings import load_settings
 from service.store import DATABASE_FILE
 from service.store.database import database_engine

@@ -10,6 +10,7 @@ from bounds import leftover
 from fe_contact.analysis import DeformedPair, deformed_pairs
 from fe_contact.options import Run
 from fe_contact.types import FloatArray
+from host.directories import cache_home
 from lineofaction.cli.assessed_case import assessed_case
 from lineofaction.cli.output import console, print_json, progress_bar, table
 from lineofaction.cli.ste import positions
@@ -20,7 +21,6 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.flank import FlankPoint
 from lineofaction.gearbox.units import UM
-from service.directories import cache_home
 
 _MOST_POSITIONS = 256
 

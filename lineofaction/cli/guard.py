@@ -81,7 +81,7 @@ def _known(error: Exception) -> ServiceError:
 
 def _logged(error: Exception) -> Unexpected:
     """Write a defect to a log and return it by number."""
-    directory = importlib.import_module("service.directories").cache_home() / "log"
+    directory = importlib.import_module("host.directories").cache_home() / "log"
     reference = uuid.uuid4().hex[:12]
     directory.mkdir(parents=True, exist_ok=True)
     file = directory / f"{reference}.log"

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from bounds import engineering
 from dynamics.results import RunResult
+from host.directories import cache_home
 from lineofaction.cli.assessed_case import assessed_scene
 from lineofaction.cli.listen_sounds import RunSound
 from lineofaction.cli.output import progress_bar
@@ -19,7 +20,6 @@ from lineofaction.gearbox.studies.listen.sound_figures import SoundFigures
 from lineofaction.gearbox.studies.listen.through_housing import SceneHousings
 from lineofaction.report.drawing.figure import number
 from lineofaction.report.runs.run_view import RunView
-from service.directories import cache_home
 
 
 @dataclass(frozen=True)

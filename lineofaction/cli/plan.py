@@ -5,13 +5,13 @@ from __future__ import annotations
 from bounds import engineering
 from fe_contact.analysis.run_plan import PlannedLevel, RunPlan
 from fe_contact.planning.cost_model import STAGES
+from host.directories import cache_home
 from lineofaction.cli.assessed_case import assessed_case
 from lineofaction.cli.output import console, print_json, table
 from lineofaction.gearbox.convert.effect_lines import ledger_lines
 from lineofaction.gearbox.convert.plan import plan_of
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.units import UM
-from service.directories import cache_home
 
 
 def run_plan(file: InputFile, time_budget_s: float | None, *, as_json: bool) -> None:

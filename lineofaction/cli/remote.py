@@ -15,12 +15,12 @@ from lineofaction.cli.output import Report, check_writable, console, print_json,
 from lineofaction.cli.remote_jobs import waited
 from lineofaction.cli.warned import warn
 from lineofaction.client import JobState, LineOfActionClient, Result
-from lineofaction.client.portable import scene_inputs
 from lineofaction.gearbox.convert.stamp import stamped
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput, ResultNotReady
 from lineofaction.gearbox.registry import studies_of
 from lineofaction.gearbox.schemas import Case, read_table, validated
+from lineofaction.gearbox.subjects import scene_inputs
 
 if TYPE_CHECKING:
     from lineofaction.report.drawing.page import Headline

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from pydantic import ValidationError
 
 from bounds import engineering
+from host.directories import cache_home
 from lineofaction.cli.output import Report, check_writable, console, print_json, progress_bar
 from lineofaction.cli.warned import warn
 from lineofaction.gearbox.convert.case import case_at
@@ -25,7 +26,6 @@ from lineofaction.report.document.stored_study import page_beside
 from lineofaction.report.document.write import write_page
 from lineofaction.report.runs.run_view import RunView
 from lineofaction.report.tables.aligned import aligned, headline_load
-from service.directories import cache_home
 
 if TYPE_CHECKING:
     from fe_contact.analysis import LoadDistribution

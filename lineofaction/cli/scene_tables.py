@@ -9,13 +9,12 @@ from pathlib import Path
 from dynamics.scene import Scene
 from fe_contact.ste import PairFacts, SteDatabase
 from host import cpu_seconds
+from host.directories import cache_home
 from lineofaction.cli.analyze import analyzed
 from lineofaction.cli.output import Report
 from lineofaction.cli.remote import watching
 from lineofaction.cli.warned import warn
 from lineofaction.client import LineOfActionClient
-from lineofaction.client.mesh_tables import MeshTables
-from lineofaction.client.portable import case_of_mesh, without_modes_files
 from lineofaction.client.scene_calls import ServiceTables
 from lineofaction.client.steps import Steps, finished
 from lineofaction.gearbox.convert.checks import check_case
@@ -23,11 +22,12 @@ from lineofaction.gearbox.convert.housings import housings_in
 from lineofaction.gearbox.convert.plausibility import case_warnings, scene_warnings, within
 from lineofaction.gearbox.convert.scene import TabledScene, check_scene, dynamic_scene
 from lineofaction.gearbox.convert.topology import facts_of
+from lineofaction.gearbox.mesh_tables import MeshTables
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.scene_meshes import MeshInput
-from service.directories import cache_home
+from lineofaction.gearbox.subjects import case_of_mesh, without_modes_files
 
 _ADVICE = "Name the service that holds it: --service http://127.0.0.1:8321"
 

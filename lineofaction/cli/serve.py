@@ -12,6 +12,7 @@ from typing import NoReturn
 import uvicorn
 from fastapi import FastAPI
 
+from host.directories import keep_private
 from lineofaction.cli.bounded_http import BoundedHttp
 from lineofaction.cli.interrupt import leave
 from lineofaction.cli.log import log_to_standard_error
@@ -21,7 +22,6 @@ from lineofaction.gearbox.problems import BadInput
 from service.access import open_identities
 from service.access.capacity import capacity
 from service.app import create_app
-from service.directories import keep_private
 from service.management.vitals import EventLoop, Vitals
 from service.routes.context import Context
 from service.settings import Settings, load_settings

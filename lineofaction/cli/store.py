@@ -9,9 +9,9 @@ from typing import Any
 
 import typer
 
+from host.directories import keep_private
 from lineofaction.cli.output import console, print_json, table
 from lineofaction.gearbox.problems import EXIT_FAILED
-from service.directories import keep_private
 from service.queue.machinery import Machinery, job_machinery
 from service.queue.retention import Retention
 from service.settings import Settings, load_settings

@@ -16,6 +16,7 @@ from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.workers import Remembering, Workers
 from fe_contact.workers.content import content_digest
 from host import cpu_seconds
+from host.directories import cache_home
 from lineofaction.cli.assessed_case import assessed_scene
 from lineofaction.cli.interrupt import until_interrupted
 from lineofaction.cli.output import (
@@ -48,7 +49,6 @@ from lineofaction.report.document.inputs import read_run
 from lineofaction.report.document.write import write_whole
 from lineofaction.report.drawing.image import png
 from lineofaction.report.presentation import presentation_of
-from service.directories import cache_home
 from service.version import solver_version
 
 # Studies that go on where they were: what their tasks found is kept in the user's cache until they end.

@@ -10,10 +10,10 @@ from types import FrameType
 
 from prometheus_client import generate_latest
 
+from host.directories import keep_private
 from lineofaction.cli.interrupt import leave
 from lineofaction.cli.log import log_to_standard_error
 from lineofaction.cli.managed import announce_management, managed
-from service.directories import keep_private
 from service.management.registry import process_registry
 from service.management.vitals import Vitals
 from service.queue.machinery import job_machinery

@@ -14,6 +14,7 @@ from typing import Any, Self, TypeVar
 
 import httpx2
 
+from host.directories import cache_home
 from lineofaction.client.awaiting import AwaitingDriver
 from lineofaction.client.batch import AsyncBatch, Batch
 from lineofaction.client.blocking import BlockingDriver
@@ -22,7 +23,6 @@ from lineofaction.client.exchange import Exchange
 from lineofaction.client.job import AsyncJob, Job
 from lineofaction.client.job_calls import JobCalls
 from lineofaction.client.offers import reader_of
-from lineofaction.client.portable import CaseLike, SceneLike, case_inputs, scene_inputs
 from lineofaction.client.processes import Processes
 from lineofaction.client.result_calls import ResultCalls
 from lineofaction.client.scene_calls import SceneCalls
@@ -31,7 +31,7 @@ from lineofaction.client.steps import Steps
 from lineofaction.client.surface import Awaiting, Blocking, Session, Surface, operation
 from lineofaction.gearbox import schemas
 from lineofaction.gearbox.problems import BadInput
-from service.directories import cache_home
+from lineofaction.gearbox.subjects import CaseLike, SceneLike, case_inputs, scene_inputs
 from service.schemas.offers import EffectBody, ExampleBody
 from service.schemas.unit import UnitBody
 from service.version import solver_version

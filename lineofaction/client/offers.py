@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from lineofaction.client.libraries import libraries
-from lineofaction.client.portable import case_inputs, inputs_of, scene_inputs, study_inputs
 from lineofaction.gearbox.registry import FORMER, STUDIES, Study
+from lineofaction.gearbox.subjects import case_inputs, inputs_of, scene_inputs, study_inputs
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,6 @@ from fe_contact.analysis.studies.frontier import Frontier as FeContactFrontier
 from fe_contact.microgeometry.optimization import Optimization as FeContactOptimization
 from fe_contact.microgeometry.tolerance_study import ToleranceStudy as FeContactToleranceStudy
 from fe_contact.ste import SteDatabase
-from lineofaction.client.portable import CaseLike, SceneLike, StudyLike
 from lineofaction.client.process import Offered
 from lineofaction.client.surface import Surface
 from lineofaction.gearbox.schemas.figures import Figures, RunFigures, TableFigures
@@ -44,6 +43,7 @@ from lineofaction.gearbox.studies.sweep.answer import SweepFigures as GearboxSwe
 from lineofaction.gearbox.studies.sweep.run import SweepResult as GearboxSweepResult
 from lineofaction.gearbox.studies.vibration.answer import VibrationFigures as GearboxVibrationFigures
 from lineofaction.gearbox.studies.vibration.run import HousingVibrationResult as GearboxHousingVibrationResult
+from lineofaction.gearbox.subjects import CaseLike, SceneLike, StudyLike
 
 P = ParamSpec("P")
 T = TypeVar("T")

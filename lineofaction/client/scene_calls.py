@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from host.directories import cache_home
 from lineofaction.client.job_calls import JobCalls
 from lineofaction.client.libraries import libraries
-from lineofaction.client.mesh_tables import MeshTables
 from lineofaction.client.offers import ANALYZE
-from lineofaction.client.portable import CaseLike, SceneLike, case_inputs, scene_of
 from lineofaction.client.process import obtained
 from lineofaction.client.result_calls import ResultCalls
 from lineofaction.client.steps import Steps
 from lineofaction.client.surface import Surface, operation
-from service.directories import cache_home
+from lineofaction.gearbox.mesh_tables import MeshTables
+from lineofaction.gearbox.subjects import CaseLike, SceneLike, case_inputs, scene_of
 
 if TYPE_CHECKING:
     from dynamics.scene import Scene

@@ -7,8 +7,8 @@ import uuid
 from pathlib import Path
 
 from host import lock
+from host.directories import private
 from lineofaction.gearbox.problems import BadInput
-from service.directories import private
 
 
 class DirectoryLock:

@@ -18,11 +18,11 @@ from dynamics.housing_modes import ReducedHousing
 from dynamics.linearize import ModalAnalysis
 from lineofaction.cli.scene_tables import tabled_scene
 from lineofaction.client import JobState, LineOfActionClient
-from lineofaction.client.portable import scene_inputs, scene_of
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.modes import Inputs
 from lineofaction.gearbox.studies.modes.run import modes_of
+from lineofaction.gearbox.subjects import scene_inputs, scene_of
 from service.store import stored_results
 
 KEY = "cd" * 32

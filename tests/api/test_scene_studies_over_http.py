@@ -22,7 +22,6 @@ from dynamics.simulation import simulate
 from dynamics.study import Response, Study, responses_of
 from fe_contact.ste import SteDatabase
 from lineofaction.client import JobState, LineOfActionClient
-from lineofaction.client.portable import scene_inputs
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import STUDIES
@@ -32,6 +31,7 @@ from lineofaction.gearbox.stages import PacedFraction
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.modes import Inputs
 from lineofaction.gearbox.studies.modes.run import facts, modes_of
+from lineofaction.gearbox.subjects import scene_inputs
 from service.app import create_app
 from service.settings import Settings
 from service.store import stored_results

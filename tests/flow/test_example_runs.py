@@ -9,9 +9,9 @@ import pytest
 
 from dynamics.simulation import simulate
 from fe_contact import ste_database
-from lineofaction.client.portable import case_of_mesh, scene_of
 from lineofaction.gearbox.convert.case import analysis_options, gear_pair, table_axes
 from lineofaction.gearbox.convert.scene import dynamic_scene
+from lineofaction.gearbox.subjects import case_of_mesh, scene_of
 
 DEAR = ("wind_turbine_scene",)  # its three helical tables take 40 CPU s; its balance closes to 3e-8
 LONG = ("geared_rotor_scene",)  # it turns slowly: 15 CPU s

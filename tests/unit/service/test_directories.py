@@ -10,8 +10,8 @@ import pytest
 from spur_case import SPUR
 from typer.testing import CliRunner
 
+from host.directories import cache_home
 from lineofaction.cli.commands import app
-from service.directories import cache_home
 
 CASE = f"""{SPUR}
 [load]
@@ -38,7 +38,7 @@ def test_verbs_keep_where_the_environment_says(
 
 
 def test_nothing_outlives_a_process_whose_cache_is_off(tmp_path: Path) -> None:
-    code = "from service.directories import cache_home as c; (c() / 'x').write_text('x'); print(c())"
+    code = "from host.directories import cache_home as c; (c() / 'x').write_text('x'); print(c())"
     told = {"LINEOFACTION_CACHE": "off", "TMPDIR": str(tmp_path), "PYTHONPATH": ":".join(sys.path)}
     done = subprocess.run([sys.executable, "-c", code], env=told, capture_output=True, text=True, check=True)
     assert Path(done.stdout.strip()).parent == tmp_path

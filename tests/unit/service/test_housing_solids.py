@@ -29,7 +29,6 @@ from dynamics.housing_modes import (
     reduced_housing,
 )
 from lineofaction.cli.scene_tables import tabled_scene
-from lineofaction.client.portable import scene_of
 from lineofaction.gearbox.convert import solid_housings
 from lineofaction.gearbox.convert.scene import TabledScene, check_scene
 from lineofaction.gearbox.problems import BadInput, JobFailed
@@ -37,6 +36,7 @@ from lineofaction.gearbox.schemas import read_model, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.study.paths import places_of
 from lineofaction.gearbox.studies.study.scenes import VariedScene
+from lineofaction.gearbox.subjects import scene_of
 
 SOURCE = dict.fromkeys(("step_file", "material", "modes", "element_size_mm", "seats", "feet", "points"))
 LOSS = 0.02

@@ -13,7 +13,7 @@ from running_service import Bench, bench, lives, until
 from service_fake_work import SECRET
 from service_fakes import REGISTRY
 
-from service.directories import cache_home, data_home
+from host.directories import cache_home, data_home
 from service.settings import LEAST_MEMORY_MB, Settings
 from service.store import ResultStore
 from service.store.results import StoredResult

@@ -14,7 +14,6 @@ from housing_solid import housed_scene, write_block
 from dynamics.acoustics import EquivalentRadiatedPower
 from dynamics.noise import GUESSES, SoundModel, forced_power, housing_radiation, largest_level
 from lineofaction.cli.scene_tables import tabled_scene
-from lineofaction.client.portable import scene_of
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import validated
@@ -27,6 +26,7 @@ from lineofaction.gearbox.studies.noise.uncertainty import (
     sensitivities_of,
     sensitivity_json,
 )
+from lineofaction.gearbox.subjects import scene_of
 
 SPEED = np.linspace(100.0, 400.0, 12)
 GEAR = {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0, "thickness_allowance_um": 90.0}

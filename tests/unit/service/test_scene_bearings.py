@@ -20,12 +20,12 @@ from dynamics.integrators import static_equilibrium
 from dynamics.mechanism.modal_housing import modal_housing
 from dynamics.rolling_bearings import BallBearing, RollerBearing, from_catalog
 from dynamics.scene import Scene
-from lineofaction.client.portable import scene_inputs
 from lineofaction.gearbox.convert.bearings import planet_bearing_of, rolling_contacts_of, spring_curves_of
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import read_model, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.subjects import scene_inputs
 
 ROOT = Path(__file__).parents[3]
 EXAMPLE = tomllib.loads((ROOT / "examples" / "palermo_scene.toml").read_text())

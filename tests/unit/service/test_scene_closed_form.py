@@ -12,11 +12,11 @@ from typing import Any
 import pytest
 
 from dynamics.scene import Scene
-from lineofaction.client.portable import portable_scene
 from lineofaction.gearbox.convert.scene import check_scene, dynamic_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.subjects import portable_scene
 
 ROOT = Path(__file__).parents[3]
 EXAMPLE = tomllib.loads((ROOT / "examples" / "backlash_oscillator_scene.toml").read_text())

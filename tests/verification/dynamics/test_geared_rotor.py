@@ -15,8 +15,8 @@ import pytest
 
 from dynamics.assembly.assemble import assemble
 from dynamics.linearize import ForcedResponse, forced_response
-from lineofaction.client.portable import scene_of
 from lineofaction.gearbox.convert.scene import dynamic_scene
+from lineofaction.gearbox.subjects import scene_of
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "geared_rotor_scene.toml"
 TEETH = (328, 23)

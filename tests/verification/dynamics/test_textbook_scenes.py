@@ -13,10 +13,10 @@ from dynamics.assembly.assemble import assemble
 from dynamics.linearize import natural_modes
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
-from lineofaction.client.portable import scene_of
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.subjects import scene_of
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 ROTATIONAL = (1475.75, 1930.35, 2658.32, 7462.80, 11775.27)

@@ -10,7 +10,6 @@ from spur_case import spur_case
 from dynamics.simulation import simulate
 from dynamics.study import Design, Levels, Response, StudyTask, responses_of, study
 from lineofaction.cli.analyze import analyzed
-from lineofaction.client.portable import portable_scene, scene_of
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -18,6 +17,7 @@ from lineofaction.gearbox.studies.study import Inputs
 from lineofaction.gearbox.studies.study.paths import places_of
 from lineofaction.gearbox.studies.study.run import check, design_of
 from lineofaction.gearbox.studies.study.scenes import VariedScene
+from lineofaction.gearbox.subjects import portable_scene, scene_of
 
 CASE = (
     spur_case("tip_relief_um = 10.0\ntip_relief_length_mm = 2.0")

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeVar
 
-from lineofaction.client.offers import ANALYZE
-from lineofaction.client.portable import case_of_mesh
-from lineofaction.client.steps import Steps
 from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.subjects import case_of_mesh
 
 if TYPE_CHECKING:
     from fe_contact.ste import SteDatabase
     from lineofaction.gearbox.schemas import Case
     from lineofaction.gearbox.schemas.scene_meshes import MeshInput
+
+T = TypeVar("T")
+Steps: TypeAlias = "Generator[Any, Any, T]"
+"""What is wanted of others on the way to a result: a source of tables that needs nobody yields nothing."""
 
 
 class TableSource(Protocol):
@@ -67,8 +70,9 @@ class MeshTables:
         if not file.is_file():
             advice = "Check the path, or make one with: loa analyze"
             raise BadInput.of(field, str(file), "an STE database", advice)
-        database: SteDatabase = ANALYZE.read(file)
-        return database
+        from fe_contact.ste import SteDatabase  # noqa: PLC0415 (clients are light)
+
+        return SteDatabase.from_netcdf(file)
 
     def _of_case(self, case: Case) -> Steps[SteDatabase]:
         known = next((database for other, database in self._known if other == case), None)
