@@ -60,7 +60,7 @@ _HOME = {
     "QueryOutput": "query",
     "SceneInput": "scene",
     "ToothingInput": "gear",
-    "WheelInput": "wheel",
+    "WheelInput": "case",
     "read_model": "reading",
     "read_table": "reading",
     "validated": "reading",
