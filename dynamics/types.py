@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from enum import IntEnum
 
-from bounds.types import BoolArray, FloatArray, IntArray, Json
+from bounds.types import BoolArray, ComplexArray, FloatArray, IntArray, Json
 
-__all__ = ["BoolArray", "FloatArray", "IntArray", "Json", "RunStatus", "StaticStatus"]
+__all__ = ["BoolArray", "ComplexArray", "FloatArray", "IntArray", "Json", "RunStatus", "StaticStatus"]
 
 
 class RunStatus(IntEnum):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
+from dynamics.accuracy.fidelities import FIDELITIES
 from dynamics.accuracy.frontier import FidelityResult, Frontier, frontier
-from dynamics.accuracy.registry import FIDELITIES
 
 __all__ = ["FIDELITIES", "FidelityResult", "Frontier", "frontier"]

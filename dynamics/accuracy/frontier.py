@@ -9,9 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 import model_studies
-from dynamics.accuracy.fidelity import Fidelity
-from dynamics.accuracy.registry import FIDELITIES
-from dynamics.accuracy.time_integration import TimeIntegration
+from dynamics.accuracy.fidelities import FIDELITIES, Fidelity, TimeIntegration
 from dynamics.accuracy.vibration import Blocks, Vibration, blocks_of
 from dynamics.assembly.assemble import assemble
 from dynamics.checks import chosen

@@ -1,39 +1,57 @@
 """From surface velocity to sound: radiation models, levels, sound power over a run, recordings."""
 
 from dynamics.acoustics.air import Air
-from dynamics.acoustics.boundary_elements import BoundaryElements, SurfacePressure, surface_pressure
-from dynamics.acoustics.equivalent_radiated_power import (
-    EquivalentRadiatedPower,
-    errors_db,
-    monopoles_efficiency,
-    sphere_efficiency,
+from dynamics.acoustics.boundary_elements import (
+    BoundaryElements,
+    SurfacePressure,
+    exterior_pressure,
+    surface_pressure,
 )
-from dynamics.acoustics.exterior_pressure import exterior_pressure
 from dynamics.acoustics.hull import Hull
-from dynamics.acoustics.level_band import LevelBand, Range, level_band, level_bands
-from dynamics.acoustics.levels import a_weighting, free_field_pressure, level_sum, sound_power_level
+from dynamics.acoustics.levels import (
+    LevelBand,
+    Range,
+    a_weighting,
+    free_field_pressure,
+    level_band,
+    level_bands,
+    level_sum,
+    sound_power_level,
+)
 from dynamics.acoustics.model_ladder import ElementalRadiators, ModelLadder, ModelResult, compare_models
 from dynamics.acoustics.order_power import ModalResistance, OrderPower, modal_resistance, order_power
 from dynamics.acoustics.outer_hull import OuterHull, outer_hull
 from dynamics.acoustics.radiation import (
+    EquivalentRadiatedPower,
     PanelModel,
     RadiationModel,
+    errors_db,
     mean_square_velocity,
+    monopoles_efficiency,
     panel_power,
     radiation_efficiency,
     resistance,
     sound_power,
+    sphere_efficiency,
 )
-from dynamics.acoustics.recording import Recording, order_recording
-from dynamics.acoustics.run_recording import (
+from dynamics.acoustics.recording import (
+    Recording,
     audible,
+    common_full_scale,
     force_recording,
+    order_recording,
     principal_direction,
+    read_wav,
     series_recording,
+    wav_file,
+    write_wav,
 )
-from dynamics.acoustics.sound_pressure_level import sound_pressure_level
-from dynamics.acoustics.sound_quality import SoundQuality, loudness_over_time, sound_quality
-from dynamics.acoustics.wav import common_full_scale, read_wav, wav_file, write_wav
+from dynamics.acoustics.sound_quality import (
+    SoundQuality,
+    loudness_over_time,
+    sound_pressure_level,
+    sound_quality,
+)
 
 __all__ = [
     "Air",

@@ -22,14 +22,47 @@ from typing import Any
 import numpy as np
 
 from bounds import engineering
-from dynamics.acoustics.air import Air
-from dynamics.acoustics.far_field import far_field_resistance
-from dynamics.acoustics.hull import ComplexArray, Hull
-from dynamics.acoustics.linear_panels import LinearPanels
+from dynamics.acoustics.air import Air, directions
+from dynamics.acoustics.hull import Hull, LinearPanels
 from dynamics.errors import InputError, SolveError
+from dynamics.types import ComplexArray, FloatArray
 from dynamics.work_cost import Cost
 from host import MissingExtra
 from model_studies.progress import Progress, by_cost, silent
+
+# The sound power that passes a sphere far away.
+
+
+MARGIN = 8
+"""Spherical harmonics above the wavenumber times the radius, whose part of the far field is below 1e-6."""
+MIDDLES = 0.5 * (np.ones((3, 3)) - np.eye(3))  # barycentric coordinates of the edges' middles
+
+
+def far_field_resistance(
+    hull: Hull, wavenumber: float, pressure: ComplexArray, slope: ComplexArray
+) -> ComplexArray:
+    """Return the integral over all directions of conj(p_i) p_j, (M, M), Pa^2 m^2, p r in the far field.
+
+    Parameters
+    ----------
+    pressure : (N, M) array
+        At the nodes, linear in between, of the kernel e^{+ikr}.
+    slope : (T, M) array
+        dp/dn of the panels.
+    """
+    center = hull.areas @ hull.centers / hull.area
+    radius = float(np.linalg.norm(hull.nodes - center, axis=1).max())
+    vectors, weights = directions(int(np.ceil(wavenumber * radius)) + MARGIN)
+    cosines = vectors @ hull.normals.T
+    far = np.zeros((len(vectors), pressure.shape[1]), dtype=complex)
+    for middle in MIDDLES:  # quadrature of second degree on every panel
+        points = np.einsum("c,tcd->td", middle, hull.corners) - center
+        at = np.einsum("c,tcm->tm", middle, pressure[hull.triangles])
+        phase = np.exp(-1j * wavenumber * vectors @ points.T) * hull.areas / 3.0
+        far += (-1j * wavenumber * cosines * phase) @ at - phase @ slope
+    far /= 4.0 * np.pi
+    return np.asarray((far.conj().T * weights) @ far)
+
 
 # Layer operators of the Helmholtz equation by NGSolve: the one module that loads it.
 
@@ -216,3 +249,42 @@ def _coupling(hull: Hull, wavenumber: float) -> complex:
     """
     radius = hull.equivalent_radius
     return 1j * wavenumber * radius**2 / (1.0 + (wavenumber * radius) ** 2)
+
+
+def exterior_pressure(
+    hull: Hull, frequency: float, shapes: ComplexArray, points: FloatArray, air: Air
+) -> ComplexArray:
+    """Return the sound pressure around a hull by boundary elements, its own scattering included.
+
+    The Kirchhoff-Helmholtz integral of the pressure on the hull and its normal derivative. Points lie
+    outside, a few of the longest edges away.
+
+    Parameters
+    ----------
+    shapes : (T, M) array
+        Normal velocities of the panels, > 0 outwards.
+    points : (P, 3) array
+        m.
+
+    Returns
+    -------
+    (P, M) complex array
+        Pa per m/s, peak amplitudes of e^{+i omega t}.
+
+    Raises
+    ------
+    InputError, MissingExtra, SolveError
+        As `surface_pressure` does.
+    """
+    wavenumber = 2.0 * np.pi * frequency / air.sound_speed
+    pressure = surface_pressure(hull, frequency, shapes, air).pressure
+    slope = -1j * wavenumber * air.impedance * shapes
+    found = np.zeros((len(points), shapes.shape[1]), dtype=complex)
+    for middle in MIDDLES:  # quadrature of second degree on every panel
+        away = np.asarray(points)[:, None] - np.einsum("c,tcd->td", middle, hull.corners)
+        distance = np.linalg.norm(away, axis=2)
+        kernel = np.exp(-1j * wavenumber * distance) / (4.0 * np.pi * distance) * hull.areas / 3.0
+        cosine = np.einsum("ptd,td->pt", away, hull.normals) / distance
+        at = np.einsum("c,tcm->tm", middle, pressure[hull.triangles])
+        found += (kernel * (1j * wavenumber + 1.0 / distance) * cosine) @ at - kernel @ slope
+    return found

@@ -8,17 +8,20 @@ from pathlib import Path
 
 import numpy as np
 
-from dynamics.acoustics.air import Air
+from dynamics.acoustics.air import BLOCK as WAVES
+from dynamics.acoustics.air import Air, mutual_pressure, mutual_resistance, order_of, order_of_waves
 from dynamics.acoustics.boundary_elements import BoundaryElements
-from dynamics.acoustics.equivalent_radiated_power import EquivalentRadiatedPower
-from dynamics.acoustics.hull import ComplexArray, Hull
+from dynamics.acoustics.hull import Hull
 from dynamics.acoustics.levels import sound_power_level
-from dynamics.acoustics.plane_waves import BLOCK as WAVES
-from dynamics.acoustics.plane_waves import mutual_pressure, mutual_resistance, order_of, order_of_waves
-from dynamics.acoustics.radiation import RadiationModel, mean_square_velocity, sound_power
+from dynamics.acoustics.radiation import (
+    EquivalentRadiatedPower,
+    RadiationModel,
+    mean_square_velocity,
+    sound_power,
+)
 from dynamics.checks import positive
 from dynamics.errors import DynamicsError
-from dynamics.types import FloatArray
+from dynamics.types import ComplexArray, FloatArray
 from dynamics.work_cost import Cost, WorkCost, announce, measured, on_this_host
 from host import MissingExtra
 from model_studies.progress import Progress, silent

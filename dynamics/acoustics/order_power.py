@@ -9,13 +9,13 @@ import numpy as np
 
 from bounds import between
 from dynamics.acoustics.air import Air
-from dynamics.acoustics.hull import ComplexArray, Hull
+from dynamics.acoustics.hull import Hull
 from dynamics.acoustics.levels import a_weighting, sound_power_level
 from dynamics.acoustics.radiation import RadiationModel, resistance
 from dynamics.checks import increasing
 from dynamics.errors import InputError
 from dynamics.orders.third_octaves import band_number, nominal_center
-from dynamics.types import BoolArray, FloatArray
+from dynamics.types import BoolArray, ComplexArray, FloatArray
 
 # Radiation resistance of vibration modes, computed at a few frequencies and interpolated between them.
 

@@ -11,9 +11,8 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from dynamics.acoustics.hull import Hull, shared_edges
-from dynamics.acoustics.linear_panels import LinearPanels
-from dynamics.acoustics.plane_waves import directions
+from dynamics.acoustics.air import directions
+from dynamics.acoustics.hull import Hull, LinearPanels, shared_edges
 from dynamics.errors import InputError
 from dynamics.forces.compiled import compiled
 from dynamics.housing_modes.reduced_housing import ReducedHousing

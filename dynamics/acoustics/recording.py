@@ -1,18 +1,28 @@
-"""Signals to listen to: a quantity at uniform steps of time, from orders or from a run."""
+"""Signals to listen to: from orders or from a run, at uniform steps of time, and as WAV files."""
 
 from __future__ import annotations
 
+import io
+import json
+import struct
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
+from scipy.io import wavfile
+from scipy.signal import butter, detrend, sosfiltfilt
 
-from bounds import at_most
-from dynamics.acoustics.hull import ComplexArray
-from dynamics.checks import increasing, integer
-from dynamics.errors import InputError
+from bounds import above, at_least, at_most
+from dynamics.checks import increasing, integer, one_of, positive
+from dynamics.errors import InputError, ResultError
 from dynamics.orders.resampling import resampled
-from dynamics.types import FloatArray
+from dynamics.results import RunResult
+from dynamics.types import ComplexArray, FloatArray
+
+# Signals to listen to: a quantity at uniform steps of time, from orders or from a run.
+
 
 SAMPLE_RATE = 48_000
 HALF_LENGTH = 64  # of the resampling filter, in samples of the lower rate
@@ -127,3 +137,204 @@ def _turned(time: FloatArray, frequency: FloatArray, at: FloatArray) -> FloatArr
     since = at - time[piece]
     slope = (np.diff(frequency) / step)[piece]
     return np.asarray(2.0 * np.pi * (whole[piece] + since * (frequency[piece] + 0.5 * slope * since)))
+
+
+# Series of a run as recordings: what vibrates, made audible. A force or a motion is no sound pressure.
+
+
+LOWEST = 20.0
+"""Hz: below it nothing is heard, and slow changes of load would take the full scale."""
+SLOPE = 4  # order of the high-pass filter, which is run forwards and backwards
+FADE = 0.01  # s at both ends
+
+
+def audible(values: FloatArray, sample_rate: float) -> FloatArray:
+    """Return a series (..., T) without its trend and what is slower than `LOWEST`, without phase shift.
+
+    The level falls by 3 dB at 20 Hz and by less than 0.1 dB above 36 Hz.
+
+    Parameters
+    ----------
+    sample_rate : float
+        Hz, above 40.
+
+    Raises
+    ------
+    InputError
+        The sample rate is too low, or there are fewer than 4 samples.
+    """
+    if not sample_rate > 2.0 * LOWEST:
+        raise InputError("sample_rate", sample_rate, above(2.0 * LOWEST, "Hz"), "It holds nothing audible.")
+    samples = np.shape(values)[-1]
+    if samples < 4:
+        raise InputError("values", samples, "at least 4 samples")
+    sections = butter(SLOPE, LOWEST, "highpass", fs=sample_rate, output="sos")
+    beyond = min(round(sample_rate / LOWEST), samples - 1)  # a period of the lowest frequency, reflected
+    return np.asarray(sosfiltfilt(sections, detrend(values), padtype="even", padlen=beyond))
+
+
+def principal_direction(values: FloatArray, sample_rate: float) -> tuple[FloatArray, float]:
+    """Return the direction (3,) in which a vector (3, T) varies most audibly, and its share of the variance.
+
+    The unit eigenvector of the largest eigenvalue of the covariance; its largest component is positive. Of a
+    single mesh it is close to the line of action, since the force of the teeth acts along it.
+
+    Raises
+    ------
+    InputError
+        As `audible`; or nothing varies.
+    """
+    heard = audible(values, sample_rate)
+    variance, axes = np.linalg.eigh(heard @ heard.T)
+    if not variance[-1] > 0.0:
+        raise InputError("values", 0.0, "a vector that varies", "It is silent.")
+    axis = axes[:, -1] * np.sign(axes[np.argmax(np.abs(axes[:, -1])), -1])
+    return axis, float(variance[-1] / variance.sum())
+
+
+def series_recording(
+    values: FloatArray, sample_rate: float, quantity: str, unit: str, to_rate: int = SAMPLE_RATE
+) -> Recording:
+    """Return a series (T,) of a run as a recording of the same duration, at its own level.
+
+    What `audible` leaves, resampled, with cosine fades of 10 ms at both ends. Nothing is equalized or
+    compressed. It holds no more than the run: nothing above the pass frequency of its output.
+
+    Raises
+    ------
+    InputError
+        As `audible` and `Recording`.
+    """
+    lasting = (np.size(values) - 1) / sample_rate
+    samples = at_rate(audible(values, sample_rate), sample_rate, to_rate)[: int(lasting * to_rate) + 1]
+    fade = min(round(FADE * to_rate), samples.size // 2)
+    rise = 0.5 - 0.5 * np.cos(np.pi * np.arange(fade) / fade)
+    samples[:fade] *= rise
+    samples[samples.size - fade :] *= rise[::-1]
+    return Recording(samples, to_rate, quantity, unit)
+
+
+def force_recording(
+    run: RunResult, bearing: str, direction: FloatArray | None = None, to_rate: int = SAMPLE_RATE
+) -> Recording:
+    """Return the force on a bearing over a run along a direction, in N: no sound pressure.
+
+    Parameters
+    ----------
+    direction : (3,) array, optional
+        In the frame of `RunResult.bearing_force`, of any length above zero; by default the
+        `principal_direction`.
+
+    Raises
+    ------
+    InputError
+        The run holds no force on that bearing, the direction is zero, or as `series_recording`.
+    """
+    if not run.bearing_force.shape[0]:
+        advice = "Run with outputs.bearing_forces = true."
+        raise InputError("bearing", bearing, "one of a run that holds forces on bearings", advice)
+    one_of("bearing", bearing, run.bearing)
+    force = run.bearing_force[run.bearing.index(bearing)]
+    axis = principal_direction(force, run.sample_rate)[0] if direction is None else unit_vector(direction)
+    x, y, z = axis
+    quantity = f"force on bearing {bearing} along ({x:.3f}, {y:.3f}, {z:.3f}); no sound pressure"
+    return series_recording(axis @ force, run.sample_rate, quantity, "N", to_rate)
+
+
+def unit_vector(direction: FloatArray) -> FloatArray:
+    """Return a direction (3,) of length 1; refuse one that has none."""
+    axis = np.asarray(direction, dtype=float)
+    if axis.shape != (3,) or not np.all(np.isfinite(axis)) or not np.any(axis):
+        raise InputError("direction", axis.tolist(), "three finite components, not all zero")
+    return np.asarray(axis / np.linalg.norm(axis))
+
+
+COMMENT = ("quantity", "unit", "full_scale")
+
+
+def common_full_scale(*recordings: Recording) -> float:
+    """Return the largest magnitude of several recordings, for files that are compared by ear.
+
+    Raises
+    ------
+    InputError
+        Their units differ, or all are silent.
+    """
+    units = {recording.unit for recording in recordings}
+    if len(units) != 1:
+        raise InputError("unit", ", ".join(sorted(units)), "the same of all recordings")
+    return positive("peak", max(recording.peak for recording in recordings), "All recordings are silent.")
+
+
+def write_wav(path: Path | str, recording: Recording, full_scale: float) -> None:
+    """Write a recording to a file; parameters and errors are those of `wav_file`."""
+    Path(path).write_bytes(wav_file(recording, full_scale))
+
+
+def wav_file(recording: Recording, full_scale: float) -> bytes:
+    """Return the content of a WAV file whose sample 1.0 is `full_scale` in the recording's unit.
+
+    Quantity, unit and full scale stand in the file as JSON (RIFF comment ICMT). Files of the same full scale
+    play at their true relative level.
+
+    Parameters
+    ----------
+    full_scale : float
+        At least the recording's peak; `common_full_scale` of those to compare.
+
+    Raises
+    ------
+    InputError
+        The recording would be clipped.
+    """
+    positive("full_scale", full_scale)
+    if full_scale < recording.peak:
+        bound = at_least(recording.peak, note=f" {recording.unit}, the recording's peak")
+        raise InputError("full_scale", full_scale, bound)
+    sound = io.BytesIO()
+    wavfile.write(sound, recording.sample_rate, (recording.samples / full_scale).astype(np.float32))
+    words = (recording.quantity, recording.unit, full_scale)
+    comment = json.dumps(dict(zip(COMMENT, words, strict=True))).encode("ascii")
+    information = b"INFO" + _chunk(b"ICMT", comment + b"\0")
+    body = sound.getvalue()[8:] + _chunk(b"LIST", information)
+    return _chunk(b"RIFF", body)
+
+
+def read_wav(path: Path | str) -> Recording:
+    """Read a file of `write_wav`, in its unit.
+
+    Raises
+    ------
+    ResultError
+        The file is no such WAV.
+    """
+    data = Path(path).read_bytes()
+    try:
+        sample_rate, samples = wavfile.read(io.BytesIO(data))
+        about = json.loads(_comment(data))
+        quantity, unit, full_scale = (about[name] for name in COMMENT)
+        return Recording(samples * float(full_scale), sample_rate, quantity, unit)
+    except (ValueError, KeyError, TypeError, struct.error, InputError) as error:
+        name = Path(path).name
+        raise ResultError(f"{name} is no WAV file with quantity, unit and full scale") from error
+
+
+def _chunk(name: bytes, content: bytes) -> bytes:
+    return name + struct.pack("<I", len(content)) + content + b"\0" * (len(content) % 2)
+
+
+def _comment(data: bytes) -> str:
+    """Return the comment of a file, empty without one."""
+    for name, content in _chunks(data[12:]):
+        if name == b"LIST" and content[:4] == b"INFO":
+            return dict(_chunks(content[4:])).get(b"ICMT", b"").rstrip(b"\0").decode("ascii")
+    return ""
+
+
+def _chunks(data: bytes) -> Iterator[tuple[bytes, bytes]]:
+    """Yield names and contents of the chunks in a row."""
+    at = 0
+    while at + 8 <= len(data):
+        (length,) = struct.unpack("<I", data[at + 4 : at + 8])
+        yield data[at : at + 4], data[at + 8 : at + 8 + length]
+        at += 8 + length + length % 2

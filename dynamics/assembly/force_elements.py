@@ -13,8 +13,16 @@ from dynamics.assembly.housed_bearings import housed_bearing_elements, housed_be
 from dynamics.assembly.load_elements import force_course_elements, unbalance_elements
 from dynamics.assembly.model import Model
 from dynamics.assembly.phases import repeating_phases
-from dynamics.effects.flank_terms import CENTER_DISTANCE, MISALIGNMENT, SLIDING, FlankInSpace, FlankTerms
-from dynamics.effects.frame_term import FrameTerm, frame_laws, frame_lever
+from dynamics.effects.force_terms import (
+    CENTER_DISTANCE,
+    MISALIGNMENT,
+    SLIDING,
+    FlankInSpace,
+    FlankTerms,
+    FrameTerm,
+    frame_laws,
+    frame_lever,
+)
 from dynamics.errors import InputError
 from dynamics.forces.element_laws import ElementLaws
 from dynamics.forces.grid_tables import pack_grids

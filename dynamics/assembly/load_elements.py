@@ -9,7 +9,7 @@ import numpy as np
 from dynamics.arrays.elements import Element
 from dynamics.assembly.phases import repeating_phases
 from dynamics.bodies.load_course import BySpeed, Orders
-from dynamics.effects.frame_term import frame_lever
+from dynamics.effects.force_terms import frame_lever
 from dynamics.errors import InputError
 from dynamics.forces.force_course import ForceCourseLaws, pack_courses
 from dynamics.forces.law import Law

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 
 from bounds import above
 from dynamics.effects import Effect, EffectLedger, MeshEffect, RotorEffect
-from dynamics.effects.loaded_meshes import LoadedTrain
-from dynamics.effects.loaded_rotors import loaded_rotors
-from dynamics.effects.mechanism_of import mechanism_of
+from dynamics.effects.ledger import mechanism_of
+from dynamics.effects.loaded_parts import LoadedTrain, loaded_rotors
 from dynamics.errors import InputError
 from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import mass_terms

@@ -1,7 +1,6 @@
 """Static deflection of a geared system under load cases, and the alignment of its meshes by cause."""
 
 import host.analysis  # noqa: F401 (says what to install)
-from dynamics.deflection.case_forces import ForceUnderCase
 from dynamics.deflection.deflect import (
     BearingLoad,
     CaseDeflection,
@@ -11,7 +10,7 @@ from dynamics.deflection.deflect import (
     equivalent_load,
     life_duration,
 )
-from dynamics.deflection.loaded_scene import loaded_scene
+from dynamics.deflection.loaded_scene import ForceUnderCase, loaded_scene
 from dynamics.deflection.mesh_alignment import CAUSES, MeshAlignment
 from dynamics.settings.case_force import CaseForce
 from dynamics.settings.load_case import LoadCase

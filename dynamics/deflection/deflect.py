@@ -12,12 +12,16 @@ from bounds import inside
 from dynamics.assembly.assemble import System, assemble
 from dynamics.checks import distinct, integer
 from dynamics.deflection.bearing_strain import BearingStrain, bearing_strain
-from dynamics.deflection.case_forces import ForceUnderCase, as_records
-from dynamics.deflection.loaded_scene import leader_of, leading_torque, loaded_scene
-from dynamics.deflection.mesh_alignment import MeshAlignment, mesh_alignment
-from dynamics.deflection.rest import Rest, rest_over
+from dynamics.deflection.loaded_scene import (
+    ForceUnderCase,
+    as_records,
+    leader_of,
+    leading_torque,
+    loaded_scene,
+)
+from dynamics.deflection.mesh_alignment import MeshAlignment, Rest, mesh_alignment, rest_over
 from dynamics.joints import PlanetBearing, RollingBearing
-from dynamics.linearize.common_period import common_period
+from dynamics.linearize.operating_speeds import common_period
 from dynamics.mechanism.bearing_elements import supports_by_name
 from dynamics.mechanism.columns import section_rows
 from dynamics.rolling_bearings import rating_life
@@ -26,9 +30,6 @@ from dynamics.scene.scene import Scene
 from dynamics.settings.load_case import LoadCase, check_forces
 from dynamics.types import FloatArray, IntArray
 from model_studies import Record, in_unit
-
-# Loads of bearings under load cases, and the load that stands for all of them.
-
 
 # Basic reference rating life of rolling bearings under load cases, and over all of them.
 

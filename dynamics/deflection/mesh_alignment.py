@@ -8,7 +8,8 @@ import numpy as np
 
 from dynamics.assembly.assemble import System
 from dynamics.deflection.bearing_strain import BearingStrain
-from dynamics.deflection.rest import Rest
+from dynamics.forces.law import Law
+from dynamics.integrators import static_equilibrium
 from dynamics.joints import PlanetBearing
 from dynamics.mechanism.bearing_elements import supports_by_name
 from dynamics.mechanism.bodies import Bodies
@@ -16,12 +17,89 @@ from dynamics.mechanism.columns import elastic_columns, section_rows
 from dynamics.mechanism.flank_gradients import (
     common_face_width,
     distance_gradient,
+    middle_from_driver,
     misalignment_gradient,
     misalignment_per_tilt,
     table_sense,
 )
-from dynamics.types import FloatArray
+from dynamics.motion.observation import observe
+from dynamics.types import FloatArray, StaticStatus
 from model_studies import Record, in_unit
+
+# The rest positions of a system over the mesh cycle, and their mean.
+
+
+@dataclass(frozen=True)
+class Rest:
+    """K rest positions of a system of N freedoms of all rotors, m meshes and b bearings.
+
+    Attributes
+    ----------
+    status : StaticStatus
+        The worst of all positions.
+    residual : float
+        Largest unbalanced force of all positions over the largest mesh force.
+    motion : (K, N) array
+        Six freedoms of every rotor, then elastic coordinates, m and rad.
+    element : (K, R) array
+        Local coordinates of all force elements, m.
+    mesh_force : (K, m) array
+        Transverse, N.
+    centroid : (K, m) array
+        Face position of the load from mid-face of the driving gear, m, as in a table; NaN where the force
+        acts at mid-face.
+    bearing_force : (K, b, 5) array
+        Force and moment on what holds each bearing, N and N m.
+    """
+
+    status: StaticStatus
+    residual: float
+    motion: FloatArray
+    element: FloatArray
+    mesh_force: FloatArray
+    centroid: FloatArray
+    bearing_force: FloatArray
+
+
+def rest_over(system: System, times: FloatArray) -> Rest:
+    """Return where the bodies of `system` rest at `times` (K,)."""
+    solutions = [static_equilibrium(system, float(time)) for time in times]
+    q = np.array([solution.displacement for solution in solutions])
+    v = np.zeros_like(q)
+    seen = observe(system.arrays, times, q, v)
+    on_bearings = system.bearing_force(seen.force, q, v)
+    force = np.zeros((times.size, len(system.supports.name), 5))
+    rows = min(on_bearings.shape[1], 5)
+    force[:, :, :rows] = np.moveaxis(on_bearings, 2, 0)[:, :, :rows]
+    mesh_force = seen.force[system.driving_rows].T
+    largest = float(np.max(np.abs(mesh_force), initial=0.0))
+    residual = max(solution.residual for solution in solutions)
+    return Rest(
+        max(solution.status for solution in solutions),
+        residual / largest if largest > 0.0 else float("inf"),
+        q @ system.freedoms.motion.T,
+        seen.coordinate.T,
+        mesh_force,
+        _centroids(system, seen.force).T,
+        force,
+    )
+
+
+def _centroids(system: System, force: FloatArray) -> FloatArray:
+    """Return where along the face the forces (R, K) of the driving flanks act, (m, K), m; NaN of none."""
+    elements, scene = system.arrays.elements, system.scene
+    centroid = np.full((len(scene.meshes), force.shape[1]), np.nan)
+    for mesh in range(len(scene.meshes)):
+        row, laws = elements.first[mesh], elements.laws.spatial_flank
+        if elements.law[mesh] != Law.SPATIAL_FLANK or laws.per_face[elements.entry[mesh]] == 0.0:
+            continue
+        tilting = force[row + laws.row[elements.entry[mesh], 0]]
+        line, sense = system.lines[mesh], system.kinematics.mesh_sense[mesh]
+        middle = middle_from_driver(scene, mesh, line, sense)
+        loaded = np.where(force[row] != 0.0, force[row], np.nan)
+        centroid[mesh] = middle - common_face_width(scene, mesh) * tilting / loaded
+    return centroid
+
 
 # Tilts of shafts split by their causes: a linear functional of the displacements for each cause.
 

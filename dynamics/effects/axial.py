@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from dynamics.effects.effect import RotorEffect, Verdict
-from dynamics.effects.loaded_rotors import LoadedRotor
+from dynamics.effects.loaded_parts import LoadedRotor
 from dynamics.errors import InputError
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.mechanism.rotor import Rotor

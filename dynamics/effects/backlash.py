@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from dynamics.effects.effect import MeshEffect, Verdict
-from dynamics.effects.loaded_meshes import LoadedMesh
+from dynamics.effects.loaded_parts import LoadedMesh
 from dynamics.errors import InputError
 from dynamics.forces.coast_flank import mirrored
 from dynamics.forces.flank_force import FlankLaws

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dynamics.effects.effect import RotorEffect, Verdict
-from dynamics.effects.loaded_rotors import LoadedRotor
+from dynamics.effects.loaded_parts import LoadedRotor
 from dynamics.mechanism.additions import BEARING_LAWS
 
 

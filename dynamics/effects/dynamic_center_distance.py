@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from dynamics.effects.effect import MeshEffect, Verdict
-from dynamics.effects.flank_terms import CENTER_DISTANCE, FlankInSpace, FlankTerms
-from dynamics.effects.loaded_meshes import LoadedMesh
+from dynamics.effects.force_terms import CENTER_DISTANCE, FlankInSpace, FlankTerms
+from dynamics.effects.loaded_parts import LoadedMesh
 from dynamics.mechanism.additions import CENTER_DISTANCE_CHANGE
 from dynamics.mechanism.flank_gradients import distance_gradient
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from dynamics.effects.effect import MeshEffect, Verdict
-from dynamics.effects.flank_terms import MISALIGNMENT, FlankInSpace, FlankTerms
-from dynamics.effects.loaded_meshes import LoadedMesh
+from dynamics.effects.force_terms import MISALIGNMENT, FlankInSpace, FlankTerms
+from dynamics.effects.loaded_parts import LoadedMesh
 from dynamics.mechanism import additions
 from dynamics.mechanism.flank_gradients import misalignment_gradient
 

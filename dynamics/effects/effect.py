@@ -10,10 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
-from dynamics.effects.flank_terms import FlankInSpace, FlankTerms
-from dynamics.effects.frame_term import FrameTerm
-from dynamics.effects.loaded_meshes import LoadedMesh
-from dynamics.effects.loaded_rotors import LoadedRotor
+from dynamics.effects.force_terms import FlankInSpace, FlankTerms, FrameTerm
+from dynamics.effects.loaded_parts import LoadedMesh, LoadedRotor
 from dynamics.forces.gear_mesh import GearMesh
 from dynamics.mechanism.connections import Connections
 from dynamics.mechanism.flanks import Flanks

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from dynamics.effects.effect import RotorEffect, Verdict
-from dynamics.effects.loaded_rotors import LoadedRotor
+from dynamics.effects.loaded_parts import LoadedRotor
 from dynamics.mechanism.additions import ELEMENT_PASSING
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.rolling_bearings.row_law import row_law

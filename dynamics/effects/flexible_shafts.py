@@ -10,7 +10,7 @@ import numpy as np
 from dynamics.bodies import ElasticShaft
 from dynamics.bodies.load_course import mean_factor
 from dynamics.effects.effect import RotorEffect, Verdict
-from dynamics.effects.loaded_rotors import LoadedRotor
+from dynamics.effects.loaded_parts import LoadedRotor
 from dynamics.joints.seat import SEAT
 from dynamics.mechanism.columns import column_count, elastic_columns, elastic_terms, section_rows, turn_row
 from dynamics.mechanism.connections import gather_connections

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from dynamics.effects.effect import MeshEffect, Verdict
-from dynamics.effects.flank_terms import SLIDING, FlankInSpace, FlankTerms
-from dynamics.effects.loaded_meshes import LoadedMesh
+from dynamics.effects.force_terms import SLIDING, FlankInSpace, FlankTerms
+from dynamics.effects.loaded_parts import LoadedMesh
 from dynamics.mechanism.columns import gear_row
 from dynamics.mechanism.flank_gradients import UNIT_Z, table_sense
 from dynamics.mechanism.freedoms import ROTATION

@@ -9,8 +9,8 @@ import numpy as np
 
 from bounds import engineering
 from dynamics.effects.effect import RotorEffect, Verdict
-from dynamics.effects.frame_term import FrameTerm, frame_lever
-from dynamics.effects.loaded_rotors import LoadedRotor
+from dynamics.effects.force_terms import FrameTerm, frame_lever
+from dynamics.effects.loaded_parts import LoadedRotor
 from dynamics.mechanism.additions import SPEED_DEPENDENCE
 from dynamics.mechanism.columns import column_count
 from dynamics.mechanism.connections import Connections

@@ -1,4 +1,4 @@
-"""The effect ledger: what is on, what is off, and why."""
+"""The ledger of the effects of a scene, and the mechanism with what they may add."""
 
 from __future__ import annotations
 
@@ -7,8 +7,15 @@ from dataclasses import dataclass, replace
 
 from dynamics.checks import one_of
 from dynamics.effects.effect import Effect, MeshEffect, RotorEffect, Verdict
-from dynamics.effects.registry import LEFT_OUT
+from dynamics.effects.registry import EFFECTS, LEFT_OUT
+from dynamics.identity_cache import identity_cached
+from dynamics.mechanism.additions import Additions
+from dynamics.mechanism.mechanism import Mechanism, gather_mechanism
+from dynamics.scene.scene import Scene
 from dynamics.types import Json
+
+# The effect ledger: what is on, what is off, and why.
+
 
 CHOICES = ("auto", "on", "off")
 
@@ -173,3 +180,25 @@ def check_choices(choices: Mapping[str, str], registry: Sequence[Effect]) -> Non
     for name, choice in choices.items():
         one_of("effects", name, names)
         one_of(f"effects.{name}", choice, CHOICES)
+
+
+@identity_cached
+def mechanism_of(scene: Scene, registry: tuple[Effect, ...] = EFFECTS) -> Mechanism:
+    """Gather the mechanism of `scene`; every effect that is not switched off checks it.
+
+    Raises
+    ------
+    InputError
+        If a choice is unknown, parts do not fit each other, or an effect cannot do without a part.
+    """
+    check_choices(scene.effects, registry)
+    allowed = [effect for effect in registry if scene.effects.get(effect.name) != "off"]
+    requested = [effect for effect in registry if scene.effects.get(effect.name) == "on"]
+    mechanism = gather_mechanism(scene, Additions(_added(allowed), _added(requested)))
+    for effect in allowed:
+        effect.check(mechanism)
+    return mechanism
+
+
+def _added(effects: Sequence[Effect]) -> frozenset[str]:
+    return frozenset(part for effect in effects for part in effect.adds)

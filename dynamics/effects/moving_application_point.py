@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from dynamics.effects.effect import MeshEffect, Verdict
-from dynamics.effects.flank_terms import MISALIGNMENT, FlankInSpace, FlankTerms
-from dynamics.effects.loaded_meshes import LoadedMesh
+from dynamics.effects.force_terms import MISALIGNMENT, FlankInSpace, FlankTerms
+from dynamics.effects.loaded_parts import LoadedMesh
 from dynamics.mechanism.additions import LOAD_CENTROID
 from dynamics.mechanism.flank_gradients import common_face_width, misalignment_gradient
 

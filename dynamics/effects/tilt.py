@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dynamics.effects.effect import RotorEffect, Verdict
-from dynamics.effects.loaded_rotors import LoadedRotor
+from dynamics.effects.loaded_parts import LoadedRotor
 
 CENTERED = 1e-9  # of the shaft's length
 

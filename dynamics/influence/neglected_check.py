@@ -12,9 +12,8 @@ from bounds import engineering
 from dynamics.assembly.assemble import System, assemble
 from dynamics.effects import EFFECTS
 from dynamics.errors import InputError, SolveError
-from dynamics.influence.linear_figures import COMPARED, LinearFigures, linear_figures
-from dynamics.influence.operating_conditions import operating_conditions
-from dynamics.linearize.speeds import leading_law
+from dynamics.influence.linear_figures import COMPARED, LinearFigures, linear_figures, operating_conditions
+from dynamics.linearize.operating_speeds import leading_law
 from dynamics.scene import Scene
 from dynamics.types import FloatArray, Json
 from host import cpu_seconds

@@ -1,6 +1,6 @@
 """The system linearized about its static equilibrium: modes at rest and over speed, forced response."""
 
-from dynamics.linearize.common_period import CommonPeriod, common_period
+from dynamics.linearize.campbell import WhirlModes, whirl_modes
 from dynamics.linearize.forced_response import (
     ForcedResponse,
     Peak,
@@ -13,7 +13,7 @@ from dynamics.linearize.harmonic_response import HarmonicResponse, harmonic_resp
 from dynamics.linearize.linear_system import LinearSystem, linearize
 from dynamics.linearize.modal_analysis import ModalAnalysis, modal_analysis
 from dynamics.linearize.modes import Modes, natural_modes
-from dynamics.linearize.whirl import WhirlModes, whirl_modes
+from dynamics.linearize.operating_speeds import CommonPeriod, common_period
 
 __all__ = [
     "CommonPeriod",

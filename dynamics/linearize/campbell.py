@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -9,11 +10,155 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from dynamics.assembly.assemble import System
-from dynamics.linearize.energy_shares import kinetic_shares, strain_shares
-from dynamics.linearize.linear_system import LinearSystem
-from dynamics.linearize.speeds import law_speeds
-from dynamics.linearize.whirl import ComplexArray, WhirlModes, terms_at, whirl_modes_with
-from dynamics.types import FloatArray, IntArray
+from dynamics.joints.seat import SEAT
+from dynamics.linearize.linear_system import LinearSystem, linearize
+from dynamics.linearize.modes import kinetic_shares, strain_shares
+from dynamics.linearize.operating_speeds import law_speeds
+from dynamics.mechanism.columns import column_count
+from dynamics.mechanism.spun_shaft import pair_rows, spun_inertia
+from dynamics.motion.force_balance import block_diagonal, swept_by_frames
+from dynamics.motion.observation import local_state, observe_laws
+from dynamics.types import ComplexArray, FloatArray, IntArray
+
+# Natural modes of a rotating system, with gyroscopic, Coriolis and centripetal terms.
+
+
+QUARTER_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])  # z x
+LATERAL, TILT = (0, 1), (3, 4)
+OSCILLATING = 1e-6  # least imaginary part over the largest eigenvalue's size
+
+
+@dataclass(frozen=True)
+class WhirlModes:
+    """Modes that oscillate, by rising frequency, as seen in the frame of each shaft.
+
+    Attributes
+    ----------
+    frequency : (a,) array
+        Damped, Hz.
+    damping_ratio : (a,) array
+        -Re/|eigenvalue|; below 0: unstable.
+    shape : (a, n) complex array
+        One mode per row, per freedom in m and rad; the largest entry in meters is 1.
+    freedom : tuple of str
+        Names of the columns, "shaft.kind".
+    scale : (n,) array
+        Meters per unit of each freedom.
+    """
+
+    frequency: FloatArray
+    damping_ratio: FloatArray
+    shape: ComplexArray
+    freedom: tuple[str, ...]
+    scale: FloatArray
+
+
+def whirl_modes(system: System, time: float = 0.0) -> WhirlModes:
+    """Return the modes about the static equilibrium at the speeds of the kinematic motion at `time`.
+
+    M x'' + (C + G) x' + (K + S) x = 0 with G and S of `speed_terms`, both zero at standstill.
+
+    Raises
+    ------
+    SolveError
+        If there is no static equilibrium.
+    """
+    return whirl_modes_with(linearize(system, time), *speed_terms(system, time))
+
+
+def whirl_modes_with(linear: LinearSystem, gyroscopic: FloatArray, stiffening: FloatArray) -> WhirlModes:
+    """Return the modes of `linear` with the terms G and S (n, n) of its speeds."""
+    eigenvalue, vector = _eigen(linear, linear.damping + gyroscopic, linear.stiffness + stiffening)
+    kept = np.flatnonzero(eigenvalue.imag > OSCILLATING * np.max(np.abs(eigenvalue), initial=0.0))
+    kept = kept[np.argsort(eigenvalue[kept].imag)]
+    shape = vector[: linear.scale.size, kept].T
+    largest = np.take_along_axis(shape, np.argmax(np.abs(shape), axis=1)[:, None], axis=1)
+    return WhirlModes(
+        eigenvalue[kept].imag / (2.0 * math.pi),
+        -eigenvalue[kept].real / np.abs(eigenvalue[kept]),
+        shape / largest / linear.scale,
+        linear.freedom,
+        linear.scale,
+    )
+
+
+def speed_terms(system: System, time: float) -> tuple[FloatArray, FloatArray]:
+    """Return G and S (n, n), factors of the rates and of the displacements, at the speeds at `time`.
+
+    A shaft of spin w in a frame of speed W (0: fixed) feels, with J = z x,
+
+        lateral:  m (2 W J u' - W^2 u),     tilt:  (2 I_t W - I_p w) J a' + (I_p w W - I_t W^2) a,
+
+    and a ground damper c seen from the frame c W J u. Constant centripetal forces are left out: they move
+    the equilibrium, not the modes.
+    """
+    return terms_at(system, observe_laws(system.arrays, np.array([time]))[2, :, 0])
+
+
+def terms_at(system: System, law_speed: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return G and S (n, n) of `speed_terms` at the speeds `law_speed` (k,) of the laws, rad/s."""
+    speed = system.kinematics.float_ratio @ law_speed
+    size = column_count(system.rotors)
+    gyroscopic, stiffening = np.zeros((size, size)), np.zeros((size, size))
+    for index, rotor in enumerate(system.rotors):
+        frame = 0.0 if rotor.frame is None else float(speed[rotor.frame])
+        inertia, spin = rotor.inertia, float(speed[index])
+        for kinds, rate, rest in (
+            (LATERAL, 2.0 * inertia.mass * frame, -inertia.mass * frame**2),
+            (
+                TILT,
+                2.0 * inertia.transverse * frame - inertia.polar * spin,
+                (inertia.polar * spin - inertia.transverse * frame) * frame,
+            ),
+        ):
+            block = np.ix_([6 * index + k for k in kinds], [6 * index + k for k in kinds])
+            gyroscopic[block] += rate * QUARTER_TURN
+            stiffening[block] += rest * np.eye(2)
+    supports = system.supports
+    for bearing, carrier in enumerate(supports.frame):
+        if carrier is not None:
+            moves = supports.motion[bearing, :2]
+            damping = supports.damping[bearing, 0] * float(speed[carrier])
+            stiffening += damping * moves.T @ QUARTER_TURN @ moves
+    seats = system.seats
+    if any(carrier is not None for carrier in seats.frame):
+        of_frame = [0.0 if carrier is None else float(speed[carrier]) for carrier in seats.frame]
+        stiffening += seats.motion.T @ (seats.turned_damping * np.repeat(of_frame, SEAT)) @ seats.motion
+    for index, rotor in enumerate(system.rotors):
+        if rotor.elastic is not None and rotor.elastic.bends:
+            gyroscopic += _along_the_shaft(system, index, float(speed[index]))
+    motion = system.freedoms.motion
+    return motion.T @ gyroscopic @ motion, motion.T @ stiffening @ motion + _across_frames(system, law_speed)
+
+
+def _across_frames(system: System, law_speed: FloatArray) -> FloatArray:
+    """Return what dampers across frames add to the stiffness, (n, n), at the frames' angles at t = 0."""
+    arrays, rest = system.arrays, np.zeros(system.arrays.mass.shape[0])
+    local, pace = local_state(arrays, 0.0, rest, rest), arrays.reference.per_radian @ law_speed
+    swept = block_diagonal(arrays.elements, swept_by_frames(arrays.elements, local, pace))
+    return np.asarray(arrays.direction.T @ swept @ arrays.direction)
+
+
+def _along_the_shaft(system: System, index: int, spin: float) -> FloatArray:
+    """Gyroscopic terms of a shaft that bends, beyond those of its tilt as a rigid body, (N, N)."""
+    rows, inertia = pair_rows(system.rotors, index), spun_inertia(system.rotors[index])
+    inertia[0, 0] = 0.0
+    across = QUARTER_TURN @ np.tensordot(inertia, rows, axes=1)
+    return np.asarray(-spin * np.tensordot(rows, across, axes=((0, 1), (0, 1))))
+
+
+def _eigen(
+    linear: LinearSystem, damping: FloatArray, stiffness: FloatArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """Eigenvalues and vectors of the first-order system, freedoms in meters."""
+    per_meter, n = 1.0 / linear.scale, linear.scale.size
+    mass, damping, stiffness = (per_meter[:, None] * a * per_meter for a in (linear.mass, damping, stiffness))
+    state = np.zeros((2 * n, 2 * n))
+    state[:n, n:] = np.eye(n)
+    state[n:, :n], state[n:, n:] = -np.linalg.solve(mass, stiffness), -np.linalg.solve(mass, damping)
+    values, vectors = np.linalg.eig(state)
+    return values.astype(complex), vectors.astype(complex)
+
 
 TIE = 0.05  # weight of the frequencies beside the shapes: it decides between modes of one shape's likeness
 SAME = 1e-6  # of a frequency: nearer modes count as repeated

@@ -7,19 +7,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dynamics.assembly.assemble import System
-from dynamics.linearize.campbell import WhirlBranches, likeness, modes_at
+from dynamics.linearize.campbell import WhirlBranches, likeness, modes_at, terms_at
 from dynamics.linearize.linear_system import LinearSystem
-from dynamics.linearize.speeds import law_speeds, mesh_frequencies
-from dynamics.linearize.whirl import ComplexArray, terms_at
-from dynamics.types import FloatArray, IntArray
+from dynamics.linearize.operating_speeds import law_speeds, mesh_frequencies
+from dynamics.types import ComplexArray, FloatArray, IntArray
 
 # The matrices of a rotating system as polynomials of speed, in meters.
-
-
-ComplexMatrix = NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
@@ -41,17 +36,17 @@ class SpeedMatrices:
     swept: FloatArray
     centripetal: FloatArray
 
-    def at(self, eigenvalue: complex, speed: float) -> ComplexMatrix:
+    def at(self, eigenvalue: complex, speed: float) -> ComplexArray:
         """Return P."""
         rate = self.damping + speed * self.gyroscopic
         rest = self.stiffness + speed * self.swept + speed**2 * self.centripetal
         return np.asarray(eigenvalue**2 * self.mass + eigenvalue * rate + rest)
 
-    def by_eigenvalue(self, eigenvalue: complex, speed: float) -> ComplexMatrix:
+    def by_eigenvalue(self, eigenvalue: complex, speed: float) -> ComplexArray:
         """Return dP/ds."""
         return np.asarray(2.0 * eigenvalue * self.mass + self.damping + speed * self.gyroscopic)
 
-    def by_speed(self, eigenvalue: complex, speed: float) -> ComplexMatrix:
+    def by_speed(self, eigenvalue: complex, speed: float) -> ComplexArray:
         """Return dP/dW."""
         return np.asarray(eigenvalue * self.gyroscopic + self.swept + 2.0 * speed * self.centripetal)
 

@@ -2,30 +2,148 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, fields
 
 import numpy as np
 
 from dynamics.assembly.assemble import System
+from dynamics.assembly.frame_couplings import frame_couplings
+from dynamics.assembly.references import drive_springs
 from dynamics.errors import InputError
-from dynamics.linearize.absorbers import Absorber, absorbers
+from dynamics.forces.law import Law
+from dynamics.joints.seat import SEAT
+from dynamics.linearize.flank_cycles import FlankCycle
 from dynamics.linearize.harmonic_response import HarmonicResponse, excited_harmonics, response_of
+from dynamics.linearize.linear_system import LinearSystem
 from dynamics.linearize.load_harmonics import load_harmonics
-from dynamics.linearize.modes import natural_modes
-from dynamics.linearize.speeds import checked_speeds, leading_law
+from dynamics.linearize.modes import HELD_BY, natural_modes
+from dynamics.linearize.operating_speeds import checked_speeds, leading_law
 from dynamics.linearize.steady_vibration import (
     EXCITATIONS,
-    ComplexArray,
     Excited,
     Steady,
     gyroscopic_terms,
     steady_vibration,
 )
+from dynamics.mechanism.columns import elastic_columns, elastic_terms, housing_columns
+from dynamics.motion.force_balance import swept_by_frames
+from dynamics.motion.observation import local_state
 from dynamics.results.array_file import ArrayFile, Stored
 from dynamics.results.force_check import checked_ledger
-from dynamics.types import FloatArray, Json
+from dynamics.types import ComplexArray, FloatArray, Json
 from host import cpu_seconds
+
+# The parts of a linearized system that take power from its vibration, each assembled by itself.
+
+
+KINDS = (*HELD_BY, "load", "frame")
+FLANKS = (Law.FLANK, Law.SPATIAL_FLANK)
+
+
+@dataclass(frozen=True)
+class Absorber:
+    """A part with k coordinates y = rows q, whose force against its motion is stiffness y + damping y'.
+
+    Attributes
+    ----------
+    name, kind : str
+        Of the part; one of `KINDS`.
+    rows : (k, n) array
+    stiffness, damping : (k, k) arrays
+        N/m, N s/m. A symmetric stiffness takes no power over a cycle, and is 0 where it is known to be.
+    """
+
+    name: str
+    kind: str
+    rows: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+
+
+def absorbers(
+    system: System, linear: LinearSystem, cycles: tuple[FlankCycle, ...], time: float
+) -> tuple[Absorber, ...]:
+    """Return all parts with damping about the equilibrium of `linear`, driving flanks by their mean tangents.
+
+    Their sum is the damping of `LinearSystem`. What gyroscopic and frame terms do is not among them.
+    """
+    parts = (
+        *_elements(system, linear, cycles, time),
+        *_bearings(system),
+        *_couplings(system),
+        *_bodies(system),
+    )
+    return tuple(part for part in parts if np.any(part.damping) or np.any(part.stiffness))
+
+
+def _elements(
+    system: System, linear: LinearSystem, cycles: tuple[FlankCycle, ...], time: float
+) -> Iterator[Absorber]:
+    """Yield the force elements but those of rotating frames."""
+    arrays, elements = system.arrays, system.arrays.elements
+    rest = np.zeros(arrays.mass.shape[0])
+    local = local_state(arrays, time, linear.equilibrium.displacement, rest)
+    tangents = local.tangent - swept_by_frames(elements, local, local.pace)
+    for e, (first, end) in enumerate(zip(elements.first[:-1], elements.first[1:], strict=True)):
+        if elements.law[e] == Law.ROTATING_FRAME:
+            continue
+        own = slice(first, end)
+        tangent = cycles[e].tangent if e < len(cycles) else tangents[own, : end - first]
+        damping = local.viscous[own, : end - first]
+        yield Absorber(*_element_part(system, e), arrays.direction[own], tangent, damping)
+
+
+def _element_part(system: System, element: int) -> tuple[str, str]:
+    """Return the name of the part that a force element belongs to, and its kind."""
+    scene, elements = system.scene, system.arrays.elements
+    law, entry, count = elements.law[element], int(elements.entry[element]), elements.law.size
+    on_bearings = (*system.housed, *system.bearings)
+    if element >= count - len(on_bearings):
+        return on_bearings[element - count].name, "bearing"
+    if law in FLANKS:
+        return scene.meshes[int(elements.mesh[element])].name, "mesh"
+    if law == Law.FRAME_COUPLING:
+        return system.couplings.name[frame_couplings(scene)[entry].coupling], "coupling"
+    if law == Law.SPEED_TORQUE:
+        return scene.speed_torques[entry].name, "load"
+    loads = scene.forces if law == Law.APPLIED_FORCE else scene.unbalances
+    return loads[entry].name, "load"
+
+
+def _bearings(system: System) -> Iterator[Absorber]:
+    """Yield linear bearings: those that are springs, and groups with matrices, on a massless housing one."""
+    supports, seats, keep = system.supports, system.seats, system.freedoms.keep
+    held = ~supports.carried
+    for index in np.flatnonzero(held):
+        damping = np.diag(supports.damping[index])
+        yield _damper(supports.name[index], "bearing", keep(supports.motion[index]), damping)
+    on = np.repeat(held[seats.support], SEAT)
+    for name, at in seats.group:
+        yield _damper(name, "bearing", keep(seats.motion[at]), seats.damping[at, at] * on[at])
+
+
+def _couplings(system: System) -> Iterator[Absorber]:
+    """Yield couplings, as far as no frame turns them, and elastic drives."""
+    couplings, keep = system.couplings, system.freedoms.keep
+    for name, motion, damping in zip(couplings.name, couplings.motion, couplings.damping, strict=True):
+        yield _damper(name, "coupling", keep(motion), damping)
+    for _, drive, row in drive_springs(system.scene, system.kinematics, system.rotors, system.freedoms):
+        yield _damper(drive.name, "drive", row[None, :], np.array([[drive.damping]]))
+
+
+def _bodies(system: System) -> Iterator[Absorber]:
+    """Yield the shafts that bend and the housings that move."""
+    rotors, dampers = system.rotors, elastic_terms(system.rotors)[1]
+    columns = [(rotor.shaft.name, "shaft", elastic_columns(rotors, i)) for i, rotor in enumerate(rotors)]
+    columns += [(part.name, "housing", housing_columns(rotors, i)) for i, part in enumerate(rotors.housings)]
+    for name, kind, own in columns:
+        yield _damper(name, kind, system.freedoms.motion[own], dampers[own, own])
+
+
+def _damper(name: str, kind: str, rows: FloatArray, damping: FloatArray) -> Absorber:
+    return Absorber(name, kind, rows, np.zeros_like(damping), damping)
+
 
 # Power balance of a harmonic vibration: what excitation puts in, and what parts lose, by harmonic.
 

@@ -6,19 +6,16 @@ import math
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dynamics.assembly.assemble import System
 from dynamics.assembly.phases import repeating_phases
 from dynamics.bodies.load_course import BySpeed, Orders
 from dynamics.bodies.time_law import TimeLaw
 from dynamics.forces.law import Law
-from dynamics.linearize.common_period import CommonPeriod
-from dynamics.linearize.speeds import law_speeds
+from dynamics.linearize.operating_speeds import CommonPeriod, law_speeds
 from dynamics.mechanism.load_phases import load_orders
-from dynamics.types import FloatArray, IntArray
+from dynamics.types import ComplexArray, FloatArray, IntArray
 
-ComplexArray = NDArray[np.complex128]
 Waves = dict[Fraction, ComplexArray]
 """Amplitudes (S,) of exp(2 pi i h t / period) by the multiple h, of both signs."""
 ALONG: Waves = {Fraction(0): np.ones(1, dtype=complex)}

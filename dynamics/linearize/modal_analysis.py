@@ -11,15 +11,13 @@ from dynamics.assembly.assemble import System, assemble
 from dynamics.checks import integer, positive
 from dynamics.linearize.campbell import WhirlBranches, whirl_branches
 from dynamics.linearize.critical_speeds import CriticalSpeeds, critical_speeds
-from dynamics.linearize.energy_shares import freedom_parts, spring_parts
 from dynamics.linearize.flank_cycles import averaged, flank_cycles
 from dynamics.linearize.linear_system import LinearSystem, about_running, linearize, require_freedoms
-from dynamics.linearize.modes import Modes, natural_modes
-from dynamics.linearize.speeds import checked_speeds, leading_law, mesh_frequencies
-from dynamics.linearize.whirl import ComplexArray
+from dynamics.linearize.modes import Modes, freedom_parts, natural_modes, spring_parts
+from dynamics.linearize.operating_speeds import checked_speeds, leading_law, mesh_frequencies
 from dynamics.results.array_file import ArrayFile, Stored
 from dynamics.results.force_check import checked_ledger
-from dynamics.types import FloatArray, IntArray, Json
+from dynamics.types import ComplexArray, FloatArray, IntArray, Json
 from host import cpu_seconds
 
 # To which frequency the shafts of a modal analysis are resolved.

@@ -7,23 +7,20 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dynamics.arrays.modal_freedoms import ModalFreedoms
 from dynamics.assembly.assemble import System
 from dynamics.forces.law import Law
-from dynamics.linearize.common_period import CommonPeriod, common_period
+from dynamics.linearize.campbell import terms_at
 from dynamics.linearize.flank_cycles import SAMPLES, FlankCycle, averaged, flank_cycles
 from dynamics.linearize.linear_system import LinearSystem, about_running, linearize
 from dynamics.linearize.load_harmonics import load_harmonics
-from dynamics.linearize.speeds import law_speeds
-from dynamics.linearize.whirl import terms_at
-from dynamics.types import BoolArray, FloatArray, IntArray
+from dynamics.linearize.operating_speeds import CommonPeriod, common_period, law_speeds
+from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 
 # Forced vibration with the modal freedoms eliminated: exact, and as small as the system without them.
 
 
-ComplexArray = NDArray[np.complex128]
 ROUNDING = 1e-12
 """Of the entries of modal freedoms, that the rows of their elements may fail to explain."""
 

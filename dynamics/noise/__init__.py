@@ -2,24 +2,29 @@
 
 from dynamics.acoustics import OuterHull, outer_hull
 from dynamics.noise.coarse_hull import RadiatingHull, radiating_hull
-from dynamics.noise.housing_radiation import HousingRadiation, housing_radiation
+from dynamics.noise.housing_radiation import HousingRadiation, housing_radiation, kept_radiation
 from dynamics.noise.housing_recordings import (
     pressure_recording,
     pressure_signal,
     pressure_transfer,
+    scattered_pressure_transfer,
     sound_limit,
     velocity_recording,
 )
-from dynamics.noise.kept import kept_radiation
-from dynamics.noise.loudest import LoudPoint, loudest
-from dynamics.noise.panel_sound import PanelSound, models_at, panel_sound, side_by_side
-from dynamics.noise.radiated_sound import RadiatedSound, radiated_sound
-from dynamics.noise.regions import Region, regions
-from dynamics.noise.scattered_pressure import scattered_pressure_transfer
+from dynamics.noise.panel_sound import PanelSound, Region, models_at, panel_sound, regions, side_by_side
+from dynamics.noise.radiated_sound import LoudPoint, RadiatedSound, loudest, radiated_sound, together
 from dynamics.noise.sensitivities import DesignFigure, Sensitivity, ranked, sensitivity
-from dynamics.noise.several_housings import together
-from dynamics.noise.sound_band import GUESSES, Guess, SoundBand, largest_level, sound_band, usual_ranges
-from dynamics.noise.sound_model import SoundModel, forced_power, radiated_power
+from dynamics.noise.sound_band import (
+    GUESSES,
+    Guess,
+    SoundBand,
+    SoundModel,
+    forced_power,
+    largest_level,
+    radiated_power,
+    sound_band,
+    usual_ranges,
+)
 from dynamics.noise.sound_over_time import SoundOverTime, sound_over_time
 
 __all__ = [

@@ -1,4 +1,4 @@
-"""Sound power of a housing by order and speed, and through what it gets there."""
+"""Sound power of housings by order and speed, what is loudest in it, and through what it gets there."""
 
 from __future__ import annotations
 
@@ -7,16 +7,17 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from dynamics.acoustics import Hull, OrderPower
-from dynamics.acoustics.hull import ComplexArray
+from bounds import at_least
+from dynamics.acoustics import Hull, OrderPower, sound_power_level
+from dynamics.acoustics.levels import a_weighting
 from dynamics.errors import InputError
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.noise.housing_radiation import HousingRadiation
 from dynamics.noise.panel_sound import PanelSound
 from dynamics.results.array_file import ArrayFile, Stored
-from dynamics.types import BoolArray, FloatArray, IntArray, Json
+from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray, Json
 from dynamics.vibration import BearingHarmonics, seat_forces
-from dynamics.vibration.modal_amplitudes import modal_amplitudes
+from dynamics.vibration.housing_motion import modal_amplitudes
 
 # Sound power of a motion, and the shares of its parts: forces of bearings, modes of the housing.
 
@@ -246,4 +247,140 @@ def _result(
         in_contact=response.in_contact,
         facts={"radiation": {name: about | radiation.facts}},
         **vars(found),
+    )
+
+
+# The sound of several housings together.
+
+
+def together(sounds: Sequence[RadiatedSound]) -> RadiatedSound:
+    """Return the sound of housings under one response: powers add up, interference between them is left out.
+
+    The efficiency is that of all surfaces together.
+
+    Raises
+    ------
+    InputError
+        There is none, or their speeds and orders differ.
+    """
+    if not sounds:
+        raise InputError("sounds", len(sounds), at_least(1))
+    first = sounds[0]
+    if len(sounds) == 1:
+        return first
+    for index, sound in enumerate(sounds):
+        if not np.array_equal(sound.frequency, first.frequency):
+            raise InputError(f"sounds[{index}].frequency", "others", "those of the first")
+    plane = sum(sound.power / np.maximum(sound.efficiency, 1e-300) for sound in sounds)
+    power = _sum(sounds)
+    return RadiatedSound(
+        tuple(name for sound in sounds for name in sound.housing),
+        tuple(name for sound in sounds for name in sound.bearing),
+        tuple(name for sound in sounds for name in sound.mode_housing),
+        first.speed,
+        first.order,
+        first.frequency,
+        power,
+        np.asarray(power / np.maximum(plane, 1e-300)),
+        np.concatenate([sound.bearing_share for sound in sounds]),
+        np.concatenate([sound.bearing_alone for sound in sounds]),
+        np.concatenate([sound.mode_share for sound in sounds]),
+        np.concatenate([sound.mode_alone for sound in sounds]),
+        np.concatenate([sound.natural_frequency for sound in sounds]),
+        first.in_contact,
+        {"radiation": {name: about for sound in sounds for name, about in sound.facts["radiation"].items()}},
+    )
+
+
+def _sum(sounds: Sequence[RadiatedSound]) -> FloatArray:
+    """Return the power of all, (S, H), W."""
+    return np.asarray(np.sum([sound.power for sound in sounds], axis=0))
+
+
+QUIET = 30.0
+"""dB below the loudest beyond which a maximum is not listed."""
+
+
+@dataclass(frozen=True)
+class LoudPoint:
+    """An order at a speed at which it is louder than at the speeds beside it.
+
+    Attributes
+    ----------
+    speed_index, order_index : int
+    order, speed, frequency : float
+        Multiple of the frequency of the first mesh; rad/s; Hz.
+    level, weighted_level : float
+        dB and dB(A) re 1e-12 W.
+    efficiency : float
+        Radiation efficiency.
+    mode, natural_frequency : int, float
+        Number from 1 on, and frequency in Hz, of the mode of the housing with the largest share.
+    mode_share : float
+        Of it, of the power.
+    mode_housing : str
+    bearing : str
+        With the largest share.
+    bearing_level, level_without_bearing : float
+        dB(A): of its force alone, and of what is left without it.
+    in_contact : bool
+        Whether all flanks stay in contact there; where not, no linear answer holds.
+    """
+
+    speed_index: int
+    order_index: int
+    order: float
+    speed: float
+    frequency: float
+    level: float
+    weighted_level: float
+    efficiency: float
+    mode: int
+    natural_frequency: float
+    mode_share: float
+    mode_housing: str
+    bearing: str
+    bearing_level: float
+    level_without_bearing: float
+    in_contact: bool
+
+
+def loudest(sound: RadiatedSound, count: int = 15) -> tuple[LoudPoint, ...]:
+    """Return the maxima over speed of the A-weighted levels of all orders, the loudest first.
+
+    The ends of the speeds count too. Maxima `QUIET` below the loudest are left out; silence has none.
+    """
+    level = sound.orders.weighted_level.T
+    if not np.any(sound.power > 0.0):
+        return ()
+    beside = np.pad(level, ((1, 1), (0, 0)), constant_values=-np.inf)
+    peak = (level > beside[:-2]) & (level >= beside[2:]) & (level >= level.max() - QUIET)
+    rows, columns = np.nonzero(peak)
+    order = np.argsort(-level[rows, columns], kind="stable")[:count]
+    return tuple(_point(sound, int(rows[k]), int(columns[k])) for k in order)
+
+
+def _point(sound: RadiatedSound, s: int, h: int) -> LoudPoint:
+    power, hertz = float(sound.power[s, h]), float(sound.frequency[s, h])
+    mode, bearing = int(np.argmax(sound.mode_share[:, s, h])), int(np.argmax(sound.bearing_share[:, s, h]))
+    own = mode - sound.mode_housing.index(sound.mode_housing[mode])
+    powers = np.array([power, sound.bearing_alone[bearing, s, h], sound.without_bearing[bearing, s, h]])
+    weighted: FloatArray = sound_power_level(np.maximum(powers, 0.0)) + a_weighting(hertz)
+    return LoudPoint(
+        s,
+        h,
+        float(sound.order[h]),
+        float(sound.speed[s]),
+        hertz,
+        float(sound_power_level(power)),
+        float(weighted[0]),
+        float(sound.efficiency[s, h]),
+        own + 1,
+        float(sound.natural_frequency[mode]),
+        float(sound.mode_share[mode, s, h]) / power,
+        sound.mode_housing[mode],
+        sound.bearing[bearing],
+        float(weighted[1]),
+        float(weighted[2]),
+        bool(sound.in_contact[s]),
     )

@@ -9,7 +9,7 @@ import numpy as np
 
 from bounds import at_least, between
 from dynamics.acoustics import a_weighting, sound_power_level
-from dynamics.acoustics.run_recording import LOWEST
+from dynamics.acoustics.recording import LOWEST
 from dynamics.errors import InputError
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.noise.housing_radiation import HousingRadiation

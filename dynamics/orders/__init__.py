@@ -1,12 +1,23 @@
 """Spectra of run results: over frequency, over mesh orders, and their peaks."""
 
-from dynamics.orders.bearing_orders import BearingOrders, bearing_orders
-from dynamics.orders.bearing_signals import bearing_signals
-from dynamics.orders.order_frequency import leading_shaft, order_frequency
-from dynamics.orders.peaks import Peak, find_peaks
-from dynamics.orders.position_grid import resample_to_position
-from dynamics.orders.sidebands import Sideband, sidebands
-from dynamics.orders.spectrum import MeshOrder, Spectrum, mesh_orders, spectrum, window_spectrum
+from dynamics.orders.bearing_orders import BearingOrders, bearing_orders, bearing_signals
+from dynamics.orders.resampling import (
+    highest_valid_order,
+    leading_shaft,
+    order_frequency,
+    resample_to_position,
+)
+from dynamics.orders.spectrum import (
+    MeshOrder,
+    Peak,
+    Sideband,
+    Spectrum,
+    find_peaks,
+    mesh_orders,
+    sidebands,
+    spectrum,
+    window_spectrum,
+)
 from dynamics.orders.third_octaves import (
     OrderTrack,
     ThirdOctaves,
@@ -19,7 +30,6 @@ from dynamics.orders.third_octaves import (
     order_waterfall,
     third_octaves,
 )
-from dynamics.orders.valid_orders import highest_valid_order
 
 __all__ = [
     "BearingOrders",

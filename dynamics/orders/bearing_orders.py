@@ -11,12 +11,29 @@ import numpy as np
 from bounds import at_least
 from dynamics.checks import integer
 from dynamics.errors import InputError
-from dynamics.orders.bearing_signals import bearing_signals
-from dynamics.orders.order_frequency import leading_shaft
-from dynamics.orders.valid_orders import checked_order
+from dynamics.orders.resampling import checked_order, leading_shaft
 from dynamics.results import RunResult
-from dynamics.results.order_fit import ComplexArray, order_phasors, unwrapped
-from dynamics.types import BoolArray, FloatArray, IntArray, Json
+from dynamics.results.order_fit import order_phasors, unwrapped
+from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray, Json
+
+# Forces and moments on the bearings of a run.
+
+
+def bearing_signals(result: RunResult) -> FloatArray:
+    """Return forces on bearings over time, (b, 3, T) in N, with moments (b, 6, T) in N m where there are any.
+
+    Raises
+    ------
+    InputError
+        The run holds no bearing forces.
+    """
+    if not len(result.bearing_force):
+        advice = "Run the scene with bearing forces among its outputs."
+        raise InputError("bearing_force", "none", "a run with bearing forces", advice)
+    if not result.bearing_moment.size:
+        return result.bearing_force
+    return np.concatenate([result.bearing_force, result.bearing_moment], axis=1)
+
 
 # Harmonics of all meshes of a run, counted by the frequency of one of them.
 

@@ -1,16 +1,21 @@
-"""Amplitude spectra of time series, and where the mesh orders lie in them."""
+"""Spectra of a stretch of a run: amplitudes, their peaks and sidebands."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from dynamics.checks import integer, one_of, positive
 from dynamics.errors import InputError
+from dynamics.orders.resampling import checked_order, resample_to_position
 from dynamics.results import RunResult
 from dynamics.results.series import SERIES
 from dynamics.types import FloatArray
+
+# Amplitude spectra of time series, and where the mesh orders lie in them.
+
 
 WINDOWS = ("hann", "rectangular", "flat_top")
 FLAT_TOP = (0.21557895, -0.41663158, 0.277263158, -0.083578947, 0.006947368)  # ISO 18431-2
@@ -119,3 +124,132 @@ def _window(name: str, samples: int) -> FloatArray:
     phase = 2.0 * np.pi * np.arange(samples) / samples
     terms = {"hann": (0.5, -0.5), "rectangular": (1.0,), "flat_top": FLAT_TOP}[name]
     return np.asarray(sum(term * np.cos(k * phase) for k, term in enumerate(terms)), dtype=float)
+
+
+# Peaks of a spectrum.
+
+
+@dataclass(frozen=True)
+class Peak:
+    """A local maximum of a spectrum.
+
+    Attributes
+    ----------
+    frequency : float
+        Hz, between the lines: the vertex of the parabola through the logarithms of the three highest.
+    amplitude : float
+        At that vertex, in the spectrum's unit: within 3 % for a sinusoid under a Hann window.
+    """
+
+    frequency: float
+    amplitude: float
+
+
+def find_peaks(
+    spectrum: Spectrum, count: int = 10, low: float = 0.0, high: float = np.inf
+) -> tuple[Peak, ...]:
+    """Return the `count` highest peaks between `low` and `high` (Hz), highest first; the mean is none.
+
+    Raises
+    ------
+    InputError
+        If the spectrum holds more than one signal.
+    """
+    lines = spectrum.amplitude
+    if lines.ndim != 1:
+        raise InputError(
+            "spectrum.amplitude", lines.shape, "of one signal, (K,)", "Pick one bearing and direction."
+        )
+    inner = np.arange(2, lines.size - 1)
+    inside = (spectrum.frequency[inner] >= low) & (spectrum.frequency[inner] <= high)
+    tops = inner[inside & (lines[inner] > lines[inner - 1]) & (lines[inner] >= lines[inner + 1])]
+    tops = tops[np.argsort(lines[tops])[::-1][:count]]
+    return tuple(_vertex(spectrum, int(top)) for top in tops)
+
+
+def _vertex(spectrum: Spectrum, top: int) -> Peak:
+    """Parabola through the logarithms of three lines."""
+    left, middle, right = np.log(np.maximum(spectrum.amplitude[top - 1 : top + 2], 1e-300))
+    bend = left - 2.0 * middle + right
+    shift = 0.5 * (left - right) / bend if bend < 0.0 else 0.0
+    height = middle - 0.25 * (left - right) * shift
+    return Peak(float(spectrum.frequency[top] + shift * spectrum.resolution), float(np.exp(height)))
+
+
+ORDERS = 3
+"""Mesh orders with sidebands where no number is given, as far as the output holds them."""
+REVOLUTIONS = 4
+"""Least length in periods of the modulation: under a Hann window a line reaches one line to either side."""
+
+
+@dataclass(frozen=True)
+class Sideband:
+    """One line beside a mesh order.
+
+    Attributes
+    ----------
+    source : str
+        What modulates: the name of a gear, or that given.
+    mesh_order, number : int
+        Beside which multiple of the mesh frequency, and the how manieth: < 0 below, 0 the mesh order itself.
+    order : float
+        mesh_order + number * spacing, multiples of the mesh frequency.
+    amplitude : float
+        Peak amplitude, in the unit of the signal.
+    """
+
+    source: str
+    mesh_order: int
+    number: int
+    order: float
+    amplitude: float
+
+
+def sidebands(
+    result: RunResult,
+    values: FloatArray,
+    orders: int = 3,
+    count: int = 3,
+    mesh: int = 0,
+    periods: Mapping[str, int] | None = None,
+) -> tuple[Sideband, ...]:
+    """Return `count` sidebands on either side of the first `orders` mesh orders of the signal `values` (T,).
+
+    Parameters
+    ----------
+    periods : mapping of str to int, optional
+        Names and periods of what may modulate, in base pitches; left out: both gears with their teeth. What
+        a planet carrier modulates has the ring's teeth as its period.
+
+    Raises
+    ------
+    InputError
+        If the run is shorter than four periods, or its output does not hold the orders.
+    """
+    orders = checked_order(result, "orders", orders, mesh, ORDERS)
+    integer("count", count, 0, 1000)
+    if np.ndim(values) != 1:
+        raise InputError("values", np.shape(values), "one signal, (T,)", "Pick one bearing and direction.")
+    per_pitch = max(64, 8 * (orders + 1))
+    grid, _, signal = resample_to_position(result, values, per_pitch, mesh)
+    bands: list[Sideband] = []
+    for source, period in (periods or _gear_periods(result, mesh)).items():
+        turns = grid.size // (period * per_pitch)
+        if turns < REVOLUTIONS:
+            bound = f"at least {REVOLUTIONS * period} base pitches for sidebands of {source}"
+            raise InputError("result", f"{grid.size // per_pitch} base pitches", bound, "Run for longer.")
+        lines = spectrum(signal[-turns * period * per_pitch :], float(per_pitch)).amplitude
+        for order in range(1, orders + 1):
+            for number in range(-count, count + 1):
+                line = (order * period + number) * turns
+                at = order + number / period
+                if line > 0:
+                    bands.append(Sideband(source, order, number, at, float(lines[line])))
+    return tuple(bands)
+
+
+def _gear_periods(result: RunResult, mesh: int = 0) -> dict[str, int]:
+    """Return the tooth numbers of both gears of a mesh by name: their revolutions in base pitches."""
+    teeth = {gear["name"]: int(gear["teeth"]) for gear in result.case["gears"]}
+    pair = result.case["meshes"][mesh]
+    return {name: teeth[name] for name in (pair["driver"], pair["driven"])}

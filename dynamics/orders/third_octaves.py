@@ -9,9 +9,8 @@ import numpy as np
 from bounds import Bound, at_least, at_most, between
 from dynamics.checks import integer
 from dynamics.errors import InputError
-from dynamics.orders.position_grid import check_series, resample_to_position
+from dynamics.orders.resampling import check_series, checked_order, resample_to_position
 from dynamics.orders.spectrum import Spectrum, spectrum
-from dynamics.orders.valid_orders import checked_order
 from dynamics.results import RunResult
 from dynamics.types import FloatArray, IntArray
 

@@ -5,11 +5,8 @@ from __future__ import annotations
 from enum import Enum
 
 import numpy as np
-from numpy.typing import NDArray
 
-from dynamics.types import FloatArray
-
-ComplexArray = NDArray[np.complex128]
+from dynamics.types import ComplexArray, FloatArray
 
 ON_THE_CIRCLE = 1e-6  # multipliers of undamped motions lie on it but for rounding
 

@@ -8,10 +8,9 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
 from dynamics.motion.observation import observe, static_deflections
-from dynamics.periodic.floquet import ComplexArray
 from dynamics.periodic.period_map import PeriodicProblem, PeriodMap
 from dynamics.periodic.shooting import Orbit
-from dynamics.types import FloatArray
+from dynamics.types import ComplexArray, FloatArray
 
 SAMPLES_PER_PITCH = 64  # at least; as many powers of 2 more as there are steps
 

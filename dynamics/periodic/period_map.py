@@ -19,9 +19,9 @@ from dynamics.integrators import static_equilibrium
 from dynamics.integrators.advance import prepare_steps
 from dynamics.integrators.workspace import Workspace, make_workspace
 from dynamics.linearize import Modes, natural_modes
-from dynamics.linearize.common_period import CommonPeriod, common_period
 from dynamics.linearize.linear_system import about_running, require_freedoms
 from dynamics.linearize.load_harmonics import load_cycles
+from dynamics.linearize.operating_speeds import CommonPeriod, common_period
 from dynamics.mechanism.additions import ELEMENT_PASSING
 from dynamics.periodic.march import HALVINGS, march
 from dynamics.types import FloatArray, IntArray

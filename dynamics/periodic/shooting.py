@@ -7,9 +7,9 @@ from enum import IntEnum
 
 import numpy as np
 
-from dynamics.periodic.floquet import ComplexArray, Instability, floquet_multipliers, instability
+from dynamics.periodic.floquet import Instability, floquet_multipliers, instability
 from dynamics.periodic.period_map import PeriodicProblem, PeriodMap
-from dynamics.types import FloatArray
+from dynamics.types import ComplexArray, FloatArray
 
 ITERATION_LIMIT = 30
 HALVINGS = 12

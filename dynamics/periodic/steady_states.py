@@ -10,15 +10,15 @@ import numpy as np
 from dynamics.assembly.assemble import System
 from dynamics.checks import integer
 from dynamics.errors import InputError
-from dynamics.linearize.speeds import checked_speeds, leading_law
+from dynamics.linearize.operating_speeds import checked_speeds, leading_law
 from dynamics.periodic.continuation import Branch, follow_branch
-from dynamics.periodic.floquet import ComplexArray, Instability
+from dynamics.periodic.floquet import Instability
 from dynamics.periodic.motion import motion
 from dynamics.periodic.period_map import PeriodicProblem, PeriodMap, periodic_problem
 from dynamics.periodic.shooting import Orbit, find_orbit
 from dynamics.results.array_file import ArrayFile, Stored
 from dynamics.results.force_check import checked_ledger
-from dynamics.types import FloatArray, IntArray, Json
+from dynamics.types import ComplexArray, FloatArray, IntArray, Json
 from host import cpu_seconds
 
 # Figures of periodic motions: size of the transmission error, forces, contact, stability.

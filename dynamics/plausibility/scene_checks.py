@@ -10,7 +10,7 @@ import numpy as np
 
 from bounds import Check, Checklist, Finding, engineering
 from dynamics.bodies import GearBody, Inertia, Shaft
-from dynamics.effects.mechanism_of import mechanism_of
+from dynamics.effects.ledger import mechanism_of
 from dynamics.joints import Bushing, PlanetBearing
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.scene import Scene

@@ -1,7 +1,6 @@
 """Results of a run: time series, status, statistics, energy audit, files."""
 
 from dynamics.results.energy_audit import EnergyAudit
-from dynamics.results.run_result import RunResult
-from dynamics.results.step_statistics import StepStatistics
+from dynamics.results.run_result import RunResult, StepStatistics
 
 __all__ = ["EnergyAudit", "RunResult", "StepStatistics"]

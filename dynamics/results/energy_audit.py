@@ -1,4 +1,4 @@
-"""The energy audit: what went in, what is stored, what was lost, and what is missing."""
+"""Whether the energy audit of a run closes, and whether every loss in it only grew."""
 
 from __future__ import annotations
 
@@ -6,7 +6,10 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
+from bounds import engineering
 from dynamics.types import FloatArray, Json
+
+# The energy audit: what went in, what is stored, what was lost, and what is missing.
 
 
 @dataclass(frozen=True)
@@ -98,3 +101,30 @@ class EnergyAudit:
         """Build from works in the order of the first seven fields and stored energies (2, 3), start, end."""
         gained, held = stored[1] - stored[0], np.sum(np.abs(stored[0, 1:]))
         return cls(*(float(value) for value in (*work, *gained, held, fallen)))
+
+
+UNACCOUNTED = 0.01
+"""Of the turnover: more that is not accounted for means that steps miss the motion."""
+FALLEN = 1e-3
+"""Of the turnover: a loss that falls by more has driven; less is the error of a step's weights."""
+
+
+def energy_check(audit: EnergyAudit) -> Json:
+    """Return the entry of `audit`: what is unaccounted for over the turnover, how far a loss fell in J."""
+    lost = audit.fallen > FALLEN * audit.turnover
+    missing = audit.relative > UNACCOUNTED
+    reason = f"{engineering(100.0 * audit.relative, 2)} % of {audit.turnover:.3g} J is not accounted for"
+    if missing:
+        reason = f"{reason}: shorten the fixed step, or lower the tolerance of the step control"
+    if lost:
+        reason = f"{reason}; a loss fell by {audit.fallen:.3g} J, so it supplied energy"
+    return {
+        "effect": "",
+        "assumption": "work is balanced and losses only grow",
+        "part": "energy audit",
+        "holds": not (lost or missing),
+        "valid": not (lost or missing),
+        "unaccounted": audit.relative,
+        "fallen": audit.fallen,
+        "reason": reason,
+    }

@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from dynamics.types import FloatArray
-
-ComplexArray = NDArray[np.complex128]
+from dynamics.types import ComplexArray, FloatArray
 
 
 def unwrapped(position: FloatArray) -> FloatArray:

@@ -16,8 +16,8 @@ from dynamics.mechanism.additions import BEARING_LAWS, COAST_FLANKS, MISALIGNMEN
 from dynamics.mechanism.flank_gradients import distance_gradient, misalignment_gradient
 from dynamics.motion.observation import static_deflections
 from dynamics.motion.sampled_states import States
-from dynamics.results.axis_series import FIELDS, axis_rows
 from dynamics.results.force_check import ForceChecks
+from dynamics.results.histories import FIELDS, axis_rows
 from dynamics.types import FloatArray, Json
 
 # Whether a run stayed on the axes of its mesh-force tables.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,11 +11,43 @@ import numpy as np
 from bounds import Quantity, Text
 from dynamics.errors import InputError
 from dynamics.results.energy_audit import EnergyAudit
-from dynamics.results.step_statistics import StepStatistics
 from dynamics.types import FloatArray, Json, RunStatus
 
 if TYPE_CHECKING:
     import xarray
+
+# The work of the integrator.
+
+
+@dataclass(frozen=True)
+class StepStatistics:
+    """Counts and sizes of the steps of a run.
+
+    Attributes
+    ----------
+    accepted, rejected : int
+        Steps.
+    newton_failures : int
+        Rejected steps in which Newton's method failed.
+    newton_mean : float
+        Newton iterations per implicit stage; 0 for an explicit method.
+    newton_most : int
+        In one stage.
+    smallest_step, largest_step : float
+        Accepted, s.
+    """
+
+    accepted: int
+    rejected: int
+    newton_failures: int
+    newton_mean: float
+    newton_most: int
+    smallest_step: float
+    largest_step: float
+
+    def to_json(self) -> Json:
+        """Return plain numbers."""
+        return asdict(self)
 
 
 @dataclass(frozen=True)
@@ -153,13 +185,13 @@ class RunResult:
 
     def to_xarray(self) -> xarray.Dataset:
         """Return the series as a dataset with units, the rest as JSON attributes."""
-        from dynamics.results.netcdf import to_dataset  # noqa: PLC0415 - xarray takes a second to import
+        from dynamics.results.run_files import to_dataset  # noqa: PLC0415 - xarray takes a second to import
 
         return to_dataset(self)
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write a netCDF-4 file atomically, with lossless compression."""
-        from dynamics.results.netcdf import write_netcdf  # noqa: PLC0415
+        from dynamics.results.run_files import write_netcdf  # noqa: PLC0415
 
         write_netcdf(self, Path(path))
 
@@ -172,12 +204,12 @@ class RunResult:
         ResultError
             If the file is no run result of this schema.
         """
-        from dynamics.results.netcdf import read_netcdf  # noqa: PLC0415
+        from dynamics.results.run_files import read_netcdf  # noqa: PLC0415
 
         return read_netcdf(Path(path))
 
     def to_csv(self, path: str | Path) -> None:
         """Write one row per sample, one column per series, units in the header."""
-        from dynamics.results.csv_export import write_csv  # noqa: PLC0415
+        from dynamics.results.run_files import write_csv  # noqa: PLC0415
 
         write_csv(self, Path(path))

@@ -21,18 +21,17 @@ from dynamics.integrators.workspace import Count
 from dynamics.joints import RollingBearing
 from dynamics.linearize import natural_modes
 from dynamics.linearize.campbell import whirl_branches
-from dynamics.linearize.energy_shares import freedom_parts
 from dynamics.linearize.linear_system import LinearSystem, linearize
-from dynamics.linearize.speeds import leading_law, mesh_frequencies
+from dynamics.linearize.modes import freedom_parts
+from dynamics.linearize.operating_speeds import leading_law, mesh_frequencies
 from dynamics.mechanism.additions import SPEED_DEPENDENCE
 from dynamics.mechanism.bearing_elements import BearingElement
 from dynamics.motion.observation import local_state, observe
 from dynamics.motion.sampled_states import States
 from dynamics.plausibility import scene_findings
 from dynamics.results import EnergyAudit, StepStatistics
-from dynamics.results.case import resolved_case
-from dynamics.results.effect_ledger import effect_ledger
-from dynamics.results.energy_check import energy_check
+from dynamics.results.case import effect_ledger, resolved_case
+from dynamics.results.energy_audit import energy_check
 from dynamics.results.histories import checked_series, filtered, histories, unfiltered
 from dynamics.results.run_checks import RunChecks
 from dynamics.rolling_bearings import LoadedBearing

@@ -25,10 +25,9 @@ from dynamics.integrators.start_value import Trail
 from dynamics.integrators.state_sink import blocks
 from dynamics.motion.sampled_states import States
 from dynamics.plausibility import scene_findings
-from dynamics.results.netcdf import attributes
+from dynamics.results.force_check import ending
 from dynamics.results.run_checks import RunChecks
-from dynamics.results.run_file import RunFile
-from dynamics.results.verdict import ending
+from dynamics.results.run_files import RunFile, attributes
 from dynamics.scene import Scene
 from dynamics.simulation.documents import (
     documents,

@@ -2,8 +2,7 @@
 
 from dynamics.study.design import Design, Distribution, Factor, Levels, Listed, Normal, Uniform
 from dynamics.study.responses import QUANTITIES, Response, responses_of
-from dynamics.study.result import Spread, Study
-from dynamics.study.run_study import OneByOne, Scenes, StudyTask, Workers, keep_runs, study
+from dynamics.study.run_study import OneByOne, Scenes, Spread, Study, StudyTask, Workers, keep_runs, study
 
 __all__ = [
     "QUANTITIES",

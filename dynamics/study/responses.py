@@ -10,11 +10,10 @@ import numpy as np
 
 from dynamics.checks import integer, one_of, within
 from dynamics.errors import InputError
-from dynamics.orders.valid_orders import checked_order
+from dynamics.orders.resampling import checked_order
 from dynamics.results import RunResult
-from dynamics.results.contact_state import ContactState
+from dynamics.results.mesh_figures import ContactState, planet_load_sharing
 from dynamics.results.order_fit import order_amplitudes, unwrapped
-from dynamics.results.planet_load_sharing import planet_load_sharing
 from dynamics.types import FloatArray
 
 # The part of a run that responses are taken from, with what several of them need.

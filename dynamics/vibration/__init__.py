@@ -1,14 +1,23 @@
 """Vibration of housings under the forces of their bearings."""
 
-from dynamics.vibration.bearing_harmonics import BearingHarmonics, ReportedHarmonics
-from dynamics.vibration.housing_motion import housing_motion
-from dynamics.vibration.housing_power import HousingPower, housing_power
-from dynamics.vibration.housing_vibration import HousingVibration, housing_vibration
-from dynamics.vibration.levels import overall, vibration_level
-from dynamics.vibration.motion_quantity import MotionQuantity
-from dynamics.vibration.points import named_points
-from dynamics.vibration.seat_forces import finer_seat_forces, run_seat_forces, seat_forces
-from dynamics.vibration.surface_weight import mean_square, surface_weight
+from dynamics.vibration.housing_motion import HousingPower, housing_motion, housing_power
+from dynamics.vibration.housing_vibration import (
+    HousingVibration,
+    MotionQuantity,
+    housing_vibration,
+    mean_square,
+    named_points,
+    overall,
+    surface_weight,
+    vibration_level,
+)
+from dynamics.vibration.seat_forces import (
+    BearingHarmonics,
+    ReportedHarmonics,
+    finer_seat_forces,
+    run_seat_forces,
+    seat_forces,
+)
 from dynamics.vibration.time_signal import motion_pieces, motion_signal, point_signal
 from dynamics.vibration.vibration_analysis import (
     Parts,

@@ -1,14 +1,86 @@
-"""Motion of a reduced housing under harmonic forces on its seats."""
+"""Motion of a housing by order and speed, and the power that flows into it."""
 
 from __future__ import annotations
+
+import math
+from dataclasses import dataclass
 
 import numpy as np
 
 from dynamics.errors import InputError
 from dynamics.housing_modes.reduced_housing import ReducedHousing
-from dynamics.types import FloatArray
-from dynamics.vibration.modal_amplitudes import modal_amplitudes
-from dynamics.vibration.seat_forces import ComplexArray
+from dynamics.types import ComplexArray, FloatArray
+
+# Amplitudes of the modes of a reduced housing under harmonic forces.
+
+
+ROUNDING = 1e-9
+"""Of the damping of two modes: what couples them by less is rounding."""
+BLOCK = 64
+"""Frequencies whose matrices are held at a time, where modes are coupled by damping."""
+
+
+def modal_amplitudes(housing: ReducedHousing, frequency: FloatArray, force: ComplexArray) -> ComplexArray:
+    """Return amplitudes of `ReducedHousing.modes`, with damping between modes.
+
+    Parameters
+    ----------
+    housing : ReducedHousing
+        With mass.
+    frequency : (N,) array
+        Hz.
+    force : (N, e, q) or (1, e, q) complex array
+        On the first q reduced coordinates, e loads at each frequency.
+
+    Returns
+    -------
+    (N, e, m) array
+        Complex peak amplitudes; modes have unit modal mass.
+
+    Raises
+    ------
+    InputError
+        The housing has no mass, or it resonates there without damping.
+    """
+    if not np.any(housing.mass):
+        raise InputError("mass", 0.0, "a housing with mass", "Reduce its mesh, or give its mass matrix.")
+    natural, shape = housing.modes
+    damping = shape.T @ housing.damping @ shape
+    omega = 2.0 * math.pi * np.asarray(frequency, dtype=float)
+    pushed = np.asarray(force) @ shape[: np.shape(force)[-1]]
+    own = np.diag(damping)
+    square = natural**2 - omega[:, None] ** 2
+    try:
+        if np.all(np.abs(damping - np.diag(own)) <= ROUNDING * np.sqrt(np.outer(own, own).clip(0.0))):
+            return _uncoupled(square + 1j * omega[:, None] * own, pushed)
+        return _coupled(square, omega, damping, pushed)
+    except np.linalg.LinAlgError as error:
+        advice = "The housing resonates there without damping, or moves freely."
+        raise InputError("frequency", "singular", "off resonances without damping", advice) from error
+
+
+def _uncoupled(dynamic: ComplexArray, pushed: ComplexArray) -> ComplexArray:
+    """Divide by the dynamic stiffness of every mode, (N, m)."""
+    if not np.all(dynamic):
+        raise np.linalg.LinAlgError("a dynamic stiffness is zero")
+    return np.asarray(pushed / dynamic[:, None, :])
+
+
+def _coupled(
+    square: FloatArray, omega: FloatArray, damping: FloatArray, pushed: ComplexArray
+) -> ComplexArray:
+    """Solve for all modes together, a block of frequencies at a time."""
+    loads = np.broadcast_to(pushed, (omega.size, *pushed.shape[1:]))
+    amplitude = np.empty(loads.shape, dtype=complex)
+    for first in range(0, omega.size, BLOCK):
+        part = slice(first, first + BLOCK)
+        dynamic = 1j * omega[part, None, None] * damping + np.eye(len(damping)) * square[part, None, :]
+        solved = np.linalg.solve(dynamic, np.swapaxes(loads[part], 1, 2))
+        amplitude[part] = np.swapaxes(solved, 1, 2)
+    return amplitude
+
+
+# Motion of a reduced housing under harmonic forces on its seats.
 
 
 def housing_motion(housing: ReducedHousing, frequency: FloatArray, force: ComplexArray) -> ComplexArray:
@@ -40,3 +112,58 @@ def housing_motion(housing: ReducedHousing, frequency: FloatArray, force: Comple
     loads = np.reshape(force, (hertz.size, 1, housing.motions))
     amplitude = modal_amplitudes(housing, hertz.ravel(), loads)[:, 0]
     return np.asarray((amplitude @ housing.modes[1].T).reshape(*hertz.shape, -1))
+
+
+@dataclass(frozen=True)
+class HousingPower:
+    """Mean powers by harmonics, (...,) each, W.
+
+    Attributes
+    ----------
+    input : array
+        Of the bearings, at the seats.
+    own : array
+        Lost by the damping of the housing's modes.
+    mounts : array
+        Lost in the dampers of the mounts: structure-borne power. Fixed feet take none.
+    """
+
+    input: FloatArray
+    own: FloatArray
+    mounts: FloatArray
+
+    @property
+    def residual(self) -> float:
+        """Power that is put in and lost nowhere, of the largest input."""
+        missing = np.abs(self.input - self.own - self.mounts)
+        return float(np.max(missing, initial=0.0) / max(np.max(np.abs(self.input), initial=0.0), 1e-300))
+
+
+def housing_power(housing: ReducedHousing, frequency: FloatArray, force: ComplexArray) -> HousingPower:
+    """Return where the power goes that bearings put into a housing.
+
+    Parameters
+    ----------
+    housing : ReducedHousing
+        With mass. Where `mount_damping` is None all its losses are its own.
+    frequency : (...,) array
+        Hz, any shape.
+    force : (..., s) array
+        Complex peak amplitudes on the motions of the seats, N and N m (`seat_forces`).
+
+    Raises
+    ------
+    InputError
+        As `housing_motion`.
+    """
+    motion = housing_motion(housing, frequency, force)
+    rate = 2.0j * math.pi * np.asarray(frequency, dtype=float)[..., None] * motion
+    put_in = 0.5 * np.real(np.sum(force * rate[..., : housing.motions].conj(), axis=-1))
+    mounts = np.zeros_like(housing.damping) if housing.mount_damping is None else housing.mount_damping
+    own, through = (_dissipated(matrix, rate) for matrix in (housing.damping - mounts, mounts))
+    return HousingPower(np.asarray(put_in), own, through)
+
+
+def _dissipated(damping: FloatArray, rate: ComplexArray) -> FloatArray:
+    """Return the mean power of a damping matrix at velocities (..., r) of the coordinates, (...,) W."""
+    return np.asarray(0.5 * np.real(np.einsum("...i,ij,...j->...", rate.conj(), damping, rate)))

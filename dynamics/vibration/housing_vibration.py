@@ -1,20 +1,141 @@
-"""Vibration of a housing's points and surface under its bearings, by order and speed."""
+"""Vibration of a housing: its quantities, levels and points, and the spectra of its surface.
+
+References
+----------
+.. [1] ISO 1683:2015, Acoustics - Preferred reference values: 1 pm, 1 nm/s, 1 um/s^2, root mean square.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import StrEnum, auto
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from dynamics.housing_modes.reduced_housing import ReducedHousing
-from dynamics.types import BoolArray, FloatArray
-from dynamics.vibration.bearing_harmonics import BearingHarmonics
+from dynamics.acoustics import outer_hull
+from dynamics.errors import InputError
+from dynamics.housing_modes.reduced_housing import PointMotion, ReducedHousing
+from dynamics.types import BoolArray, ComplexArray, FloatArray
 from dynamics.vibration.housing_motion import housing_motion
-from dynamics.vibration.motion_quantity import MotionQuantity
-from dynamics.vibration.points import point_rows
-from dynamics.vibration.seat_forces import ComplexArray, seat_forces
-from dynamics.vibration.surface_weight import mean_square, surface_weight
+from dynamics.vibration.seat_forces import BearingHarmonics, seat_forces
+
+# Quantities of a vibration: displacement and its rates.
+
+
+class MotionQuantity(StrEnum):
+    """What of a motion is meant."""
+
+    DISPLACEMENT = auto()
+    VELOCITY = auto()
+    ACCELERATION = auto()
+
+    @property
+    def rate(self) -> int:
+        """Number of derivatives in time: 0, 1, 2."""
+        return list(MotionQuantity).index(self)
+
+    def of(self, displacement: ComplexArray, frequency: FloatArray) -> ComplexArray:
+        """Return complex amplitudes of the quantity, by those of the displacement in m or rad.
+
+        Parameters
+        ----------
+        displacement : array
+        frequency : array
+            Hz, of a shape that spreads over that of `displacement`.
+        """
+        return np.asarray((2j * math.pi * np.asarray(frequency)) ** self.rate * displacement)
+
+
+# Levels of vibration in decibels.
+
+
+REFERENCE = {
+    MotionQuantity.DISPLACEMENT: 1e-12,
+    MotionQuantity.VELOCITY: 1e-9,
+    MotionQuantity.ACCELERATION: 1e-6,
+}
+"""Root mean square values of 0 dB, SI, of [1]_."""
+FLOOR = -200.0
+"""Level of no motion at all, dB: -inf would spread through sums and plots."""
+
+
+def vibration_level(rms: ArrayLike, quantity: MotionQuantity = MotionQuantity.VELOCITY) -> FloatArray:
+    """Return the level of root mean square values, dB re 1 nm/s for velocities, at least `FLOOR`.
+
+    Parameters
+    ----------
+    rms : array
+        m, m/s or m/s^2, any shape; 1/sqrt(2) of a peak amplitude.
+    quantity : MotionQuantity
+
+    Raises
+    ------
+    InputError
+        If a value is negative or no number.
+    """
+    values = np.asarray(rms, dtype=float)
+    if not np.all(values >= 0.0):
+        raise InputError("rms", float(np.min(values)), "at least 0 everywhere")
+    return np.asarray(20.0 * np.log10(np.maximum(values / REFERENCE[quantity], 10.0 ** (FLOOR / 20.0))))
+
+
+def overall(rms: ArrayLike, axis: int = -1) -> FloatArray:
+    """Return the root mean square of all harmonics together: the root of the sum of their squares."""
+    return np.asarray(np.sqrt(np.sum(np.square(np.asarray(rms, dtype=float)), axis=axis)))
+
+
+# Named points of a reduced housing.
+
+
+def named_points(housing: ReducedHousing, names: Sequence[str] | None = None) -> tuple[PointMotion, ...]:
+    """Return points by their names, by default all.
+
+    Raises
+    ------
+    InputError
+        The housing has no such point, or none at all.
+    """
+    if not housing.points:
+        raise InputError(
+            "points", [], "at least one named point", "Name points where the housing is reduced."
+        )
+    point_of = {point.name: point for point in housing.points}
+    for index, name in enumerate(names or ()):
+        if name not in point_of:
+            raise InputError(f"points[{index}]", name, f"one of {', '.join(point_of)}")
+    return tuple(point_of.values()) if names is None else tuple(point_of[name] for name in names)
+
+
+def point_rows(housing: ReducedHousing, names: Sequence[str] | None = None) -> FloatArray:
+    """Return the motion of named points per reduced coordinate, (k, 3, r); by default of all, even none."""
+    points = named_points(housing, names) if housing.points or names else ()
+    return np.array([point.motion for point in points]).reshape(-1, 3, len(housing.mass))
+
+
+# The mean square of the motion of a surface, as a quadratic form of the reduced coordinates.
+
+
+def surface_weight(housing: ReducedHousing) -> FloatArray:
+    """Return the mean over the outer hull of the products of normal motions, (r, r).
+
+    Walls of cavities are left out and openings capped (`outer_hull`): with the hull's area and rho c of the
+    air a mean square velocity gives the equivalent radiated power.
+
+    Raises
+    ------
+    InputError
+        The housing has no surface.
+    """
+    outer = outer_hull(housing)
+    return outer.surface / outer.hull.area
+
+
+def mean_square(motion: ComplexArray, weight: FloatArray) -> FloatArray:
+    """Return the mean square over surface and time, (...), x^H W x / 2 of peak amplitudes (..., r)."""
+    return np.asarray(0.5 * np.sum(motion.conj() * (motion @ weight), axis=-1).real)
 
 
 @dataclass(frozen=True)

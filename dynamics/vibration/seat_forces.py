@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,10 +13,53 @@ from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.orders import bearing_signals
 from dynamics.orders.resampling import interpolated
 from dynamics.results import RunResult
-from dynamics.types import FloatArray
-from dynamics.vibration.bearing_harmonics import BearingHarmonics
+from dynamics.types import BoolArray, ComplexArray, FloatArray, Json
 
-ComplexArray = NDArray[np.complex128]
+# Forces of bearings by speed and order, from wherever they are known.
+
+
+class BearingHarmonics(Protocol):
+    """Forces of b bearings at S speeds in H orders, each as in a steady state.
+
+    A linear response (`dynamics.linearize.HarmonicResponse`) is one, the orders of a run
+    (`dynamics.orders.BearingOrders`) are another.
+    """
+
+    @property
+    def bearing(self) -> tuple[str, ...]:
+        """Names."""
+
+    @property
+    def speed(self) -> FloatArray:
+        """Of the leading drive, rad/s, (S,)."""
+
+    @property
+    def order(self) -> FloatArray:
+        """Multiples of the frequency of the first mesh that turns, (H,)."""
+
+    @property
+    def frequency(self) -> FloatArray:
+        """Hz, (S, H)."""
+
+    @property
+    def bearing_force(self) -> ComplexArray:
+        """Peak amplitudes on the ground, (b, 3, S, H) in N or (b, 6, S, H) with moments in N m.
+
+        The phases of all bearings at one speed and order are about one moment.
+        """
+
+    @property
+    def in_contact(self) -> BoolArray:
+        """Whether all driving flanks stay in contact at each speed, (S,)."""
+
+
+class ReportedHarmonics(BearingHarmonics, Protocol):
+    """The same with what is known of their origin."""
+
+    @property
+    def facts(self) -> Json:
+        """Plain JSON."""
+
 
 HALF_LENGTH = 24
 """Of the filter of `finer_seat_forces`, in samples of the run."""

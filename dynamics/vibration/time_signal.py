@@ -12,8 +12,7 @@ from bounds import Quantity, Text
 from dynamics.errors import InputError
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.types import FloatArray
-from dynamics.vibration.motion_quantity import MotionQuantity
-from dynamics.vibration.points import named_points
+from dynamics.vibration.housing_vibration import MotionQuantity, named_points
 
 UNIFORM = 1e-6
 """Largest deviation of a sample's time from a uniform grid, in steps."""

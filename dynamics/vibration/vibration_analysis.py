@@ -10,15 +10,17 @@ import numpy as np
 from dynamics.checks import integer, not_negative
 from dynamics.errors import InputError
 from dynamics.housing_modes.reduced_housing import ReducedHousing, SurfaceMotion
-from dynamics.types import FloatArray, IntArray, Json
-from dynamics.vibration.bearing_harmonics import ReportedHarmonics
-from dynamics.vibration.housing_motion import housing_motion
-from dynamics.vibration.housing_vibration import HousingVibration, housing_vibration
-from dynamics.vibration.modal_amplitudes import modal_amplitudes
-from dynamics.vibration.motion_quantity import MotionQuantity
-from dynamics.vibration.points import point_rows
-from dynamics.vibration.seat_forces import ComplexArray
-from dynamics.vibration.surface_weight import mean_square, surface_weight
+from dynamics.types import ComplexArray, FloatArray, IntArray, Json
+from dynamics.vibration.housing_motion import housing_motion, modal_amplitudes
+from dynamics.vibration.housing_vibration import (
+    HousingVibration,
+    MotionQuantity,
+    housing_vibration,
+    mean_square,
+    point_rows,
+    surface_weight,
+)
+from dynamics.vibration.seat_forces import ReportedHarmonics
 
 # Contributions of bearings and modes to the motion of a housing at one frequency.
 

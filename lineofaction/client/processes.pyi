@@ -11,7 +11,7 @@ from dynamics.linearize.modal_analysis import ModalAnalysis as DynamicsModalAnal
 from dynamics.noise.radiated_sound import RadiatedSound as DynamicsRadiatedSound
 from dynamics.periodic.steady_states import SteadyStates as DynamicsSteadyStates
 from dynamics.results import RunResult
-from dynamics.study.result import Study as DynamicsStudy
+from dynamics.study.run_study import Study as DynamicsStudy
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution as FeContactLoadDistribution
 from fe_contact.analysis.studies.ablation import Ablation as FeContactAblation
 from fe_contact.analysis.studies.frontier import Frontier as FeContactFrontier

@@ -16,7 +16,7 @@ from dynamics.bodies import (
     TimeLaw,
     hollow_cylinder,
 )
-from dynamics.effects.mechanism_of import mechanism_of
+from dynamics.effects.ledger import mechanism_of
 from dynamics.forces import (
     CoastFlank,
     GearMesh,

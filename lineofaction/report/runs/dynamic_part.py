@@ -12,9 +12,12 @@ from bounds import leftover
 from dynamics.errors import InputError
 from dynamics.orders import Sideband, Waterfall, highest_valid_order, sidebands
 from dynamics.results import RunResult
-from dynamics.results.contact_state import contact_shares
-from dynamics.results.dynamic_factor import dynamic_factor
-from dynamics.results.planet_load_sharing import PlanetLoadSharing, planet_load_sharing
+from dynamics.results.mesh_figures import (
+    PlanetLoadSharing,
+    contact_shares,
+    dynamic_factor,
+    planet_load_sharing,
+)
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.effects_section import EffectRow, effects_section
 from lineofaction.report.drawing.envelope import envelope

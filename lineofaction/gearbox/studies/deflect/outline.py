@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from dynamics.bodies import Shaft
-from dynamics.effects.mechanism_of import mechanism_of
+from dynamics.effects.ledger import mechanism_of
 from dynamics.scene import Scene
 from lineofaction.gearbox.studies.deflect.result import Outline
 

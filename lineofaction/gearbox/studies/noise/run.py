@@ -20,7 +20,7 @@ from dynamics.acoustics import (
     outer_hull,
     sound_power_level,
 )
-from dynamics.acoustics.run_recording import LOWEST
+from dynamics.acoustics.recording import LOWEST
 from dynamics.housing_modes import ReducedHousing, write_surface
 from dynamics.noise import (
     HousingRadiation,

@@ -10,6 +10,7 @@ import numpy as np
 
 from bounds.types import FloatArray, Json
 from dynamics.housing_modes import ReducedHousing, write_surface
+from dynamics.types import ComplexArray
 from dynamics.vibration import (
     SurfaceShape,
     VibrationAnalysis,
@@ -18,7 +19,6 @@ from dynamics.vibration import (
     overall,
     vibration_level,
 )
-from dynamics.vibration.seat_forces import ComplexArray
 from dynamics.vibration.vibration_analysis import Shares
 from host import cpu_seconds
 from lineofaction.gearbox.convert.case import boundary_errors

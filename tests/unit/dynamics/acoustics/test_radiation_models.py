@@ -22,7 +22,7 @@ from dynamics.acoustics import (
     sound_power,
     sphere_efficiency,
 )
-from dynamics.acoustics.plane_waves import mutual_resistance
+from dynamics.acoustics.air import mutual_resistance
 from dynamics.errors import InputError
 
 AIR = Air()

@@ -22,7 +22,7 @@ from dynamics.bodies import BeamSection, DiscBody, Inertia, Shaft, TimeLaw, timo
 from dynamics.integrators import static_equilibrium
 from dynamics.joints import Bushing, Coupling, FreeRotation
 from dynamics.linearize import linearize, natural_modes, whirl_modes
-from dynamics.linearize.whirl import speed_terms
+from dynamics.linearize.campbell import speed_terms
 from dynamics.motion.force_balance import force_balance
 from dynamics.scene import Outputs
 

@@ -13,7 +13,7 @@ from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
 from dynamics.forces import CoastFlank
 from dynamics.linearize import modal_analysis
-from dynamics.results.dynamic_factor import dynamic_factor
+from dynamics.results.mesh_figures import dynamic_factor
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
 

@@ -16,7 +16,7 @@ from dynamics.forces.law import Law
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.joints import Bushing, Coupling, FreeRotation
 from dynamics.linearize import whirl_modes
-from dynamics.linearize.whirl import speed_terms
+from dynamics.linearize.campbell import speed_terms
 from dynamics.motion.force_balance import force_balance
 from dynamics.motion.observation import local_state
 from dynamics.results import EnergyAudit

@@ -16,7 +16,7 @@ from dynamics.assembly.assemble import assemble
 from dynamics.bodies import TimeLaw
 from dynamics.deflection import CAUSES, LoadCase, deflect, equivalent_load, loaded_scene
 from dynamics.deflection.deflect import cycle_times
-from dynamics.deflection.rest import rest_over
+from dynamics.deflection.mesh_alignment import rest_over
 from dynamics.errors import InputError
 from dynamics.forces import RollingContact
 from dynamics.joints import Bushing, FreeRotation, Housing

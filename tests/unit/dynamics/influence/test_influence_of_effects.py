@@ -16,7 +16,7 @@ from dynamics.bodies.load_course import Orders
 from dynamics.errors import InputError
 from dynamics.forces import RollingContact
 from dynamics.influence import decide_effects, estimate_influences
-from dynamics.influence.operating_conditions import operating_conditions
+from dynamics.influence.linear_figures import operating_conditions
 from dynamics.joints import FreeRotation, Housing
 from dynamics.loads import AppliedForce
 from dynamics.scene import Outputs, Scene

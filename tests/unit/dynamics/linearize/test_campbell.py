@@ -23,10 +23,9 @@ from dynamics.linearize import (
     natural_modes,
     whirl_modes,
 )
-from dynamics.linearize.campbell import _whirl, likeness, modes_at
+from dynamics.linearize.campbell import WhirlModes, _whirl, likeness, modes_at
 from dynamics.linearize.flank_cycles import averaged, flank_cycles
 from dynamics.linearize.linear_system import LinearSystem
-from dynamics.linearize.whirl import WhirlModes
 from dynamics.scene import Outputs
 
 DISC = Inertia(4.0, 0.02, 0.0104)

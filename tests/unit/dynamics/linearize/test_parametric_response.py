@@ -11,8 +11,7 @@ from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, spring_table, squar
 from dynamics.assembly.assemble import assemble
 from dynamics.bodies import TimeLaw
 from dynamics.linearize import harmonic_response
-from dynamics.linearize.harmonic_response import extremes
-from dynamics.linearize.parametric_response import parametric_response
+from dynamics.linearize.harmonic_response import extremes, parametric_response
 from dynamics.linearize.steady_vibration import excited, swept_vibration
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate

@@ -6,9 +6,9 @@ import numpy as np
 from planetary_scenes import planetary_scene, published_set
 
 from dynamics.assembly.assemble import assemble
-from dynamics.linearize.speeds import law_speeds
+from dynamics.linearize.campbell import terms_at
+from dynamics.linearize.operating_speeds import law_speeds
 from dynamics.linearize.steady_vibration import gyroscopic_terms
-from dynamics.linearize.whirl import terms_at
 
 
 def test_terms_at_every_speed_are_those_of_that_speed_alone() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -65,10 +66,11 @@ def test_two_housings_alike_are_3_db_louder_than_one() -> None:
 
 
 def test_the_second_time_comes_from_the_cache_to_the_last_bit(tmp_path, monkeypatch) -> None:
-    monkeypatch.setattr("dynamics.noise.kept.LEAST_COST", 0.0)
+    module = import_module("dynamics.noise.housing_radiation")
+    monkeypatch.setattr(module, "LEAST_COST", 0.0)
     body = rigid_housing(1.0, 1e6, 0.02, sphere(6, 0.1))
     first = kept_radiation(body, ElementalRadiators(), [200.0, 400.0], cache=tmp_path)
-    monkeypatch.setattr("dynamics.noise.kept.housing_radiation", None)
+    monkeypatch.setattr(module, "housing_radiation", None)
     again = kept_radiation(body, ElementalRadiators(), [200.0, 400.0], cache=tmp_path)
     np.testing.assert_array_equal(again.matrix, first.matrix)
     assert (again.area, again.impedance, again.facts) == (first.area, first.impedance, first.facts)

@@ -9,7 +9,7 @@ from scipy.special import spherical_jn, spherical_yn
 from sounding_housings import rigid_housing
 
 from dynamics.acoustics import Air, ElementalRadiators, exterior_pressure
-from dynamics.acoustics.plane_waves import directions
+from dynamics.acoustics.air import directions
 from dynamics.noise import pressure_transfer, scattered_pressure_transfer
 from dynamics.noise.housing_recordings import sound_paths
 

@@ -13,7 +13,7 @@ from sounding_housings import rigid_housing, smooth_motion, with_surface
 from sounding_scene import response
 
 from dynamics.acoustics import Air, ElementalRadiators, Hull, outer_hull
-from dynamics.acoustics.plane_waves import directions
+from dynamics.acoustics.air import directions
 from dynamics.errors import InputError
 from dynamics.noise import housing_radiation, pressure_signal, pressure_transfer, radiated_sound, sound_limit
 from dynamics.noise.housing_recordings import sound_paths

@@ -12,9 +12,13 @@ from planetary_scenes import planetary_scene, published_set
 from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
 from dynamics.results import RunResult
-from dynamics.results.contact_state import ContactState, contact_shares, contact_state
-from dynamics.results.dynamic_factor import dynamic_factor
-from dynamics.results.planet_load_sharing import planet_load_sharing
+from dynamics.results.mesh_figures import (
+    ContactState,
+    contact_shares,
+    contact_state,
+    dynamic_factor,
+    planet_load_sharing,
+)
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate
 

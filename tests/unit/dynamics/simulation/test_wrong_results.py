@@ -18,7 +18,7 @@ from dynamics.linearize import forced_response, modal_analysis
 from dynamics.linearize.linear_system import about_running
 from dynamics.periodic import steady_states
 from dynamics.results import EnergyAudit, RunResult
-from dynamics.results.energy_check import energy_check
+from dynamics.results.energy_audit import energy_check
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate, simulate_to_file
 

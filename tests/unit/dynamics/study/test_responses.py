@@ -9,8 +9,7 @@ from planetary_scenes import planetary_scene, published_set
 
 from dynamics.errors import InputError
 from dynamics.results import RunResult
-from dynamics.results.contact_state import contact_shares
-from dynamics.results.planet_load_sharing import planet_load_sharing
+from dynamics.results.mesh_figures import contact_shares, planet_load_sharing
 from dynamics.scene import Outputs
 from dynamics.simulation import simulate
 from dynamics.study import Response, responses_of
