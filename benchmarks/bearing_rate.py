@@ -5,7 +5,8 @@ from __future__ import annotations
 import time
 
 from benchmarks.figures import Figure
-from dynamics.rolling_bearings import BallBearing, LoadedBearing, RollerBearing
+from dynamics.bearings import BallBearing, RollerBearing
+from dynamics.bearings.loaded_bearing import LoadedBearing
 
 TARGET = 10.0
 """Microseconds of CPU time: 1e5 evaluations a second of a bearing of eight balls."""

@@ -10,11 +10,13 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.pair_cases import M, gear_of, spur_pair
-from dynamics.bodies import BeamSection, GearBody, Inertia, TimeLaw, hollow_cylinder
-from dynamics.forces import CoastFlank, MeshTable, RollingContact
+from dynamics.bearings.matrix import Matrix
+from dynamics.forces import RollingContact
 from dynamics.joints import Housing
-from dynamics.joints.matrix import Matrix
+from dynamics.loads import TimeLaw
+from dynamics.meshes import CoastFlank, MeshTable
 from dynamics.scene import Outputs, Scene, pair_scene
+from dynamics.shafts import BeamSection, GearBody, Inertia, hollow_cylinder
 from dynamics.types import FloatArray
 from fe_contact import GearPair, analyze
 from lineofaction.cli.scene_tables import scene_with_tables

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from benchmarks.stages import stages
-from dynamics.bodies import TimeLaw
-from dynamics.forces.coast_flank import CoastFlank
-from dynamics.forces.mesh_table import MeshTable
-from dynamics.forces.technique import PlainTable
+from dynamics.loads import TimeLaw
+from dynamics.meshes.coast_flank import CoastFlank
+from dynamics.meshes.mesh_table import MeshTable
+from dynamics.meshes.technique import PlainTable
 from dynamics.scene import Outputs, Scene
 from dynamics.simulation import simulate
 from fe_contact.ste import SteDatabase

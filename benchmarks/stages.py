@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 
-from dynamics.bodies import GearBody, Shaft, TimeLaw, hollow_cylinder
-from dynamics.forces import GearMesh, LoadTorque
-from dynamics.forces.mesh_table import MeshTable
-from dynamics.joints import Bushing, Coupling, ImposedRotation
+from dynamics.bearings import Bushing
+from dynamics.joints import Coupling, ImposedRotation
+from dynamics.loads import LoadTorque, TimeLaw
+from dynamics.meshes import GearMesh
+from dynamics.meshes.mesh_table import MeshTable
 from dynamics.scene import Outputs, Scene
+from dynamics.shafts import GearBody, Shaft, hollow_cylinder
 
 TEETH, RADIUS, FACE, LENGTH, GAP = 20, 0.040, 0.025, 0.2, 0.05
 BASE_RADIUS = RADIUS * math.cos(math.radians(20.0))

@@ -10,8 +10,7 @@ from typing import Any
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.assembly.assemble import assemble
-from dynamics.forces.compiled import compiled
-from dynamics.forces.element_laws import evaluate
+from dynamics.forces.elements import evaluate
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.integrators.advance import add_table_work
 from dynamics.integrators.explicit_step import accelerate
@@ -20,6 +19,7 @@ from dynamics.integrators.powers import write_powers
 from dynamics.integrators.stage import set_motion
 from dynamics.integrators.state_sink import MemorySink
 from dynamics.integrators.workspace import Count, Workspace
+from dynamics.kernels.compiled import compiled
 from dynamics.motion.motion import add_motion
 from dynamics.scene import Scene
 from dynamics.simulation import simulate

@@ -11,41 +11,44 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from dynamics.ablation import ablate
     from dynamics.accuracy import frontier
-    from dynamics.bodies import GearBody, Inertia, Shaft, TimeLaw, hollow_cylinder
-    from dynamics.forces import CoastFlank, GearMesh, LoadTorque, MeshTable, RollingContact
-    from dynamics.joints import Bushing, Coupling, FreeRotation, Housing, ImposedRotation
+    from dynamics.bearings import Bushing
+    from dynamics.forces import RollingContact
+    from dynamics.joints import Coupling, FreeRotation, Housing, ImposedRotation
     from dynamics.linearize import forced_response, modal_analysis
+    from dynamics.loads import LoadTorque, TimeLaw
     from dynamics.mechanism import with_planets
+    from dynamics.meshes import CoastFlank, GearMesh, MeshTable
     from dynamics.orders import mesh_orders
     from dynamics.periodic import steady_states
     from dynamics.results import RunResult
     from dynamics.scene import Integration, Outputs, PlanetarySet, Scene, pair_scene
+    from dynamics.shafts import GearBody, Inertia, Shaft, hollow_cylinder
     from dynamics.simulation import simulate, simulate_to_file
 
 _HOME = {
-    "Bushing": "joints",
-    "CoastFlank": "forces",
+    "Bushing": "bearings",
+    "CoastFlank": "meshes",
     "Coupling": "joints",
     "FreeRotation": "joints",
-    "GearBody": "bodies",
-    "GearMesh": "forces",
+    "GearBody": "shafts",
+    "GearMesh": "meshes",
     "Housing": "joints",
     "ImposedRotation": "joints",
-    "Inertia": "bodies",
+    "Inertia": "shafts",
     "Integration": "scene",
-    "LoadTorque": "forces",
-    "MeshTable": "forces",
+    "LoadTorque": "loads",
+    "MeshTable": "meshes",
     "Outputs": "scene",
     "PlanetarySet": "scene",
     "RollingContact": "forces",
     "RunResult": "results",
     "Scene": "scene",
-    "Shaft": "bodies",
-    "TimeLaw": "bodies",
+    "Shaft": "shafts",
+    "TimeLaw": "loads",
     "ablate": "ablation",
     "forced_response": "linearize",
     "frontier": "accuracy",
-    "hollow_cylinder": "bodies",
+    "hollow_cylinder": "shafts",
     "mesh_orders": "orders",
     "modal_analysis": "linearize",
     "pair_scene": "scene",

@@ -17,8 +17,8 @@ from pathlib import Path
 
 import numpy as np
 
-from dynamics.bodies import TimeLaw
 from dynamics.engines.exudyn_scene import run_in_exudyn
+from dynamics.loads import TimeLaw
 from dynamics.scene import Outputs, Scene
 from dynamics.simulation import simulate
 from fe_contact.ste import SteDatabase

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from dynamics.arrays.sparse_rows import SparseMatrices, sparse_matrices
-from dynamics.forces.element_laws import Elements
+from dynamics.forces.elements import Elements
 from dynamics.types import FloatArray, IntArray
 
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.forces.by_address import by_address
-from dynamics.forces.element_laws import ElementLaws, Elements, prepare_laws
-from dynamics.forces.law import Law
+from dynamics.forces.elements import ElementLaws, Elements, prepare_laws
+from dynamics.kernels.by_address import by_address
+from dynamics.kernels.law import Law
 from dynamics.types import FloatArray
 
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from dynamics.arrays.arrays import LawArrays
-from dynamics.bodies import AngleLaw, TimeLaw
+from dynamics.loads import AngleLaw, TimeLaw
 from dynamics.types import FloatArray
 
 

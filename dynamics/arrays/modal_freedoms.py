@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dynamics.forces.compiled import inner, inner_sums
+from dynamics.kernels.compiled import inner, inner_sums
 from dynamics.types import FloatArray, IntArray
 
 LEAST = 16

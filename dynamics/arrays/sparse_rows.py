@@ -13,7 +13,7 @@ import numpy as np
 from scipy.sparse.csgraph import connected_components
 
 from dynamics.arrays.modal_freedoms import ModalFreedoms, modal_freedoms, subtract_modal_resistance
-from dynamics.forces.compiled import inner
+from dynamics.kernels.compiled import inner
 from dynamics.types import FloatArray, IntArray
 
 

@@ -19,8 +19,8 @@ from dynamics.assembly.model import Model, decide_model
 from dynamics.assembly.phases import phases
 from dynamics.assembly.references import drive_springs, lay_out_drives, lay_out_loads, lay_out_reference
 from dynamics.effects import EFFECTS, EffectLedger
-from dynamics.forces.by_address import by_address
-from dynamics.forces.element_laws import ElementLaws
+from dynamics.forces.elements import ElementLaws
+from dynamics.kernels.by_address import by_address
 from dynamics.mechanism.additions import BEARING_LAWS, ELEMENT_PASSING, HOUSING_AMPLITUDES
 from dynamics.mechanism.base_pitches import Corrections
 from dynamics.mechanism.bearing_elements import BearingElement

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dynamics.forces.element_laws import Elements
-from dynamics.joints.seat import SEAT
+from dynamics.bearings.seat import SEAT
+from dynamics.forces.elements import Elements
 from dynamics.mechanism.bearing_elements import BearingElement
 from dynamics.mechanism.seats import Seats
 from dynamics.mechanism.supports import Supports

@@ -10,15 +10,15 @@ import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.assembly.frame_couplings import stiffness_across
+from dynamics.bearings import Bushing, PlanetBearing
+from dynamics.bearings.matrix import Matrix, congruent
+from dynamics.bearings.seat import SEAT, seat_matrix
 from dynamics.errors import SolveError
-from dynamics.forces.by_address import by_address
-from dynamics.forces.compiled import compiled
-from dynamics.forces.element_laws import Elements, potential
-from dynamics.forces.law import OF_BEARINGS
-from dynamics.forces.local_state import LocalState
-from dynamics.joints import Bushing, PlanetBearing
-from dynamics.joints.matrix import Matrix, congruent
-from dynamics.joints.seat import SEAT, seat_matrix
+from dynamics.forces.elements import Elements, potential
+from dynamics.kernels.by_address import by_address
+from dynamics.kernels.compiled import compiled
+from dynamics.kernels.law import OF_BEARINGS
+from dynamics.kernels.local_state import LocalState
 from dynamics.mechanism.bearing_elements import BearingElement
 from dynamics.motion.mean_loads import at_mean_loads, mean_loads
 from dynamics.motion.observation import local_state

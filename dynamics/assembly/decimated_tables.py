@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from dynamics.assembly.assemble import System
-from dynamics.forces.by_address import by_address
-from dynamics.forces.decimated_tables import decimated, decimated_grids
+from dynamics.kernels.by_address import by_address
+from dynamics.meshes.decimated_tables import decimated, decimated_grids
 
 
 def with_decimated_tables(system: System, every: int = 2) -> System:

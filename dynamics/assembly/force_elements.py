@@ -24,12 +24,10 @@ from dynamics.effects.force_terms import (
     frame_lever,
 )
 from dynamics.errors import InputError
-from dynamics.forces.element_laws import ElementLaws
-from dynamics.forces.grid_tables import pack_grids
-from dynamics.forces.law import Law
+from dynamics.forces.elements import ElementLaws
 from dynamics.forces.rotating_frame import RotatingFrameLaws
-from dynamics.forces.spatial_flank import SpatialFlankLaws
-from dynamics.forces.speed_torque import SpeedTorqueLaws, pack_speed_torques
+from dynamics.kernels.law import Law
+from dynamics.loads.speed_torque import SpeedTorqueLaws, pack_speed_torques
 from dynamics.mechanism.bearing_elements import bearing_elements, tilt_lever
 from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count, turn_row
@@ -39,6 +37,8 @@ from dynamics.mechanism.freedoms import ROTATION, Freedoms
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.line_of_action import LineOfAction, line_of_action
 from dynamics.mechanism.mechanism import Mechanism
+from dynamics.meshes.grid_tables import pack_grids
+from dynamics.meshes.spatial_flank import SpatialFlankLaws
 from dynamics.scene.scene import Scene
 from dynamics.types import BoolArray, FloatArray, IntArray
 

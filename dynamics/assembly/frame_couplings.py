@@ -9,9 +9,9 @@ import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.arrays.elements import Element
+from dynamics.bearings.seat import SEAT
 from dynamics.forces.frame_coupling import FrameCouplingLaws
-from dynamics.forces.law import Law
-from dynamics.joints.seat import SEAT
+from dynamics.kernels.law import Law
 from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import section_rows
 from dynamics.mechanism.coupling_rows import ACROSS, full_matrix

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from dynamics.arrays.elements import Element
-from dynamics.forces.law import Law
-from dynamics.forces.linear_bearing import LinearBearingLaws, pack_linear_bearings
+from dynamics.bearings.linear_bearing import LinearBearingLaws, pack_linear_bearings
+from dynamics.kernels.law import Law
 from dynamics.mechanism.bearing_elements import BearingElement, supports_by_name, tilt_lever
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.mechanism.seat_motion import seat_motion

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.forces.by_address import by_address
+from dynamics.kernels.by_address import by_address
 from dynamics.motion.motion import QUANTA_PER_TURN
 from dynamics.types import IntArray
 

@@ -8,13 +8,13 @@ import numpy as np
 
 from dynamics.arrays.elements import Element
 from dynamics.assembly.phases import repeating_phases
-from dynamics.bodies.load_course import BySpeed, Orders
 from dynamics.effects.force_terms import frame_lever
 from dynamics.errors import InputError
-from dynamics.forces.force_course import ForceCourseLaws, pack_courses
-from dynamics.forces.law import Law
-from dynamics.forces.unbalance import UnbalanceLaws
+from dynamics.kernels.law import Law
 from dynamics.loads.applied_force import AppliedForce
+from dynamics.loads.force_course import ForceCourseLaws, pack_courses
+from dynamics.loads.load_course import BySpeed, Orders
+from dynamics.loads.unbalance_force import UnbalanceLaws
 from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import section_rows, turn_row
 from dynamics.mechanism.freedoms import ROTATION

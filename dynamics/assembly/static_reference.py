@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.forces.element_laws import SPATIAL_FLANK
-from dynamics.forces.operating_point_table import table_at_operating_point
-from dynamics.forces.packed_tables import pack_tables
-from dynamics.forces.technique import table_at
+from dynamics.forces.elements import SPATIAL_FLANK
+from dynamics.meshes.operating_point_table import table_at_operating_point
+from dynamics.meshes.packed_tables import pack_tables
+from dynamics.meshes.technique import table_at
 from dynamics.motion.observation import local_state
 from dynamics.types import FloatArray
 

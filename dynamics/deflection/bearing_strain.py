@@ -8,11 +8,11 @@ import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.assembly.assemble import System
-from dynamics.forces.by_address import by_address
-from dynamics.forces.compiled import compiled
-from dynamics.forces.element_laws import evaluate, make_local
-from dynamics.forces.local_state import LocalState
-from dynamics.joints.seat import SEAT
+from dynamics.bearings.seat import SEAT
+from dynamics.forces.elements import evaluate, make_local
+from dynamics.kernels.by_address import by_address
+from dynamics.kernels.compiled import compiled
+from dynamics.kernels.local_state import LocalState
 from dynamics.mechanism.bearing_elements import supports_by_name
 from dynamics.mechanism.seat_motion import carried_seat, seat_motion
 from dynamics.mechanism.seats import condensed_housings, seat_compliance

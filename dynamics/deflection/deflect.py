@@ -10,6 +10,9 @@ import numpy as np
 
 from bounds import inside
 from dynamics.assembly.assemble import System, assemble
+from dynamics.bearings import PlanetBearing, RollingBearing
+from dynamics.bearings.rating_life import rating_life
+from dynamics.bearings.row_law import row_law
 from dynamics.checks import distinct, integer
 from dynamics.deflection.bearing_strain import BearingStrain, bearing_strain
 from dynamics.deflection.loaded_scene import (
@@ -20,12 +23,9 @@ from dynamics.deflection.loaded_scene import (
     loaded_scene,
 )
 from dynamics.deflection.mesh_alignment import MeshAlignment, Rest, mesh_alignment, rest_over
-from dynamics.joints import PlanetBearing, RollingBearing
 from dynamics.linearize.operating_speeds import common_period
 from dynamics.mechanism.bearing_elements import supports_by_name
 from dynamics.mechanism.columns import section_rows
-from dynamics.rolling_bearings import rating_life
-from dynamics.rolling_bearings.row_law import row_law
 from dynamics.scene.scene import Scene
 from dynamics.settings.load_case import LoadCase, check_forces
 from dynamics.types import FloatArray, IntArray

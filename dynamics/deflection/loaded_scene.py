@@ -8,12 +8,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from bounds import above
-from dynamics.bodies import BySpeed, TimeLaw
-from dynamics.bodies.load_course import mean_factor
 from dynamics.effects import EFFECTS
 from dynamics.errors import InputError
-from dynamics.forces import AppliedForce
 from dynamics.joints import ImposedRotation
+from dynamics.loads import AppliedForce, BySpeed, TimeLaw
+from dynamics.loads.load_course import mean_factor
 from dynamics.mechanism.kinematics import Kinematics, solve_kinematics
 from dynamics.mechanism.resting_housings import resting_housings
 from dynamics.scene.scene import Scene

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from dynamics.assembly.assemble import System
+from dynamics.bearings import PlanetBearing
 from dynamics.deflection.bearing_strain import BearingStrain
-from dynamics.forces.law import Law
 from dynamics.integrators import static_equilibrium
-from dynamics.joints import PlanetBearing
+from dynamics.kernels.law import Law
 from dynamics.mechanism.bearing_elements import supports_by_name
 from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import elastic_columns, section_rows

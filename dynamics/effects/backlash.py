@@ -11,14 +11,14 @@ import numpy as np
 from dynamics.effects.effect import MeshEffect, Verdict
 from dynamics.effects.loaded_parts import LoadedMesh
 from dynamics.errors import InputError
-from dynamics.forces.coast_flank import mirrored
-from dynamics.forces.flank_force import FlankLaws
-from dynamics.forces.gear_mesh import GearMesh
-from dynamics.forces.packed_tables import pack_tables
-from dynamics.forces.table_lookup import table_deflection
-from dynamics.forces.technique import PlainTable, table_at
 from dynamics.mechanism.additions import COAST_FLANKS
 from dynamics.mechanism.flanks import Flanks, mesh_mobility, with_technique
+from dynamics.meshes.coast_flank import mirrored
+from dynamics.meshes.flank_force import FlankLaws
+from dynamics.meshes.gear_mesh import GearMesh
+from dynamics.meshes.packed_tables import pack_tables
+from dynamics.meshes.table_lookup import table_deflection
+from dynamics.meshes.technique import PlainTable, table_at
 
 
 class Backlash(MeshEffect):

@@ -12,10 +12,10 @@ from typing import ClassVar
 
 from dynamics.effects.force_terms import FlankInSpace, FlankTerms, FrameTerm
 from dynamics.effects.loaded_parts import LoadedMesh, LoadedRotor
-from dynamics.forces.gear_mesh import GearMesh
 from dynamics.mechanism.connections import Connections
 from dynamics.mechanism.flanks import Flanks
 from dynamics.mechanism.mechanism import Mechanism
+from dynamics.meshes.gear_mesh import GearMesh
 
 
 @dataclass(frozen=True)

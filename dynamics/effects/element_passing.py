@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from dynamics.bearings.row_law import row_law
 from dynamics.effects.effect import RotorEffect, Verdict
 from dynamics.effects.loaded_parts import LoadedRotor
 from dynamics.mechanism.additions import ELEMENT_PASSING
 from dynamics.mechanism.mechanism import Mechanism
-from dynamics.rolling_bearings.row_law import row_law
 
 
 class ElementPassing(RotorEffect):

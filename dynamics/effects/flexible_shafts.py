@@ -7,17 +7,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dynamics.bodies import ElasticShaft
-from dynamics.bodies.load_course import mean_factor
+from dynamics.bearings.seat import SEAT
 from dynamics.effects.effect import RotorEffect, Verdict
 from dynamics.effects.loaded_parts import LoadedRotor
-from dynamics.joints.seat import SEAT
+from dynamics.loads.load_course import mean_factor
 from dynamics.mechanism.columns import column_count, elastic_columns, elastic_terms, section_rows, turn_row
 from dynamics.mechanism.connections import gather_connections
 from dynamics.mechanism.flank_gradients import approach, misalignment_gradient
 from dynamics.mechanism.flanks import Flanks
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.mechanism.points_of_application import elastic_of, why_rigid
+from dynamics.shafts import ElasticShaft
 from dynamics.types import FloatArray
 
 SHARE = 0.05

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dynamics.errors import InputError
-from dynamics.forces.coast_flank import mirrored
-from dynamics.forces.mesh_table import MeshTable
 from dynamics.forces.rotating_frame import RotatingFrameLaws
 from dynamics.mechanism.line_of_action import LineOfAction, line_of_action
 from dynamics.mechanism.mechanism import Mechanism
+from dynamics.meshes.coast_flank import mirrored
+from dynamics.meshes.mesh_table import MeshTable
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 

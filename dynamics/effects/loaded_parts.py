@@ -8,8 +8,6 @@ from functools import cached_property
 
 import numpy as np
 
-from dynamics.bodies.shaft_position import OnShaft
-from dynamics.forces.gear_mesh import GearMesh
 from dynamics.mechanism.connections import Connections, elastic_matrices
 from dynamics.mechanism.flank_gradients import approach, distance_gradient, misalignment_gradient
 from dynamics.mechanism.flanks import Flanks
@@ -17,6 +15,8 @@ from dynamics.mechanism.freedoms import Freedoms
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.mechanism.nominal_forces import mean_forces, telling_moments
 from dynamics.mechanism.rotor import Rotor
+from dynamics.meshes.gear_mesh import GearMesh
+from dynamics.shafts.shaft_position import OnShaft
 from dynamics.types import FloatArray
 
 # Rotors as their effects assess them: each on its supports, with the meshes it carries.

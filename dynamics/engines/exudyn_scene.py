@@ -10,16 +10,16 @@ from typing import Any
 import numpy as np
 
 from dynamics.assembly.assemble import System, assemble
-from dynamics.bodies import TimeLaw
+from dynamics.bearings import Bushing
 from dynamics.engines.mesh_element import MeshElement, mesh_element
 from dynamics.errors import InputError, SolveError
-from dynamics.forces.by_address import by_address
-from dynamics.forces.compiled import compiled
-from dynamics.forces.flank_force import FlankLaws, flank_force
-from dynamics.forces.packed_tables import pack_tables
-from dynamics.forces.technique import table_at
 from dynamics.integrators import static_equilibrium
-from dynamics.joints import Bushing
+from dynamics.kernels.by_address import by_address
+from dynamics.kernels.compiled import compiled
+from dynamics.loads import TimeLaw
+from dynamics.meshes.flank_force import FlankLaws, flank_force
+from dynamics.meshes.packed_tables import pack_tables
+from dynamics.meshes.technique import table_at
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray, IntArray
 from host import cpu_seconds

@@ -9,10 +9,10 @@ from bounds import SiNote, exactly
 from dynamics.assembly.assemble import assemble
 from dynamics.checks import finite, integer, not_negative, positive, within
 from dynamics.errors import InputError
-from dynamics.forces.coast_flank import CoastFlank
-from dynamics.forces.mesh_table import MeshTable, check_table
 from dynamics.mechanism.base_pitches import EQUAL
 from dynamics.mechanism.flanks import DAMPING_REACH
+from dynamics.meshes.coast_flank import CoastFlank
+from dynamics.meshes.mesh_table import MeshTable, check_table
 from dynamics.scene.scene import Scene
 
 MOST_TEETH = 100_000

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from dynamics.forces.compiled import inner
-from dynamics.forces.local_state import LocalState
-from dynamics.forces.routine import routine
+from dynamics.kernels.compiled import inner
+from dynamics.kernels.local_state import LocalState
+from dynamics.kernels.routine import routine
 from dynamics.types import FloatArray, IntArray
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from dynamics.forces.local_state import LocalState
-from dynamics.forces.routine import routine
+from dynamics.kernels.local_state import LocalState
+from dynamics.kernels.routine import routine
 from dynamics.types import BoolArray, FloatArray
 
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.bearings.matrix import Matrix, check_matrix
 from dynamics.errors import InputError
 from dynamics.housing_modes.faces import Face
-from dynamics.joints.matrix import Matrix, check_matrix
 from dynamics.types import FloatArray
 
 PRECISION = 1e-6

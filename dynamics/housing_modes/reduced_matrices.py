@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from dynamics.bearings.matrix import check_matrix
 from dynamics.checks import one_of
 from dynamics.errors import InputError
 from dynamics.housing_modes.damping import USUAL_DAMPING, Damping
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.housing_modes.seats import SeatFrame
-from dynamics.joints.matrix import check_matrix
 from dynamics.joints.matrix_file import read_archive
 from dynamics.types import FloatArray
 from host import MissingExtra

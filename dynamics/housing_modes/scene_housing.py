@@ -8,11 +8,11 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from bounds import Quantity, Text
+from dynamics.bearings.matrix import Matrix
 from dynamics.errors import InputError
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.housing_modes.seats import SeatFrame
 from dynamics.joints import Housing
-from dynamics.joints.matrix import Matrix
 from dynamics.types import FloatArray
 
 PARALLEL = 1e-3

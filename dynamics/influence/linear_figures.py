@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.bodies import BySpeed, TimeLaw
 from dynamics.linearize.harmonic_response import HarmonicResponse, extremes, parametric_response
 from dynamics.linearize.load_harmonics import load_multiples
 from dynamics.linearize.modes import natural_modes
 from dynamics.linearize.operating_speeds import mesh_frequencies
 from dynamics.linearize.steady_vibration import Excited, excited
+from dynamics.loads import BySpeed, TimeLaw
 from dynamics.mechanism.additions import SPEED_DEPENDENCE
 from dynamics.scene import Scene
 from dynamics.types import ComplexArray, FloatArray

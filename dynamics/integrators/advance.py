@@ -5,14 +5,7 @@ from __future__ import annotations
 import math
 
 from dynamics.arrays.arrays import LawArrays, SystemArrays
-from dynamics.forces.compiled import compiled, inner
-from dynamics.forces.element_laws import FLANK, SPATIAL_FLANK, Elements
-from dynamics.forces.local_state import LocalState
-from dynamics.forces.packed_tables import BUCKETS_PER_KNOT, PackedTables
-from dynamics.forces.routine import routine
-from dynamics.forces.spatial_flank import spatial_energy
-from dynamics.forces.table_energy import table_energy
-from dynamics.forces.table_lookup import position_interval
+from dynamics.forces.elements import FLANK, SPATIAL_FLANK, Elements
 from dynamics.integrators.explicit_step import accelerate, explicit_step
 from dynamics.integrators.implicit_step import implicit_step, solve_stage
 from dynamics.integrators.powers import add_drive_work, write_powers
@@ -21,6 +14,13 @@ from dynamics.integrators.sampler import move_sampled_trains, sample_start, samp
 from dynamics.integrators.step_control import Control, next_level, slow_enough, step_error
 from dynamics.integrators.tableaus import EXPLICIT_WEIGHTS, IMPLICIT_WEIGHTS
 from dynamics.integrators.workspace import LOSSES, Count, Power, StepEnd, Workspace
+from dynamics.kernels.compiled import compiled, inner
+from dynamics.kernels.local_state import LocalState
+from dynamics.kernels.routine import routine
+from dynamics.meshes.packed_tables import BUCKETS_PER_KNOT, PackedTables
+from dynamics.meshes.spatial_flank import spatial_energy
+from dynamics.meshes.table_energy import table_energy
+from dynamics.meshes.table_lookup import position_interval
 from dynamics.motion.motion import SPEED, piece_at
 from dynamics.motion.sampled_states import States
 from dynamics.types import RunStatus

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from dynamics.errors import ResultError
-from dynamics.forces.by_address import by_value
+from dynamics.kernels.by_address import by_value
 
 VERSION = 1
 Arrays = dict[str, Any]

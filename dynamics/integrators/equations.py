@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dynamics.forces.compiled import inner
+from dynamics.kernels.compiled import inner
 from dynamics.types import FloatArray
 
 

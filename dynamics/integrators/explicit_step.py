@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.arrays.sparse_rows import row_product, subtract_columns, subtract_resistance
-from dynamics.forces.element_laws import evaluate, has_unbalance
-from dynamics.forces.routine import routine
+from dynamics.forces.elements import evaluate, has_unbalance
 from dynamics.integrators.powers import write_powers
 from dynamics.integrators.stage import add_stages, finish_step, set_motion
 from dynamics.integrators.tableaus import (
@@ -15,6 +14,7 @@ from dynamics.integrators.tableaus import (
     EXPLICIT_WEIGHTS,
 )
 from dynamics.integrators.workspace import Workspace
+from dynamics.kernels.routine import routine
 from dynamics.motion.accelerations import settle_unbalance
 from dynamics.motion.motion import add_motion
 

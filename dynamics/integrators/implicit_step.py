@@ -9,9 +9,7 @@ import numpy as np
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.arrays.modal_freedoms import subtract_modal_forces
 from dynamics.arrays.sparse_rows import row_product, subtract_columns, subtract_resistance
-from dynamics.forces.compiled import compiled, inner
-from dynamics.forces.element_laws import evaluate, has_unbalance, is_linear
-from dynamics.forces.routine import routine
+from dynamics.forces.elements import evaluate, has_unbalance, is_linear
 from dynamics.integrators.equations import invert_equations
 from dynamics.integrators.linear_elements import apply_linear, eliminate_linear, hold_linear
 from dynamics.integrators.powers import write_powers
@@ -24,6 +22,8 @@ from dynamics.integrators.tableaus import (
     IMPLICIT_WEIGHTS,
 )
 from dynamics.integrators.workspace import Count, Workspace
+from dynamics.kernels.compiled import compiled, inner
+from dynamics.kernels.routine import routine
 from dynamics.motion.accelerations import set_acceleration
 from dynamics.motion.motion import add_motion
 from dynamics.types import FloatArray

@@ -11,10 +11,10 @@ All of it is constant for one step size, so Newton's method is left with the ele
 from __future__ import annotations
 
 from dynamics.arrays.arrays import SystemArrays
-from dynamics.forces.compiled import inner, inner_sums
-from dynamics.forces.element_laws import evaluate_linear, has_unbalance, is_linear
+from dynamics.forces.elements import evaluate_linear, has_unbalance, is_linear
 from dynamics.integrators.equations import invert_equations
 from dynamics.integrators.workspace import Workspace
+from dynamics.kernels.compiled import inner, inner_sums
 from dynamics.types import FloatArray
 
 

@@ -11,10 +11,7 @@ import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.assembly.assemble import System
-from dynamics.forces.by_address import by_address, by_value
-from dynamics.forces.compiled import compiled
-from dynamics.forces.element_laws import FLANK, SPATIAL_FLANK, Elements, potential
-from dynamics.forces.local_state import LocalState
+from dynamics.forces.elements import FLANK, SPATIAL_FLANK, Elements, potential
 from dynamics.integrators.advance import advance, prepare_samples, prepare_steps
 from dynamics.integrators.method_choice import choose_method
 from dynamics.integrators.sample_ring import Sampler, SampleRing, make_ring, make_sampler
@@ -24,6 +21,9 @@ from dynamics.integrators.static import StaticSolution
 from dynamics.integrators.step_control import Control
 from dynamics.integrators.tableaus import EXPLICIT_EMBEDDED_ORDER, IMPLICIT_EMBEDDED_ORDER
 from dynamics.integrators.workspace import Count, Workspace, geometric_steps, make_workspace
+from dynamics.kernels.by_address import by_address, by_value
+from dynamics.kernels.compiled import compiled
+from dynamics.kernels.local_state import LocalState
 from dynamics.motion.observation import local_state, observe_laws
 from dynamics.motion.sampled_states import Widths
 from dynamics.scene import Integration

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.arrays.modal_freedoms import modal_loss
 from dynamics.arrays.sparse_rows import row_product
-from dynamics.forces.compiled import inner
-from dynamics.forces.element_laws import (
+from dynamics.forces.elements import (
     APPLIED_FORCE,
     FLANK,
     ROTATING_FRAME,
@@ -17,8 +16,9 @@ from dynamics.forces.element_laws import (
     power_by_frames,
     slides,
 )
-from dynamics.forces.routine import routine
 from dynamics.integrators.workspace import Power, Workspace
+from dynamics.kernels.compiled import inner
+from dynamics.kernels.routine import routine
 from dynamics.motion.motion import ACCELERATION, SPEED, law_value
 from dynamics.types import FloatArray
 

@@ -9,9 +9,9 @@ import numpy as np
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.assembly.assemble import System
 from dynamics.assembly.bearing_force import BearingForce
-from dynamics.forces.element_laws import make_local
-from dynamics.forces.local_state import LocalState
-from dynamics.forces.packed_tables import PackedTables
+from dynamics.forces.elements import make_local
+from dynamics.kernels.local_state import LocalState
+from dynamics.meshes.packed_tables import PackedTables
 from dynamics.motion.motion import MOTION_COLUMNS
 from dynamics.types import FloatArray, IntArray
 

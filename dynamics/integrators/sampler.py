@@ -11,12 +11,12 @@ from __future__ import annotations
 import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
-from dynamics.forces.compiled import compiled, inner
-from dynamics.forces.element_laws import evaluate, has_unbalance
-from dynamics.forces.routine import routine
-from dynamics.forces.table_lookup import table_deflection
+from dynamics.forces.elements import evaluate, has_unbalance
 from dynamics.integrators.sample_ring import Sampler, SampleRing
 from dynamics.integrators.workspace import Count, Workspace
+from dynamics.kernels.compiled import compiled, inner
+from dynamics.kernels.routine import routine
+from dynamics.meshes.table_lookup import table_deflection
 from dynamics.motion.accelerations import set_acceleration
 from dynamics.motion.motion import (
     QUANTUM,

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from dynamics.arrays.arrays import SystemArrays
-from dynamics.forces.compiled import inner
 from dynamics.integrators.workspace import Workspace
+from dynamics.kernels.compiled import inner
 from dynamics.motion.motion import external_force, set_drift, set_phases, write_motion
 from dynamics.types import FloatArray
 

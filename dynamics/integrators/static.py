@@ -10,8 +10,8 @@ from dynamics.arrays.arrays import SystemArrays
 from dynamics.assembly.assemble import System
 from dynamics.assembly.bearing_rest import bearing_rows, rest_on_bearings
 from dynamics.assembly.frame_couplings import stiffness_across
-from dynamics.forces.law import Law
-from dynamics.forces.table_lookup import table_deflection
+from dynamics.kernels.law import Law
+from dynamics.meshes.table_lookup import table_deflection
 from dynamics.motion.force_balance import ForceBalance, force_balance
 from dynamics.motion.mean_loads import at_mean_loads, mean_loads
 from dynamics.motion.observation import local_state, observe_laws

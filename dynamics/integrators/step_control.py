@@ -6,8 +6,8 @@ import math
 from typing import NamedTuple
 
 from dynamics.arrays.arrays import SystemArrays
-from dynamics.forces.compiled import inner
 from dynamics.integrators.workspace import LEVELS_PER_OCTAVE, Count, Workspace
+from dynamics.kernels.compiled import inner
 from dynamics.motion.motion import law_speed, write_motion
 
 SAFETY = math.log2(0.9)  # octaves of the step size, like the limits of its change

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
-from dynamics.forces.element_laws import Elements, is_linear, make_local
-from dynamics.forces.local_state import LocalState
+from dynamics.forces.elements import Elements, is_linear, make_local
+from dynamics.kernels.local_state import LocalState
 from dynamics.motion.motion import MOTION_COLUMNS
 from dynamics.types import BoolArray, FloatArray, IntArray
 

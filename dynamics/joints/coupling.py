@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from bounds import Declared, Kind, above, between, declared, described, required
+from dynamics.bearings.matrix import Matrix, check_matrix
 from dynamics.checks import declared_fields
 from dynamics.errors import InputError
-from dynamics.joints.matrix import Matrix, check_matrix
 
 _TORSION = "Torsional stiffness; 0 beside a matrix without rotation: a bearing between two shafts"
 _STIFFNESS = Declared(Kind.STIFFNESS, "N m/rad", between(0.0, 1e15), _TORSION, 5e4)

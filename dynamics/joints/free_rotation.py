@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass
 
 from bounds import Declared, Kind, between, declared, described, one_of
-from dynamics.bodies.time_law import TimeLaw
 from dynamics.checks import declared_fields
 from dynamics.errors import InputError
+from dynamics.loads.time_law import TimeLaw
 
 _FASTEST = 1e7 * math.pi / 30.0
 _SPEED = Declared(

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 
 from bounds import Declared, Kind, between, declared, described, integers
+from dynamics.bearings.matrix import Matrix, check_matrix, least_share
+from dynamics.bearings.seat import SEAT
 from dynamics.checks import declared_fields, distinct, finite
 from dynamics.errors import InputError
-from dynamics.joints.matrix import Matrix, check_matrix, least_share
 from dynamics.joints.matrix_file import read_archive, read_csv
-from dynamics.joints.seat import SEAT
 from dynamics.types import FloatArray
 
 PER_SEAT = (3, SEAT, SEAT + 1)

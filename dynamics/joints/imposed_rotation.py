@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from bounds import Declared, Kind, between, declared, described, up_to
-from dynamics.bodies.angle_law import AngleLaw
-from dynamics.bodies.time_law import TimeLaw
 from dynamics.checks import declared_fields
+from dynamics.loads.angle_law import AngleLaw
+from dynamics.loads.time_law import TimeLaw
 
 _STIFFNESS = Declared(
     Kind.STIFFNESS,

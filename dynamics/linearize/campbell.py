@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from dynamics.assembly.assemble import System
-from dynamics.joints.seat import SEAT
+from dynamics.bearings.seat import SEAT
 from dynamics.linearize.linear_system import LinearSystem, linearize
 from dynamics.linearize.modes import kinetic_shares, strain_shares
 from dynamics.linearize.operating_speeds import law_speeds

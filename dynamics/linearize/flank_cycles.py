@@ -9,8 +9,8 @@ import numpy as np
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.arrays.sparse_rows import sparse_matrices
 from dynamics.assembly.assemble import System
-from dynamics.forces.by_address import by_address
-from dynamics.forces.local_state import LocalState
+from dynamics.kernels.by_address import by_address
+from dynamics.kernels.local_state import LocalState
 from dynamics.linearize.linear_system import LinearSystem
 from dynamics.motion.observation import Watch, local_state, observe, static_deflections
 from dynamics.types import FloatArray

@@ -10,9 +10,9 @@ import numpy as np
 from dynamics.assembly.assemble import System
 from dynamics.assembly.frame_couplings import frame_couplings
 from dynamics.assembly.references import drive_springs
+from dynamics.bearings.seat import SEAT
 from dynamics.errors import InputError
-from dynamics.forces.law import Law
-from dynamics.joints.seat import SEAT
+from dynamics.kernels.law import Law
 from dynamics.linearize.flank_cycles import FlankCycle
 from dynamics.linearize.harmonic_response import HarmonicResponse, excited_harmonics, response_of
 from dynamics.linearize.linear_system import LinearSystem

@@ -10,9 +10,9 @@ from dynamics.assembly.assemble import System
 from dynamics.assembly.frame_couplings import frame_couplings, frame_joint
 from dynamics.assembly.references import drive_springs
 from dynamics.errors import InputError, SolveError
-from dynamics.forces.spatial_flank import as_running
 from dynamics.integrators import StaticSolution, static_equilibrium
 from dynamics.mechanism.columns import elastic_terms
+from dynamics.meshes.spatial_flank import as_running
 from dynamics.motion.force_balance import force_balance
 from dynamics.motion.mean_loads import at_mean_loads
 from dynamics.motion.observation import local_state

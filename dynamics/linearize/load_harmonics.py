@@ -9,10 +9,10 @@ import numpy as np
 
 from dynamics.assembly.assemble import System
 from dynamics.assembly.phases import repeating_phases
-from dynamics.bodies.load_course import BySpeed, Orders
-from dynamics.bodies.time_law import TimeLaw
-from dynamics.forces.law import Law
+from dynamics.kernels.law import Law
 from dynamics.linearize.operating_speeds import CommonPeriod, law_speeds
+from dynamics.loads.load_course import BySpeed, Orders
+from dynamics.loads.time_law import TimeLaw
 from dynamics.mechanism.load_phases import load_orders
 from dynamics.types import ComplexArray, FloatArray, IntArray
 

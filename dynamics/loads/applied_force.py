@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from bounds import Declared, Kind, between, described, required
-from dynamics.bodies.load_course import CONSTANT, Course
 from dynamics.checks import declared_fields, finite
+from dynamics.loads.load_course import CONSTANT, Course
 
 Vector = tuple[float, float, float]
 

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from bounds import Quantity, Text, exactly
-from dynamics.bodies import GearBody
 from dynamics.errors import InputError
 from dynamics.scene.scene import Scene
+from dynamics.shafts import GearBody
 
 EQUAL = 1e-9
 """Relative difference of base pitches that rounding in arithmetic alone may leave: nothing is corrected."""

@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 
 from dynamics.arrays.elements import Element
-from dynamics.forces.bearing_law import BearingDuty, BearingLaw
-from dynamics.forces.law import Law
-from dynamics.forces.rolling_contact import pack_rolling_contacts
-from dynamics.forces.spring_curve import pack_spring_curves
-from dynamics.joints import Bushing, PlanetBearing
+from dynamics.bearings import Bushing, PlanetBearing
+from dynamics.bearings.bearing_law import BearingDuty, BearingLaw
+from dynamics.bearings.rolling_contact import pack_rolling_contacts
+from dynamics.bearings.row_law import pack_ball_laws, pack_roller_laws
+from dynamics.bearings.spring_curve import pack_spring_curves
+from dynamics.kernels.law import Law
 from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.rotor import Rotor
 from dynamics.mechanism.seat_motion import seat_axes, seat_error, seat_motion
-from dynamics.rolling_bearings.row_law import pack_ball_laws, pack_roller_laws
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from dynamics.joints import RollingBearing
+from dynamics.bearings import RollingBearing
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.scene.scene import Scene
 

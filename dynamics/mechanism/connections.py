@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.joints.seat import SEAT
+from dynamics.bearings.seat import SEAT
 from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import elastic_terms
 from dynamics.mechanism.coupling_rows import CouplingRows, gather_couplings

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.bearings.matrix import Matrix
 from dynamics.joints import Coupling
-from dynamics.joints.matrix import Matrix
 from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count, section_rows
 from dynamics.scene.frame_check import crosses_frames

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.errors import InputError
-from dynamics.forces.flank_force import FlankLaws
-from dynamics.forces.packed_tables import PackedTables, pack_tables
-from dynamics.forces.table_lookup import table_deflection, table_force
-from dynamics.forces.technique import PlainTable, secant_table, table_at
 from dynamics.identity_cache import identity_cached
 from dynamics.mechanism.kinematics import Kinematics
+from dynamics.meshes.flank_force import FlankLaws
+from dynamics.meshes.packed_tables import PackedTables, pack_tables
+from dynamics.meshes.table_lookup import table_deflection, table_force
+from dynamics.meshes.technique import PlainTable, secant_table, table_at
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from bounds import Quantity, Text, above
-from dynamics.bodies import GearBody
 from dynamics.errors import InputError
 from dynamics.scene.scene import Scene
+from dynamics.shafts import GearBody
 from dynamics.types import FloatArray
 
 

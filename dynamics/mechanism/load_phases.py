@@ -7,8 +7,8 @@ from fractions import Fraction
 
 import numpy as np
 
-from dynamics.bodies.load_course import Orders
 from dynamics.loads.applied_force import AppliedForce
+from dynamics.loads.load_course import Orders
 from dynamics.loads.unbalance import Unbalance
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.scene.scene import Scene

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bounds import above
+from dynamics.bearings.bearing_law import BearingDuty
+from dynamics.bearings.seat import SEAT
 from dynamics.errors import InputError
-from dynamics.forces.bearing_law import BearingDuty
 from dynamics.joints import Coupling
-from dynamics.joints.seat import SEAT
 from dynamics.mechanism.additions import COAST_FLANKS, Additions
 from dynamics.mechanism.base_pitches import Corrections, with_common_base_pitches
 from dynamics.mechanism.bearing_elements import (

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eigh
 
+from dynamics.bearings.seat import SEAT
 from dynamics.identity_cache import identity_cached
 from dynamics.joints import Housing
-from dynamics.joints.seat import SEAT
 from dynamics.types import FloatArray
 
 ROUNDING = 1e-9

@@ -6,9 +6,9 @@ import numpy as np
 
 from bounds import Quantity
 from dynamics.arrays.law_arrays import slope
-from dynamics.bodies.load_course import BySpeed, mean_factor
-from dynamics.bodies.time_law import TimeLaw
 from dynamics.errors import InputError
+from dynamics.loads.load_course import BySpeed, mean_factor
+from dynamics.loads.time_law import TimeLaw
 from dynamics.mechanism.kinematics import Kinematics, mesh_shafts
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray

@@ -8,14 +8,15 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TypeVar
 
-from dynamics.bodies import DiscBody, GearBody, Shaft
+from dynamics.bearings import PlanetBearing
 from dynamics.checks import integer, one_of
 from dynamics.errors import InputError
-from dynamics.forces import GearMesh, RollingContact, SpringCurve
-from dynamics.joints import PlanetBearing
+from dynamics.forces import RollingContact, SpringCurve
 from dynamics.mechanism.kinematics import Kinematics, solve_kinematics
+from dynamics.meshes import GearMesh
 from dynamics.scene.frame_check import on_axis
 from dynamics.scene.scene import Scene
+from dynamics.shafts import DiscBody, GearBody, Shaft
 
 TOOTH_FIT = 1e-6  # of a tooth: how well a planet's angle must let its teeth fit all central gears
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from dynamics.bodies import Disc, ElasticShaft, PointOfApplication, elastic_shaft
-from dynamics.bodies.shaft_position import OnShaft, on_length
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.mechanism.rotor import Rotor
 from dynamics.mechanism.sampling import order_rate
 from dynamics.mechanism.seats import seated
 from dynamics.scene.scene import Scene
+from dynamics.shafts import Disc, ElasticShaft, PointOfApplication, elastic_shaft
+from dynamics.shafts.shaft_position import OnShaft, on_length
 
 
 def why_rigid(mechanism: Mechanism, index: int) -> str:

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from dynamics.bearings.matrix import Matrix
 from dynamics.joints import Housing
-from dynamics.joints.matrix import Matrix
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 

@@ -7,11 +7,11 @@ from typing import TypeVar
 
 import numpy as np
 
-from dynamics.bodies import ElasticShaft, Inertia, Shaft
-from dynamics.bodies.shaft_position import nearest_on
-from dynamics.joints import Bushing, PlanetBearing
+from dynamics.bearings import Bushing, PlanetBearing
 from dynamics.scene.frame_check import on_axis
 from dynamics.scene.scene import Scene
+from dynamics.shafts import ElasticShaft, Inertia, Shaft
+from dynamics.shafts.shaft_position import nearest_on
 from dynamics.types import FloatArray
 
 Support = TypeVar("Support", Bushing, PlanetBearing)

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from dynamics.joints import Bushing, PlanetBearing
-from dynamics.joints.seat import SEAT
+from dynamics.bearings import Bushing, PlanetBearing
+from dynamics.bearings.seat import SEAT
 from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count, housing_columns, section, section_rows
 from dynamics.mechanism.rotor import Rotor

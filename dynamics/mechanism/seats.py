@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.joints import Bushing, Housing, PlanetBearing
-from dynamics.joints.seat import SEAT
+from dynamics.bearings import Bushing, PlanetBearing
+from dynamics.bearings.seat import SEAT
+from dynamics.joints import Housing
 from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count
 from dynamics.mechanism.rotor import Rotor

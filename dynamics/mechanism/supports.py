@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.joints import Bushing, PlanetBearing
+from dynamics.bearings import Bushing, PlanetBearing
 from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count
 from dynamics.mechanism.seat_motion import carried_seat, seat_error, seat_motion

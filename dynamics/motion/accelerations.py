@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.arrays.sparse_rows import row_product
-from dynamics.forces.compiled import inner
-from dynamics.forces.element_laws import UNBALANCE
-from dynamics.forces.local_state import LocalState
-from dynamics.forces.unbalance import unbalance
+from dynamics.forces.elements import UNBALANCE
+from dynamics.kernels.compiled import inner
+from dynamics.kernels.local_state import LocalState
+from dynamics.loads.unbalance_force import unbalance
 from dynamics.motion.motion import ACCELERATION
 from dynamics.types import FloatArray
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
-from dynamics.forces.element_laws import Elements
-from dynamics.forces.law import Law
-from dynamics.forces.local_state import LocalState
+from dynamics.forces.elements import Elements
+from dynamics.kernels.law import Law
+from dynamics.kernels.local_state import LocalState
 from dynamics.motion.observation import local_state
 from dynamics.types import FloatArray
 

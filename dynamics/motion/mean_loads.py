@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
-from dynamics.forces.law import Law
+from dynamics.kernels.law import Law
 from dynamics.motion.observation import local_state
 from dynamics.types import FloatArray
 

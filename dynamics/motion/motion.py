@@ -7,10 +7,10 @@ import math
 from dynamics.arrays.arrays import LawArrays, Reference, SystemArrays
 from dynamics.arrays.modal_freedoms import add_modal_motion
 from dynamics.arrays.sparse_rows import row_product, row_products
-from dynamics.forces.compiled import compiled, inner
-from dynamics.forces.element_laws import Elements
-from dynamics.forces.local_state import LocalState
-from dynamics.forces.table_lookup import wrapped
+from dynamics.forces.elements import Elements
+from dynamics.kernels.compiled import compiled, inner
+from dynamics.kernels.local_state import LocalState
+from dynamics.meshes.table_lookup import wrapped
 from dynamics.types import FloatArray, IntArray
 
 # Columns of the motion of the laws, (k, 4): whole revolutions, fraction of one, speed (rad/s), acceleration.

@@ -8,12 +8,12 @@ import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.arrays.sparse_rows import row_product, subtract_columns, subtract_resistance
-from dynamics.forces.by_address import by_address
-from dynamics.forces.compiled import compiled, inner
-from dynamics.forces.element_laws import evaluate, has_unbalance, make_local
-from dynamics.forces.local_state import LocalState
-from dynamics.forces.packed_tables import PackedTables
-from dynamics.forces.table_lookup import table_deflection, wrapped
+from dynamics.forces.elements import evaluate, has_unbalance, make_local
+from dynamics.kernels.by_address import by_address
+from dynamics.kernels.compiled import compiled, inner
+from dynamics.kernels.local_state import LocalState
+from dynamics.meshes.packed_tables import PackedTables
+from dynamics.meshes.table_lookup import table_deflection, wrapped
 from dynamics.motion.accelerations import settle_unbalance
 from dynamics.motion.motion import (
     MOTION_COLUMNS,

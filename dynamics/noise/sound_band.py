@@ -19,13 +19,14 @@ from dynamics.acoustics import (
     sound_power_level,
 )
 from dynamics.assembly.assemble import assemble
+from dynamics.bearings import Bushing, PlanetBearing
 from dynamics.checks import one_of
-from dynamics.forces import GearMesh, RollingContact, SpringCurve
+from dynamics.forces import RollingContact, SpringCurve
 from dynamics.housing_modes.modification import with_damping, with_frequencies, with_modes, with_mounts
 from dynamics.housing_modes.reduced_housing import ReducedHousing
 from dynamics.housing_modes.scene_housing import scene_housing
-from dynamics.joints import Bushing, PlanetBearing
 from dynamics.linearize import harmonic_response
+from dynamics.meshes import GearMesh
 from dynamics.scene import Scene
 from dynamics.types import ComplexArray, FloatArray
 from dynamics.vibration import BearingHarmonics, housing_motion, seat_forces

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 from dynamics.arrays.arrays import SystemArrays
-from dynamics.forces.compiled import compiled, inner
 from dynamics.integrators.explicit_step import accelerate, explicit_step
 from dynamics.integrators.implicit_step import implicit_step
 from dynamics.integrators.workspace import Workspace
+from dynamics.kernels.compiled import compiled, inner
 from dynamics.types import BoolArray, FloatArray, IntArray
 
 HALVINGS = 8

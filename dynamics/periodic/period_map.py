@@ -13,11 +13,11 @@ from dynamics.assembly.assemble import System
 from dynamics.assembly.static_reference import with_static_reference
 from dynamics.checks import integer
 from dynamics.errors import InputError, SolveError
-from dynamics.forces.by_address import by_address
-from dynamics.forces.law import Law
 from dynamics.integrators import static_equilibrium
 from dynamics.integrators.advance import prepare_steps
 from dynamics.integrators.workspace import Workspace, make_workspace
+from dynamics.kernels.by_address import by_address
+from dynamics.kernels.law import Law
 from dynamics.linearize import Modes, natural_modes
 from dynamics.linearize.linear_system import about_running, require_freedoms
 from dynamics.linearize.load_harmonics import load_cycles

@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 
 from bounds import Check, Checklist, Finding, engineering
-from dynamics.bodies import GearBody, Inertia, Shaft
+from dynamics.bearings import Bushing, PlanetBearing
 from dynamics.effects.ledger import mechanism_of
-from dynamics.joints import Bushing, PlanetBearing
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.scene import Scene
+from dynamics.shafts import GearBody, Inertia, Shaft
 from dynamics.types import FloatArray
 
 # The plausibility checks of scenes: quantity, limits, source.

@@ -9,10 +9,10 @@ from dataclasses import asdict
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.bodies import ElasticShaft
-from dynamics.forces import GearMesh
 from dynamics.mechanism.rotor import Rotor
+from dynamics.meshes import GearMesh
 from dynamics.motion.observation import static_deflections
+from dynamics.shafts import ElasticShaft
 from dynamics.types import Json
 
 # The effect ledger of a run in plain JSON: decisions, influence, price, and the checks of the run.

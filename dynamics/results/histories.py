@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.forces.element_laws import SPATIAL_FLANK
-from dynamics.joints.seat import SEAT
+from dynamics.bearings.seat import SEAT
+from dynamics.forces.elements import SPATIAL_FLANK
 from dynamics.mechanism.additions import CENTER_DISTANCE_CHANGE, LOAD_CENTROID, MISALIGNMENT
 from dynamics.mechanism.flank_gradients import common_face_width, table_sense
 from dynamics.mechanism.freedoms import ROTATION

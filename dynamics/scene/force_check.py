@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from dynamics.bodies.time_law import TimeLaw
 from dynamics.checks import one_of
 from dynamics.loads.applied_force import AppliedForce
+from dynamics.loads.time_law import TimeLaw
 
 
 def check_force_shafts(forces: Sequence[AppliedForce], shafts: Sequence[str]) -> None:

@@ -7,11 +7,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from dynamics.bodies import Shaft
+from dynamics.bearings import Bushing, PlanetBearing, RollingBearing
 from dynamics.checks import finite, one_of
 from dynamics.errors import InputError
-from dynamics.joints import Bushing, Coupling, PlanetBearing, RollingBearing
+from dynamics.joints import Coupling
 from dynamics.scene.housing_check import alike_across
+from dynamics.shafts import Shaft
 
 AXIS_AGREEMENT = 1e-9  # of a shaft's length: shafts nearer than this share an axis
 

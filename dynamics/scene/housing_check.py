@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from bounds import Quantity, Text
-from dynamics.bodies import Shaft
+from dynamics.bearings import Bushing
+from dynamics.bearings.matrix import least_share
+from dynamics.bearings.seat import SEAT
 from dynamics.checks import one_of
 from dynamics.errors import InputError
-from dynamics.joints import Bushing, Housing
+from dynamics.joints import Housing
 from dynamics.joints.housing import DEFINITE
-from dynamics.joints.matrix import least_share
-from dynamics.joints.seat import SEAT
+from dynamics.shafts import Shaft
 from dynamics.types import FloatArray
 
 ISOTROPY = 1e-9  # relative

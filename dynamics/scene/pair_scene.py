@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from dynamics.bodies import GearBody, Inertia, Shaft, TimeLaw
-from dynamics.forces import GearMesh, LoadTorque, MeshTable
-from dynamics.joints import Bushing, ImposedRotation
+from dynamics.bearings import Bushing
+from dynamics.joints import ImposedRotation
+from dynamics.loads import LoadTorque, TimeLaw
+from dynamics.meshes import GearMesh, MeshTable
 from dynamics.scene.scene import Scene
+from dynamics.shafts import GearBody, Inertia, Shaft
 
 
 def pair_scene(

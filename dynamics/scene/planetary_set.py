@@ -8,11 +8,11 @@ from fractions import Fraction
 from itertools import chain
 
 from bounds import Quantity, SiNote, Text
-from dynamics.bodies import GearBody, Inertia, Shaft
+from dynamics.bearings import BearingStiffness, Bushing, PlanetBearing
 from dynamics.checks import finite, integer, one_of, positive
 from dynamics.errors import InputError
-from dynamics.forces import GearMesh, MeshTable
-from dynamics.joints import BearingStiffness, Bushing, PlanetBearing
+from dynamics.meshes import GearMesh, MeshTable
+from dynamics.shafts import GearBody, Inertia, Shaft
 
 TOOTH_FIT = 1e-6  # of a tooth: how well a planet's angle must let its teeth fit both central gears
 

@@ -7,35 +7,22 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from bounds import Text, at_most, between
-from dynamics.bodies import AngleLaw, DiscBody, GearBody, Shaft, TimeLaw
-from dynamics.bodies.shaft_position import OnShaft, on_length
+from dynamics.bearings import Bushing, PlanetBearing, RollingBearing
+from dynamics.bearings.bearing_law import BearingLaw
+from dynamics.bearings.row_law import row_law
 from dynamics.checks import distinct, not_negative, one_of, positive, within
 from dynamics.errors import InputError, SolveError
-from dynamics.forces import (
-    AppliedForce,
-    GearMesh,
-    LoadTorque,
-    RollingContact,
-    SpeedTorque,
-    SpringCurve,
-    Unbalance,
-)
-from dynamics.forces.bearing_law import BearingLaw
-from dynamics.joints import (
-    Bushing,
-    Coupling,
-    FreeRotation,
-    Housing,
-    ImposedRotation,
-    PlanetBearing,
-    RollingBearing,
-)
+from dynamics.forces import RollingContact, SpeedTorque, SpringCurve
+from dynamics.joints import Coupling, FreeRotation, Housing, ImposedRotation
+from dynamics.loads import AngleLaw, AppliedForce, LoadTorque, TimeLaw, Unbalance
+from dynamics.meshes import GearMesh
 from dynamics.parts import KINDS, ON_A_SHAFT
-from dynamics.rolling_bearings.row_law import row_law
 from dynamics.scene.force_check import check_force_shafts
 from dynamics.scene.frame_check import check_couplings, check_frames, check_gravity, check_on_axis
 from dynamics.scene.housing_check import check_housings
 from dynamics.settings import Integration, Outputs
+from dynamics.shafts import DiscBody, GearBody, Shaft
+from dynamics.shafts.shaft_position import OnShaft, on_length
 
 # Laws of bearings that are not linear: what they can act on.
 

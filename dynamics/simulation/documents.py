@@ -9,16 +9,18 @@ from typing import Any
 import numpy as np
 
 from dynamics.assembly.assemble import System
+from dynamics.bearings import RollingBearing
+from dynamics.bearings.loaded_bearing import LoadedBearing
+from dynamics.bearings.row_law import row_law
 from dynamics.errors import SolveError
-from dynamics.forces.element_laws import Elements
-from dynamics.forces.law import Law
-from dynamics.forces.local_state import LocalState
+from dynamics.forces.elements import Elements
 from dynamics.influence import Decided, Influence, estimate_influences
 from dynamics.integrators import static_equilibrium
 from dynamics.integrators.march import Ending
 from dynamics.integrators.method_choice import MethodChoice
 from dynamics.integrators.workspace import Count
-from dynamics.joints import RollingBearing
+from dynamics.kernels.law import Law
+from dynamics.kernels.local_state import LocalState
 from dynamics.linearize import natural_modes
 from dynamics.linearize.campbell import whirl_branches
 from dynamics.linearize.linear_system import LinearSystem, linearize
@@ -34,8 +36,6 @@ from dynamics.results.case import effect_ledger, resolved_case
 from dynamics.results.energy_audit import energy_check
 from dynamics.results.histories import checked_series, filtered, histories, unfiltered
 from dynamics.results.run_checks import RunChecks
-from dynamics.rolling_bearings import LoadedBearing
-from dynamics.rolling_bearings.row_law import row_law
 from dynamics.scene import Integration
 from dynamics.simulation.violations import FIRST, EarlierRun
 from dynamics.types import FloatArray, Json

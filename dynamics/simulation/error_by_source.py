@@ -10,8 +10,8 @@ import numpy as np
 from dynamics.assembly.assemble import System
 from dynamics.assembly.decimated_tables import with_decimated_tables
 from dynamics.assembly.later_start import starting_at
-from dynamics.forces.by_address import by_address
 from dynamics.integrators import StaticSolution, integrate
+from dynamics.kernels.by_address import by_address
 from dynamics.motion.observation import observe
 from dynamics.motion.sampled_states import States
 from dynamics.results.order_fit import order_amplitudes, orders_seen, unwrapped

@@ -8,8 +8,8 @@ from typing import Any
 
 from dynamics.engines import MeshElement
 from dynamics.engines.fmu import export_fmu
-from dynamics.forces import CoastFlank
 from dynamics.mechanism.flanks import DAMPING_REACH
+from dynamics.meshes import CoastFlank
 from fe_contact.ste import SteDatabase
 from lineofaction.cli.output import check_writable, console, print_json
 from lineofaction.cli.ste import open_ste

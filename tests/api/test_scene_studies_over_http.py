@@ -14,8 +14,8 @@ import pytest
 from fastapi.testclient import TestClient
 from scene_files import scene_file
 
-from dynamics.bodies import TimeLaw
 from dynamics.linearize import ForcedResponse, ModalAnalysis
+from dynamics.loads import TimeLaw
 from dynamics.periodic import SteadyStates
 from dynamics.results import RunResult
 from dynamics.simulation import simulate

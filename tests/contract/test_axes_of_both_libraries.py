@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from sliced_face import sliced_database
 
-from dynamics.forces.compiled import compiled
-from dynamics.forces.grid_lookup import find_cell, grid_force
-from dynamics.forces.grid_tables import pack_grids
-from dynamics.forces.mesh_table import check_table
-from dynamics.forces.spatial_flank import grid_energy
+from dynamics.kernels.compiled import compiled
+from dynamics.meshes.grid_lookup import find_cell, grid_force
+from dynamics.meshes.grid_tables import pack_grids
+from dynamics.meshes.mesh_table import check_table
+from dynamics.meshes.spatial_flank import grid_energy
 from fe_contact.ste.mesh_force import MeshForce
 
 M, A = (-20e-6, -8e-6, 3e-6, 18e-6), (-1e-4, 0.0, 2e-4)

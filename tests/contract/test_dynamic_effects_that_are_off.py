@@ -9,10 +9,10 @@ import pytest
 from geared_scenes import gear_pair_scene, spring_table, with_gear, with_mesh
 
 from dynamics.assembly import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.effects import EFFECTS
-from dynamics.forces import CoastFlank
 from dynamics.influence import decide_effects, estimate_influences
+from dynamics.loads import TimeLaw
+from dynamics.meshes import CoastFlank
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
 

@@ -11,11 +11,13 @@ import pytest
 from bound_walk import HIGH, LONGEST_CHAIN, LOW, next_typed
 
 from bounds import RefusedValue
-from dynamics.bodies import BeamSection, GearBody, Inertia, hollow_cylinder
-from dynamics.bodies import Shaft as TurningShaft
-from dynamics.forces import CoastFlank, RollingContact
-from dynamics.joints import Bushing, Coupling
+from dynamics.bearings import Bushing
+from dynamics.forces import RollingContact
+from dynamics.joints import Coupling
+from dynamics.meshes import CoastFlank
 from dynamics.scene import Integration, Outputs
+from dynamics.shafts import BeamSection, GearBody, Inertia, hollow_cylinder
+from dynamics.shafts import Shaft as TurningShaft
 from fe_contact.geometry import BoreSeat, FlankModification, Gear, GearBlank, GearPair, Key, RingGear, Shaft
 from lineofaction.gearbox.problems import Fault
 

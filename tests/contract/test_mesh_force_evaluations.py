@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dynamics.forces.mesh_table import MeshTable, check_table
-from dynamics.forces.packed_tables import pack_tables
-from dynamics.forces.table_lookup import table_deflection, table_force
+from dynamics.meshes.mesh_table import MeshTable, check_table
+from dynamics.meshes.packed_tables import pack_tables
+from dynamics.meshes.table_lookup import table_deflection, table_force
 from fe_contact.ste import MeshForce, Metadata, PairFacts, SteDatabase
 
 RNG = np.random.default_rng(23)

@@ -13,9 +13,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "fakes"))
 
 from geared_scenes import spring_table, square_wave_table
 
-from dynamics.forces.mesh_table import check_table
-from dynamics.forces.packed_tables import pack_tables
-from dynamics.forces.table_lookup import table_deflection, table_force
+from dynamics.meshes.mesh_table import check_table
+from dynamics.meshes.packed_tables import pack_tables
+from dynamics.meshes.table_lookup import table_deflection, table_force
 from fe_contact.ste.force_table import ForceTable
 from fe_contact.ste.mesh_force import MeshForce
 

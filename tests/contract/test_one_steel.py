@@ -2,7 +2,7 @@
 
 import pytest
 
-from dynamics.bodies import BeamSection
+from dynamics.shafts import BeamSection
 from fe_contact import STEEL
 from fe_contact.body.shaft import Shaft
 from lineofaction.gearbox.schemas.gear_body import MaterialInput

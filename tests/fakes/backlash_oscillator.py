@@ -15,10 +15,11 @@ import numpy as np
 from geared_scenes import spring_table
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import GearBody, Inertia, Shaft, TimeLaw
-from dynamics.forces import CoastFlank, GearMesh, LoadTorque
 from dynamics.joints import ImposedRotation
+from dynamics.loads import LoadTorque, TimeLaw
+from dynamics.meshes import CoastFlank, GearMesh
 from dynamics.scene import Integration, Outputs, Scene
+from dynamics.shafts import GearBody, Inertia, Shaft
 
 ZETA, MEAN, AMPLITUDE = 0.05, 0.1, 0.05
 TEETH, SAMPLES = 20, 64

@@ -11,9 +11,8 @@ from typing import Any
 
 from planetary_scenes import driven_scene, published_set
 
-from dynamics.bodies import TimeLaw
-from dynamics.forces import LoadTorque
 from dynamics.joints import Coupling, ImposedRotation
+from dynamics.loads import LoadTorque, TimeLaw
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
 

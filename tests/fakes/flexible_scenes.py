@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 from geared_scenes import gear_pair_scene
 
-from dynamics.bodies import BeamSection, Inertia
-from dynamics.joints import Bushing
+from dynamics.bearings import Bushing
 from dynamics.mechanism.columns import section_rows
+from dynamics.shafts import BeamSection, Inertia
 
 STEEL = BeamSection(0.2, 0.04)
 

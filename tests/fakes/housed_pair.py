@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from dynamics.bodies import TimeLaw
 from dynamics.joints import Housing
+from dynamics.loads import TimeLaw
 from tests.fakes.geared_scenes import gear_pair_scene, spring_table, with_bushings
 
 ON = {"lateral": "on", "axial": "on", "tilt": "on", "housing_modes": "on"}

@@ -7,8 +7,10 @@ from dataclasses import replace
 import numpy as np
 from geared_scenes import gear_pair_scene, spring_table, with_gear
 
-from dynamics.bodies import Inertia, Shaft, TimeLaw
-from dynamics.joints import Bushing, Coupling, Housing
+from dynamics.bearings import Bushing
+from dynamics.joints import Coupling, Housing
+from dynamics.loads import TimeLaw
+from dynamics.shafts import Inertia, Shaft
 
 ON = {"lateral": "on", "axial": "on", "tilt": "on", "housing_modes": "on"}
 OFF = ON | {"housing_modes": "off"}

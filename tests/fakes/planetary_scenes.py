@@ -13,10 +13,10 @@ from dataclasses import replace
 
 from geared_scenes import spring_table
 
-from dynamics.bodies import Inertia, TimeLaw
-from dynamics.forces import LoadTorque
 from dynamics.joints import FreeRotation, ImposedRotation
+from dynamics.loads import LoadTorque, TimeLaw
 from dynamics.scene import PlanetarySet, Scene
+from dynamics.shafts import Inertia
 
 PRESSURE_ANGLE = math.radians(24.6)
 MESH_STIFFNESS = 5e8

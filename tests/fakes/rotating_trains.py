@@ -8,9 +8,8 @@ from fractions import Fraction
 from geared_scenes import RPM, gear_pair_scene, spring_table, with_mesh
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
-from dynamics.forces import LoadTorque
 from dynamics.joints import FreeRotation
+from dynamics.loads import LoadTorque, TimeLaw
 from dynamics.scene import Integration, Outputs, Scene
 from dynamics.simulation import simulate
 

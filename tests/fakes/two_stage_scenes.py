@@ -8,10 +8,12 @@ from dataclasses import replace
 import numpy as np
 from geared_scenes import spring_table
 
-from dynamics.bodies import BeamSection, GearBody, Shaft, TimeLaw, hollow_cylinder
-from dynamics.forces import GearMesh, LoadTorque
-from dynamics.joints import Bushing, ImposedRotation
+from dynamics.bearings import Bushing
+from dynamics.joints import ImposedRotation
+from dynamics.loads import LoadTorque, TimeLaw
+from dynamics.meshes import GearMesh
 from dynamics.scene import Scene
+from dynamics.shafts import BeamSection, GearBody, Shaft, hollow_cylinder
 
 HELIX = math.radians(12.0)  # at the base circle
 ANGLE = math.radians(21.0)  # working pressure angle, of both stages

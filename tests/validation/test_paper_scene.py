@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene
 
-from dynamics.bodies import TimeLaw
+from dynamics.loads import TimeLaw
 from dynamics.orders import find_peaks, mesh_orders, window_spectrum
 from dynamics.simulation import simulate
 from fe_contact import Gear, GearPair, analyze

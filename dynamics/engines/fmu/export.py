@@ -22,7 +22,7 @@ import numpy as np
 from dynamics.engines.fmu.variables import BOOLEAN, INTEGER, REAL, Variable, of_kind, variables
 from dynamics.engines.mesh_element import MeshElement
 from dynamics.errors import DynamicsError, InputError
-from dynamics.forces.mesh_table import FIELDS, MeshTable
+from dynamics.meshes.mesh_table import FIELDS, MeshTable
 
 # modelDescription.xml of FMI 2.0.
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from bounds import inside
-from dynamics.bearing_rows import BallBearing, CatalogLine, RollerBearing
+from dynamics.bearings import BallBearing, Bushing, CatalogLine, PlanetBearing, RollerBearing, RollingBearing
+from dynamics.bearings.catalog import from_catalog
 from dynamics.forces import RollingContact, SpringCurve
-from dynamics.joints import Bushing, PlanetBearing, RollingBearing
-from dynamics.rolling_bearings import from_catalog
 from lineofaction.gearbox.convert.declared import in_si
 from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.schemas.scene import SceneInput

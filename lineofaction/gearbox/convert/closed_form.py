@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from dynamics.forces import MeshTable, PeriodicCurve, stiffness_table
+from dynamics.meshes import MeshTable, PeriodicCurve, stiffness_table
 from fe_contact.ste import PairFacts
 from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.problems import BadInput

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dynamics.bodies import BySpeed, Orders, SpeedCurve, TimeLaw
-from dynamics.bodies.load_course import CONSTANT, Course
-from dynamics.forces import AppliedForce, LoadTorque, SpeedTorque, Unbalance
+from dynamics.forces import SpeedTorque
+from dynamics.loads import AppliedForce, BySpeed, LoadTorque, Orders, SpeedCurve, TimeLaw, Unbalance
+from dynamics.loads.load_course import CONSTANT, Course
 from lineofaction.gearbox.convert.declared import in_si
 from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.schemas.scene_loads import ForceInput, UnbalanceInput

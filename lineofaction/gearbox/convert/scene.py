@@ -6,27 +6,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from dynamics.bodies import (
-    AngleLaw,
-    BeamSection,
-    DiscBody,
-    GearBody,
-    Inertia,
-    Shaft,
-    TimeLaw,
-    hollow_cylinder,
-)
 from dynamics.effects.ledger import mechanism_of
-from dynamics.forces import (
-    CoastFlank,
-    GearMesh,
-    MeshTable,
-    straight_table,
-)
 from dynamics.joints import Coupling, FreeRotation, Housing, ImposedRotation
+from dynamics.loads import AngleLaw, TimeLaw
 from dynamics.mechanism import with_planets
 from dynamics.mechanism.motion_check import check_motion
+from dynamics.meshes import CoastFlank, GearMesh, MeshTable, straight_table
 from dynamics.scene import Integration, Outputs, Scene
+from dynamics.shafts import BeamSection, DiscBody, GearBody, Inertia, Shaft, hollow_cylinder
 from fe_contact.ste import PairFacts, SteDatabase
 from lineofaction.gearbox.convert.bearings import (
     bushing_of,

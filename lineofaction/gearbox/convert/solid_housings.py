@@ -12,6 +12,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from dynamics.bearings.matrix import Matrix
 from dynamics.errors import DynamicsError, InputError
 from dynamics.housing_modes import (
     Bore,
@@ -33,7 +34,6 @@ from dynamics.housing_modes import (
     read_mesh,
     reduced_housing,
 )
-from dynamics.joints.matrix import Matrix
 from dynamics.work_cost import announce
 from lineofaction.gearbox.convert.declared import in_si
 from lineofaction.gearbox.convert.errors import named

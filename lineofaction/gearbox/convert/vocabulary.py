@@ -5,23 +5,23 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from bounds import Declared
-from dynamics.bearing_rows import BallBearing, CatalogLine, RollerBearing
-from dynamics.bodies.beam_section import BeamSection
-from dynamics.bodies.disc_body import DiscBody
-from dynamics.bodies.gear_body import GearBody
-from dynamics.bodies.inertia import Inertia
-from dynamics.bodies.shaft import Shaft as TurningShaft
-from dynamics.joints.bushing import Bushing
+from dynamics.bearings import BallBearing, CatalogLine, RollerBearing
+from dynamics.bearings.bushing import Bushing
+from dynamics.bearings.planet_bearing import PlanetBearing
+from dynamics.bearings.rolling_bearing import RollingBearing
 from dynamics.joints.coupling import Coupling
 from dynamics.joints.free_rotation import FreeRotation
 from dynamics.joints.housing import Housing
 from dynamics.joints.imposed_rotation import ImposedRotation
-from dynamics.joints.planet_bearing import PlanetBearing
-from dynamics.joints.rolling_bearing import RollingBearing
 from dynamics.loads.applied_force import AppliedForce
 from dynamics.loads.unbalance import Unbalance
 from dynamics.settings.integration import Integration
 from dynamics.settings.outputs import Outputs
+from dynamics.shafts.beam_section import BeamSection
+from dynamics.shafts.disc_body import DiscBody
+from dynamics.shafts.gear_body import GearBody
+from dynamics.shafts.inertia import Inertia
+from dynamics.shafts.shaft import Shaft as TurningShaft
 from dynamics.solid_housing import Material as HousingMaterial
 from dynamics.solid_housing import ReductionSettings, SeatWall
 from fe_contact.body.shaft import Shaft

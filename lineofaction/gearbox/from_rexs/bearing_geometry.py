@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from dynamics.bearing_rows import BallBearing, CatalogLine, RollerBearing
-from dynamics.bearing_rows.row import CLEARANCE
+from dynamics.bearings import BallBearing, CatalogLine, RollerBearing
+from dynamics.bearings.row import CLEARANCE
 from dynamics.errors import InputError
 from lineofaction.gearbox.from_rexs.bounded_number import bounded_number
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
@@ -135,7 +135,7 @@ def _catalog_bearing(part: Part) -> BearingGeometry | str:
         return f"no geometry follows from the catalog line of a {kind or 'bearing without bearing_type'}"
     if bore is None or outside is None or rating is None:
         return "bore, outside diameter or static load rating are missing"
-    from dynamics.bearing_rows.catalog import BAND, from_catalog  # noqa: PLC0415 (start-up time)
+    from dynamics.bearings.catalog import BAND, from_catalog  # noqa: PLC0415 (start-up time)
 
     try:
         line = CatalogLine(bore, outside, rating, radial_clearance(part))

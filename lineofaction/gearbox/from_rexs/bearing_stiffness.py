@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bounds.types import FloatArray
-from dynamics.bearing_rows import RollerBearing
+from dynamics.bearings import RollerBearing
 from dynamics.errors import DynamicsError
 from lineofaction.gearbox.from_rexs.bearing_geometry import Row, bearing_geometry
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
@@ -145,7 +145,7 @@ def _by_geometry(unit: GearUnit, part: Part) -> FloatArray | None:
     geometry = bearing_geometry(unit, part)
     if isinstance(geometry, str):
         return None
-    from dynamics.rolling_bearings import LoadedBearing  # noqa: PLC0415 (start-up time)
+    from dynamics.bearings.loaded_bearing import LoadedBearing  # noqa: PLC0415 (start-up time)
 
     bearing = LoadedBearing(geometry.row, COPIES)
     load = geometry.rating * np.array([RADIAL_LOAD, 0.0, _axial_load(geometry.row), 0.0, 0.0])

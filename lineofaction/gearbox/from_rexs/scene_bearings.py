@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from bounds.types import FloatArray
-from dynamics.bearing_rows import BallBearing, CatalogLine, RollerBearing
-from dynamics.bearing_rows.locating import BOTH, NEGATIVE, NONE, POSITIVE
-from dynamics.joints.rolling_bearing import AXIAL_PRELOAD, DYNAMIC_CAPACITY
+from dynamics.bearings import BallBearing, CatalogLine, RollerBearing
+from dynamics.bearings.roller_bearing import BOTH, NEGATIVE, NONE, POSITIVE
+from dynamics.bearings.rolling_bearing import AXIAL_PRELOAD, DYNAMIC_CAPACITY
 from lineofaction.gearbox.from_rexs.bearing_geometry import BearingGeometry, bearing_geometry
 from lineofaction.gearbox.from_rexs.bearing_stiffness import (
     BearingStiffness,

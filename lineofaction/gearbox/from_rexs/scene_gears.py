@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from dynamics.bodies import Inertia, hollow_cylinder
+from dynamics.shafts import Inertia, hollow_cylinder
 from lineofaction.gearbox.from_rexs.gear_stages import GearStage, teeth_of
 from lineofaction.gearbox.from_rexs.layout import Layout
 from lineofaction.gearbox.from_rexs.names import Names

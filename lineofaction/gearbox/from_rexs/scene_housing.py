@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from bounds.types import FloatArray
+from dynamics.bearings.matrix import least_share
 from dynamics.joints.housing import DEFINITE
-from dynamics.joints.matrix import least_share
 from lineofaction.gearbox.from_rexs.layout import Layout
 from lineofaction.gearbox.from_rexs.names import Names
 from lineofaction.gearbox.from_rexs.part import Part

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from dynamics.bodies import BeamSection, Inertia, hollow_cylinder
+from dynamics.shafts import BeamSection, Inertia, hollow_cylinder
 from lineofaction.gearbox.from_rexs.gear_stages import GearStage
 from lineofaction.gearbox.from_rexs.layout import Layout
 from lineofaction.gearbox.from_rexs.names import Names

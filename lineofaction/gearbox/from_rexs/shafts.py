@@ -9,7 +9,7 @@ from itertools import accumulate
 import numpy as np
 
 from bounds.types import FloatArray
-from dynamics.bodies import BeamSection
+from dynamics.shafts import BeamSection
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
 from lineofaction.gearbox.from_rexs.part import Part
 from lineofaction.gearbox.from_rexs.placement import Placement

@@ -6,8 +6,8 @@ from typing import Self
 
 from pydantic import ConfigDict, Field, model_validator
 
-from dynamics.bearing_rows import BallBearing, CatalogLine, RollerBearing
-from dynamics.joints.rolling_bearing import RollingBearing
+from dynamics.bearings import BallBearing, CatalogLine, RollerBearing
+from dynamics.bearings.rolling_bearing import RollingBearing
 from lineofaction.gearbox.schemas.declared import declared_in, with_fields
 from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
 from lineofaction.gearbox.schemas.rules import exactly_one_of, stated

@@ -7,11 +7,11 @@ from typing import Annotated, Literal, Self
 
 from pydantic import ConfigDict, Field, Strict, model_validator
 
-from dynamics.bodies.gear_body import GearBody
-from dynamics.bodies.inertia import Inertia
-from dynamics.joints.bushing import Bushing
+from dynamics.bearings.bushing import Bushing
+from dynamics.bearings.planet_bearing import PlanetBearing
 from dynamics.joints.coupling import Coupling
-from dynamics.joints.planet_bearing import PlanetBearing
+from dynamics.shafts.gear_body import GearBody
+from dynamics.shafts.inertia import Inertia
 from lineofaction.gearbox.schemas.declared import declared_in, figures, with_fields
 from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
 from lineofaction.gearbox.schemas.rules import both, given, left_out, stated

@@ -6,7 +6,7 @@ from typing import Self
 
 from pydantic import ConfigDict, Field, model_validator
 
-from dynamics.bodies.disc_body import DiscBody
+from dynamics.shafts.disc_body import DiscBody
 from lineofaction.gearbox.schemas.declared import declared_in, with_fields
 from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
 from lineofaction.gearbox.schemas.rules import exactly_one_of, stated

@@ -6,8 +6,8 @@ from typing import Annotated, Self
 
 from pydantic import ConfigDict, Field, Strict, model_validator
 
-from dynamics.bodies.beam_section import BeamSection
-from dynamics.bodies.shaft import Shaft
+from dynamics.shafts.beam_section import BeamSection
+from dynamics.shafts.shaft import Shaft
 from lineofaction.gearbox.schemas.declared import declared_in, with_fields
 from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
 from lineofaction.gearbox.schemas.rules import exactly_one_of, stated

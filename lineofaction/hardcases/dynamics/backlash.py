@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.integrators import Trajectory, integrate, static_equilibrium
+from dynamics.loads import TimeLaw
 from dynamics.scene import Integration, Outputs
 from dynamics.types import FloatArray
 from lineofaction.hardcases.dynamics.bounce import bounce, cycle

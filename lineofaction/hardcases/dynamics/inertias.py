@@ -8,11 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from dynamics.bodies import Inertia, TimeLaw
-from dynamics.forces import LoadTorque
 from dynamics.joints import FreeRotation
+from dynamics.loads import LoadTorque, TimeLaw
 from dynamics.results import RunResult
 from dynamics.scene import Integration, Outputs, Scene
+from dynamics.shafts import Inertia
 from dynamics.types import FloatArray
 from lineofaction.hardcases.dynamics.integrators import common_figures, off_closed_form, run_both
 from lineofaction.hardcases.dynamics.springs import BASE_RADIUS, INERTIA, STIFFNESS, TORQUE, spring, torsional

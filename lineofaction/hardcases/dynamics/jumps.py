@@ -13,9 +13,9 @@ from dataclasses import replace
 import numpy as np
 
 from dynamics.assembly.assemble import System, assemble
-from dynamics.bodies import GearBody, Inertia, Shaft, TimeLaw
-from dynamics.forces import CoastFlank, GearMesh, LoadTorque
 from dynamics.joints import ImposedRotation
+from dynamics.loads import LoadTorque, TimeLaw
+from dynamics.meshes import CoastFlank, GearMesh
 from dynamics.periodic import (
     Orbit,
     PeriodicProblem,
@@ -26,6 +26,7 @@ from dynamics.periodic import (
     settled,
 )
 from dynamics.scene import Integration, Scene
+from dynamics.shafts import GearBody, Inertia, Shaft
 from dynamics.types import FloatArray
 from lineofaction.hardcases.dynamics.integrators import METHODS
 from lineofaction.hardcases.dynamics.springs import spring

@@ -8,11 +8,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import Inertia, TimeLaw
-from dynamics.forces import LoadTorque
 from dynamics.integrators import static_equilibrium
 from dynamics.joints import ImposedRotation
+from dynamics.loads import LoadTorque, TimeLaw
 from dynamics.scene import Integration, PlanetarySet, Scene
+from dynamics.shafts import Inertia
 from lineofaction.hardcases.dynamics.integrators import common_figures, run_both
 from lineofaction.hardcases.dynamics.springs import spring
 from lineofaction.hardcases.scene import HardScene, Measured

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from dynamics.bodies import TimeLaw
+from dynamics.loads import TimeLaw
 from dynamics.scene import Integration, Outputs
 from lineofaction.hardcases.dynamics.integrators import common_figures, run_both
 from lineofaction.hardcases.dynamics.springs import (

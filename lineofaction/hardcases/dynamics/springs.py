@@ -11,11 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from dynamics.bodies import GearBody, Inertia, Shaft, TimeLaw
-from dynamics.forces import CoastFlank, GearMesh, LoadTorque
-from dynamics.forces.technique import PlainTable
 from dynamics.joints import ImposedRotation
+from dynamics.loads import LoadTorque, TimeLaw
+from dynamics.meshes import CoastFlank, GearMesh
+from dynamics.meshes.technique import PlainTable
 from dynamics.scene import Scene
+from dynamics.shafts import GearBody, Inertia, Shaft
 from dynamics.types import FloatArray
 
 TEETH = 20

@@ -9,9 +9,9 @@ from dataclasses import replace
 import numpy as np
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.integrators.workspace import Count
+from dynamics.loads import TimeLaw
 from dynamics.scene import Integration, Outputs
 from dynamics.types import FloatArray
 from lineofaction.hardcases.dynamics.integrators import METHODS, common_figures, off_closed_form, run_both

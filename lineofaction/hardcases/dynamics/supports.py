@@ -9,11 +9,12 @@ from dataclasses import replace
 import numpy as np
 
 from dynamics.assembly.assemble import System, assemble
-from dynamics.bodies import Inertia, Shaft
+from dynamics.bearings import Bushing
 from dynamics.forces import RollingContact
 from dynamics.integrators import Trajectory, integrate, static_equilibrium
-from dynamics.joints import Bushing, Coupling
+from dynamics.joints import Coupling
 from dynamics.scene import Integration, Outputs, Scene
+from dynamics.shafts import Inertia, Shaft
 from dynamics.types import FloatArray
 from lineofaction.hardcases.dynamics.bounce import bounce, cycle
 from lineofaction.hardcases.dynamics.integrators import METHODS, common_figures, rms, run_both

@@ -7,7 +7,7 @@ import pytest
 from rexs_bearing_units import BALL, LEFT, LINE, RIGHT, ROLLER, ROW, Values, at, inside, on_lines
 from rexs_reference import needs_reference, reference
 
-from dynamics.rolling_bearings import LoadedBearing
+from dynamics.bearings.loaded_bearing import LoadedBearing
 from lineofaction.gearbox.convert.bearings import rolling_bearing_of
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit, opened
 from lineofaction.gearbox.rexs import read_rexs

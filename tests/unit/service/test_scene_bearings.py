@@ -15,10 +15,11 @@ import pytest
 from small_table import small_table
 
 from dynamics.assembly.assemble import assemble
+from dynamics.bearings import BallBearing, RollerBearing
+from dynamics.bearings.catalog import from_catalog
 from dynamics.housing_modes import ReducedHousing, ReducedMatrices, Ring, SeatFrame, housing_of_matrices
 from dynamics.integrators import static_equilibrium
 from dynamics.mechanism.modal_housing import modal_housing
-from dynamics.rolling_bearings import BallBearing, RollerBearing, from_catalog
 from dynamics.scene import Scene
 from lineofaction.gearbox.convert.bearings import planet_bearing_of, rolling_contacts_of, spring_curves_of
 from lineofaction.gearbox.convert.scene import dynamic_scene

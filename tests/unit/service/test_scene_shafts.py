@@ -13,8 +13,8 @@ import pytest
 from small_table import small_table
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import Inertia, hollow_cylinder
 from dynamics.scene import Scene
+from dynamics.shafts import Inertia, hollow_cylinder
 from fe_contact import STEEL
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.problems import BadInput

@@ -10,16 +10,17 @@ import pytest
 
 from dynamics import simulate
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import BySpeed, Inertia, Orders, Shaft, SpeedCurve, TimeLaw
+from dynamics.bearings import Bushing
 from dynamics.errors import InputError
-from dynamics.forces import AppliedForce, Unbalance
 from dynamics.integrators import static_equilibrium
-from dynamics.joints import Bushing, Coupling, ImposedRotation
+from dynamics.joints import Coupling, ImposedRotation
 from dynamics.linearize import forced_response
+from dynamics.loads import AppliedForce, BySpeed, Orders, SpeedCurve, TimeLaw, Unbalance
 from dynamics.periodic.motion import motion
 from dynamics.periodic.period_map import periodic_problem
 from dynamics.periodic.shooting import find_orbit
 from dynamics.scene import Integration, Outputs, Scene
+from dynamics.shafts import Inertia, Shaft
 
 SPEED, POLAR, TORSION, DAMPING, TORQUE = 100.0, 0.3, 2e4, 40.0, 30.0
 ORDER, AMPLITUDE, PHASE, MEAN = (2.0, 0.5), (1.0, 0.4), (0.3, -0.7), 0.25

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from dynamics.bearings import BallBearing, RollerBearing, RollingBearing
+from dynamics.bearings.loaded_bearing import LoadedBearing, Reaction
 from dynamics.errors import InputError
-from dynamics.joints import RollingBearing
-from dynamics.rolling_bearings import BallBearing, LoadedBearing, Reaction, RollerBearing
 
 ROW = BallBearing(count=8, diameter=11.5e-3, pitch_diameter=43.5e-3, clearance=1e-5)
 OTHERS = [0, 1, 3, 4]

@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import pytest
 
-from dynamics.bearing_rows.catalog import BAND, RATING, SLENDERNESS
+from dynamics.bearings import BallBearing, RollerBearing
+from dynamics.bearings.catalog import BAND, RATING, SLENDERNESS, from_catalog
+from dynamics.bearings.loaded_bearing import LoadedBearing
 from dynamics.errors import InputError
-from dynamics.rolling_bearings import BallBearing, LoadedBearing, RollerBearing, from_catalog
 
 PUBLISHED = {
     # bore, outside (mm), C_0 (N, of the maker's catalog unless stated); balls, ball and pitch diameter (mm)

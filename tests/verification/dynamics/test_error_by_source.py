@@ -10,8 +10,8 @@ from geared_scenes import RPM, gear_pair_scene, square_wave_table
 from planetary_scenes import planetary_scene, published_set
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.integrators import integrate, static_equilibrium
+from dynamics.loads import TimeLaw
 from dynamics.results.order_fit import order_amplitudes, unwrapped
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, with_bushings, with_gear, with_mesh
 
-from dynamics.bodies import TimeLaw
 from dynamics.engines.exudyn_scene import run_in_exudyn
 from dynamics.errors import InputError
+from dynamics.loads import TimeLaw
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate
 

@@ -10,12 +10,13 @@ from geared_scenes import RPM, gear_pair_scene, spring_table, square_wave_table,
 from scipy.optimize import brentq
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import GearBody, Inertia, Shaft, TimeLaw
-from dynamics.forces import GearMesh, LoadTorque
 from dynamics.joints import ImposedRotation
 from dynamics.linearize import natural_modes
+from dynamics.loads import LoadTorque, TimeLaw
+from dynamics.meshes import GearMesh
 from dynamics.periodic import Instability, find_orbit, periodic_problem
 from dynamics.scene import Integration, Scene
+from dynamics.shafts import GearBody, Inertia, Shaft
 
 TEETH = 20
 # contact ratio, stiffness ratio, damping ratio: unstable bands of mesh frequency over natural frequency,

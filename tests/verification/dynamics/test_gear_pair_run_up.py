@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, square_wave_table
 
-from dynamics.bodies import TimeLaw
+from dynamics.loads import TimeLaw
 from dynamics.orders import find_peaks, mesh_orders, window_spectrum
 from dynamics.simulation import simulate
 

@@ -16,7 +16,7 @@ import pytest
 from planetary_scenes import planetary_scene, published_set
 
 from dynamics.assembly.assemble import assemble
-from dynamics.joints import BearingStiffness
+from dynamics.bearings import BearingStiffness
 from dynamics.linearize import natural_modes
 
 KINDS = ("x", "y", "z", "tilt_x", "tilt_y", "rotation")

@@ -10,8 +10,8 @@ import pytest
 from planetary_scenes import MESH_STIFFNESS, PRESSURE_ANGLE, planetary_scene, published_set
 
 from dynamics.assembly.assemble import assemble
+from dynamics.bearings import BearingStiffness
 from dynamics.integrators import static_equilibrium
-from dynamics.joints import BearingStiffness
 from dynamics.motion.observation import local_state
 
 HELIX = math.radians(22.0)  # on the base cylinder

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from geared_scenes import BASE_RADIUS, gear_pair_scene, spring_table, with_mesh
 
-from dynamics.bodies import TimeLaw
+from dynamics.loads import TimeLaw
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate
 

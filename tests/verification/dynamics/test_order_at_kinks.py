@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, square_wave_table
 
-from dynamics.bodies import TimeLaw
+from dynamics.loads import TimeLaw
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate
 

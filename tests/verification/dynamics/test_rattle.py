@@ -9,10 +9,11 @@ import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, square_wave_table, with_mesh
 from scipy.integrate import solve_ivp
 
-from dynamics.bodies import GearBody, Inertia, Shaft, TimeLaw
-from dynamics.forces import CoastFlank, GearMesh, LoadTorque
 from dynamics.joints import ImposedRotation
+from dynamics.loads import LoadTorque, TimeLaw
+from dynamics.meshes import CoastFlank, GearMesh
 from dynamics.scene import Integration, Outputs, Scene
+from dynamics.shafts import GearBody, Inertia, Shaft
 from dynamics.simulation import simulate
 
 TEETH, MEAN, RIPPLE, GAP, RATE = 20, 0.1, 0.6, 2.0, 0.9

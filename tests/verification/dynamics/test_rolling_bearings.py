@@ -9,16 +9,12 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from dynamics.bearings import BallBearing, EllipticContact, RollerBearing
+from dynamics.bearings.ball_grooves import pack_balls
+from dynamics.bearings.loaded_bearing import LoadedBearing
+from dynamics.bearings.rating_life import rating_life
+from dynamics.bearings.row_placement import RowPlacement
 from dynamics.errors import SolveError
-from dynamics.forces.ball_grooves import pack_balls
-from dynamics.forces.row_placement import RowPlacement
-from dynamics.rolling_bearings import (
-    BallBearing,
-    EllipticContact,
-    LoadedBearing,
-    RollerBearing,
-    rating_life,
-)
 
 STEEL = 206e9 / (2.0 * (1.0 - 0.3**2))
 MANY = 400  # copies of an element: the sum over them is the integral

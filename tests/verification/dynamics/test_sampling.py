@@ -9,10 +9,10 @@ import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, square_wave_table, with_gear, with_mesh
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
-from dynamics.forces import CoastFlank
 from dynamics.integrators import integrate, static_equilibrium
+from dynamics.loads import TimeLaw
+from dynamics.meshes import CoastFlank
 from dynamics.orders import highest_valid_order, order_track, sidebands
 from dynamics.scene import Outputs
 from dynamics.simulation import simulate

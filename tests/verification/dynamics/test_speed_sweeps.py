@@ -7,7 +7,7 @@ import pytest
 from geared_scenes import RPM, gear_pair_scene, square_wave_table, with_mesh
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
+from dynamics.loads import TimeLaw
 from dynamics.periodic import Instability, follow_branch, motion, periodic_problem, sweep
 from dynamics.scene import Outputs
 from dynamics.simulation import simulate

@@ -9,10 +9,12 @@ import pytest
 from geared_scenes import gear_pair_scene, spring_table
 
 from dynamics.assembly.assemble import assemble
+from dynamics.bearings import BallBearing, RollerBearing
+from dynamics.bearings.loaded_bearing import LoadedBearing
+from dynamics.bearings.tangent_bushing import tangent_bushing
 from dynamics.integrators import static_equilibrium
 from dynamics.linearize import natural_modes
 from dynamics.motion.observation import local_state
-from dynamics.rolling_bearings import BallBearing, LoadedBearing, RollerBearing, tangent_bushing
 
 ON = {"lateral": "on", "axial": "on", "tilt": "on"}
 DEEP_GROOVE = BallBearing(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3, clearance=1e-5)

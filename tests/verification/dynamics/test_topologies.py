@@ -9,12 +9,14 @@ import pytest
 from geared_scenes import square_wave_table
 from planetary_scenes import driven_scene, planetary_scene, published_set
 
-from dynamics.bodies import GearBody, Inertia, Shaft, TimeLaw
+from dynamics.bearings import Bushing
 from dynamics.errors import InputError
-from dynamics.forces import GearMesh, LoadTorque
-from dynamics.joints import Bushing, ImposedRotation
+from dynamics.joints import ImposedRotation
+from dynamics.loads import LoadTorque, TimeLaw
 from dynamics.mechanism.kinematics import solve_kinematics
+from dynamics.meshes import GearMesh
 from dynamics.scene import Integration, Scene
+from dynamics.shafts import GearBody, Inertia, Shaft
 from dynamics.simulation import simulate
 
 RADIUS = 0.002  # base radius per tooth, m

@@ -10,16 +10,17 @@ import pytest
 
 from dynamics import simulate
 from dynamics.assembly.assemble import System, assemble
-from dynamics.bodies import Inertia, Shaft, TimeLaw
-from dynamics.forces import LoadTorque, Unbalance
+from dynamics.bearings import Bushing
 from dynamics.integrators import static_equilibrium
-from dynamics.joints import Bushing, FreeRotation, ImposedRotation
+from dynamics.joints import FreeRotation, ImposedRotation
 from dynamics.linearize import forced_response, natural_modes
+from dynamics.loads import LoadTorque, TimeLaw, Unbalance
 from dynamics.motion.observation import observe
 from dynamics.periodic.motion import motion
 from dynamics.periodic.period_map import periodic_problem
 from dynamics.periodic.shooting import find_orbit
 from dynamics.scene import Integration, Outputs, Scene
+from dynamics.shafts import Inertia, Shaft
 
 MASS, POLAR, STIFFNESS, RATIO = 10.0, 0.05, 2e6, 0.02
 DAMPING = 2.0 * RATIO * math.sqrt(STIFFNESS * MASS)

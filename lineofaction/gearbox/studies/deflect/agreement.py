@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dynamics.deflection import Deflection, deflect
-from dynamics.forces import MeshTable
+from dynamics.meshes import MeshTable
 from dynamics.scene import Scene
 from dynamics.settings.load_case import LoadCase
 from lineofaction.gearbox.studies.deflect.mesh_contact import MeshContact

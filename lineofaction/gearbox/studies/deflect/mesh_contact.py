@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from dynamics.forces import MeshTable
+from dynamics.meshes import MeshTable
 from fe_contact.analysis import CondensedPair, condensed_pair, load_distribution, ste_database
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.geometry import ParallelAxes

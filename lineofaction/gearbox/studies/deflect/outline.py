@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from dynamics.bodies import Shaft
 from dynamics.effects.ledger import mechanism_of
 from dynamics.scene import Scene
+from dynamics.shafts import Shaft
 from lineofaction.gearbox.studies.deflect.result import Outline
 
 RIGID_DIAMETER = 0.08

@@ -14,8 +14,8 @@ from dynamics.accuracy.fidelities import TimeIntegration
 from dynamics.accuracy.frontier import FIGURES, knee_of_results
 from dynamics.accuracy.vibration import blocks_of
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
+from dynamics.loads import TimeLaw
 from dynamics.scene import Integration
 
 RUN_UP = gear_pair_scene(speed=TimeLaw.ramp(100.0 * RPM, 900.0 * RPM, 0.4), duration=0.4)

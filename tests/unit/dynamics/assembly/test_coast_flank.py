@@ -19,15 +19,15 @@ from geared_scenes import (
 )
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
-from dynamics.forces import CoastFlank
-from dynamics.forces.coast_flank import mirrored
-from dynamics.forces.packed_tables import pack_tables
-from dynamics.forces.table_lookup import table_force
-from dynamics.forces.technique import table_at
 from dynamics.integrators import static_equilibrium
+from dynamics.loads import TimeLaw
 from dynamics.mechanism.rotor import build_rotor
+from dynamics.meshes import CoastFlank
+from dynamics.meshes.coast_flank import mirrored
+from dynamics.meshes.packed_tables import pack_tables
+from dynamics.meshes.table_lookup import table_force
+from dynamics.meshes.technique import table_at
 from dynamics.simulation import simulate
 from dynamics.types import StaticStatus
 

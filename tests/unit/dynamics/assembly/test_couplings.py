@@ -10,13 +10,14 @@ import pytest
 from geared_scenes import gear_pair_scene, spring_table
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import Inertia, Shaft, TimeLaw
+from dynamics.bearings import Bushing
 from dynamics.errors import InputError
-from dynamics.forces import LoadTorque
 from dynamics.integrators import static_equilibrium
-from dynamics.joints import Bushing, Coupling, ImposedRotation
+from dynamics.joints import Coupling, ImposedRotation
 from dynamics.linearize import natural_modes
+from dynamics.loads import LoadTorque, TimeLaw
 from dynamics.mechanism.kinematics import solve_kinematics
+from dynamics.shafts import Inertia, Shaft
 from dynamics.simulation import simulate
 
 LOAD_INERTIA = 0.02

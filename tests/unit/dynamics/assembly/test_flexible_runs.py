@@ -11,10 +11,10 @@ from geared_scenes import RPM, spring_table, with_bushings, with_gear, with_mesh
 from sliced_face import sliced_database
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
-from dynamics.forces import CoastFlank
 from dynamics.integrators import integrate, static_equilibrium
+from dynamics.loads import TimeLaw
 from dynamics.mechanism.flank_gradients import common_face_width, misalignment_gradient
+from dynamics.meshes import CoastFlank
 from dynamics.results import EnergyAudit
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate

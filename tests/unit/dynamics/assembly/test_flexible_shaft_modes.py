@@ -18,13 +18,15 @@ from geared_scenes import gear_pair_scene, spring_table, with_gear
 from scipy.linalg import eigh
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import BeamSection, DiscBody, Inertia, Shaft, TimeLaw, timoshenko_beam
+from dynamics.bearings import Bushing
 from dynamics.integrators import static_equilibrium
-from dynamics.joints import Bushing, Coupling, FreeRotation
+from dynamics.joints import Coupling, FreeRotation
 from dynamics.linearize import linearize, natural_modes, whirl_modes
 from dynamics.linearize.campbell import speed_terms
+from dynamics.loads import TimeLaw
 from dynamics.motion.force_balance import force_balance
 from dynamics.scene import Outputs
+from dynamics.shafts import BeamSection, DiscBody, Inertia, Shaft, timoshenko_beam
 
 
 def dense(scene, mesh_stiffness, elements=40):

@@ -18,10 +18,11 @@ from flexible_scenes import (
 from geared_scenes import with_gear
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import BeamSection, Inertia, Shaft
+from dynamics.bearings import Bushing
 from dynamics.integrators import static_equilibrium
-from dynamics.joints import Bushing, Coupling
+from dynamics.joints import Coupling
 from dynamics.motion.force_balance import force_balance
+from dynamics.shafts import BeamSection, Inertia, Shaft
 
 STIFF = 1e8
 HOLLOW = BeamSection(0.2, 0.05, 0.02)

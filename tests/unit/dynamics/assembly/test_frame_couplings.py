@@ -12,18 +12,20 @@ from geared_scenes import gear_pair_scene, spring_table
 from planetary_scenes import driven_scene, published_set
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import Inertia, Shaft, TimeLaw
+from dynamics.bearings import Bushing
 from dynamics.errors import InputError
-from dynamics.forces.law import Law
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.integrators.march import stored_energy
-from dynamics.joints import Bushing, Coupling
+from dynamics.joints import Coupling
+from dynamics.kernels.law import Law
 from dynamics.linearize import natural_modes
 from dynamics.linearize.operating_speeds import common_period
+from dynamics.loads import TimeLaw
 from dynamics.motion.force_balance import force_balance
 from dynamics.motion.observation import local_state
 from dynamics.results import EnergyAudit
 from dynamics.scene import Integration
+from dynamics.shafts import Inertia, Shaft
 
 SPIN, DISC, LENGTH = 300.0, Inertia(4.0, 0.02, 0.0104), 0.2
 QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])

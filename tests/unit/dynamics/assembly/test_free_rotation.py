@@ -11,11 +11,10 @@ import pytest
 from geared_scenes import BASE_RADIUS, gear_pair_scene, spring_table
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
-from dynamics.forces import LoadTorque
 from dynamics.integrators import static_equilibrium
 from dynamics.joints import FreeRotation
+from dynamics.loads import LoadTorque, TimeLaw
 from dynamics.motion.motion import QUANTUM, flank_phase, move_free_trains, write_motion
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate

@@ -11,9 +11,9 @@ from geared_scenes import gear_pair_scene
 from planetary_scenes import driven_scene, published_set
 
 from dynamics.assembly.assemble import assemble
+from dynamics.bearings import Bushing
 from dynamics.errors import InputError
 from dynamics.integrators import static_equilibrium
-from dynamics.joints import Bushing
 from dynamics.simulation import simulate
 
 DOWN = (2.0, -9.81, 0.5)

@@ -9,10 +9,10 @@ import pytest
 from geared_scenes import gear_pair_scene, square_wave_table, with_mesh
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
-from dynamics.forces import CoastFlank
 from dynamics.linearize import modal_analysis
+from dynamics.loads import TimeLaw
+from dynamics.meshes import CoastFlank
 from dynamics.results.mesh_figures import dynamic_factor
 from dynamics.scene import Scene
 from dynamics.simulation import simulate

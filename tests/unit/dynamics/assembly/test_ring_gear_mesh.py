@@ -10,8 +10,8 @@ import pytest
 from geared_scenes import gear_pair_scene, spring_table, with_gear
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
+from dynamics.loads import TimeLaw
 from dynamics.mechanism.line_of_action import line_of_action
 from dynamics.simulation import simulate
 

@@ -5,10 +5,10 @@ import numpy as np
 from benchmarks.stages import stages
 from dynamics.arrays.sparse_rows import subtract_resistance
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
-from dynamics.forces.by_address import by_address
-from dynamics.forces.compiled import compiled
 from dynamics.integrators.implicit_step import invert
+from dynamics.kernels.by_address import by_address
+from dynamics.kernels.compiled import compiled
+from dynamics.loads import TimeLaw
 from tests.fakes.geared_scenes import spring_table
 
 SPAN = 1e-5

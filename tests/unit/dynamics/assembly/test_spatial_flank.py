@@ -11,13 +11,13 @@ from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, with_bushings, with
 from sliced_face import FACE_WIDTH, sliced_database
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
-from dynamics.forces import CoastFlank
-from dynamics.forces.element_laws import SPATIAL_FLANK
+from dynamics.forces.elements import SPATIAL_FLANK
 from dynamics.integrators import static_equilibrium
 from dynamics.linearize import natural_modes
+from dynamics.loads import TimeLaw
 from dynamics.mechanism.rotor import build_rotor
+from dynamics.meshes import CoastFlank
 from dynamics.motion.force_balance import force_balance
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, spring_table, with_gear
 
+from dynamics.bearings import BallBearing, Bushing, RollerBearing, RollingBearing
+from dynamics.bearings.loaded_bearing import LoadedBearing
+from dynamics.bearings.rating_life import rating_life
 from dynamics.deflection import LoadCase, deflect, life_duration
 from dynamics.deflection.deflect import life_of
 from dynamics.errors import InputError
-from dynamics.joints import Bushing, RollingBearing
-from dynamics.rolling_bearings import BallBearing, LoadedBearing, RollerBearing, rating_life
 
 CAPACITY = 23400.0
 BALL = BallBearing(8, 0.0115, 0.0435, clearance=5e-6)

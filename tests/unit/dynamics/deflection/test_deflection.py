@@ -13,13 +13,14 @@ from sliced_face import sliced_database
 from two_stage_scenes import mirrored_across, mirrored_along, two_stages
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
+from dynamics.bearings import Bushing
 from dynamics.deflection import CAUSES, LoadCase, deflect, equivalent_load, loaded_scene
 from dynamics.deflection.deflect import cycle_times
 from dynamics.deflection.mesh_alignment import rest_over
 from dynamics.errors import InputError
 from dynamics.forces import RollingContact
-from dynamics.joints import Bushing, FreeRotation, Housing
+from dynamics.joints import FreeRotation, Housing
+from dynamics.loads import TimeLaw
 from dynamics.mechanism.flank_gradients import misalignment_gradient
 from dynamics.motion.observation import local_state
 

@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 from two_stage_scenes import two_stages
 
-from dynamics.bodies import BySpeed, SpeedCurve
 from dynamics.deflection import CaseForce, LoadCase, deflect, loaded_scene
 from dynamics.errors import InputError
-from dynamics.forces import AppliedForce
+from dynamics.loads import AppliedForce, BySpeed, SpeedCurve
 
 LEFT, RIGHT, AT = 0.01, 0.19, 0.16
 FORCE, MOMENT = np.array([300.0, -500.0, 120.0]), np.array([7.0, -4.0, 0.0])

@@ -10,12 +10,14 @@ from geared_scenes import gear_pair_scene, spring_table
 from planetary_scenes import driven_scene, planetary_scene, published_set
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import Inertia, Shaft, TimeLaw
+from dynamics.bearings import PlanetBearing
 from dynamics.integrators import integrate, static_equilibrium
-from dynamics.joints import FreeRotation, ImposedRotation, PlanetBearing
+from dynamics.joints import FreeRotation, ImposedRotation
+from dynamics.loads import TimeLaw
 from dynamics.motion.observation import local_state
 from dynamics.results import EnergyAudit
 from dynamics.scene import Integration, Outputs
+from dynamics.shafts import Inertia, Shaft
 from dynamics.simulation import simulate
 
 MASS, STIFFNESS, SPEED = 2.0, 1e7, 300.0

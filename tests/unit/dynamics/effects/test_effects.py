@@ -10,10 +10,10 @@ from geared_scenes import gear_pair_scene, with_bushings, with_gear
 from planetary_scenes import BEARING_STIFFNESS, PRESSURE_ANGLE, driven_scene, published_set
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import Inertia
 from dynamics.effects import EFFECTS, LEFT_OUT, RotorEffect
 from dynamics.errors import InputError
-from dynamics.forces import AppliedForce
+from dynamics.loads import AppliedForce
+from dynamics.shafts import Inertia
 
 
 def kinds(scene, shaft="output"):

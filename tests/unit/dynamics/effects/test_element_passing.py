@@ -10,14 +10,17 @@ import pytest
 from geared_scenes import gear_pair_scene, spring_table
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import Inertia, Shaft, TimeLaw
+from dynamics.bearings import BallBearing, RollerBearing, RollingBearing
+from dynamics.bearings.element_passing import element_passing
+from dynamics.bearings.loaded_bearing import LoadedBearing
 from dynamics.errors import InputError
 from dynamics.integrators import static_equilibrium
-from dynamics.joints import Coupling, RollingBearing
+from dynamics.joints import Coupling
+from dynamics.loads import TimeLaw
 from dynamics.motion.observation import local_state
 from dynamics.periodic import steady_states
-from dynamics.rolling_bearings import BallBearing, LoadedBearing, RollerBearing, element_passing
 from dynamics.scene import Integration
+from dynamics.shafts import Inertia, Shaft
 from dynamics.simulation import simulate
 
 ON = {"lateral": "on", "axial": "on", "tilt": "on", "element_passing": "on"}

@@ -11,11 +11,11 @@ from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, with_gear, with_mes
 from sliced_face import ADDENDUM, rigid_share_database, sliced_database
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
-from dynamics.forces import CoastFlank
 from dynamics.integrators import static_equilibrium
+from dynamics.loads import TimeLaw
 from dynamics.mechanism.rotor import build_rotor
+from dynamics.meshes import CoastFlank
 from dynamics.motion.force_balance import force_balance
 from dynamics.scene import Integration
 from dynamics.simulation import simulate

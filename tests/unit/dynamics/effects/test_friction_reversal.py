@@ -12,14 +12,14 @@ from scipy.integrate import quad
 from sliced_face import rigid_share_database
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
-from dynamics.forces import CoastFlank, LoadTorque
-from dynamics.forces.mesh_table import FIELDS
-from dynamics.forces.spatial_flank import CREEP_SPEED
-from dynamics.forces.technique import PlainTable
 from dynamics.integrators import static_equilibrium
 from dynamics.joints import FreeRotation
 from dynamics.linearize import natural_modes
+from dynamics.loads import LoadTorque, TimeLaw
+from dynamics.meshes import CoastFlank
+from dynamics.meshes.mesh_table import FIELDS
+from dynamics.meshes.spatial_flank import CREEP_SPEED
+from dynamics.meshes.technique import PlainTable
 from dynamics.motion.force_balance import force_balance
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate

@@ -9,14 +9,14 @@ import pytest
 from fmu_instance import Instance
 from geared_scenes import BASE_RADIUS, gear_pair_scene, repeated, square_wave_table, with_mesh
 
-from dynamics.bodies import TimeLaw
 from dynamics.engines import MeshElement, mesh_element
 from dynamics.engines.fmu import export_fmu
 from dynamics.errors import InputError
-from dynamics.forces.coast_flank import CoastFlank, mirrored
-from dynamics.forces.flank_force import FlankLaws, flank_force
-from dynamics.forces.packed_tables import pack_tables
-from dynamics.forces.technique import table_at
+from dynamics.loads import TimeLaw
+from dynamics.meshes.coast_flank import CoastFlank, mirrored
+from dynamics.meshes.flank_force import FlankLaws, flank_force
+from dynamics.meshes.packed_tables import pack_tables
+from dynamics.meshes.technique import table_at
 from dynamics.scene import Outputs
 from dynamics.simulation import simulate
 

@@ -7,8 +7,8 @@ import pytest
 from geared_scenes import BASE_RADIUS
 
 from dynamics.engines.exudyn_scene import PlanarMesh, user_functions
-from dynamics.forces.flank_force import FlankLaws, flank_force
-from dynamics.forces.packed_tables import pack_tables
+from dynamics.meshes.flank_force import FlankLaws, flank_force
+from dynamics.meshes.packed_tables import pack_tables
 
 ANGLE = np.radians(20.0)
 

@@ -7,9 +7,9 @@ import sys
 import pytest
 from geared_scenes import gear_pair_scene
 
-from dynamics.bodies import TimeLaw
 from dynamics.engines.exudyn_scene import run_in_exudyn
 from dynamics.errors import InputError
+from dynamics.loads import TimeLaw
 
 
 def test_the_error_names_the_extra(monkeypatch):

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene
 
-from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
 from dynamics.export import write_universal_file
+from dynamics.loads import TimeLaw
 from dynamics.orders import order_waterfall, window_spectrum
 from dynamics.scene import Outputs
 from dynamics.simulation import simulate

@@ -11,15 +11,15 @@ from flexible_scenes import flexible_pair
 from geared_scenes import RPM, gear_pair_scene, spring_table, with_gear
 
 from dynamics.ablation import ablate
-from dynamics.bodies import BeamSection, TimeLaw
-from dynamics.bodies.load_course import Orders
 from dynamics.errors import InputError
 from dynamics.forces import RollingContact
 from dynamics.influence import decide_effects, estimate_influences
 from dynamics.influence.linear_figures import operating_conditions
 from dynamics.joints import FreeRotation, Housing
-from dynamics.loads import AppliedForce
+from dynamics.loads import AppliedForce, TimeLaw
+from dynamics.loads.load_course import Orders
 from dynamics.scene import Outputs, Scene
+from dynamics.shafts import BeamSection
 from dynamics.simulation import simulate
 
 QUICK = Outputs(energy_audit=False, receipt="minimal")

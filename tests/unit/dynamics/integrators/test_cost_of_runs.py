@@ -9,8 +9,8 @@ import pytest
 from geared_scenes import gear_pair_scene, square_wave_table, with_mesh
 
 from dynamics.assembly.assemble import assemble
-from dynamics.forces.coast_flank import CoastFlank
-from dynamics.forces.technique import PlainTable
+from dynamics.meshes.coast_flank import CoastFlank
+from dynamics.meshes.technique import PlainTable
 from dynamics.scene import Integration
 from dynamics.simulation import simulate
 

@@ -9,9 +9,9 @@ import pytest
 from geared_scenes import BASE_RADIUS, gear_pair_scene, spring_table, with_mesh
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import AngleLaw, TimeLaw
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.integrators.workspace import Count
+from dynamics.loads import AngleLaw, TimeLaw
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate
 

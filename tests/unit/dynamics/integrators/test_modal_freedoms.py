@@ -13,11 +13,11 @@ from scipy.linalg import expm
 from dynamics.arrays.modal_freedoms import LEAST, TOGETHER, modal_freedoms
 from dynamics.arrays.sparse_rows import sparse_matrices
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies.load_course import Orders
 from dynamics.forces import RollingContact
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.linearize import linearize
 from dynamics.loads import AppliedForce
+from dynamics.loads.load_course import Orders
 from dynamics.motion.observation import local_state
 from dynamics.scene import Integration
 from dynamics.settings import Outputs

@@ -9,8 +9,8 @@ import pytest
 from geared_scenes import gear_pair_scene, spring_table
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.integrators import integrate, static_equilibrium
+from dynamics.loads import TimeLaw
 from dynamics.scene import Integration
 
 

@@ -10,13 +10,13 @@ import pytest
 from geared_scenes import gear_pair_scene, spring_table, square_wave_table
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.errors import SolveError
-from dynamics.forces.by_address import by_address
 from dynamics.integrators import static_equilibrium
 from dynamics.integrators.advance import advance
 from dynamics.integrators.march import start_march
 from dynamics.integrators.workspace import Count
+from dynamics.kernels.by_address import by_address
+from dynamics.loads import TimeLaw
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate
 from dynamics.types import RunStatus

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.integrators.integrate import Trajectory
 from dynamics.integrators.workspace import Count
+from dynamics.loads import TimeLaw
 from dynamics.motion.observation import observe
 from dynamics.results.histories import filtered
 from dynamics.scene import Outputs

@@ -10,9 +10,9 @@ from geared_scenes import BASE_RADIUS, gear_pair_scene, spring_table, square_wav
 from planetary_scenes import planetary_scene, published_set
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.errors import SolveError
 from dynamics.integrators import static_equilibrium
+from dynamics.loads import TimeLaw
 from dynamics.simulation import simulate
 from dynamics.types import RunStatus, StaticStatus
 

@@ -11,9 +11,9 @@ from geared_scenes import gear_pair_scene, spring_table
 from planetary_scenes import driven_scene, published_set
 
 from dynamics.assembly.assemble import System, assemble
-from dynamics.bodies import Inertia, Shaft, TimeLaw
+from dynamics.bearings import Bushing
 from dynamics.errors import InputError, ResultError
-from dynamics.joints import Bushing, Coupling
+from dynamics.joints import Coupling
 from dynamics.linearize import (
     ModalAnalysis,
     campbell,
@@ -26,7 +26,9 @@ from dynamics.linearize import (
 from dynamics.linearize.campbell import WhirlModes, _whirl, likeness, modes_at
 from dynamics.linearize.flank_cycles import averaged, flank_cycles
 from dynamics.linearize.linear_system import LinearSystem
+from dynamics.loads import TimeLaw
 from dynamics.scene import Outputs
+from dynamics.shafts import Inertia, Shaft
 
 DISC = Inertia(4.0, 0.02, 0.0104)
 STIFFNESS, LENGTH, TEETH = 1e6, 0.2, 20

@@ -11,7 +11,6 @@ from sliced_face import sliced_database
 
 from dynamics.assembly.assemble import assemble
 from dynamics.assembly.static_reference import operating_points_at, with_static_reference
-from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
 from dynamics.integrators import static_equilibrium
 from dynamics.linearize import (
@@ -22,6 +21,7 @@ from dynamics.linearize import (
     peaks,
     steady_vibration,
 )
+from dynamics.loads import TimeLaw
 from dynamics.scene import Outputs
 from dynamics.simulation import simulate
 

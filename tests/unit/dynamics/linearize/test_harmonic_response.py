@@ -18,10 +18,10 @@ from geared_scenes import (
 from planetary_scenes import MESH_STIFFNESS, driven_scene, published_set
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
 from dynamics.linearize import common_period, harmonic_response
 from dynamics.linearize.harmonic_response import extremes
+from dynamics.loads import TimeLaw
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate
 

@@ -9,10 +9,10 @@ import pytest
 from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, spring_table, square_wave_table, with_mesh
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.linearize import harmonic_response
 from dynamics.linearize.harmonic_response import extremes, parametric_response
 from dynamics.linearize.steady_vibration import excited, swept_vibration
+from dynamics.loads import TimeLaw
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate
 

@@ -12,11 +12,10 @@ from planetary_scenes import driven_scene, published_set
 from two_stage_scenes import two_stages
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.forces import RollingContact
 from dynamics.joints import Housing
 from dynamics.linearize import ForcedResponse, forced_response
-from dynamics.loads import Unbalance
+from dynamics.loads import TimeLaw, Unbalance
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate
 

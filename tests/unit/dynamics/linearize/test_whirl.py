@@ -11,9 +11,11 @@ from geared_scenes import gear_pair_scene, spring_table
 from planetary_scenes import driven_scene, published_set
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import Inertia, Shaft, TimeLaw
-from dynamics.joints import Bushing, Coupling
+from dynamics.bearings import Bushing
+from dynamics.joints import Coupling
 from dynamics.linearize import natural_modes, whirl_modes
+from dynamics.loads import TimeLaw
+from dynamics.shafts import Inertia, Shaft
 
 SPIN = 300.0  # rad/s
 DISC = Inertia(4.0, 0.02, 0.0104)

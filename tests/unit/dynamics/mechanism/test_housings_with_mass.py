@@ -24,18 +24,18 @@ from housed_scenes import (
 )
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies.load_course import Orders
+from dynamics.bearings import BallBearing, RollingBearing
+from dynamics.bearings.row_law import row_law
 from dynamics.deflection import LoadCase, deflect
 from dynamics.errors import InputError
 from dynamics.forces import RollingContact
 from dynamics.integrators import static_equilibrium
-from dynamics.joints import Housing, RollingBearing
+from dynamics.joints import Housing
 from dynamics.linearize import forced_response, linearize, natural_modes, whirl_modes
 from dynamics.loads import AppliedForce
+from dynamics.loads.load_course import Orders
 from dynamics.motion.observation import local_state
 from dynamics.periodic import steady_states
-from dynamics.rolling_bearings import BallBearing
-from dynamics.rolling_bearings.row_law import row_law
 from dynamics.scene import Integration
 from dynamics.settings import Outputs
 from dynamics.simulation import simulate

@@ -12,13 +12,14 @@ import pytest
 from geared_scenes import RPM, gear_pair_scene, repeated, spring_table
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import GearBody, Inertia, Shaft, TimeLaw
 from dynamics.errors import InputError
-from dynamics.forces import GearMesh, LoadTorque
 from dynamics.joints import ImposedRotation
+from dynamics.loads import LoadTorque, TimeLaw
 from dynamics.mechanism.kinematics import solve_kinematics
+from dynamics.meshes import GearMesh
 from dynamics.motion.motion import flank_phase, write_motion
 from dynamics.scene import Scene
+from dynamics.shafts import GearBody, Inertia, Shaft
 
 INERTIA = Inertia(1.0, 1e-3, 1e-3)
 RB = 0.002  # base radius per tooth

@@ -10,8 +10,8 @@ import pytest
 from geared_scenes import BASE_RADIUS, gear_pair_scene, with_gear
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
+from dynamics.loads import TimeLaw
 from dynamics.mechanism.flank_gradients import common_face_width, misalignment_gradient
 from dynamics.mechanism.line_of_action import line_of_action
 

@@ -11,12 +11,13 @@ from geared_scenes import spring_table
 from planetary_scenes import MESH_STIFFNESS, PRESSURE_ANGLE, driven_scene, planetary_scene, published_set
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
+from dynamics.bearings import BearingStiffness
 from dynamics.errors import InputError
-from dynamics.forces import LoadTorque, RollingContact, SpringCurve
+from dynamics.forces import RollingContact, SpringCurve
 from dynamics.integrators import static_equilibrium
-from dynamics.joints import BearingStiffness, ImposedRotation
+from dynamics.joints import ImposedRotation
 from dynamics.linearize import natural_modes
+from dynamics.loads import LoadTorque, TimeLaw
 from dynamics.mechanism import with_planets
 from dynamics.motion.observation import local_state
 from dynamics.scene import Integration

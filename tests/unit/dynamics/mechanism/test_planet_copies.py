@@ -10,10 +10,10 @@ import pytest
 from planetary_scenes import driven_scene, planetary_scene, published_set
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import DiscBody, Inertia
 from dynamics.errors import InputError
 from dynamics.mechanism import with_planets
 from dynamics.scene import ring_phase
+from dynamics.shafts import DiscBody, Inertia
 
 
 def only_first(scene):

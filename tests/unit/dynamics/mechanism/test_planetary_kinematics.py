@@ -8,9 +8,9 @@ from fractions import Fraction
 import pytest
 from planetary_scenes import driven_scene, planetary_scene, published_set
 
-from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
 from dynamics.joints import FreeRotation, ImposedRotation
+from dynamics.loads import TimeLaw
 from dynamics.mechanism.kinematics import solve_kinematics
 
 GEARS = published_set(3)

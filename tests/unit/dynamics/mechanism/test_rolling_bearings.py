@@ -11,15 +11,17 @@ from geared_scenes import gear_pair_scene, spring_table, with_bushings
 from scipy.integrate import quad
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import Inertia, Shaft, TimeLaw
+from dynamics.bearings import Bushing
 from dynamics.errors import InputError
 from dynamics.forces import RollingContact, SpringCurve
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.integrators.march import stored_energy
-from dynamics.joints import Bushing, Coupling
+from dynamics.joints import Coupling
 from dynamics.linearize import natural_modes
+from dynamics.loads import TimeLaw
 from dynamics.motion.observation import local_state
 from dynamics.scene import Integration
+from dynamics.shafts import Inertia, Shaft
 from dynamics.simulation import simulate
 
 STIFFNESS, CLEARANCE, ROLLER, BALL = 5e8, 20e-6, 10.0 / 9.0, 1.5

@@ -9,9 +9,9 @@ import pytest
 from geared_scenes import gear_pair_scene, with_gear
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import Inertia
 from dynamics.errors import InputError
 from dynamics.mechanism.rotor import build_rotor
+from dynamics.shafts import Inertia
 
 
 def test_steiner_and_center_of_mass():

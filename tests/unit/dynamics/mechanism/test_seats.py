@@ -9,14 +9,16 @@ import pytest
 from geared_scenes import gear_pair_scene, spring_table, with_bushings
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import Inertia, Shaft, TimeLaw
+from dynamics.bearings import Bushing
 from dynamics.errors import InputError
 from dynamics.integrators import static_equilibrium
-from dynamics.joints import Bushing, Coupling, Housing, read_housing
+from dynamics.joints import Coupling, Housing, read_housing
 from dynamics.linearize import natural_modes, whirl_modes
+from dynamics.loads import TimeLaw
 from dynamics.mechanism.seats import condense_housing
 from dynamics.results import RunResult
 from dynamics.scene import Integration
+from dynamics.shafts import Inertia, Shaft
 from dynamics.simulation import simulate
 
 ON = {"lateral": "on", "axial": "on", "tilt": "on"}

@@ -7,7 +7,7 @@ import pytest
 from geared_scenes import gear_pair_scene, square_wave_table, with_gear, with_mesh
 
 from dynamics.assembly.assemble import assemble
-from dynamics.forces import CoastFlank
+from dynamics.meshes import CoastFlank
 from dynamics.motion.force_balance import force_balance
 
 

@@ -17,9 +17,9 @@ from sounding_scene import ON
 
 from dynamics import simulate
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
 from dynamics.linearize import forced_response
+from dynamics.loads import TimeLaw
 from dynamics.noise import pressure_recording, pressure_transfer, sound_limit, velocity_recording
 from dynamics.results import RunResult
 from dynamics.scene import Outputs

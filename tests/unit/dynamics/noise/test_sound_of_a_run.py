@@ -14,9 +14,9 @@ from swept_runs import BEARINGS, drawn_amplitudes, order_forces, swept_run
 
 from dynamics.acoustics import EquivalentRadiatedPower
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
 from dynamics.linearize import forced_response
+from dynamics.loads import TimeLaw
 from dynamics.noise import housing_radiation, radiated_sound
 from dynamics.orders import bearing_orders
 from dynamics.simulation import simulate

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene
 
-from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
+from dynamics.loads import TimeLaw
 from dynamics.orders import (
     find_peaks,
     mesh_orders,

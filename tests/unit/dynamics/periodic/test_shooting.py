@@ -11,10 +11,10 @@ from geared_scenes import RPM, gear_pair_scene, repeated, spring_table, square_w
 from planetary_scenes import MESH_STIFFNESS, driven_scene, planetary_scene, published_set
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
 from dynamics.forces import RollingContact
 from dynamics.linearize import common_period, harmonic_response
+from dynamics.loads import TimeLaw
 from dynamics.periodic import (
     BranchStatus,
     OrbitStatus,

@@ -10,10 +10,10 @@ from geared_scenes import RPM, gear_pair_scene, spring_table, square_wave_table,
 from sliced_face import sliced_database
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError, ResultError
-from dynamics.forces import CoastFlank
 from dynamics.linearize import harmonic_response
+from dynamics.loads import TimeLaw
+from dynamics.meshes import CoastFlank
 from dynamics.periodic import OrbitStatus, SteadyStates, find_orbit, steady_states
 from dynamics.periodic.steady_states import BRANCH, DOWN, UP
 from dynamics.scene import Integration, Outputs

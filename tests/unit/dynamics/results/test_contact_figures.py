@@ -9,8 +9,8 @@ import pytest
 from geared_scenes import RPM, gear_pair_scene
 from planetary_scenes import planetary_scene, published_set
 
-from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
+from dynamics.loads import TimeLaw
 from dynamics.results import RunResult
 from dynamics.results.mesh_figures import (
     ContactState,

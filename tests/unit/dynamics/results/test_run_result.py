@@ -10,8 +10,8 @@ import pytest
 from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, with_gear
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError, ResultError
+from dynamics.loads import TimeLaw
 from dynamics.results import RunResult
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate

@@ -10,9 +10,9 @@ import pytest
 from geared_scenes import gear_pair_scene, with_bushings, with_gear, with_mesh
 
 from bounds import above
-from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
 from dynamics.joints import ImposedRotation
+from dynamics.loads import TimeLaw
 from dynamics.scene import Integration, Outputs
 
 SCENE = gear_pair_scene()

@@ -11,12 +11,12 @@ from geared_scenes import RPM, gear_pair_scene, spring_table, with_gear, with_me
 from sliced_face import sliced_database
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.errors import SolveError
-from dynamics.forces import CoastFlank, MeshTable
 from dynamics.influence import decide_effects
 from dynamics.integrators import march
 from dynamics.integrators.start_value import added_rows
+from dynamics.loads import TimeLaw
+from dynamics.meshes import CoastFlank, MeshTable
 from dynamics.results import RunResult
 from dynamics.scene import Outputs, Scene
 from dynamics.simulation import simulate, simulate_to_file

@@ -18,13 +18,13 @@ from geared_scenes import RPM, gear_pair_scene
 from planetary_scenes import planetary_scene, published_set
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError, ResultError, SolveError
-from dynamics.forces import CoastFlank
 from dynamics.integrators import static_equilibrium
 from dynamics.integrators.checkpoint import leaves, read_checkpoint, restore, write_checkpoint
 from dynamics.integrators.march import start_march
 from dynamics.integrators.state_sink import BLOCK
+from dynamics.loads import TimeLaw
+from dynamics.meshes import CoastFlank
 from dynamics.results import RunResult
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import interrupted_run, simulate, simulate_to_file
@@ -127,7 +127,7 @@ from pathlib import Path
 sys.path.insert(0, {fakes!r})
 from flexible_scenes import flexible_pair
 from geared_scenes import RPM, gear_pair_scene
-from dynamics.bodies import TimeLaw
+from dynamics.shafts import TimeLaw
 from dynamics.simulation import simulate_to_file
 scene = gear_pair_scene(speed=TimeLaw.ramp(0.0, 955.0 * RPM, 0.2), duration=0.2)
 states, checkpoint = (Path({folder!r}) / name for name in ("run.states", "run.checkpoint"))

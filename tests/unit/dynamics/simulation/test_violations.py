@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, spring_table, square_wave_table, with_mesh
 
-from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError, SolveError
-from dynamics.forces import CoastFlank
+from dynamics.loads import TimeLaw
+from dynamics.meshes import CoastFlank
 from dynamics.results import RunResult
 from dynamics.scene import Scene
 from dynamics.simulation import interrupted_run, simulate, simulate_to_file

@@ -10,12 +10,12 @@ from geared_scenes import BASE_RADIUS, gear_pair_scene, square_wave_table, with_
 from sliced_face import rigid_share_database
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.errors import SolveError
-from dynamics.forces import CoastFlank
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.linearize import forced_response, modal_analysis
 from dynamics.linearize.linear_system import about_running
+from dynamics.loads import TimeLaw
+from dynamics.meshes import CoastFlank
 from dynamics.periodic import steady_states
 from dynamics.results import EnergyAudit, RunResult
 from dynamics.results.energy_audit import energy_check

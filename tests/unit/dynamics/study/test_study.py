@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from geared_scenes import BASE_RADIUS, gear_pair_scene, spring_table
 
-from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError, SolveError
+from dynamics.loads import TimeLaw
 from dynamics.results import RunResult
 from dynamics.scene import Scene
 from dynamics.simulation import simulate

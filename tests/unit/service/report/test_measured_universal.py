@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene
 
-from dynamics.bodies import TimeLaw
 from dynamics.export import write_universal_file
+from dynamics.loads import TimeLaw
 from dynamics.simulation import simulate
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.problems import BadInput

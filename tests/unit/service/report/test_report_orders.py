@@ -7,8 +7,8 @@ import pytest
 from planetary_scenes import driven_scene, planetary_scene, published_set
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bodies import TimeLaw
 from dynamics.linearize import whirl_modes
+from dynamics.loads import TimeLaw
 from dynamics.results import RunResult
 from dynamics.simulation import simulate
 from lineofaction.report.drawing.figure import HeatMap, Panel

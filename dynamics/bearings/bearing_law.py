@@ -1,0 +1,49 @@
+"""What the laws of bearings have in common that are not linear: the mechanism asks nothing else of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from dynamics.kernels.law import Law
+from dynamics.types import FloatArray
+
+
+@dataclass(frozen=True)
+class BearingDuty:
+    """What is expected of a bearing.
+
+    Attributes
+    ----------
+    load : float
+        Its typical load, N.
+    mass : float
+        Its share of the mass on the shaft, kg.
+    lever : float
+        Radius that makes lengths of tilts where a law has none of its own, m.
+    """
+
+    load: float
+    mass: float
+    lever: float
+
+
+class BearingLaw(Protocol):
+    """A law of p rows at a bushing or planet bearing, in addition to its linear one."""
+
+    @property
+    def law(self) -> Law:
+        """Kind of its force element."""
+
+    @property
+    def bushing(self) -> str:
+        """Where it acts."""
+
+    def rows(self, duty: BearingDuty) -> FloatArray:
+        """Return its coordinates, m, per displacement x, y, z, tilt_x, tilt_y of the bearing, (p, 5)."""
+
+    def typical(self, duty: BearingDuty) -> FloatArray:
+        """Return the stiffness of the rows at the typical load, (p,), N/m."""
+
+    def missed(self, duty: BearingDuty) -> float:
+        """Return what its tangent misses of the displacement under the typical load, m."""

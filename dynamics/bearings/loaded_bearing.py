@@ -1,0 +1,152 @@
+"""A rolling bearing's force from its displacement, and its displacement from a load."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from dynamics.bearings import BallBearing, RollerBearing
+from dynamics.bearings.axial_seat import axial_seat
+from dynamics.bearings.ball_elements import ball_reaction, balls, balls_energy
+from dynamics.bearings.ball_grooves import pack_balls
+from dynamics.bearings.roller_bearing import BOTH, check_locating
+from dynamics.bearings.roller_elements import pack_rollers, roller_reaction, rollers, rollers_energy
+from dynamics.bearings.row_placement import RowPlacement
+from dynamics.bearings.seat import SEAT
+from dynamics.errors import SolveError
+from dynamics.kernels.by_address import by_address
+from dynamics.kernels.local_state import alone
+from dynamics.kernels.routine import Routine
+from dynamics.types import FloatArray
+
+TOLERANCE = 1e-12  # of the load
+STEPS = 500
+LEAST_DAMPING = 1.0  # N/m; a tangent of unloaded elements is singular without
+
+
+@dataclass(frozen=True)
+class Reaction:
+    """The answer of a bearing of Z elements in L laminae each (balls: 1) to a displacement.
+
+    Attributes
+    ----------
+    force : (5,) array
+        Of the inner ring on the outer, N, N m.
+    tangent : (5, 5) array
+        Its derivative in the displacement, symmetric.
+    viscous : (5, 5) array
+        Its derivative in the rate of displacement if the damping of an element is its load times 1 s/m.
+    energy : float
+        Stored in the contacts, J.
+    slope : float
+        Derivative of the energy in the angle of the cage, J/rad.
+    load : (Z, L) array
+        Normal loads of the elements, N; with copies (Z copies, L): that of a whole element in each place.
+    """
+
+    force: FloatArray
+    tangent: FloatArray
+    viscous: FloatArray
+    energy: float
+    slope: float
+    load: FloatArray
+
+
+class LoadedBearing:
+    """A bearing laid out for compiled evaluation.
+
+    Parameters
+    ----------
+    bearing : BallBearing or RollerBearing
+    copies : int
+        Each element as so many that share its stiffness, evenly spaced. 1: the elements as they are, whose
+        force varies as the cage turns (element passing). More: its average over the passing of an element.
+    locating : str
+        Directions along z in which the rings are held in their seats: both, positive, negative, none. A ring
+        that is not held slides to where it carries no axial force.
+
+    Raises
+    ------
+    InputError
+        If a ring of a row with a contact angle slides.
+    """
+
+    def __init__(self, bearing: BallBearing | RollerBearing, copies: int = 1, locating: str = BOTH) -> None:
+        check_locating(bearing, locating)
+        self.bearing, self.copies = bearing, copies
+        self._local = by_address(alone(SEAT))
+        self._load = np.zeros((bearing.count * copies, bearing.laminae))
+        place = RowPlacement(copies, damping=1.0, locating=locating)
+        if isinstance(bearing, BallBearing):
+            self._laws: Any = by_address(pack_balls([(bearing, place)]))
+            self._react: Any = ball_reaction
+            routines: tuple[Routine, ...] = (axial_seat, balls, balls_energy)
+        else:
+            self._laws = by_address(pack_rollers([(bearing, place)]))
+            self._react = roller_reaction
+            routines = rollers, rollers_energy
+        for routine in routines:
+            routine.prepare(self._laws, self._local)
+
+    def evaluate(self, displacement: ArrayLike, angle: float = 0.0) -> Reaction:
+        """Return the answer to `displacement` (5,) of the inner ring against the outer.
+
+        Parameters
+        ----------
+        displacement : (5,) array_like
+            x, y, z (m), tilt_x, tilt_y (rad) about the bearing's center.
+        angle : float
+            Of the first element from x towards y, rad.
+        """
+        local = self._local
+        local.coordinate[:], local.position[0] = displacement, angle / (2.0 * math.pi)
+        energy, slope = self._react(self._laws, local, self._load)
+        matrices = local.tangent.copy(), local.viscous.copy()
+        whole = self.copies * self._load
+        return Reaction(local.force.copy(), *matrices, energy, slope / (2.0 * math.pi), whole)
+
+    def displacement(
+        self,
+        load: ArrayLike,
+        angle: float = 0.0,
+        start: ArrayLike = (0.0, 0.0, 0.0, 0.0, 0.0),
+        held: Sequence[int] = (),
+    ) -> FloatArray:
+        """Return the displacement (5,) at which the bearing carries `load` (5,), N and N m.
+
+        Damped Newton steps reduce energy less work of the load. Where the bearing does not resist, it stays
+        at `start`, and so do the coordinates that are `held`, as (3, 4) by a shaft that does not tilt; their
+        load is of no account.
+
+        Raises
+        ------
+        SolveError
+            If no displacement carries the load.
+        """
+        wanted, d = np.asarray(load, dtype=float), np.array(start, dtype=float)
+        free = np.setdiff1d(np.arange(SEAT), held)
+        lever = self.bearing.pitch_diameter / 2.0
+        scale = np.array([1.0, 1.0, 1.0, lever, lever])
+        floor = TOLERANCE * float(np.linalg.norm((wanted / scale)[free]))
+        damping, now = 1e9, self.evaluate(d, angle)  # N/m
+        for _ in range(STEPS):
+            missing = (wanted - now.force)[free]
+            left = float(np.linalg.norm(missing / scale[free]))
+            if left <= floor:
+                return d
+            damped = now.tangent + damping * np.diag(scale**2)
+            step = np.zeros(SEAT)
+            step[free] = np.linalg.solve(damped[np.ix_(free, free)], missing)
+            then = self.evaluate(d + step, angle)
+            gained = float(wanted @ step) - (then.energy - now.energy)
+            closer = np.linalg.norm(((wanted - then.force) / scale)[free]) < left
+            if gained > 0.0 or closer:
+                d, now, damping = d + step, then, max(damping / 10.0, LEAST_DAMPING)
+            else:
+                damping *= 4.0
+        raise SolveError(f"the bearing does not carry the load: {left:.3g} N are left after {STEPS} steps")

@@ -1,0 +1,180 @@
+"""A bearing's force against displacement in one direction, from a table; and its compiled law."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from dynamics.bearings.bearing_law import BearingDuty
+from dynamics.checks import finite, increasing, one_of
+from dynamics.errors import InputError
+from dynamics.kernels.compiled import inner
+from dynamics.kernels.law import Law
+from dynamics.kernels.local_state import LocalState
+from dynamics.kernels.routine import routine
+from dynamics.types import FloatArray, IntArray
+
+DIRECTIONS = ("x", "y", "z", "tilt_x", "tilt_y")
+
+
+@dataclass(frozen=True)
+class SpringCurve:
+    """A force on the ground by the displacement of the shaft in one direction of a bushing.
+
+    Acts beside what the bushing does linearly, its damping included. Through the points without overshoot
+    (Fritsch and Carlson); beyond the ends on with the slope there.
+
+    Attributes
+    ----------
+    bushing : str
+        The bushing or planet bearing in whose place it acts.
+    direction : str
+        One of x, y, z, tilt_x, tilt_y; one curve each. On a planet bearing x points away from the carrier's
+        axis.
+    displacement : tuple of floats
+        m, rad for a tilt; strictly increasing, at least 2.
+    force : tuple of floats
+        N, N m for a tilt; strictly increasing.
+    """
+
+    bushing: str
+    direction: str
+    displacement: tuple[float, ...]
+    force: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        one_of("direction", self.direction, DIRECTIONS)
+        size = increasing("displacement", self.displacement).size
+        if size < 2:
+            raise InputError("displacement", self.displacement, "at least 2 values")
+        if len(self.force) != size:
+            raise InputError("force", len(self.force), f"as many values as displacements ({size})")
+        for index, value in enumerate(self.force):
+            finite(f"force[{index}]", value)
+        increasing("force", self.force, "A bearing whose force falls with displacement is unstable.")
+
+    law: ClassVar[Law] = Law.SPRING_CURVE
+
+    @property
+    def slope(self) -> float:
+        """Mean stiffness over the table, N/m or N m/rad."""
+        return (self.force[-1] - self.force[0]) / (self.displacement[-1] - self.displacement[0])
+
+    def lever(self, duty: BearingDuty) -> float:
+        """Return coordinate over displacement: 1, or the radius in m for tilts."""
+        return duty.lever if self.direction.startswith("tilt") else 1.0
+
+    def rows(self, duty: BearingDuty) -> FloatArray:
+        """Return the displacement of its direction, (1, 5)."""
+        return self.lever(duty) * np.eye(5)[[DIRECTIONS.index(self.direction)]]
+
+    def typical(self, duty: BearingDuty) -> FloatArray:
+        """Return its mean stiffness, (1,), N/m."""
+        return np.array([self.slope / self.lever(duty) ** 2])
+
+    def missed(self, duty: BearingDuty) -> float:
+        """Return how far the table is off a straight line through its value at 0, m; of a tilt 0."""
+        if self.direction.startswith("tilt"):
+            return 0.0
+        ways, forces = np.array(self.displacement), np.array(self.force)
+        straight = np.interp(0.0, ways, forces) + self.slope * ways
+        off = float(np.max(np.abs(forces - straight))) / self.slope
+        return min(off, float(np.max(np.abs(ways[[0, -1]]))))
+
+    def pieces(self) -> tuple[FloatArray, FloatArray]:
+        """Return the starts of the cubics (S,) and their ascending coefficients (S, 4).
+
+        The first piece is the straight line below the table and counts from its first point; the last is the
+        one beyond it.
+        """
+        x, f = np.asarray(self.displacement, dtype=float), np.asarray(self.force, dtype=float)
+        inside = PchipInterpolator(x, f)
+        slope = inside.derivative()
+        first, last = [[f[0], float(slope(x[0])), 0.0, 0.0]], [[f[-1], float(slope(x[-1])), 0.0, 0.0]]
+        return np.array([x[0], *x]), np.concatenate([first, inside.c[::-1].T, last])
+
+
+class SpringCurveLaws(NamedTuple):
+    """Curves one after the other in flat arrays.
+
+    Attributes
+    ----------
+    first : (l + 1,) int array
+        First piece of each curve.
+    start : (S,) array
+        Start of the pieces, m or rad.
+    coefficient : (S, 4) array
+        Ascending, in N, N m.
+    energy : (S,) array
+        Energy at the start of each piece less that at no displacement, J.
+    lever : (l,) array
+        Coordinate over displacement: 1, or a radius in m for tilts.
+    """
+
+    first: IntArray
+    start: FloatArray
+    coefficient: FloatArray
+    energy: FloatArray
+    lever: FloatArray
+
+
+def pack_spring_curves(laws: Sequence[tuple[SpringCurve, BearingDuty]]) -> SpringCurveLaws:
+    """Lay out laws, each with the duty of its bearing."""
+    pieces = [part.pieces() for part, _ in laws]
+    energies = [_energies(start, coefficient) for start, coefficient in pieces]
+    levers = [part.lever(duty) for part, duty in laws]
+    return SpringCurveLaws(
+        np.cumsum([0, *(start.size for start, _ in pieces)], dtype=np.int64),
+        np.concatenate([np.empty(0), *(start for start, _ in pieces)]),
+        np.ascontiguousarray(np.concatenate([np.empty((0, 4)), *(c for _, c in pieces)])),
+        np.concatenate([np.empty(0), *energies]),
+        np.array(levers, dtype=float),
+    )
+
+
+def _energies(start: FloatArray, c: FloatArray) -> FloatArray:
+    """Energy at the start of each piece, 0 at no displacement."""
+    inside = np.array([_area(c[k], start[k + 1] - start[k]) for k in range(1, start.size - 1)])
+    from_first = np.concatenate([[0.0, 0.0], np.cumsum(inside)])
+    piece = max(int(np.searchsorted(start[1:], 0.0, side="right")), 0)
+    return np.asarray(from_first - from_first[piece] - _area(c[piece], -start[piece]))
+
+
+def _area(c: FloatArray, s: float) -> float:
+    """Integral of a cubic from 0 to s."""
+    return float(s * (c[0] + s * (c[1] / 2.0 + s * (c[2] / 3.0 + s * c[3] / 4.0))))
+
+
+@inner
+def _piece(laws: SpringCurveLaws, entry: int, displacement: float) -> int:
+    piece = laws.first[entry]
+    while piece + 1 < laws.first[entry + 1] and displacement >= laws.start[piece + 1]:
+        piece += 1
+    return int(piece)
+
+
+@routine
+def spring_curve(laws: SpringCurveLaws, entry: int, local: LocalState, row: int) -> None:
+    """Write force and derivative at the coordinate of `row`."""
+    lever = laws.lever[entry]
+    displacement = local.coordinate[row] / lever
+    piece = _piece(laws, entry, displacement)
+    s, c = displacement - laws.start[piece], laws.coefficient
+    force = c[piece, 0] + s * (c[piece, 1] + s * (c[piece, 2] + s * c[piece, 3]))
+    slope = c[piece, 1] + s * (2.0 * c[piece, 2] + 3.0 * s * c[piece, 3])
+    local.force[row] = local.elastic[row] = force / lever
+    local.tangent[row, 0] = slope / (lever * lever)
+
+
+@routine
+def spring_curve_energy(laws: SpringCurveLaws, entry: int, local: LocalState, row: int) -> float:
+    """Return the energy at the coordinate of `row` less that at 0, J."""
+    displacement = local.coordinate[row] / laws.lever[entry]
+    piece = _piece(laws, entry, displacement)
+    s, c = displacement - laws.start[piece], laws.coefficient
+    area = s * (c[piece, 0] + s * (c[piece, 1] / 2.0 + s * (c[piece, 2] / 3.0 + s * c[piece, 3] / 4.0)))
+    return float(laws.energy[piece] + area)

@@ -1,0 +1,121 @@
+"""The course of a load: its factor over time (`TimeLaw`), by a shaft's speed, or by a shaft's angle."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+
+from bounds import above, at_least
+from dynamics.checks import finite
+from dynamics.errors import InputError
+from dynamics.loads.speed_curve import SpeedCurve
+from dynamics.loads.time_law import TimeLaw
+from dynamics.types import FloatArray
+
+LARGEST_DENOMINATOR = 1000
+"""Orders are multiples of 1/d, d up to this: then they repeat after d turns."""
+AGREEMENT = 1e-9
+"""Relative difference of an order from such a multiple that the printing of its digits leaves."""
+FAINT = 1e-12
+"""Of the largest: smaller amplitudes of a tabulated turn are rounding."""
+
+
+@dataclass(frozen=True)
+class BySpeed:
+    """A factor by the speed of the shaft `shaft`, rad/s, in the sense in which the scene turns it."""
+
+    curve: SpeedCurve
+    shaft: str
+
+
+@dataclass(frozen=True)
+class Orders:
+    """A factor by a shaft's angle: mean + sum of amplitude_k cos(order_k angle + phase_k).
+
+    Attributes
+    ----------
+    shaft : str
+        Whose angle: about +z, with the shaft's own vibration, 0 at t = 0.
+    order, amplitude, phase : tuples of floats
+        Events per turn, > 0; factors; rad.
+    mean : float
+    """
+
+    shaft: str
+    order: tuple[float, ...]
+    amplitude: tuple[float, ...]
+    phase: tuple[float, ...]
+    mean: float = 0.0
+
+    def __post_init__(self) -> None:
+        finite("mean", self.mean)
+        for name in ("amplitude", "phase"):
+            values = getattr(self, name)
+            if len(values) != len(self.order):
+                raise InputError(name, len(values), f"as many values as orders ({len(self.order)})")
+            for index, value in enumerate(values):
+                finite(f"{name}[{index}]", value)
+        for index, order in enumerate(self.order):
+            if not order > 0.0:
+                raise InputError(f"order[{index}]", order, above(0.0), "A constant part is the mean.")
+            if abs(float(_multiple(order)) - order) > AGREEMENT * order:
+                bound = f"a multiple of 1/d with a whole number d up to {LARGEST_DENOMINATOR}"
+                raise InputError(f"order[{index}]", order, bound, "Give fractions with ten digits.")
+
+    @classmethod
+    def table(cls, shaft: str, value: Sequence[float]) -> Orders:
+        """Return the orders that go through `value` (N,), at N equal steps of the angle over one turn.
+
+        It is the band-limited curve: the largest order is N/2.
+        """
+        values = np.array([finite(f"value[{index}]", entry) for index, entry in enumerate(value)])
+        if values.size < 3:
+            raise InputError("value", values.size, at_least(3, name="number of values,"))
+        lines = np.fft.rfft(values) / values.size
+        twice = np.where(np.arange(lines.size) * 2 == values.size, 1.0, 2.0) * lines
+        kept = np.flatnonzero(np.abs(twice) > FAINT * np.max(np.abs(twice)))
+        kept = kept[kept > 0]
+        return cls(
+            shaft,
+            tuple(float(order) for order in kept),
+            tuple(np.abs(twice[kept]).tolist()),
+            tuple(np.angle(twice[kept]).tolist()),
+            float(lines[0].real),
+        )
+
+    @property
+    def multiple(self) -> tuple[Fraction, ...]:
+        """The orders as fractions."""
+        return tuple(_multiple(order) for order in self.order)
+
+    @property
+    def turns(self) -> int:
+        """Turns of the shaft after which the factor repeats."""
+        return math.lcm(*(order.denominator for order in self.multiple))
+
+    def __call__(self, angle: float | FloatArray) -> FloatArray:
+        """Return the factor at `angle`, rad."""
+        at = np.asarray(angle, dtype=float)[..., None]
+        waves = np.asarray(self.amplitude) * np.cos(np.asarray(self.order) * at + np.asarray(self.phase))
+        return np.asarray(self.mean + np.sum(waves, axis=-1), dtype=float)
+
+
+Course = TimeLaw | BySpeed | Orders
+CONSTANT = TimeLaw.constant(1.0)
+
+
+def mean_factor(course: Course, time: float | FloatArray, speed: float | FloatArray) -> FloatArray:
+    """Return the mean over a turn at `time` (s) and the `speed` (rad/s) of its shaft in the shaft's sense."""
+    if isinstance(course, TimeLaw):
+        return course(time)
+    if isinstance(course, BySpeed):
+        return course.curve(speed)
+    return np.full_like(np.asarray(time, dtype=float), course.mean)
+
+
+def _multiple(order: float) -> Fraction:
+    return Fraction(order).limit_denominator(LARGEST_DENOMINATOR)

@@ -1,0 +1,17 @@
+"""Gear meshes: tables of the mesh force, their compiled look-up, flanks with backlash and in space."""
+
+import host.analysis  # noqa: F401 (says what to install)
+from dynamics.meshes.coast_flank import CoastFlank
+from dynamics.meshes.gear_mesh import GearMesh
+from dynamics.meshes.mesh_table import MeshTable
+from dynamics.meshes.stiffness_table import PeriodicCurve, stiffness_table
+from dynamics.meshes.straight_table import straight_table
+
+__all__ = [
+    "CoastFlank",
+    "GearMesh",
+    "MeshTable",
+    "PeriodicCurve",
+    "stiffness_table",
+    "straight_table",
+]

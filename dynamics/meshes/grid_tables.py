@@ -1,0 +1,121 @@
+"""Mesh-force tables over position, misalignment and center distance, laid out for the compiled look-up."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+
+from dynamics.identity_cache import identity_cached
+from dynamics.meshes.mesh_table import LEVERS, MeshTable
+from dynamics.meshes.packed_tables import PackedTables, pack_tables
+from dynamics.types import FloatArray, IntArray
+
+
+class GridTables(NamedTuple):
+    """Tables of k flanks, one after the other in flat arrays.
+
+    Attributes
+    ----------
+    base : PackedTables
+        Knots of position and levels, and the first knot of the other axes.
+    shape : (k, 3) int array
+        Knots of misalignment, center distance and position.
+    channels : (k,) int array
+        Quantities per level: deflection, stiffness, then the value and slope in force of each lever.
+    axis_first : (k, 2) int array
+        First knot of misalignment and center distance in `axis`.
+    axis : flat array
+        Their knots, m.
+    first : (k,) int array
+        First number of each table.
+    number : flat array
+        By misalignment, center distance, position, level, channel and order of differentiation: in
+        misalignment and center distance (where they have a second knot), then in position.
+    """
+
+    base: PackedTables
+    shape: IntArray
+    channels: IntArray
+    axis_first: IntArray
+    axis: FloatArray
+    first: IntArray
+    number: FloatArray
+
+
+def pack_grids(tables: Sequence[MeshTable]) -> GridTables:
+    """Lay out `tables`; those with more than one operating point carry their derivatives along the axes."""
+    numbers = [_numbers(table) for table in tables]
+    axes = [np.ravel(getattr(t, name)) for t in tables for name in ("misalignment", "center_distance_change")]
+    starts = np.cumsum([0, *(axis.size for axis in axes)])[:-1].reshape(-1, 2)
+    shape = [
+        [np.size(t.misalignment), np.size(t.center_distance_change), np.size(t.position)] for t in tables
+    ]
+    return GridTables(
+        pack_tables(tables),
+        np.array(shape, dtype=np.int64).reshape(-1, 3),
+        np.array([number.shape[4] for number in numbers], dtype=np.int64),
+        np.ascontiguousarray(starts, dtype=np.int64),
+        np.concatenate([*axes, np.empty(0)]).astype(float),
+        np.cumsum([0, *(number.size for number in numbers)], dtype=np.int64)[:-1],
+        np.concatenate([*(number.ravel() for number in numbers), np.empty(0)]),
+    )
+
+
+@identity_cached
+def _numbers(table: MeshTable) -> FloatArray:
+    """Return (M, D, P, L, channels, orders)."""
+    channels = [
+        _values_of(table, "deflection"),
+        _values_of(table, "stiffness"),
+    ]
+    for name in LEVERS:
+        values = getattr(table, name, None)
+        lever = np.zeros(np.shape(table.deflection)) if values is None else np.asarray(values, dtype=float)
+        in_force = _force_slope(np.asarray(table.level, dtype=float), lever)
+        channels += [_smooth(table, lever), _smooth(table, in_force)]
+    orders = list(product(*((0, 1) if size > 1 else (0,) for size in np.shape(table.deflection)[:2]), (0, 1)))
+    return np.stack([np.stack([c[order] for order in orders], axis=-1) for c in channels], axis=-2)
+
+
+def _values_of(table: MeshTable, name: str) -> FloatArray:
+    """Return a quantity with the derivatives that the table gives, (2, 2, 2, M, D, P, L)."""
+    derivative = getattr(table, f"{name}_derivative", None)
+    if derivative is not None:
+        return np.asarray(derivative, dtype=float)
+    values = np.asarray(getattr(table, name), dtype=float)
+    numbers = np.zeros((2, 2, 2, *values.shape))
+    numbers[0, 0, 0], numbers[0, 0, 1] = values, getattr(table, f"{name}_slope")
+    return numbers
+
+
+def _smooth(table: MeshTable, values: FloatArray) -> FloatArray:
+    """Return values (M, D, P, L) with three-point derivatives along all axes, (2, 2, 2, M, D, P, L)."""
+    numbers = np.zeros((2, 2, 2, *values.shape))
+    numbers[0, 0, 0] = values
+    numbers[0, 0, 1] = _periodic_slope(np.asarray(table.position, dtype=float), float(table.period), values)
+    for number, knots in ((1, table.center_distance_change), (0, table.misalignment)):
+        if np.size(knots) > 1:
+            done = numbers[0, 0] if number else numbers[0]
+            slope = np.gradient(done, np.asarray(knots, dtype=float), axis=-4 + number)
+            if number:
+                numbers[0, 1] = slope
+            else:
+                numbers[1] = slope
+    return numbers
+
+
+def _periodic_slope(position: FloatArray, period: float, values: FloatArray) -> FloatArray:
+    """Three-point derivatives along the positions, (M, D, P, L)."""
+    around = np.concatenate([position[-1:] - period, position, position[:1] + period])
+    closed = np.concatenate([values[:, :, -1:], values, values[:, :, :1]], axis=2)
+    return np.asarray(np.gradient(closed, around, axis=2)[:, :, 1:-1])
+
+
+def _force_slope(level: FloatArray, values: FloatArray) -> FloatArray:
+    """Three-point derivatives in the force, 0 at both ends: beyond them the quantity stays as it is."""
+    slope = np.gradient(values, level, axis=3)
+    slope[..., 0], slope[..., -1] = 0.0, 0.0
+    return np.asarray(slope)

@@ -1,0 +1,118 @@
+"""Mesh-force tables laid out for the compiled look-up."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from dynamics.identity_cache import identity_cached
+from dynamics.kernels.by_address import by_address
+from dynamics.meshes.energy_below import ORDER, energy_below
+from dynamics.meshes.mesh_table import MeshTable
+from dynamics.types import FloatArray, IntArray
+
+BUCKETS_PER_KNOT = 4
+
+
+class PackedTables(NamedTuple):
+    """Tables of several flanks, one after the other in flat arrays.
+
+    Attributes
+    ----------
+    offset : (m, 6) int array
+        Per flank: first knot, first bucket, number of buckets, first row, first level, number of levels.
+    shift : (m,) array
+        Position of the first knot.
+    period : (m,) array
+        Whole base pitches.
+    density : (m,) array
+        Buckets per base pitch.
+    knot : flat array
+        Knots less `shift`, from 0 to the period inclusive (P + 1 of them).
+    bucket : flat int array
+        The interval in which each of the equal buckets of the period begins: finding it takes no search.
+    row : (sum of P L, 8) array
+        Per position interval and level the ascending cubic coefficients of deflection (4) and stiffness (4)
+        in the local coordinate 0..1: one cache line each.
+    level : flat array
+        Forces, N.
+    energy : (sum of P L, 10) array
+        See `energy_below`.
+    """
+
+    offset: IntArray
+    shift: FloatArray
+    period: FloatArray
+    density: FloatArray
+    knot: FloatArray
+    bucket: IntArray
+    row: FloatArray
+    level: FloatArray
+    energy: FloatArray
+
+
+def pack_tables(tables: Sequence[MeshTable]) -> PackedTables:
+    """Lay out `tables`, each with misalignment and center-distance axes of length 1."""
+    parts = [_laid_out(table) for table in tables]
+    knots, buckets, rows = (
+        [part[0] for part in parts],
+        [part[1] for part in parts],
+        [part[2] for part in parts],
+    )
+    levels, energies = [part[3] for part in parts], [part[4] for part in parts]
+    starts = [_starts(own) for own in (knots, buckets, rows, levels)]
+    offset = [
+        [starts[0][f], starts[1][f], buckets[f].size, starts[2][f], starts[3][f], levels[f].size]
+        for f in range(len(tables))
+    ]
+    period = np.array([float(table.period) for table in tables])
+    packed = PackedTables(
+        np.array(offset, dtype=np.int64).reshape(-1, 6),
+        np.array([float(table.position[0]) for table in tables]),
+        period,
+        np.array([float(bucket.size) for bucket in buckets]) / period,
+        np.concatenate([*knots, np.empty(0)]),
+        np.concatenate([*buckets, np.empty(0, dtype=np.int64)]),
+        np.concatenate([*rows, np.empty((0, 8))]),
+        np.concatenate([*levels, np.empty(0)]),
+        np.concatenate([*energies, np.empty((0, ORDER + 1))]),
+    )
+    return by_address(packed)
+
+
+@identity_cached
+def _laid_out(table: MeshTable) -> tuple[FloatArray, IntArray, FloatArray, FloatArray, FloatArray]:
+    """Return knots from 0 to the period, buckets, rows, levels and energies of one table."""
+    knot = np.append(np.asarray(table.position, dtype=float), table.position[0] + table.period)
+    knot -= knot[0]
+    rows, level = _rows(table, knot), np.asarray(table.level, dtype=float)
+    return knot, bucket_starts(knot), rows, level, energy_below(rows, level)
+
+
+def _starts(parts: Sequence[FloatArray] | Sequence[IntArray]) -> list[int]:
+    return [0, *np.cumsum([len(part) for part in parts]).tolist()]
+
+
+def bucket_starts(knot: FloatArray) -> IntArray:
+    """Return the interval that holds the start of each bucket; rounding puts it behind no position in it."""
+    count = BUCKETS_PER_KNOT * (knot.size - 1)
+    start = np.arange(count) / count * (knot[-1] * (1.0 - 1e-12))
+    index = np.clip(np.searchsorted(knot, start, side="right") - 1, 0, knot.size - 2)
+    return np.asarray(index, dtype=np.int64)
+
+
+def _rows(table: MeshTable, knot: FloatArray) -> FloatArray:
+    """Hermite data as ascending cubics: (P L, 8)."""
+    width = np.diff(knot)[:, np.newaxis]
+    deflection = _cubic(table.deflection[0, 0], table.deflection_slope[0, 0], width)
+    stiffness = _cubic(table.stiffness[0, 0], table.stiffness_slope[0, 0], width)
+    return np.ascontiguousarray(np.concatenate([deflection, stiffness], axis=-1).reshape(-1, 8))
+
+
+def _cubic(value: FloatArray, slope: FloatArray, width: FloatArray) -> FloatArray:
+    """Coefficients (P, L, 4) on each interval, the last of which joins the last knot to the first."""
+    end, rise, fall = np.roll(value, -1, axis=0), slope * width, np.roll(slope, -1, axis=0) * width
+    step = end - value
+    return np.stack([value, rise, 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step], axis=-1)

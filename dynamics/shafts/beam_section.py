@@ -1,0 +1,140 @@
+"""A piece of a shaft: a cylinder or a cone, solid or hollow, and its cross sections along the axis."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from bounds import Declared, Kind, below, between, declared, described, required, up_to
+from dynamics.checks import declared_fields
+from dynamics.errors import InputError
+from dynamics.shafts.inertia import Inertia, hollow_cylinder
+from dynamics.shafts.steel import STEEL_DENSITY, STEEL_POISSON_RATIO, STEEL_YOUNGS_MODULUS
+from dynamics.types import FloatArray
+
+_EXACT = np.polynomial.legendre.leggauss(4)
+"""Points and weights that integrate polynomials up to degree 7: inertia has degree 6 along a cone."""
+
+_LENGTH = Declared(Kind.LENGTH, "m", up_to(1000.0), "Length", 0.08)
+_OUTER = Declared(Kind.LENGTH, "m", up_to(100.0), "Outer diameter, of a cone at its left end", 0.04)
+_BORE = Declared(Kind.LENGTH, "m", between(0.0, 100.0), "Bore, of a cone at its left end; 0: solid", 0.01)
+_END_OUTER = Declared(
+    Kind.LENGTH, "m", up_to(100.0), "Outer diameter at the right end; left out: as at the left end", 0.06
+)
+_END_BORE = Declared(
+    Kind.LENGTH, "m", between(0.0, 100.0), "Bore at the right end; left out: as at the left end", 0.02
+)
+_YOUNG = Declared(Kind.STIFFNESS, "Pa", up_to(1e18), "Young's modulus", 210e9)
+_POISSON = Declared(Kind.RATIO, "", between(0.0, 0.499), "Poisson's ratio", 0.3)
+_DENSITY = Declared(Kind.INERTIA, "kg/m^3", up_to(1e6), "Density", 7850.0)
+
+
+class CrossSection(NamedTuple):
+    """Cross sections: area in m^2, second moment of area about an axis across in m^4, shear coefficient."""
+
+    area: FloatArray
+    second_moment: FloatArray
+    shear_coefficient: FloatArray
+
+
+@described
+@dataclass(frozen=True)
+class BeamSection:
+    """A piece of a shaft, of steel unless its material is given.
+
+    A cylinder, or with another diameter or bore at the right end a cone: both vary linearly along the axis.
+    """
+
+    length: float = required(_LENGTH)
+    outer_diameter: float = required(_OUTER)
+    bore_diameter: float = declared(0.0, _BORE)
+    youngs_modulus: float = declared(STEEL_YOUNGS_MODULUS, _YOUNG)
+    poissons_ratio: float = declared(STEEL_POISSON_RATIO, _POISSON)
+    density: float = declared(STEEL_DENSITY, _DENSITY)
+    end_outer_diameter: float | None = declared(None, _END_OUTER)
+    end_bore_diameter: float | None = declared(None, _END_BORE)
+
+    def __post_init__(self) -> None:
+        declared_fields(self)
+        ends = zip(
+            ("bore_diameter", "end_bore_diameter"), self.bore_diameters, self.outer_diameters, strict=True
+        )
+        for field, bore, outer in ends:
+            if bore >= outer:
+                raise InputError(field, bore, below(outer, "m", "the outer diameter"))
+
+    @property
+    def outer_diameters(self) -> tuple[float, float]:
+        """At the left and the right end, m."""
+        end = self.end_outer_diameter
+        return self.outer_diameter, self.outer_diameter if end is None else end
+
+    @property
+    def bore_diameters(self) -> tuple[float, float]:
+        """At the left and the right end, m; 0 where it is solid."""
+        end = self.end_bore_diameter
+        return self.bore_diameter, self.bore_diameter if end is None else end
+
+    @property
+    def shear_modulus(self) -> float:
+        """Pa."""
+        return self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
+
+    def cross_section(self, share: float | FloatArray = 0.0) -> CrossSection:
+        """Return the cross sections at shares of the length (0: left end, 1: right end).
+
+        The shear coefficient is the share of the area that carries shear: Cowper, J. Appl. Mech. 33 (1966)
+        335-340, hollow circle.
+        """
+        at = np.asarray(share, dtype=float)
+        outer, bore = (d[0] + at * (d[1] - d[0]) for d in (self.outer_diameters, self.bore_diameters))
+        nu, square = self.poissons_ratio, (bore / outer) ** 2
+        whole = (1.0 + square) ** 2
+        return CrossSection(
+            math.pi / 4.0 * (outer**2 - bore**2),
+            math.pi / 64.0 * (outer**4 - bore**4),
+            6.0 * (1.0 + nu) * whole / ((7.0 + 6.0 * nu) * whole + (20.0 + 12.0 * nu) * square),
+        )
+
+    @property
+    def grading(self) -> tuple[float, ...]:
+        """Shares of the length between which outer diameter and wall vary by a factor of at most 2."""
+        (left, right), bores = self.outer_diameters, self.bore_diameters
+        shares: list[float] = []
+        for ratio in (right / left, (right - bores[1]) / (left - bores[0])):
+            parts = math.ceil(abs(math.log2(ratio)) - 1e-9)
+            shares += [(ratio ** (k / parts) - 1.0) / (ratio - 1.0) for k in range(1, parts)]
+        return tuple(shares)
+
+    @property
+    def area(self) -> float:
+        """At the left end, m^2."""
+        return float(self.cross_section().area)
+
+    @property
+    def second_moment(self) -> float:
+        """Of the area about an axis across, at the left end, m^4."""
+        return float(self.cross_section().second_moment)
+
+    @property
+    def shear_coefficient(self) -> float:
+        """Share of the area that carries shear, at the left end."""
+        return float(self.cross_section().shear_coefficient)
+
+    @property
+    def body(self) -> tuple[Inertia, float]:
+        """Inertia about its center of mass, and how far that is from the left end, m."""
+        if self.end_outer_diameter is None and self.end_bore_diameter is None:
+            whole = hollow_cylinder(self.outer_diameter, self.length, self.bore_diameter, self.density)
+            return whole, 0.5 * self.length
+        share, weight = 0.5 * (1.0 + _EXACT[0]), 0.5 * self.length * self.density * _EXACT[1]
+        cut, z = self.cross_section(share), share * self.length
+        mass = float(weight @ cut.area)
+        center = float(weight @ (cut.area * z)) / mass
+        diametral = float(weight @ cut.second_moment)
+        return Inertia(
+            mass, 2.0 * diametral, diametral + float(weight @ (cut.area * (z - center) ** 2))
+        ), center
