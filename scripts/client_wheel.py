@@ -74,9 +74,6 @@ license = "{whole["license"]}"
 license-files = ["LICENSE"]
 dependencies = {json.dumps(needs)}
 
-[project.optional-dependencies]
-bars = ["rich>=13.9"]
-
 [tool.setuptools]
 packages = {json.dumps(packages)}
 

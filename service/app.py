@@ -27,7 +27,6 @@ from service.routes import (
     effects,
     events,
     figures,
-    former_results,
     health,
     jobs,
     landing,
@@ -118,7 +117,7 @@ def _route(app: FastAPI, offered: Registry) -> None:
     jobs_shown = (landing.router, processes_router(offered), jobs.router, job_results_router(offered))
     stored = (databases.router, results.router, figures.router, sounds.router, queries.router, live.router)
     grouped = (batches.router, events.router)
-    converted = (cases.router, scenes.router, units.router, effects.router, former_results.router)
+    converted = (cases.router, scenes.router, units.router, effects.router)
     for router in (*jobs_shown, *stored, *grouped, *converted):
         app.include_router(router, prefix=API_PREFIX)
     for router in (page.router, description.router, health.router):

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
-from contextlib import nullcontext
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, nullcontext
 from dataclasses import asdict, dataclass
 
 from rich.console import Console
+from rich.markup import escape
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from lineofaction.cli.output import console, print_json, table
-from lineofaction.client import LineOfActionClient, Result, progress_bars
+from lineofaction.client import JobState, LineOfActionClient, Result, Watch
+
+_COLORS = {"failed": "red", "dismissed": "yellow"}
 
 
 @dataclass(frozen=True)
@@ -28,12 +32,30 @@ def waited(client: LineOfActionClient, job: str) -> Result:
     screen.print(f"job {job}", highlight=False)
     at = f"--service {client.session.exchange.base_url}"
     try:
-        with progress_bars(screen) if sys.stderr.isatty() else nullcontext() as watch:
+        with _bar(screen) if sys.stderr.isatty() else nullcontext() as watch:
             return client.wait(job, watch)
     except KeyboardInterrupt as stop:
         stop.add_note(f"To get its result: loa fetch {job} {at} --wait -o FILE")
         stop.add_note(f"To end it: loa dismiss {job} {at}")
         raise
+
+
+@contextmanager
+def _bar(screen: Console) -> Iterator[Watch]:
+    """Yield a watch that draws the bar of a job: its stage, per cent, time taken and time left."""
+    percent, left = TextColumn("{task.percentage:>3.0f} %"), TextColumn("{task.fields[left]}")
+    columns = (TextColumn("{task.description}"), BarColumn(), percent, TimeElapsedColumn(), left)
+    with Progress(*columns, console=screen) as bar:
+        task = bar.add_task("", total=100, left="")
+
+        def see(state: JobState) -> None:
+            name = escape(f"{state.process} {state.title}".rstrip())
+            words = f"[{_COLORS.get(state.status, 'none')}]{name}: {escape(state.words)}[/]"
+            bar.update(task, completed=state.progress, description=words, left=state.time_left)
+            if state.ended:
+                bar.stop_task(task)
+
+        yield see
 
 
 def run_jobs(service: str, wanted: JobSelection, *, as_json: bool) -> None:

@@ -1,6 +1,5 @@
 """The Python client: typed, blocking and awaited, light (no mesher, no finite elements, no web framework)."""
 
-from lineofaction.client.bars import progress_bars
 from lineofaction.client.batch import AsyncBatch, Batch
 from lineofaction.client.cache import ResultCache
 from lineofaction.client.client import AsyncLineOfActionClient, LineOfActionClient
@@ -26,5 +25,4 @@ __all__ = [
     "Result",
     "ResultCache",
     "Watch",
-    "progress_bars",
 ]

@@ -35,7 +35,6 @@ def traced(options: dict[str, Any]) -> dict[str, Any]:
 
 _TRY_AGAIN = (429, 502, 503, 504)
 _FIRST_PAUSE_S, _LONGEST_OWN_PAUSE_S, _LONGEST_PAUSE_S = 0.1, 2.0, 10.0
-_RAW = "application/octet-stream"
 
 T = TypeVar("T")
 
@@ -81,14 +80,6 @@ class Exchange:
             return reader(response.json())
         except (LookupError, TypeError, ValueError, AttributeError):
             raise stranger(response) from None
-
-    def columns(self, path: str, content: bytes, **parameters: str) -> Steps[bytes]:
-        """Return the raw columns that a path makes of raw columns; raises as `request`."""
-        headers = {"Content-Type": _RAW, "Accept": _RAW}
-        response = yield from self.request("POST", path, params=parameters, content=content, headers=headers)
-        if response.headers.get("content-type") != _RAW:
-            raise stranger(response)
-        return response.content
 
     def download(self, path: str, media_type: str, into: BinaryIO) -> Steps[tuple[str, Mapping[str, str]]]:
         """Write the file that a path answers with, piece by piece.

@@ -12,13 +12,8 @@ _ADVICE = (
 
 
 @contextmanager
-def libraries(advice: str = _ADVICE) -> Iterator[None]:
+def libraries() -> Iterator[None]:
     """Say what to install where the body imports what is not here.
-
-    Parameters
-    ----------
-    advice : str
-        What to say.
 
     Raises
     ------
@@ -30,4 +25,4 @@ def libraries(advice: str = _ADVICE) -> Iterator[None]:
     except ModuleNotFoundError as error:
         if type(error) is not ModuleNotFoundError:
             raise
-        raise ModuleNotFoundError(f"{error.name} is not installed. {advice}", name=error.name) from None
+        raise ModuleNotFoundError(f"{error.name} is not installed. {_ADVICE}", name=error.name) from None

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from lineofaction.client.libraries import libraries
-from lineofaction.gearbox.registry import FORMER, STUDIES, Study
+from lineofaction.gearbox.registry import STUDIES, Study
 from lineofaction.gearbox.subjects import case_inputs, inputs_of, scene_inputs, study_inputs
 
 
@@ -103,5 +103,4 @@ def offers() -> Mapping[str, Offer]:
 
 def reader_of(process: str) -> Callable[[Path], Any]:
     """Return how results of a process are read; those of an unknown one stay files."""
-    name = FORMER.get(process, process)
-    return offers()[name].read if name in offers() else lambda file: file
+    return offers()[process].read if process in offers() else lambda file: file

@@ -5,7 +5,6 @@ from __future__ import annotations
 from lineofaction.client.offers import offers
 from lineofaction.client.process import Offered
 from lineofaction.client.surface import Surface
-from lineofaction.gearbox.registry import FORMER
 
 
 class Processes(Surface):
@@ -17,5 +16,3 @@ class Processes(Surface):
 
 for _offer in offers().values():
     setattr(Processes, _offer.attribute, Offered(_offer))
-for _former, _name in FORMER.items():
-    setattr(Processes, _former, getattr(Processes, _name))

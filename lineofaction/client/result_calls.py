@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import base64
-import sys
-from array import array
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict, Unpack
@@ -17,9 +15,9 @@ from lineofaction.client.report import Report
 from lineofaction.client.steps import Items, Steps
 from lineofaction.client.surface import Session, Surface, listing, operation
 from lineofaction.gearbox import schemas
-from lineofaction.gearbox.problems import BadInput, DamagedFile, NotFound
+from lineofaction.gearbox.problems import DamagedFile, NotFound
 from lineofaction.gearbox.registry import JSON, NETCDF
-from lineofaction.gearbox.schemas.query import QueryOutput, validity_words
+from lineofaction.gearbox.schemas.query import QueryInput
 from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS, RESULTS, SUFFIX, figures_model
 from service.schemas.database_list import DatabaseEntry
 
@@ -29,51 +27,12 @@ if TYPE_CHECKING:
     from fe_contact.ste import SteDatabase
     from lineofaction.gearbox.schemas.figures import Figures
 
-# Force queries as raw columns of little-endian float64: exact, and without numpy.
-
-
 Column = float | Collection[float]
 """One value for all points, or a list or one-dimensional array with one for each."""
 
 
-def _query_columns(columns: Mapping[str, Column]) -> bytes:
-    """Return columns one after the other; one value is repeated for all points.
-
-    Raises
-    ------
-    BadInput
-        The columns are of different lengths.
-    """
-    lists = {name: _values(column) for name, column in columns.items()}
-    size = max(len(values) for values in lists.values())
-    for name, values in lists.items():
-        if len(values) not in (1, size):
-            advice = "Give as many values in every list, or one for all points."
-            raise BadInput.of(name, f"{len(values)} values", f"a list of {size} values, or of one", advice)
-    return b"".join(_swapped(v if len(v) == size else v * size).tobytes() for v in lists.values())
-
-
-def _read_answer(content: bytes) -> QueryOutput:
-    """Return force, stiffness and validity from their columns."""
-    values = array("d")
-    values.frombytes(content)
-    numbers = _swapped(values).tolist()
-    size = len(numbers) // 3
-    return QueryOutput.model_construct(
-        force_n=numbers[:size],
-        stiffness_n_per_um=numbers[size : 2 * size],
-        validity=[validity_words(int(flags)) for flags in numbers[2 * size :]],
-    )
-
-
-def _values(column: Column) -> array[float]:
-    return array("d", [column] if isinstance(column, int | float) else column)
-
-
-def _swapped(values: array[float]) -> array[float]:
-    if sys.byteorder == "big":
-        values.byteswap()
-    return values
+def _numbers(column: Column) -> list[float]:
+    return [float(value) for value in ([column] if isinstance(column, int | float) else column)]
 
 
 # What a live question may ask beside the torques.
@@ -169,7 +128,7 @@ class ResultCalls(Surface):
     @operation
     def fetch_result(self, key: str, *kinds: str) -> Steps[tuple[Path, str]]:
         """Return the file of a result of one of some kinds, default all, and its kind; as `fetch_file`."""
-        return (yield from _fetched(self.session, key, kinds or tuple(RESULT_KINDS), NETCDF))
+        return (yield from _fetched(self.session, key, kinds or RESULT_KINDS, NETCDF))
 
     @operation
     def report(self, key: str, *, against: str | None = None) -> Steps[Report]:
@@ -232,8 +191,7 @@ class ResultCalls(Surface):
     ) -> Steps[schemas.QueryOutput]:
         """Return force, tangent stiffness and validity of a stored database at many points.
 
-        Every column (a list, an array) has a value for each point, or one for all. Sent and answered as raw
-        float64, so nothing is rounded.
+        Every column (a list, an array) has a value for each point, or one for all. Nothing is rounded.
 
         Raises
         ------
@@ -247,9 +205,10 @@ class ResultCalls(Surface):
             "misalignment_um": misalignment_um,
             "center_distance_change_mm": center_distance_change_mm,
         }
-        path, content = f"/v1/databases/{key}/query", _query_columns(columns)
-        raw = yield from self.session.exchange.columns(path, content, columns=",".join(columns))
-        return _read_answer(raw)
+        numbers = {name: _numbers(column) for name, column in columns.items()}
+        points = schemas.validated(QueryInput, numbers).model_dump(mode="json")
+        reader, path = schemas.QueryOutput.model_validate, f"/v1/databases/{key}/query"
+        return (yield from self.session.exchange.read(reader, "POST", path, json=points))
 
     @operation
     def ste(

@@ -45,8 +45,6 @@ class Study:
         Whether the inputs are a file of the verb and a mapping of the client, rather than options.
     bare : bool
         Whether the file of the inputs may be left out; all of them then have defaults.
-    collection : str
-        See `lineofaction.gearbox.schemas.result_kinds.ResultKind`.
     further : tuple of str
         Endings of files that the verb writes beside those of all studies. CSV can be printed too.
     several : bool
@@ -70,7 +68,6 @@ class Study:
     folder: str = ""
     from_file: bool = False
     bare: bool = False
-    collection: str = ""
     further: tuple[str, ...] = ()
     several: bool = False
     housed: bool = False
@@ -123,7 +120,6 @@ STUDIES: dict[str, Study] = {
             "Compute pressure, line load and gap on the flanks at one load: contact pattern and K_Hbeta.",
             "examples/palermo_spur_20_20.toml --torque 100 -o flank.nc",
             kind="flanks",
-            collection="flanks",
             stages=(("compliance", 0.9), ("contact", 0.1)),
         ),
         Study(
@@ -134,7 +130,6 @@ STUDIES: dict[str, Study] = {
             "Toggle each effect of a case or a scene: what it changes, what was estimated, what it costs.",
             "examples/palermo_spur_20_20.toml -o ablation.png",
             kind="ablation",
-            collection="ablations",
             stages=(("analysis", 0.1), ("ablation", 0.9)),
             version="3",
         ),
@@ -146,7 +141,6 @@ STUDIES: dict[str, Study] = {
             "Study the accuracy of a case (ISO 6336 to fine finite elements) or a scene: error against time.",
             "examples/palermo_spur_20_20.toml -o frontier",
             kind="frontier",
-            collection="frontiers",
             stages=(("analysis", 0.1), ("ladder", 0.9)),
             version="3",
             folder="frontier",
@@ -159,7 +153,6 @@ STUDIES: dict[str, Study] = {
             "Vary misalignment and center distance of a case at its highest load: peak-to-peak STE.",
             "examples/sensitivity_wind_turbine.toml -o sensitivity",
             kind="sensitivity",
-            collection="sensitivities",
             stages=(("tables", 1.0),),
             shared=True,
             folder="sensitivity",
@@ -187,7 +180,6 @@ STUDIES: dict[str, Study] = {
             "Choose flank modifications for the least peak-to-peak STE over torques and scatter.",
             "examples/palermo_spur_20_20.toml examples/optimize_tip_relief.toml -o best",
             kind="optimization",
-            collection="optimisations",
             stages=(("compliance", 0.2), ("search", 0.6), ("confirmation", 0.2)),
             version="4",
             shared=True,
@@ -204,7 +196,6 @@ STUDIES: dict[str, Study] = {
             "bounds.",
             "examples/sensitivity_automotive.toml --samples 400 -o scatter.png",
             kind="scatter",
-            collection="scatters",
             stages=(("compliance", 0.2), ("samples", 0.7), ("confirmation", 0.1)),
             version="3",
             shared=True,
@@ -231,7 +222,6 @@ STUDIES: dict[str, Study] = {
             "Find natural modes about the loaded equilibrium, whirl modes over speed, and critical speeds.",
             "examples/palermo_scene.toml --speed-rpm 0:15000:250 -o modes.png",
             kind="modes",
-            collection="modes",
             stages=(("analysis", 0.9), ("modes", 0.1)),
         ),
         Study(
@@ -243,7 +233,6 @@ STUDIES: dict[str, Study] = {
             "order.",
             "examples/palermo_scene.toml --speed-rpm 100:6000:25 -o response.png",
             kind="response",
-            collection="responses",
             stages=(("analysis", 0.9), ("response", 0.1)),
         ),
         Study(
@@ -303,7 +292,6 @@ STUDIES: dict[str, Study] = {
             "contact.",
             "scene.toml --speed-rpm 11000:13500:100 -o steady.png",
             kind="steady",
-            collection="steadies",
             stages=(("analysis", 0.4), ("up", 0.2), ("down", 0.2), ("branch", 0.2)),
         ),
         Study(
@@ -339,9 +327,6 @@ STUDIES: dict[str, Study] = {
     )
 }
 """By name."""
-
-FORMER = {"optimise": "optimize"}
-"""Former names of verbs, processes and methods of the client, which are heard until version 0.3."""
 
 
 def study_of(kind: str) -> Study | None:

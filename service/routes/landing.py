@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter, Request
+from fastapi import APIRouter
 
 from service.access import Scope
-from service.routes.media_types import OPENAPI, OPENAPI_30
+from service.routes.media_types import OPENAPI
 from service.routes.scopes import ScopedRoute, needs
 from service.schemas.ogc import CONFORMANCE, Conformance, Landing, Link
 from service.version import solver_version
@@ -27,15 +27,13 @@ _LINKS = (
 @router.get("", summary="Landing page")
 @router.get("/", include_in_schema=False)
 @needs(Scope.READ)
-def landing_page(request: Request) -> Landing:
-    """Return the links of the service; clients of OpenAPI 3.0 resolve no relative ones."""
-    title = "OpenAPI description, version 3.0"
-    href = f"{request.base_url}openapi-3.0.json"
+def landing_page() -> Landing:
+    """Return the links of the service."""
     return Landing(
         title="lineofaction",
         description="STE databases of gear pairs by contact analysis, and dynamics excited by them.",
         version=solver_version(),
-        links=[*_LINKS, Link(href=href, rel="service-desc", type=OPENAPI_30, title=title)],
+        links=list(_LINKS),
     )
 
 

@@ -9,7 +9,6 @@ JSON, CBOR, RAW = "application/json", "application/cbor", "application/octet-str
 WAV = "audio/wav"
 PROBLEM = "application/problem+json"
 OPENAPI = "application/vnd.oai.openapi+json;version=3.1"
-OPENAPI_30 = "application/vnd.oai.openapi+json;version=3.0"
 
 
 def media_type(header: str) -> str:

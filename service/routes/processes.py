@@ -8,7 +8,7 @@ from functools import cache
 from typing import Annotated, Any, cast
 
 import structlog
-from fastapi import APIRouter, Header, Query, Request, Response
+from fastapi import APIRouter, Header, Query, Response
 from pydantic import BaseModel, create_model
 
 from lineofaction.gearbox.problems import LiveUnavailable, NoSuchProcess, QueueFull
@@ -27,7 +27,6 @@ from service.queue.terms import Terms
 from service.routes.context import Context, Ctx, From
 from service.routes.cursor import Limit
 from service.routes.jobs import status_info
-from service.routes.moved import moved
 from service.routes.refusals import documented
 from service.routes.response_headers import described_headers
 from service.routes.scopes import ScopedRoute, needs
@@ -102,11 +101,11 @@ def _place(registry: Registry, after: str) -> int:
 
 
 def _other_name(registry: Registry) -> Any:
-    """Return the handler of executions by names without a route: former ones, and those of no process."""
+    """Return the handler of executions by names without a route: those of no process."""
 
     @needs(Scope.SUBMIT)
-    def execute_other(process_id: str, request: Request) -> Response:
-        return moved(request, f"/v1/processes/{registry[process_id].id}/execution")
+    def execute_other(process_id: str) -> Response:
+        raise registry.unknown(process_id)
 
     return execute_other
 

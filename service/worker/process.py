@@ -12,7 +12,6 @@ import rfc8785
 
 from lineofaction.gearbox.loading import LOADING
 from lineofaction.gearbox.problems import NoSuchProcess
-from lineofaction.gearbox.registry import FORMER
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.stages import Stage
 from service.version import solver_version
@@ -110,13 +109,16 @@ class Registry(Mapping[str, Process]):
 
     def __getitem__(self, name: str) -> Process:
         try:
-            return self._processes[FORMER.get(name, name)]
+            return self._processes[name]
         except KeyError:
-            known = ", ".join(self._processes)
-            raise NoSuchProcess(f"There is no process {name!r}. Known: {known}.") from None
+            raise self.unknown(name) from None
+
+    def unknown(self, name: str) -> NoSuchProcess:
+        """Return the error of a name that no process has."""
+        return NoSuchProcess(f"There is no process {name!r}. Known: {', '.join(self._processes)}.")
 
     def __contains__(self, name: object) -> bool:
-        return FORMER.get(str(name), name) in self._processes
+        return name in self._processes
 
     @property
     def modules(self) -> frozenset[str]:

@@ -25,10 +25,10 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[TestClie
     directory = tmp_path_factory.mktemp("kept")
     secret = KeyFile(directory / "keys.json").add("bench")
     app = create_app(Settings(data_directory=directory), works=False)
-    for kind in RESULT_KINDS.values():
+    for kind in RESULT_KINDS:
         file = directory / "file.nc"
         file.write_text("{}")
-        app.state.context.store.put(KEY, kind.name, file)
+        app.state.context.store.put(KEY, kind, file)
     yield TestClient(app, raise_server_exceptions=False), {"Authorization": f"Bearer {secret}"}
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import tempfile
 from dataclasses import dataclass
@@ -19,7 +18,6 @@ from small_table import small_table
 from walked_routes import WalkedRoute, walked_routes
 
 from lineofaction.gearbox.problems import KeyExpired, MissingScope, NotFound, Unauthorised
-from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS
 from service.access import KeyFile, Scope
 from service.access.key_file import written
 from service.app import create_app
@@ -27,12 +25,7 @@ from service.routes.access import OPEN_FOLDER, OPEN_PATHS
 from service.routes.scopes import OPEN_TO_ALL, ScopedRoute
 from service.settings import Settings
 
-KEY, NO_KEY = "ab" * 32, "cd" * 32
-FORMER = {
-    kind.collection: hashlib.sha256(name.encode()).hexdigest()
-    for name, kind in RESULT_KINDS.items()
-    if kind.collection and name != "database"
-}
+KEY, NO_KEY, RUN = "ab" * 32, "cd" * 32, "ef" * 32
 NO_JOB = "00000000-0000-4000-8000-000000000000"
 BODIES: dict[str, Any] = {
     "query_forces": {"position": [0.5], "deflection_um": [5.0]},
@@ -43,10 +36,8 @@ BODIES: dict[str, Any] = {
 
 
 def key_at(walked: WalkedRoute) -> str:
-    """Return the hash of the result that a route is about: redirections are by kind, sounds of runs."""
-    if walked.path.endswith("/sound"):
-        return FORMER["runs"]
-    return FORMER.get(walked.path.removeprefix("/v1/").partition("/")[0], KEY)
+    """Return the hash of the result that a route is about: sounds are of runs."""
+    return RUN if walked.path.endswith("/sound") else KEY
 
 
 _directory = tempfile.TemporaryDirectory(prefix="loa-crossings-")
@@ -109,9 +100,7 @@ def two() -> Any:
     with TestClient(APP, raise_server_exceptions=False) as http:
         mine = APP.state.context.within("axle")
         mine.store.put(KEY, "database", _table("table.nc"))
-        for kind in RESULT_KINDS.values():
-            if kind.collection in FORMER:
-                mine.store.put(FORMER[kind.collection], kind.name, _table("table.nc"))
+        mine.store.put(RUN, "run", _table("table.nc"))
         job = mine.submissions.submit("fake", KEY, {"wish": {"text": "hidden"}}, stored=True).id
         yield Two(http, job, keys)
 
@@ -126,7 +115,7 @@ def _let_expire(name: str) -> None:
 
 
 def test_every_route_says_what_it_needs() -> None:
-    assert len(ROUTES) > 40
+    assert len(ROUTES) > 35
     assert all(isinstance(walked.route, ScopedRoute) for walked in ROUTES)
     assert {walked.route.scope for walked in ROUTES} == {*Scope, OPEN_TO_ALL}
 

@@ -9,14 +9,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fastapi import FastAPI
 from fastapi.testclient import TestClient
 from small_table import small_table
 
 from fe_contact.ste import SteDatabase
 from lineofaction.client import LineOfActionClient
 from lineofaction.gearbox.problems import NotFound
-from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS, ResultKind
 from service.app import create_app
 from service.settings import Settings
 
@@ -42,21 +40,6 @@ def test_the_file_is_the_table_and_its_digest_is_told(client: TestClient, tmp_pa
     file = tmp_path / "fetched.nc"
     file.write_bytes(answer.content)
     assert SteDatabase.from_netcdf(file).identical(small_table())
-
-
-@pytest.mark.parametrize("kind", [kind for kind in RESULT_KINDS.values() if kind.collection])
-def test_former_paths_redirect_for_good(client: TestClient, tmp_path: Path, kind: ResultKind) -> None:
-    key = hashlib.sha256(kind.name.encode()).hexdigest()
-    (tmp_path / "file").write_text("{}")
-    assert isinstance(client.app, FastAPI)
-    client.app.state.context.store.put(key, kind.name, tmp_path / "file")
-    for further in ("", "/figures"):
-        whole = f"{key}{further}?against={key}"
-        answer = client.get(f"/v1/{kind.collection}/{whole}", follow_redirects=False)
-        assert (answer.status_code, answer.headers["location"]) == (308, f"/v1/results/{whole}")
-    assert client.get(f"/v1/{kind.collection}/{key}", headers=NETCDF).text == "{}"
-    assert client.get(f"/v1/{kind.collection}/{'0' * 64}").status_code == 404
-    assert client.get(f"/v1/{kind.collection}/nonsense").status_code == 422
 
 
 def test_the_kind_is_that_of_the_store(client: TestClient, tmp_path: Path) -> None:

@@ -116,11 +116,6 @@ def test_a_generated_client_reads_a_refusal(service: Service, generated: ModuleT
     assert (type(problem), problem.status) == (part("models").ProblemBody, 401)
 
 
-def test_owslib_finds_the_description(service: Service) -> None:
-    found = Processes(f"{service.url}/v1/", headers=service.headers).api()
-    assert (found["openapi"], set(found["paths"])) == ("3.0.3", set(service.description["paths"]))
-
-
 @pytest.mark.parametrize("process", INPUTS)
 def test_owslib_runs_a_process(service: Service, process: str) -> None:
     run_by_owslib(service, process, INPUTS[process])

@@ -14,7 +14,7 @@ from lineofaction.cli.guard import computing
 from lineofaction.cli.verbs.options import AsCsv, AsJson, DaskScheduler, TableService, TaskWorkers
 from lineofaction.cli.verbs.overrides import file_argument, overridable
 from lineofaction.gearbox.input_file import InputFile
-from lineofaction.gearbox.registry import FORMER, STUDIES, Study
+from lineofaction.gearbox.registry import STUDIES, Study
 from lineofaction.gearbox.schemas.spelling import is_list, spelling_of
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ class StudyGroup(TyperGroup):
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """Return a verb."""
-        own, study = super().get_command(ctx, cmd_name), STUDIES.get(FORMER.get(cmd_name, cmd_name))
+        own, study = super().get_command(ctx, cmd_name), STUDIES.get(cmd_name)
         return own if own is not None or study is None else _command(study)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from lineofaction.gearbox.registry import STUDIES, study_of
@@ -18,30 +17,8 @@ RESULTS = "/v1/results"
 """Where results are on the service, before their hash."""
 
 
-@dataclass(frozen=True)
-class ResultKind:
-    """One kind of results.
-
-    Attributes
-    ----------
-    name : str
-        In the store and in the results of a job.
-    collection : str
-        Under which version 0.1 had them, ``/v1/COLLECTION/HASH``, which redirects; empty: it had none.
-    """
-
-    name: str
-    collection: str = ""
-
-
-RESULT_KINDS: dict[str, ResultKind] = {
-    kind.name: kind
-    for kind in (
-        ResultKind("database", "databases"),
-        ResultKind("run", "runs"),
-        *(ResultKind(row.kind, row.collection) for row in STUDIES.values()),
-    )
-}
+RESULT_KINDS = ("database", "run", *(study.kind for study in STUDIES.values()))
+"""Kinds of results, by their names in the store and in the results of a job."""
 
 
 def figures_model(kind: str) -> type[Figures]:

@@ -1,6 +1,6 @@
 """A service that OGC API - Processes 1.0 (OGC 18-062r2) is asked about.
 
-Of its classes core, ogc-process-description, json, oas30, job-list and dismiss, as far as they concern what
+Of its classes core, ogc-process-description, json, job-list and dismiss, as far as they concern what
 is offered: asynchronous execution of processes with one output. The marker `requirement` of a test has the
 identifiers that it states.
 """

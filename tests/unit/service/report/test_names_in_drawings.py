@@ -85,7 +85,8 @@ def test_plotly_shows_every_name_and_takes_none_for_markup(name: str) -> None:
 def test_a_notebook_and_a_legend_have_the_name_itself() -> None:
     name = "<b>&amp;</b>"
     figure = {"title": "t", "alternative": "a", "plot": plotly_figure(named(name)), "key": "k"}
-    section = {"title": "s", "figures": [figure], "tables": [], "folded": []}
+    words = {"head": [name], "rows": [[name]]}
+    section = {"title": name, "figures": [figure], "tables": [words], "folded": []}
     page = Report.model_validate(
         {"title": "t", "lead": "", "alarms": [], "headlines": [], "sections": [section]}
     )._repr_html_()
