@@ -24,8 +24,7 @@ from benchmarks.dynamic_influence_cases import example_scenes, influence_scenes
 from benchmarks.figures import Figure
 from benchmarks.influence_estimates import PAGE
 from benchmarks.marked_section import replace_section
-from dynamics.ablation import RunFigures, ablate
-from dynamics.ablation.ablate import EffectAblation
+from dynamics.ablation import EffectAblation, RunFigures, ablate
 from dynamics.influence import decide_effects
 from dynamics.scene import Scene
 from dynamics.types import FloatArray

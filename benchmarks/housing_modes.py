@@ -26,7 +26,7 @@ gmsh.write(sys.argv[1])
 _CODE = """
 import resource, subprocess, sys, tempfile, time
 from pathlib import Path
-from dynamics.housing_modes import (
+from dynamics.housings import (
     GRAY_CAST_IRON, Bore, Foot, MeshedHousing, Plane, SeatBore, mesh_step, reduced_housing,
 )
 

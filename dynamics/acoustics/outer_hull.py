@@ -14,7 +14,7 @@ from scipy.sparse.csgraph import connected_components
 from dynamics.acoustics.air import directions
 from dynamics.acoustics.hull import Hull, LinearPanels, shared_edges
 from dynamics.errors import InputError
-from dynamics.housing_modes.reduced_housing import ReducedHousing
+from dynamics.housings.reduced_housing import ReducedHousing
 from dynamics.identity_cache import identity_cached
 from dynamics.kernels.compiled import compiled
 from dynamics.types import BoolArray, FloatArray, IntArray

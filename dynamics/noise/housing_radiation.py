@@ -18,7 +18,7 @@ from dynamics.acoustics.hull import ROUNDED_DOWN
 from dynamics.acoustics.radiation import EquivalentRadiatedPower
 from dynamics.checks import positive
 from dynamics.errors import InputError, ResultError
-from dynamics.housing_modes.reduced_housing import ReducedHousing
+from dynamics.housings.reduced_housing import ReducedHousing
 from dynamics.noise.coarse_hull import RadiatingHull, radiating_hull
 from dynamics.results.array_file import ArrayFile, Stored
 from dynamics.types import ComplexArray, FloatArray, Json

@@ -24,7 +24,7 @@ from dynamics.acoustics import (
 from dynamics.acoustics.recording import SAMPLE_RATE, unit_vector
 from dynamics.checks import positive
 from dynamics.errors import InputError
-from dynamics.housing_modes.reduced_housing import ReducedHousing
+from dynamics.housings.reduced_housing import ReducedHousing
 from dynamics.noise.coarse_hull import radiating_hull
 from dynamics.noise.housing_radiation import resolved_frequency
 from dynamics.orders.resampling import low_passed

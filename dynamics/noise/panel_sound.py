@@ -22,7 +22,7 @@ from dynamics.acoustics import (
 )
 from dynamics.acoustics.hull import shared_edges
 from dynamics.acoustics.radiation import EquivalentRadiatedPower
-from dynamics.housing_modes.reduced_housing import PointMotion, ReducedHousing
+from dynamics.housings.reduced_housing import PointMotion, ReducedHousing
 from dynamics.noise.coarse_hull import RadiatingHull, radiating_hull
 from dynamics.noise.housing_radiation import HousingRadiation
 from dynamics.types import ComplexArray, FloatArray, IntArray

@@ -11,7 +11,7 @@ from bounds import at_least
 from dynamics.acoustics import Hull, OrderPower, sound_power_level
 from dynamics.acoustics.levels import a_weighting
 from dynamics.errors import InputError
-from dynamics.housing_modes.reduced_housing import ReducedHousing
+from dynamics.housings.reduced_housing import ReducedHousing
 from dynamics.noise.housing_radiation import HousingRadiation
 from dynamics.noise.panel_sound import PanelSound
 from dynamics.results.array_file import ArrayFile, Stored

@@ -22,9 +22,8 @@ from dynamics.assembly.assemble import assemble
 from dynamics.bearings import Bushing, PlanetBearing
 from dynamics.checks import one_of
 from dynamics.forces import RollingContact, SpringCurve
-from dynamics.housing_modes.modification import with_damping, with_frequencies, with_modes, with_mounts
-from dynamics.housing_modes.reduced_housing import ReducedHousing
-from dynamics.housing_modes.scene_housing import scene_housing
+from dynamics.housings.modification import with_damping, with_frequencies, with_modes, with_mounts
+from dynamics.housings.reduced_housing import ReducedHousing, scene_housing
 from dynamics.linearize import harmonic_response
 from dynamics.meshes import GearMesh
 from dynamics.scene import Scene

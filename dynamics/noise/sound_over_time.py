@@ -11,7 +11,7 @@ from bounds import at_least, between
 from dynamics.acoustics import a_weighting, sound_power_level
 from dynamics.acoustics.recording import LOWEST
 from dynamics.errors import InputError
-from dynamics.housing_modes.reduced_housing import ReducedHousing
+from dynamics.housings.reduced_housing import ReducedHousing
 from dynamics.noise.housing_radiation import HousingRadiation
 from dynamics.orders import band_sums, leading_shaft, nominal_center
 from dynamics.results import RunResult

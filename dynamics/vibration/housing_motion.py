@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.errors import InputError
-from dynamics.housing_modes.reduced_housing import ReducedHousing
+from dynamics.housings.reduced_housing import ReducedHousing
 from dynamics.types import ComplexArray, FloatArray
 
 # Amplitudes of the modes of a reduced housing under harmonic forces.

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from dynamics.acoustics import outer_hull
 from dynamics.errors import InputError
-from dynamics.housing_modes.reduced_housing import PointMotion, ReducedHousing
+from dynamics.housings.reduced_housing import PointMotion, ReducedHousing
 from dynamics.types import BoolArray, ComplexArray, FloatArray
 from dynamics.vibration.housing_motion import housing_motion
 from dynamics.vibration.seat_forces import BearingHarmonics, seat_forces

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.errors import InputError
-from dynamics.housing_modes.reduced_housing import ReducedHousing
+from dynamics.housings.reduced_housing import ReducedHousing
 from dynamics.orders import bearing_signals
 from dynamics.orders.resampling import interpolated
 from dynamics.results import RunResult

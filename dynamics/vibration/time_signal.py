@@ -10,7 +10,7 @@ import numpy as np
 
 from bounds import Quantity, Text
 from dynamics.errors import InputError
-from dynamics.housing_modes.reduced_housing import ReducedHousing
+from dynamics.housings.reduced_housing import ReducedHousing
 from dynamics.types import FloatArray
 from dynamics.vibration.housing_vibration import MotionQuantity, named_points
 

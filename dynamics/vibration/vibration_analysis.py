@@ -9,7 +9,7 @@ import numpy as np
 
 from dynamics.checks import integer, not_negative
 from dynamics.errors import InputError
-from dynamics.housing_modes.reduced_housing import ReducedHousing, SurfaceMotion
+from dynamics.housings.reduced_housing import ReducedHousing, SurfaceMotion
 from dynamics.types import ComplexArray, FloatArray, IntArray, Json
 from dynamics.vibration.housing_motion import housing_motion, modal_amplitudes
 from dynamics.vibration.housing_vibration import (

@@ -14,7 +14,7 @@ from fastapi.testclient import TestClient
 from housing_solid import SEAT, housed_scene, housing, write_block
 from study_service import empty_service
 
-from dynamics.housing_modes import ReducedHousing
+from dynamics.housings import ReducedHousing
 from dynamics.linearize import ModalAnalysis
 from lineofaction.cli.scene_tables import tabled_scene
 from lineofaction.client import JobState, LineOfActionClient

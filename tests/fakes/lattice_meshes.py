@@ -7,8 +7,8 @@ from itertools import permutations
 
 import numpy as np
 
-from dynamics.housing_modes import TetrahedralMesh
-from dynamics.housing_modes.tetrahedral_mesh import EDGES
+from dynamics.housings import TetrahedralMesh
+from dynamics.housings.tetrahedral_mesh import EDGES
 
 Array = np.ndarray
 

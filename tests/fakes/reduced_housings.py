@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from dynamics.housing_modes import ModalDamping, ReducedHousing, Ring, SeatFrame, housing_of_matrices
-from dynamics.housing_modes.reduced_housing import PointMotion
-from dynamics.housing_modes.reduced_matrices import ReducedMatrices
-from dynamics.housing_modes.seats import MOTIONS
+from dynamics.housings import ModalDamping, ReducedHousing, Ring, SeatFrame, housing_of_matrices
+from dynamics.housings.reduced_housing import PointMotion
+from dynamics.housings.reduced_matrices import ReducedMatrices
+from dynamics.housings.supports import MOTIONS
 
 PER_SEAT = 5
 PAIR = ("input.left", "input.right", "output.left", "output.right")

@@ -8,9 +8,9 @@ import numpy as np
 from reduced_housings import seat
 
 from dynamics.acoustics import Hull
-from dynamics.housing_modes import ModalDamping, housing_of_matrices, scene_housing
-from dynamics.housing_modes.reduced_housing import ReducedHousing, SurfaceMotion
-from dynamics.housing_modes.reduced_matrices import ReducedMatrices
+from dynamics.housings import ModalDamping, housing_of_matrices, scene_housing
+from dynamics.housings.reduced_housing import ReducedHousing, SurfaceMotion
+from dynamics.housings.reduced_matrices import ReducedMatrices
 
 
 def rigid_housing(mass: float, stiffness: float, damping: float, hull: Hull) -> ReducedHousing:

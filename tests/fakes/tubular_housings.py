@@ -6,7 +6,7 @@ from functools import cache
 
 from lattice_meshes import tube
 
-from dynamics.housing_modes import (
+from dynamics.housings import (
     Bore,
     Foot,
     Material,
@@ -17,7 +17,7 @@ from dynamics.housing_modes import (
     ReducedHousing,
     SeatBore,
 )
-from dynamics.housing_modes.kept import reduce_housing
+from dynamics.housings.reduction import reduce_housing
 
 STEEL = Material(210e9, 0.3, 7850.0)
 GROUND = Foot("base", Plane((0.0, 0.0, 0.0), (0.0, 0.0, -1.0)))

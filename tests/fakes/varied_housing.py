@@ -13,7 +13,7 @@ from geared_scenes import gear_pair_scene, square_wave_table, with_bushings, wit
 from lattice_meshes import lattice_mesh
 
 from dynamics.acoustics import Air, LevelBand, ModalResistance, OrderPower
-from dynamics.housing_modes import (
+from dynamics.housings import (
     GRAY_CAST_IRON,
     Bore,
     BoundedPlane,
@@ -28,7 +28,7 @@ from dynamics.housing_modes import (
     reduced_housing,
     scene_housing,
 )
-from dynamics.housing_modes.modification import with_damping
+from dynamics.housings.modification import with_damping
 from dynamics.noise import GUESSES, SoundBand, SoundModel, forced_power
 
 NAMES = ("input.left", "input.right", "output.left", "output.right")

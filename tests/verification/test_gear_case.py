@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.housing_modes import (
+from dynamics.housings import (
     SPHEROIDAL_CAST_IRON,
     Bore,
     Foot,

@@ -21,7 +21,7 @@ from lineofaction.gearbox.units import MM
 from model_studies.progress import Progress, silent
 
 if TYPE_CHECKING:
-    from dynamics.housing_modes import ReducedHousing
+    from dynamics.housings import ReducedHousing
 
 FOLDER = "housings"
 """Of the cache: meshes and reductions."""
@@ -57,7 +57,7 @@ def _modes_in_files(scene: SceneInput, folder: Path) -> dict[str, ReducedHousing
     files = {part.name: part.modes_file for part in scene.housings if part.modes_file is not None}
     if not files:
         return {}
-    from dynamics.housing_modes import ReducedHousing  # noqa: PLC0415 (start-up time)
+    from dynamics.housings import ReducedHousing  # noqa: PLC0415 (start-up time)
 
     return {name: ReducedHousing.from_netcdf(folder / file) for name, file in files.items()}
 
@@ -73,7 +73,7 @@ def housing_of(index: int, housing: HousingInput, reduced: ReducedHousing | None
     """Return a housing, `reduced` if it is given by its solid."""
     if not housing.is_solid:
         return _of_matrices(index, housing)
-    from dynamics.housing_modes import scene_housing  # noqa: PLC0415 (start-up time)
+    from dynamics.housings import scene_housing  # noqa: PLC0415 (start-up time)
 
     assert reduced is not None  # whoever makes the scene reduces them
     with named(f"housings[{index}]"):

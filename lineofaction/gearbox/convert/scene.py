@@ -41,7 +41,7 @@ from lineofaction.gearbox.schemas.scene_shafts import ShaftInput
 from lineofaction.gearbox.units import DEGREE, MM, RPM, UM
 
 if TYPE_CHECKING:
-    from dynamics.housing_modes import ReducedHousing
+    from dynamics.housings import ReducedHousing
 
 # Shafts of a scene file, and the discs on them, in the terms of dynamics.
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from dynamics.bearings.matrix import Matrix
 from dynamics.errors import DynamicsError, InputError
-from dynamics.housing_modes import (
+from dynamics.housings import (
     Bore,
     BoundedPlane,
     Box,
@@ -108,7 +108,7 @@ def _named(field: str, housing: HousingInput) -> Iterator[None]:
 
 
 def _own_name(field: str, housing: HousingInput) -> str:
-    """Return the scene file's name of a field of `dynamics.housing_modes`, but for its unit."""
+    """Return the scene file's name of a field of `dynamics.housings`, but for its unit."""
     for pattern, own in _NAMES.items():
         field = pattern.sub(own, field)
     names = {f"points.{point.name}": f"points[{i}].position" for i, point in enumerate(housing.points)}

@@ -93,7 +93,7 @@ def _matrices(file: Path, field: str) -> Content:
 def _modes(file: Path, field: str) -> Content:
     """Return the matrices and the seats of a reduced housing."""
     try:
-        modes: Any = import_module("dynamics.housing_modes")  # an extra, which the client does without
+        modes: Any = import_module("dynamics.housings")  # an extra, which the client does without
     except MissingExtra as error:
         raise BadInput.of(field, file.name, "read where the extra is installed", f"{error}") from None
     from dynamics.errors import InputError, ResultError  # noqa: PLC0415

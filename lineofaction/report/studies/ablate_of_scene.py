@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from bounds import engineering
-from dynamics.ablation import Ablation
-from dynamics.ablation.ablate import EffectAblation
+from dynamics.ablation import Ablation, EffectAblation
 from lineofaction.report.drawing.figure import FloatArray, Panel, Table, number
 from lineofaction.report.studies.ablate_look import Look, over_orders
 

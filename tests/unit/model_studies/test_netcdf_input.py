@@ -14,7 +14,7 @@ from foreign_netcdf import SECRET, STRIKES, struck, write_canary
 from reduced_housings import random_housing
 from small_table import small_table
 
-from dynamics.housing_modes import ReducedHousing
+from dynamics.housings import ReducedHousing
 from dynamics.results import RunResult
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.database_case import case_of_file

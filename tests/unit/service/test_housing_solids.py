@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from housing_solid import SEAT, housed_scene, housing, write_block
 
-from dynamics.housing_modes import (
+from dynamics.housings import (
     GRAY_CAST_IRON,
     Bore,
     BoundedPlane,
@@ -24,10 +24,10 @@ from dynamics.housing_modes import (
     Plane,
     ReducedHousing,
     SeatBore,
-    kept,
     mesh_step,
     reduced_housing,
 )
+from dynamics.housings import reduction as kept
 from lineofaction.cli.scene_tables import tabled_scene
 from lineofaction.gearbox.convert import solid_housings
 from lineofaction.gearbox.convert.scene import TabledScene, check_scene

@@ -17,7 +17,7 @@ from small_table import small_table
 from dynamics.assembly.assemble import assemble
 from dynamics.bearings import BallBearing, RollerBearing
 from dynamics.bearings.catalog import from_catalog
-from dynamics.housing_modes import ReducedHousing, ReducedMatrices, Ring, SeatFrame, housing_of_matrices
+from dynamics.housings import ReducedHousing, ReducedMatrices, Ring, SeatFrame, housing_of_matrices
 from dynamics.integrators import static_equilibrium
 from dynamics.mechanism.modal_housing import modal_housing
 from dynamics.scene import Scene

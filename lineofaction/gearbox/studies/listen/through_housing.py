@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dynamics.acoustics import Recording
-from dynamics.housing_modes import scene_housing
+from dynamics.housings import scene_housing
 from dynamics.joints import Housing
 from dynamics.noise import pressure_recording, velocity_recording
 from dynamics.results import RunResult
@@ -21,7 +21,7 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.units import MM
 
 if TYPE_CHECKING:
-    from dynamics.housing_modes import ReducedHousing
+    from dynamics.housings import ReducedHousing
 
 PRINCIPAL = "principal"
 DIRECTIONS = ("x", "y", "z", PRINCIPAL)

@@ -21,7 +21,7 @@ from dynamics.acoustics import (
     sound_power_level,
 )
 from dynamics.acoustics.recording import LOWEST
-from dynamics.housing_modes import ReducedHousing, write_surface
+from dynamics.housings import ReducedHousing, write_surface
 from dynamics.noise import (
     HousingRadiation,
     LoudPoint,

@@ -28,7 +28,7 @@ from lineofaction.gearbox.studies.study.paths import Place, mesh_of_case, with_v
 from model_studies import LeftOut
 
 if TYPE_CHECKING:
-    from dynamics.housing_modes import ReducedHousing
+    from dynamics.housings import ReducedHousing
 
 Json = dict[str, Any]
 Key = tuple[tuple[str, float], ...]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from bounds.types import FloatArray, Json
-from dynamics.housing_modes import ReducedHousing, write_surface
+from dynamics.housings import ReducedHousing, write_surface
 from dynamics.types import ComplexArray
 from dynamics.vibration import (
     SurfaceShape,

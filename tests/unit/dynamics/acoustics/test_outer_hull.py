@@ -10,9 +10,8 @@ from lattice_meshes import box
 from reduced_housings import bare_housing
 
 from dynamics.acoustics import Air, ElementalRadiators, resistance
-from dynamics.housing_modes import TetrahedralMesh
-from dynamics.housing_modes.reduced_housing import SurfaceMotion
-from dynamics.housing_modes.rigid_motion import rigid_motions
+from dynamics.housings import TetrahedralMesh
+from dynamics.housings.reduced_housing import SurfaceMotion, rigid_motions
 from dynamics.noise import outer_hull, radiating_hull
 from dynamics.vibration import surface_weight
 

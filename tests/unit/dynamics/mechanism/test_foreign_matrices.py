@@ -10,7 +10,7 @@ from foreign_matrices import FOREIGN_MATRICES
 from foreign_netcdf import SECRET, write_canary
 
 from dynamics.errors import InputError
-from dynamics.housing_modes import read_reduced_matrices
+from dynamics.housings import read_reduced_matrices
 from dynamics.joints import read_housing
 from dynamics.joints.matrix_file import LARGEST
 

@@ -8,7 +8,7 @@ from hulls import box, sphere
 from sounding_scene import AIR, housing, radiation, response, sound
 
 from dynamics.acoustics import ElementalRadiators, EquivalentRadiatedPower
-from dynamics.housing_modes.reduced_housing import PointMotion
+from dynamics.housings.reduced_housing import PointMotion
 from dynamics.noise import PanelSound, housing_radiation, panel_sound, radiated_sound, regions
 
 MONOPOLES, PLANE = ElementalRadiators(), EquivalentRadiatedPower()

@@ -12,7 +12,7 @@ from reduced_housings import bare_housing
 from sounding_housings import smooth_motion, with_surface
 
 from dynamics.acoustics import Air, ElementalRadiators, outer_hull
-from dynamics.housing_modes import ReducedHousing
+from dynamics.housings import ReducedHousing
 from dynamics.noise import HousingRadiation, housing_radiation
 from dynamics.noise.coarse_hull import radiating_hull
 from dynamics.noise.housing_radiation import USUAL, Octave, expected_knots, octaves, radiation_cost

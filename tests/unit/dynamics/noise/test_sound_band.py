@@ -18,7 +18,7 @@ from varied_housing import (
 
 from dynamics.acoustics import Range
 from dynamics.errors import InputError
-from dynamics.housing_modes import reduced_housing
+from dynamics.housings import reduced_housing
 from dynamics.noise import GUESSES, forced_power, sound_band, usual_ranges
 from dynamics.noise.sound_band import missed_between
 

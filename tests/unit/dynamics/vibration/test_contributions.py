@@ -10,7 +10,7 @@ from reduced_housings import PER_SEAT, random_housing
 from tubular_housings import GROUND, cantilever, two_seats
 
 from dynamics.errors import InputError
-from dynamics.housing_modes import Mount
+from dynamics.housings import Mount
 from dynamics.vibration import (
     bearing_parts,
     housing_motion,

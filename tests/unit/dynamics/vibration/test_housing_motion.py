@@ -11,7 +11,7 @@ from reduced_housings import PAIR, PER_SEAT, random_housing
 
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
-from dynamics.housing_modes import receptance, scene_housing
+from dynamics.housings import receptance, scene_housing
 from dynamics.linearize import forced_response
 from dynamics.mechanism.modal_housing import modal_housing
 from dynamics.vibration import housing_motion, seat_forces

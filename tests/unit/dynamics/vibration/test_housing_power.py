@@ -11,7 +11,7 @@ import scipy.sparse as sp
 from lattice_meshes import tube
 from scipy.sparse.linalg import spsolve
 
-from dynamics.housing_modes import (
+from dynamics.housings import (
     Bore,
     Foot,
     Material,
@@ -23,8 +23,8 @@ from dynamics.housing_modes import (
     ReducedHousing,
     SeatBore,
 )
-from dynamics.housing_modes.assembled_housing import assemble
-from dynamics.housing_modes.kept import reduce_housing
+from dynamics.housings.assembled_housing import assemble
+from dynamics.housings.reduction import reduce_housing
 from dynamics.vibration import housing_power
 
 STEEL = Material(210e9, 0.3, 7850.0)

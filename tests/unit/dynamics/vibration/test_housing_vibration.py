@@ -11,7 +11,7 @@ from reduced_housings import PAIR, random_housing
 
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
-from dynamics.housing_modes import scene_housing
+from dynamics.housings import scene_housing
 from dynamics.linearize import forced_response
 from dynamics.vibration import (
     MotionQuantity,

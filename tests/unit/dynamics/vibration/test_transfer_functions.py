@@ -12,7 +12,7 @@ from tubular_housings import BORE, GROUND, LENGTH, OUTER, RATIO, SEAT, cantileve
 
 from dynamics.acoustics import Air, EquivalentRadiatedPower, outer_hull, sound_power
 from dynamics.errors import InputError
-from dynamics.housing_modes import Mount
+from dynamics.housings import Mount
 from dynamics.vibration import (
     MotionQuantity,
     housing_motion,

@@ -16,8 +16,8 @@ from sounding_housings import smooth_motion, with_surface
 from typer.testing import CliRunner, Result
 
 from dynamics.acoustics import read_wav
-from dynamics.housing_modes import ReducedHousing, scene_housing
-from dynamics.housing_modes.reduced_housing import PointMotion
+from dynamics.housings import ReducedHousing, scene_housing
+from dynamics.housings.reduced_housing import PointMotion
 from dynamics.joints import Housing
 from dynamics.noise import pressure_recording, sound_limit, velocity_recording
 from dynamics.results import RunResult

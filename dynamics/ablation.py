@@ -1,0 +1,201 @@
+"""Toggle each effect of a scene and run again."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+import model_studies
+from dynamics.assembly.assemble import assemble
+from dynamics.checks import chosen
+from dynamics.effects import EFFECTS
+from dynamics.errors import InputError, SolveError
+from dynamics.influence import Influence, decide_effects, estimate_influences
+from dynamics.influence.linear_figures import COMPARED
+from dynamics.orders import order_track
+from dynamics.results import RunResult
+from dynamics.scene import Scene
+from dynamics.simulation import simulate
+from dynamics.types import FloatArray, Json
+from host import cpu_seconds
+from model_studies import Figures, LeftOut, Progress, called, in_unit, run_variants, silent
+
+__all__ = ["Ablation", "EffectAblation", "RunFigures", "ablate"]
+
+# The figures that runs are compared by: mean, peak-to-peak, mesh orders of errors and bearing forces.
+
+HIGHEST = COMPARED
+"""Mesh orders that are compared."""
+PITCHES = 16
+SETTLED = 0.5
+"""Part of the run after which start-up transients are taken to have died out."""
+
+
+@dataclass(frozen=True)
+class RunFigures(Figures):
+    """Figures of the settled part of a run.
+
+    Attributes
+    ----------
+    mean, peak_to_peak : (m,) arrays
+        Of the dynamic transmission error of every mesh, m.
+    cpu_seconds : float
+        Of the run.
+    orders : (m, 5) array
+        Largest amplitude along the run of the mesh orders 1 to 5 of the transmission error, m.
+    bearing_orders : (b, 5) array
+        Of the bearing forces, root of the sum of squares of their components, N; b = 0 if not stored.
+    """
+
+    orders: FloatArray = field(metadata=in_unit("m", "curve", "order"))
+    bearing_orders: FloatArray = field(metadata=in_unit("n", "bearing", "order"))
+
+
+def _run_figures(result: RunResult, seconds: float) -> RunFigures:
+    """Return the figures of a run of so many CPU seconds.
+
+    Raises
+    ------
+    InputError
+        It is shorter than a few base pitches.
+    """
+    settled = slice(int(SETTLED * result.time.size), None)
+    error = result.dynamic_transmission_error[:, settled]
+    pitches = max(1, min(PITCHES, int(_travel(result) / 4.0)))
+    transmission = _largest(result, "dynamic_transmission_error", pitches)
+    bearings = np.empty((0, HIGHEST))
+    if result.bearing_force.size:
+        bearings = np.sqrt(np.sum(_largest(result, "bearing_force", pitches) ** 2, axis=1))
+    return RunFigures(
+        np.mean(error, axis=1),
+        np.ptp(error, axis=1),
+        seconds,
+        transmission,
+        bearings,
+    )
+
+
+def _travel(result: RunResult) -> float:
+    """Return the base pitches that the first mesh runs through."""
+    return float(np.abs(np.sum(np.diff(np.unwrap(result.position[0], period=1.0)))))
+
+
+def _largest(result: RunResult, series: str, pitches: int) -> FloatArray:
+    """Largest amplitudes (..., 5) of the orders 1 to 5 over the settled blocks."""
+    amplitude = order_track(result, series, pitches, HIGHEST).amplitude
+    first = int(SETTLED * amplitude.shape[-2])
+    return np.asarray(np.max(amplitude[..., first:, 1:], axis=-2))
+
+
+WARM_UP = 0.01
+"""Part of the duration that a scene runs for before it is timed."""
+
+
+@dataclass(frozen=True)
+class EffectAblation(model_studies.EffectAblation[RunFigures, Influence]):
+    """One effect toggled in all parts of a scene.
+
+    Attributes
+    ----------
+    name, on, reason, with_effect, without_effect, estimate
+        Of every ablation; on if any part has it on, the reason is that of the first such part. The estimate
+        is of the part of the run that is compared.
+    influence : float
+        Largest static displacement that the ledger states, m.
+    """
+
+    influence: float = field(metadata=called("worth_m"))
+
+    @property
+    def order_change(self) -> FloatArray:
+        """Change (m, 5) of the mesh orders by leaving the effect out, m."""
+        return self.change("orders")
+
+    @property
+    def bearing_order_change(self) -> FloatArray:
+        """Change (b, 5) of the mesh orders of bearing forces, N."""
+        return self.change("bearing_orders")
+
+
+@dataclass(frozen=True)
+class Ablation(model_studies.Ablation[RunFigures, EffectAblation]):
+    """All effects of a scene, each toggled by itself.
+
+    Attributes
+    ----------
+    nominal, effects, left_out
+        Of every ablation.
+    mesh, bearing : tuple of str
+        What the rows of the figures are.
+    """
+
+    mesh: tuple[str, ...]
+    bearing: tuple[str, ...]
+
+
+def ablate(scene: Scene, only: Sequence[str] | None = None, progress: Progress = silent) -> Ablation:
+    """Toggle each effect of a scene in all its parts and report the change.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its ``on_violation`` is ignored: no run is repeated. Its tolerance decides once, for the scene itself.
+    only : sequence of str, optional
+        Effects to toggle; default all.
+    progress : callable, optional
+        Called with "ablation" and the fraction done.
+
+    Returns
+    -------
+    Ablation
+        Figures of the second half of each run: of a run at constant speed the steady state, of a run-up the
+        largest order amplitudes along it.
+
+    Raises
+    ------
+    InputError
+        An unknown effect, or a run shorter than a few base pitches.
+    SolveError
+        The scene itself has no equilibrium or stops early.
+    """
+    names = chosen("only", only, [effect.name for effect in EFFECTS])
+    scene = assemble(decide_effects(scene).scene).resolved_scene  # one output grid for all runs
+    scene = replace(scene, on_violation="report", tolerance=None)
+    result, seconds = _timed(scene)
+    influences = estimate_influences(scene, SETTLED)
+    nominal = _run_figures(result, seconds)
+    parts = {name: [e for e in result.effect_ledger["entries"] if e["effect"] == name] for name in names}
+
+    def toggle(name: str) -> EffectAblation:
+        return _toggled(scene, name, parts[name], nominal, influences.get(name))
+
+    effects, left_out = run_variants(
+        "ablation", {name: name for name in names}, toggle, (InputError, SolveError), progress
+    )
+    return Ablation(nominal, tuple(effects.values()), left_out, result.mesh, result.bearing)
+
+
+def _toggled(
+    scene: Scene, name: str, parts: Sequence[Json], nominal: RunFigures, estimate: Influence | None
+) -> EffectAblation:
+    """Run with one effect toggled; what is on anywhere goes off everywhere."""
+    able = [part for part in parts if part["possible"]]
+    if not able:
+        raise LeftOut(parts[0]["reason"] if parts else "no part of the scene has it")
+    on = any(part["on"] for part in able)
+    choice = "off" if on else "on"
+    other = _run_figures(*_timed(replace(scene, effects={**scene.effects, name: choice})))
+    first = next((part for part in able if part["on"] == on), able[0])
+    influence = float(np.max([part["worth"] for part in able]))
+    states = (nominal, other) if on else (other, nominal)
+    return EffectAblation(name, on, first["reason"], *states, estimate, influence)
+
+
+def _timed(scene: Scene) -> tuple[RunResult, float]:
+    """Run a scene; the CPU time is that of a second run, the first loads what is compiled for its laws."""
+    simulate(replace(scene, duration=WARM_UP * scene.duration))
+    began = cpu_seconds()
+    result = simulate(scene)
+    return result, cpu_seconds() - began

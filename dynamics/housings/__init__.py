@@ -1,0 +1,55 @@
+"""Housings with mass: component mode synthesis of a finite-element mesh, or reduced matrices.
+
+The only package of dynamics that uses scikit-fem, meshlane and, in a child process, gmsh.
+"""
+
+import host.analysis  # noqa: F401 (says what to install)
+from dynamics.housings.mesh_files import mesh_step, read_mesh, write_surface
+from dynamics.housings.meshed_housing import USUAL_DAMPING, MaterialDamping, MeshedHousing, ModalDamping
+from dynamics.housings.reduced_housing import ReducedHousing, receptance, scene_housing
+from dynamics.housings.reduced_matrices import (
+    ReducedMatrices,
+    housing_of_matrices,
+    read_matrix_market,
+    read_reduced_matrices,
+)
+from dynamics.housings.reduction import CostLimit, meshed_step, reduced_housing, reduction_cost
+from dynamics.housings.supports import Foot, Mount, SeatBore, SeatFrame
+from dynamics.housings.tetrahedral_mesh import Bore, BoundedPlane, Box, Group, Plane, TetrahedralMesh
+from dynamics.solid_housing import CAST_ALUMINUM, GRAY_CAST_IRON, SPHEROIDAL_CAST_IRON, Material, Ring
+
+__all__ = [
+    "CAST_ALUMINUM",
+    "GRAY_CAST_IRON",
+    "SPHEROIDAL_CAST_IRON",
+    "USUAL_DAMPING",
+    "Bore",
+    "BoundedPlane",
+    "Box",
+    "CostLimit",
+    "Foot",
+    "Group",
+    "Material",
+    "MaterialDamping",
+    "MeshedHousing",
+    "ModalDamping",
+    "Mount",
+    "Plane",
+    "ReducedHousing",
+    "ReducedMatrices",
+    "Ring",
+    "SeatBore",
+    "SeatFrame",
+    "TetrahedralMesh",
+    "housing_of_matrices",
+    "mesh_step",
+    "meshed_step",
+    "read_matrix_market",
+    "read_mesh",
+    "read_reduced_matrices",
+    "receptance",
+    "reduced_housing",
+    "reduction_cost",
+    "scene_housing",
+    "write_surface",
+]

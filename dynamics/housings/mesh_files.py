@@ -1,0 +1,284 @@
+"""Volume meshes from files by meshlane and from STEP files by gmsh, in child processes; files of surfaces."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import NamedTuple
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
+
+from bounds import between
+from dynamics.checks import one_of, positive
+from dynamics.errors import InputError, SolveError
+from dynamics.housings.quadrature import over_volume, tetrahedron
+from dynamics.housings.tetrahedral_mesh import EDGES, TetrahedralMesh, raised
+from dynamics.solid_housing import MESH_FORMATS, MESH_SUFFIXES, STEP_SUFFIXES, check_mesh_content, mesh_text
+from dynamics.types import FloatArray, IntArray
+from host import READING, ChildFailed, ChildOutOfMemory, ask_child
+
+# Checks of a tetrahedral mesh: shape of its elements, its size, whether it hangs together.
+
+
+LEAST_SHAPE = 0.02
+"""A sliver: its volume is that part of a regular tetrahedron's with edges of the same mean square."""
+SIZE = between(5e-3, 50.0, "m")
+FIELD = "mesh_file"
+
+
+def element_shape(mesh: TetrahedralMesh) -> FloatArray:
+    """Return 6 sqrt(2) V / l^3 of each element's corners, l the root mean square of its edges: 1 at best."""
+    corner = mesh.points[mesh.tetrahedra[:, :4]]
+    edge = corner[:, EDGES[:, 1]] - corner[:, EDGES[:, 0]]
+    length = np.sqrt(np.mean(np.sum(edge**2, axis=2), axis=1))
+    volume = np.linalg.det(corner[:, 1:] - corner[:, :1]) / 6.0
+    return np.asarray(6.0 * np.sqrt(2.0) * volume / length**3)
+
+
+def _check_quality(mesh: TetrahedralMesh) -> None:
+    """Refuse a mesh that gives wrong results.
+
+    Raises
+    ------
+    InputError
+        Slivers, elements turned inside out by their mid-side nodes, parts that nothing joins, or a size that
+        is no housing's.
+    """
+    extent = float(np.ptp(mesh.points, axis=0).max())
+    if not SIZE.holds(extent):
+        raise InputError(f"{FIELD}.size", extent, SIZE, 'Check the unit of the mesh: "m" or "mm".')
+    shape = element_shape(mesh)
+    if shape.min() < LEAST_SHAPE:
+        count, bound = int(np.sum(shape < LEAST_SHAPE)), f"at least {LEAST_SHAPE:g} (1: regular)"
+        raise InputError(
+            f"{FIELD}.shape", float(shape.min()), bound, f"{count} elements are slivers: mesh again."
+        )
+    volume, _ = over_volume(mesh.points, mesh.tetrahedra)
+    folded = int(np.sum((volume / tetrahedron().weight).min(axis=1) <= 0.0))  # one weight is negative
+    if folded:
+        advice = "Mid-side nodes fold them: refine where the surface is curved, or use straight edges."
+        raise InputError(f"{FIELD}.elements", f"{folded} of {len(volume)} folded", "without folds", advice)
+    _check_joined(mesh)
+
+
+def _check_joined(mesh: TetrahedralMesh) -> None:
+    """Refuse a mesh in parts."""
+    corners = mesh.tetrahedra[:, :4]
+    row, column = np.repeat(corners[:, :1], 3, axis=1).ravel(), corners[:, 1:].ravel()
+    count = len(mesh.points)
+    graph = sp.coo_array((np.ones(len(row)), (row, column)), shape=(count, count))
+    _, label = connected_components(graph, directed=False)
+    parts = np.unique(label[corners[:, 0]]).size
+    if parts > 1:
+        advice = "Unite the bodies, or merge the nodes they share."
+        raise InputError(f"{FIELD}.parts", parts, "1: one body whose elements share nodes", advice)
+
+
+UNITS = {"m": 1.0, "mm": 1e-3}
+_MESH_WORKER = Path(__file__).with_name("mesh_worker.py")
+_MESH_SECONDS = 60.0
+LINEAR_NODES = 4
+TEXTS = ("Abaqus", "Nastran")
+
+
+class Content(NamedTuple):
+    """What a file holds: points, nodes of its tetrahedra, nodes of the named parts of its surface."""
+
+    points: FloatArray
+    tetrahedra: IntArray
+    groups: dict[str, IntArray]
+
+
+def read_mesh(path: str | Path, unit: str) -> TetrahedralMesh:
+    """Read a mesh of tetrahedra.
+
+    Linear tetrahedra get mid-side nodes in the middle of their straight edges: their own strain is constant
+    and far too stiff. Named physical groups of triangles, node sets, element sets of triangles and Nastran
+    properties of triangles (by number) are kept as groups of nodes.
+
+    Parameters
+    ----------
+    path : str or Path
+        ``.msh`` (gmsh), ``.inp`` (Abaqus, CalculiX), ``.bdf``, ``.nas``, ``.fem`` (Nastran), ``.vtu``,
+        ``.vtk``.
+    unit : str
+        Of its coordinates, "m" or "mm": files do not say it.
+
+    Raises
+    ------
+    InputError
+        No such file, no mesh, other solid elements than tetrahedra, or a bad mesh (see `_check_quality`).
+    """
+    scale = UNITS[one_of("unit", unit, list(UNITS))]
+    return _checked(_content(Path(path)), scale)
+
+
+def _content(file: Path) -> Content:
+    """Return what a confined child reads from a file: its format is by the suffix, and never another."""
+    title = MESH_FORMATS[one_of(f"{FIELD}.suffix", file.suffix.lower(), MESH_SUFFIXES)]
+    if not file.is_file():
+        raise InputError(FIELD, file.name, "a file that exists")
+    content = file.read_bytes()
+    check_mesh_content(file.name, content)
+    with TemporaryDirectory() as name:
+        copy = Path(name) / f"housing{file.suffix.lower()}"
+        copy.write_bytes(mesh_text(content).read().encode() if title in TEXTS else content)
+        request = {"file": copy.name, "format": title.lower()}
+        try:
+            answer = ask_child(request, _MESH_SECONDS, (sys.executable, "-P", str(_MESH_WORKER)), copy.parent)
+        except ChildFailed as error:
+            limits = f"{READING.memory_mb} MB of memory and {READING.cpu_seconds} s of CPU time"
+            bound = f"a mesh that is read within {limits} (the reader: {error.cause})"
+            raise InputError(FIELD, file.name, bound, "Write less into the file.") from None
+        if answer.get("unreadable"):
+            bound, advice = f"a mesh as {title} writes it", "Export it again, or as gmsh (.msh)."
+            raise InputError(FIELD, file.name, bound, advice)
+        if (cells := answer.get("cells")) is not None:
+            bound = "tetrahedra alone, all with four or all with ten nodes"
+            raise InputError(f"{FIELD}.cells", cells, bound, "Mesh with tetrahedra.")
+        with np.load(copy.with_name("mesh.npz"), allow_pickle=False) as arrays:
+            groups = {name: arrays[f"group_{number}"] for number, name in enumerate(answer["groups"])}
+            return Content(arrays["points"], arrays["tetrahedra"], groups)
+
+
+def _checked(content: Content, scale: float) -> TetrahedralMesh:
+    points, tetrahedra = _quadratic(content)
+    points = scale * np.asarray(points, dtype=float)
+    if not np.all(np.isfinite(points)):
+        raise InputError(FIELD, "with coordinates that are no numbers", "finite coordinates")
+    used, tetrahedra = np.unique(tetrahedra, return_inverse=True)
+    number = np.full(len(points), -1)
+    number[used] = np.arange(len(used))
+    groups = {name: number[nodes] for name, nodes in content.groups.items()}
+    whole = {name: np.unique(nodes[nodes >= 0]) for name, nodes in groups.items()}
+    mesh = TetrahedralMesh(points[used], tetrahedra.reshape(-1, 10), whole)
+    _check_quality(mesh)
+    return mesh
+
+
+def _quadratic(content: Content) -> tuple[FloatArray, IntArray]:
+    """Return points and tetrahedra with ten nodes, linear ones raised."""
+    points, cells = content.points, content.tetrahedra
+    members = [cells, *content.groups.values()]
+    if any(nodes.min(initial=0) < 0 or nodes.max(initial=0) >= len(points) for nodes in members):
+        raise InputError(FIELD, "with elements that lack nodes", "complete, as meshlane reads it")
+    return raised(_right_handed(points, cells), points) if cells.shape[1] == LINEAR_NODES else (points, cells)
+
+
+def _right_handed(points: FloatArray, corners: IntArray) -> IntArray:
+    """Turn linear tetrahedra of negative volume round."""
+    corner = points[corners]
+    turned = np.linalg.det(corner[:, 1:] - corner[:, :1]) < 0.0
+    return np.where(turned[:, None], corners[:, [0, 2, 1, 3]], corners)
+
+
+# Meshes of a STEP file, by gmsh in a child process.
+
+
+STEP_WORKER = Path(__file__).with_name("step_worker.py")
+STEP_SECONDS = 600.0
+WALL_ELEMENTS = 0.7
+"""Elements over the mean wall thickness, 2 V/S of the body, unless a size is given: quadratic ones bend."""
+
+
+def mesh_step(
+    path: str | Path,
+    element_size: float | None = None,
+    seconds: float = STEP_SECONDS,
+    command: Sequence[str] | None = None,
+) -> TetrahedralMesh:
+    """Mesh a STEP file with one solid by quadratic tetrahedra, whose nodes are on its curved surface.
+
+    Parameters
+    ----------
+    path : str or Path
+        ``.step`` or ``.stp``; its unit is read from it.
+    element_size : float, optional
+        Edge in m. Default: the mean wall thickness 2 V/S over 0.7. Curved faces get 12 elements a turn.
+    seconds : float
+        Time limit of the mesher.
+    command : sequence of str, optional
+        Program to run in place of the mesher.
+
+    Raises
+    ------
+    InputError
+        No such file, no solid or several, or a mesh that is bad at this size.
+    SolveError
+        The mesher failed, ran out of time or memory.
+    """
+    file = Path(path)
+    one_of("step_file.suffix", file.suffix.lower(), STEP_SUFFIXES)
+    if not file.is_file():
+        raise InputError("step_file", file.name, "a file that exists")
+    if element_size is not None:
+        positive("element_size", element_size)
+    with tempfile.TemporaryDirectory() as folder:
+        copy = shutil.copyfile(file, Path(folder) / f"housing{file.suffix.lower()}")
+        mesh = copy.with_suffix(".msh")
+        request = {"step": copy.name, "mesh": mesh.name, "size": element_size}
+        try:
+            answer = ask_child(
+                request | {"wall_elements": WALL_ELEMENTS},
+                seconds,
+                command or (sys.executable, "-P", str(STEP_WORKER)),
+                copy.parent,
+            )
+        except ChildOutOfMemory as error:
+            raise SolveError(f"mesher: {error}. Use a larger element_size.") from error
+        except ChildFailed as error:
+            raise SolveError(
+                f"mesher: {error.cause}. Heal the geometry, or try another element_size."
+            ) from error
+        if answer.get("solids") != 1:
+            advice = "Unite the solids in the CAD program."
+            raise InputError("step_file.solids", answer.get("solids"), "one solid", advice)
+        return read_mesh(mesh, "mm")
+
+
+CORNERS = 3
+
+
+def write_surface(
+    path: str | Path,
+    points: FloatArray,
+    triangles: IntArray,
+    fields: Mapping[str, FloatArray],
+    of_triangles: Mapping[str, FloatArray] | None = None,
+) -> None:
+    """Write triangles with fields as VTU; the file appears whole or not at all.
+
+    Parameters
+    ----------
+    path : str or Path
+    points : (p, 3) array
+        m.
+    triangles : (t, 3) or (t, 6) int array
+        Corners, then mid-side nodes.
+    fields : mapping of str to (p,) or (p, 3) array
+        At the nodes.
+    of_triangles : mapping of str to (t,) array, optional
+        Constant on triangles.
+    """
+    import meshlane  # noqa: PLC0415 (start-up time)
+
+    file = Path(path)
+    mesh = meshlane.Mesh(
+        points,
+        [("triangle" if triangles.shape[1] == CORNERS else "triangle6", triangles)],
+        point_data={name: np.ascontiguousarray(values) for name, values in fields.items()},
+        cell_data={name: [np.ascontiguousarray(values)] for name, values in (of_triangles or {}).items()},
+    )
+    unfinished = file.with_name(f".{file.name}.{os.getpid()}")
+    try:
+        meshlane.write(unfinished, mesh, file_format="vtu")
+        unfinished.replace(file)
+    finally:
+        unfinished.unlink(missing_ok=True)

@@ -1,0 +1,355 @@
+"""A housing by the motion of its seats and a few modes: what it is, its response, its part in a scene."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.linalg import block_diag
+
+from bounds import Quantity, Text
+from dynamics.bearings.matrix import Matrix
+from dynamics.checks import not_negative
+from dynamics.errors import InputError, ResultError
+from dynamics.housings.supports import SeatFrame
+from dynamics.joints import Housing
+from dynamics.types import FloatArray, IntArray
+from dynamics.work_cost import WorkCost
+
+# Rigid motions of points, and mass, center of gravity and inertia by them.
+
+
+@dataclass(frozen=True)
+class RigidBody:
+    """A body that does not deform.
+
+    Attributes
+    ----------
+    mass : float
+        kg.
+    center : (3,) array
+        Center of gravity, m.
+    inertia : (3, 3) array
+        About the center of gravity along the axes of the mesh, kg m^2; products with a minus sign.
+    """
+
+    mass: float
+    center: FloatArray
+    inertia: FloatArray
+
+
+def rigid_motions(points: FloatArray, about: FloatArray) -> FloatArray:
+    """Return displacements of points by unit translations and small rotations, (3 n, 6).
+
+    Columns: x, y, z, rotations about x, y, z through `about`: u = t + theta x (p - about).
+    """
+    motions = np.zeros((len(points), 3, 6))
+    motions[:, range(3), range(3)] = 1.0
+    for axis, unit in enumerate(np.eye(3)):
+        motions[:, :, 3 + axis] = np.cross(unit, points - about)
+    return motions.reshape(-1, 6)
+
+
+def rigid_body(points: FloatArray, mass: sp.csr_array) -> RigidBody:
+    """Return mass, center of gravity and inertia by a mass matrix between nodes, (n, n)."""
+    share = np.asarray(mass.sum(axis=0)).ravel()
+    whole = float(share.sum())
+    center = share @ points / whole
+    arm = points - center
+    second = arm.T @ (mass @ arm)
+    return RigidBody(whole, center, np.trace(second) * np.eye(3) - second)
+
+
+# A housing by the motion of its seats and a few modes.
+
+
+SCHEMA = "lineofaction reduced housing"
+SINGULAR = 1e-14
+"""Relative to the diagonal."""
+VALID = 0.7
+"""Of the highest frequency kept: to it a reduction follows the whole mesh within 1 %."""
+
+
+@dataclass(frozen=True)
+class SurfaceMotion:
+    """Motion of the surface.
+
+    Attributes
+    ----------
+    points : (p, 3) array
+        m.
+    triangles : (t, 6) int array
+        Corners, counter-clockwise from outside, then mid-side nodes. Walls of inner cavities are among them.
+    motion : (p, 3, r) array
+        Displacement of each point per reduced coordinate.
+    """
+
+    points: FloatArray
+    triangles: IntArray
+    motion: FloatArray
+
+    def normal_displacement(self) -> tuple[FloatArray, FloatArray]:
+        """Return mean outward displacements of triangles per coordinate, (t, r), and areas, (t,) in m^2."""
+        from dynamics.housings.quadrature import over_surface, triangle  # noqa: PLC0415 (extra)
+
+        area, _ = over_surface(self.points, self.triangles)
+        nodal = np.einsum("tpi,ap->tai", area, triangle().shape)
+        size = np.linalg.norm(area, axis=2).sum(axis=1)
+        flow = np.einsum("tai,tair->tr", nodal, self.motion[self.triangles], optimize=True)
+        return flow / size[:, None], size
+
+
+@dataclass(frozen=True)
+class PointMotion:
+    """Motion of a named point: that of the node next to it, at `position` (m); `motion` is (3, r)."""
+
+    name: str
+    position: FloatArray
+    motion: FloatArray
+
+
+@dataclass(frozen=True)
+class ReductionChecks:
+    """Residuals of a reduction, each to be small against one.
+
+    Attributes
+    ----------
+    volume : float
+        Mass by the mass matrix against that by the volume inside the surface, relative.
+    eigen : float
+        Largest residual of a mode, relative.
+    solve : float
+        Largest work of unbalanced forces on a deflection under a force on a seat, relative to the force's.
+    rigid_frequency : float
+        Highest frequency of a rigid motion over the first elastic mode; 0 if the housing is held.
+    seat_rigid : float
+        Largest deviation of the seats' motion from that of the body in a rigid motion, relative.
+    """
+
+    volume: float
+    eigen: float
+    solve: float
+    rigid_frequency: float
+    seat_rigid: float
+
+
+@dataclass(frozen=True)
+class ReducedHousing:
+    """M x'' + C x' + K x = (f, 0): motions of the seats, then amplitudes of modes with the seats held.
+
+    Attributes
+    ----------
+    mass, stiffness, damping : (r, r) arrays
+        Symmetric; SI.
+    seats : tuple of SeatFrame
+        In the order of the coordinates: those of a seat are its `motions`, along its own axes.
+    frequency : (m,) array
+        Natural frequencies kept, with the seats free, Hz, rising; rigid motions first, as zeros.
+    damping_ratio : (m,) array
+        Of these modes.
+    body : RigidBody or None
+        Of the mesh.
+    checks : ReductionChecks or None
+    surface : SurfaceMotion or None
+    points : tuple of PointMotion
+    mount_damping : (r, r) array or None
+        What of `damping` is that of the mounts; None: nothing, or not known apart.
+    mount_stiffness : (r, r) array or None
+        What of `stiffness` is that of the mounts; the same.
+    loss_factor : float or None
+        Of the material, where the rest of `damping` follows from it (`MaterialDamping`).
+    cost : WorkCost or None
+        Of the reduction, predicted and measured; None: nobody measured it.
+    """
+
+    mass: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+    seats: tuple[SeatFrame, ...]
+    frequency: FloatArray
+    damping_ratio: FloatArray
+    body: RigidBody | None = None
+    checks: ReductionChecks | None = None
+    surface: SurfaceMotion | None = None
+    points: tuple[PointMotion, ...] = ()
+    mount_damping: FloatArray | None = None
+    mount_stiffness: FloatArray | None = None
+    loss_factor: float | None = None
+    cost: WorkCost | None = None
+
+    @property
+    def motions(self) -> int:
+        """Motions of all seats: the first coordinates."""
+        return sum(len(seat.motions) for seat in self.seats)
+
+    @property
+    def valid_frequency(self) -> float:
+        """Return the frequency in Hz up to which the modes kept carry the motion; 0 without modes."""
+        return VALID * float(np.max(self.frequency, initial=0.0))
+
+    @cached_property
+    def modes(self) -> tuple[FloatArray, FloatArray]:
+        """Circular frequencies in rad/s and modes of unit modal mass, (r, m), with the seats free.
+
+        Motions without mass are left out. The first `len(frequency)` are modes of the housing; the rest carry
+        what its higher modes give statically.
+        """
+        from scipy.linalg import eigh  # noqa: PLC0415 (start-up time)
+
+        if np.linalg.eigvalsh(_unit_diagonal(self.mass))[0] > SINGULAR:
+            square, shape = eigh(self.stiffness, self.mass)
+            return np.sqrt(np.maximum(square, 0.0)), shape
+        inverse, shape = eigh(self.mass, self.stiffness)  # massless motions are no modes
+        moving = np.flatnonzero(inverse > SINGULAR * max(inverse[-1], SINGULAR))[::-1]
+        return 1.0 / np.sqrt(inverse[moving]), shape[:, moving] / np.sqrt(inverse[moving])
+
+    def to_netcdf(self, path: str | Path) -> None:
+        """Write the housing; the file appears whole or not at all."""
+        from model_studies.record_file import write_record  # noqa: PLC0415 (start-up time)
+
+        write_record(self, Path(path), SCHEMA)
+
+    @classmethod
+    def from_netcdf(cls, path: str | Path) -> ReducedHousing:
+        """Read what `to_netcdf` wrote, bit by bit the same.
+
+        Raises
+        ------
+        ResultError
+            The file is missing, damaged, or no reduced housing.
+        """
+        from model_studies.netcdf_input import UnreadableFile  # noqa: PLC0415 (start-up time)
+        from model_studies.record_file import read_record  # noqa: PLC0415
+
+        try:
+            housing = read_record(Path(path), {SCHEMA: cls})
+        except UnreadableFile as error:
+            raise ResultError(str(error)) from error
+        assert isinstance(housing, cls)
+        return housing
+
+
+def _unit_diagonal(matrix: FloatArray) -> FloatArray:
+    """Return a matrix in units in which its diagonal is 1, or 0 where it is."""
+    diagonal = np.diag(matrix)
+    scale = np.where(diagonal > 0.0, 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0)), 0.0)
+    return np.asarray(scale[:, None] * matrix * scale)
+
+
+# Forced vibration of a reduced housing.
+
+
+def receptance(
+    housing: ReducedHousing, frequency: Sequence[float] | FloatArray, *, residual: bool = True
+) -> FloatArray:
+    """Return the motion under unit harmonic forces on the seats.
+
+    Parameters
+    ----------
+    housing : ReducedHousing
+    frequency : (n,) array
+        Hz.
+    residual : bool
+        Whether the flexibility of the modes that are not kept is in it; without it, the sum over the kept
+        modes alone, for comparison: seats are too stiff then.
+
+    Returns
+    -------
+    (n, r, s) complex array
+        Reduced coordinates per force (m/N) or moment on the seats; the first s rows are the seats' motions.
+        `SurfaceMotion.motion @` it and `PointMotion.motion @` it are displacements.
+
+    Raises
+    ------
+    InputError
+        A frequency is negative or no number.
+    """
+    hertz = np.asarray(frequency, dtype=float)
+    for index, value in enumerate(hertz):
+        not_negative(f"frequency[{index}]", float(value))
+    omega = 2.0 * math.pi * hertz[:, None, None]
+    matrices = housing.mass, housing.damping, housing.stiffness
+    basis = _scaled(housing) if residual else housing.modes[1][:, : len(housing.frequency)]
+    mass, damping, stiffness = (basis.T @ matrix @ basis for matrix in matrices)
+    forces = basis[: housing.motions].T
+    try:
+        amplitude = np.linalg.solve(stiffness + 1j * omega * damping - omega**2 * mass, forces[None])
+    except np.linalg.LinAlgError as error:
+        advice = "The housing moves freely there, or resonates without damping."
+        raise InputError(
+            "frequency", "singular", "off frequencies at which the motion is infinite", advice
+        ) from error
+    return np.asarray(basis @ amplitude)
+
+
+def _scaled(housing: ReducedHousing) -> FloatArray:
+    """Return coordinates of like size, (r, r): they are meters, radians and modal amplitudes."""
+    diagonal = np.diag(housing.stiffness)
+    return np.diag(1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0)))
+
+
+PARALLEL = 1e-3
+"""Sine of the angle to z from which a bore is no seat of a shaft along z."""
+
+
+def scene_housing(housing: ReducedHousing, name: str, bushings: tuple[str, ...] | None = None) -> Housing:
+    """Return a reduced housing for a scene; its mesh stands in the scene's frame, shafts along z.
+
+    Parameters
+    ----------
+    housing : ReducedHousing
+        Without mass it is one without modes.
+    name : str
+        Of the housing in the scene.
+    bushings : tuple of str, optional
+        Names of the bearings, in the order of the seats; by default those of the seats.
+
+    Raises
+    ------
+    InputError
+        A bore is not along z, the seats have different numbers of motions, or what `Housing` refuses.
+    """
+    counts = {len(seat.motions) for seat in housing.seats}
+    if len(counts) > 1:
+        bound = "of as many motions each: 3, 5 or 6"
+        raise InputError("seats", sorted(counts), bound, "Reduce the housing with the same motions for all.")
+    coordinates = len(housing.stiffness) - housing.motions
+    turn = block_diag(*(_turn(seat) for seat in housing.seats), np.eye(coordinates))
+    massive = bool(np.any(housing.mass))
+    return Housing(
+        name,
+        tuple(seat.name for seat in housing.seats) if bushings is None else bushings,
+        _turned(housing.stiffness, turn),
+        _turned(housing.damping, turn) if massive or np.any(housing.damping) else None,
+        _turned(housing.mass, turn) if massive else None,
+        modal_coordinates=coordinates,
+        seat_positions=tuple(_point(seat) for seat in housing.seats),
+    )
+
+
+def _point(seat: SeatFrame) -> tuple[float, float, float]:
+    """Return the position of a seat, m."""
+    x, y, z = (float(value) for value in seat.position)
+    return x, y, z
+
+
+def _turn(seat: SeatFrame) -> FloatArray:
+    """Return the motions along the seat's axes per those along the scene's, (p, p)."""
+    off = math.hypot(float(seat.axes[0, 2]), float(seat.axes[1, 2]))
+    if off > PARALLEL:
+        angle = Quantity(math.asin(min(off, 1.0)), "rad", digits=3)
+        bound = Text.of("along z, as the shafts of a scene; its bore is off by ", angle)
+        raise InputError(f"seats.{seat.name}", "not along z", bound, "Turn the mesh.")
+    whole = np.kron(np.eye(2), seat.axes.T)
+    return np.asarray(whole[: len(seat.motions), : len(seat.motions)])
+
+
+def _turned(matrix: FloatArray, turn: FloatArray) -> Matrix:
+    """Return the rows of a matrix over motions along the scene's axes; unchanged where they are the same."""
+    own = matrix if np.array_equal(turn, np.eye(len(turn))) else turn.T @ matrix @ turn
+    return tuple(tuple(float(value) for value in row) for row in own)

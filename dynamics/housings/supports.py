@@ -1,0 +1,179 @@
+"""Where a housing is loaded and held: its bearing seats, and its feet, fixed or on elastic mounts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from dynamics.bearings.matrix import Matrix, check_matrix
+from dynamics.checks import distinct
+from dynamics.errors import InputError
+from dynamics.housings.quadrature import over_surface, triangle
+from dynamics.housings.tetrahedral_mesh import Bore, Face, TetrahedralMesh, unit
+from dynamics.solid_housing import Ring
+from dynamics.types import FloatArray, IntArray
+
+# Bearing seats of a housing: what their motion is, and how a force on them is carried.
+
+
+MOTIONS = ("x", "y", "z", "tilt_x", "tilt_y", "rotation_z")
+"""In the seat's own axes, z along the bore."""
+
+
+@dataclass(frozen=True)
+class SeatBore:
+    """A bearing seat.
+
+    Attributes
+    ----------
+    name : str
+    bore : Bore
+    ring : Ring
+    motions : int
+        3: displacements, 5: tilts too, as a bearing holds a shaft; 6: rotation about the axis too.
+    """
+
+    name: str
+    bore: Bore
+    ring: Ring = Ring.WEIGHTED_AVERAGE
+    motions: int = 5
+
+    def __post_init__(self) -> None:
+        if self.motions not in (3, 5, 6):
+            raise InputError("motions", self.motions, "3, 5 or 6", "A rolling bearing holds five.")
+
+
+@dataclass(frozen=True)
+class SeatFrame:
+    """Position and axes of a seat.
+
+    Attributes
+    ----------
+    name : str
+    position : (3,) array
+        m, in the mesh.
+    axes : (3, 3) array
+        Columns: the seat's x, y, z in the mesh. z is the bore's axis; x is as near as it can be to the mesh's
+        x, or to its y where the axis is along x.
+    ring : Ring
+        Whether the seat is elastic or a rigid ring.
+    motions : tuple of str
+        The directions of its freedoms, of `MOTIONS`.
+    """
+
+    name: str
+    position: FloatArray
+    axes: FloatArray
+    ring: Ring
+    motions: tuple[str, ...]
+
+
+def seat_frame(seat: SeatBore) -> SeatFrame:
+    """Return position and axes of a seat."""
+    z = unit("axis", seat.bore.axis)
+    near = np.eye(3)[0 if abs(z[0]) < 0.9 else 1]
+    x = near - (near @ z) * z
+    x /= np.linalg.norm(x)
+    axes = np.stack([x, np.cross(z, x), z], axis=1)
+    return SeatFrame(seat.name, np.array(seat.bore.position), axes, seat.ring, MOTIONS[: seat.motions])
+
+
+def in_axes(frame: SeatFrame) -> FloatArray:
+    """Return a seat's motions by those along the axes of the mesh, (motions, 6)."""
+    return np.asarray(np.kron(np.eye(2), frame.axes.T)[: len(frame.motions)], dtype=float)
+
+
+def mean_motion(mesh: TetrahedralMesh, face: Face, about: FloatArray) -> sp.csr_array:
+    """Return the rigid motion that is nearest to the displacements of a face, (6, 3 n).
+
+    Least squares over the area, with the shape functions of the elements: exact for rigid motions. Its
+    transpose spreads a force and moment at `about` over the nodes.
+    """
+    triangles = face.triangles(mesh)
+    area, point = over_surface(mesh.points, triangles)
+    weight, shape = np.linalg.norm(area, axis=2), triangle().shape
+    motion = np.zeros((*point.shape[:2], 3, 6))  # displacement of a point by the rigid motion
+    motion[..., range(3), range(3)] = 1.0
+    for axis, direction in enumerate(np.eye(3)):
+        motion[..., 3 + axis] = np.cross(direction, point - about)
+    normal = np.einsum("tp,tpic,tpid->cd", weight, motion, motion, optimize=True)
+    right = np.einsum("tp,ap,tpic->ctai", weight, shape, motion, optimize=True)
+    freedoms = 3 * triangles[:, :, None] + np.arange(3)
+    values = np.linalg.solve(normal, right.reshape(6, -1))
+    rows = np.repeat(np.arange(6), freedoms.size)
+    entries = (values.ravel(), (rows, np.tile(freedoms.ravel(), 6)))
+    return sp.coo_array(entries, shape=(6, mesh.freedoms)).tocsr()
+
+
+def wall_nodes(mesh: TetrahedralMesh, face: Face) -> IntArray:
+    """Return the nodes of a face."""
+    return np.unique(face.triangles(mesh))
+
+
+def check_seats(seats: tuple[SeatBore, ...]) -> None:
+    """Refuse no seats, and names that repeat."""
+    if not seats:
+        raise InputError("seats", seats, "at least one seat", "A housing acts through its bearing seats.")
+    distinct("seats", [seat.name for seat in seats])
+
+
+PRECISION = 1e-6
+"""Relative; a data sheet or a finite-element program writes its matrices with that many digits."""
+
+
+@dataclass(frozen=True)
+class Mount:
+    """A spring and damper between a rigid foot and the ground, at the centroid of the foot's face.
+
+    Attributes
+    ----------
+    stiffness : 3 by 3 or 6 by 6 matrix
+        Along the axes of the mesh: forces per displacements in N/m, and with six rows moments and rotations,
+        N, N m per m, rad. Symmetric, positive semidefinite.
+    damping : matrix of the same size or None
+        N s/m ...; None: none.
+    """
+
+    stiffness: Matrix
+    damping: Matrix | None = None
+
+    def __post_init__(self) -> None:
+        rows = len(check_matrix("stiffness", self.stiffness, (3, 6), PRECISION))
+        if self.damping is not None:
+            check_matrix("damping", self.damping, (rows,), PRECISION)
+
+    def matrices(self) -> tuple[FloatArray, FloatArray]:
+        """Return stiffness and damping, both (6, 6)."""
+        return _six(self.stiffness), _six(self.damping)
+
+
+@dataclass(frozen=True)
+class Foot:
+    """A face of the housing that stays plane and stands on the ground.
+
+    Attributes
+    ----------
+    name : str
+    face : Face
+    mount : Mount or None
+        None: fixed.
+    """
+
+    name: str
+    face: Face
+    mount: Mount | None = None
+
+    def __post_init__(self) -> None:
+        if not self.name:
+            raise InputError("name", self.name, "a name")
+
+
+def _six(matrix: Matrix | None) -> FloatArray:
+    """Return a matrix with rows for rotations."""
+    whole = np.zeros((6, 6))
+    if matrix is not None:
+        rows = len(matrix)
+        whole[:rows, :rows] = 0.5 * (np.array(matrix) + np.array(matrix).T)
+    return whole

@@ -1,0 +1,298 @@
+"""Meshes of housings from files and from STEP: the same by every format, one clear error for a bad one."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import meshlane
+import numpy as np
+import pytest
+from lattice_meshes import box, tube
+
+from dynamics.errors import InputError, SolveError
+from dynamics.housings import (
+    GRAY_CAST_IRON,
+    Bore,
+    BoundedPlane,
+    Box,
+    Foot,
+    Group,
+    MeshedHousing,
+    Plane,
+    SeatBore,
+    mesh_step,
+    read_mesh,
+)
+from dynamics.housings.assembled_housing import mass_and_stiffness
+from dynamics.housings.mesh_files import element_shape
+from dynamics.housings.reduction import reduce_housing
+from host import missing_protections
+
+MESH = tube(0.12, 0.08, 0.1, (8, 1, 2))
+MILLIMETERS = 1000.0 * MESH.points
+FOOT = np.flatnonzero(MESH.points[:, 2] == 0.0)
+
+
+def write_nastran(path: Path) -> None:
+    """Grid points in large fields, CTETRA with ten nodes in small ones."""
+    lines = ["BEGIN BULK"]
+    for number, (x, y, z) in enumerate(MILLIMETERS.tolist(), 1):
+        lines += [f"GRID*   {number:16d}{'':16}{x:16.9f}{y:16.9f}*", f"*       {z:16.9f}"]
+    for number, nodes in enumerate((MESH.tetrahedra + 1).tolist(), 1):
+        fields = [f"{entry:8d}" for entry in (number, 1, *nodes)]
+        lines += ["CTETRA  " + "".join(fields[:8]) + "+", "+       " + "".join(fields[8:])]
+    path.write_text("\n".join([*lines, "ENDDATA", ""]), encoding="ascii")
+
+
+def written(path: Path) -> Path:
+    if path.suffix == ".bdf":
+        write_nastran(path)
+        return path
+    sets = {"foot": FOOT} if path.suffix == ".inp" else {}
+    whole = meshlane.Mesh(MILLIMETERS, [("tetra10", MESH.tetrahedra)], point_sets=sets)
+    whole.write(path, file_format={".msh": "gmsh", ".inp": "abaqus", ".vtu": "vtu"}[path.suffix])
+    return path
+
+
+@pytest.mark.parametrize("suffix", [".msh", ".inp", ".vtu", ".bdf"])
+def test_a_mesh_has_the_same_matrices_by_every_format(tmp_path: Path, suffix: str) -> None:
+    back = read_mesh(written(tmp_path / f"tube{suffix}"), "mm")
+    assert back.points == pytest.approx(MESH.points, abs=1e-11)
+    for found, expected in zip(*(mass_and_stiffness(m, GRAY_CAST_IRON) for m in (back, MESH)), strict=True):
+        assert abs(found - expected).max() < 1e-8 * abs(expected).max()
+
+
+def test_a_node_set_is_a_foot(tmp_path: Path) -> None:
+    back = read_mesh(written(tmp_path / "tube.inp"), "mm")
+    base = Plane((0.0, 0.0, 0.0), (0.0, 0.0, -1.0)).triangles(back)
+    assert np.array_equal(Group("foot").triangles(back), base)
+    assert len(base) == 16
+    with pytest.raises(InputError, match="foot"):
+        Group("feet").triangles(back)
+
+
+def test_physical_groups_of_triangles_keep_their_names(tmp_path: Path) -> None:
+    base = Plane((0.0, 0.0, 0.0), (0.0, 0.0, -1.0)).triangles(MESH)
+    cells = [("tetra10", MESH.tetrahedra), ("triangle6", base)]
+    numbers = [np.full(len(data), kind) for kind, (_, data) in enumerate(cells, 1)]
+    whole = meshlane.Mesh(
+        MILLIMETERS,
+        cells,
+        cell_data={"gmsh:physical": numbers, "gmsh:geometrical": numbers},
+        field_data={"foot": np.array([2, 2])},
+    )
+    whole.write(tmp_path / "tube.msh", file_format="gmsh22")
+    back = read_mesh(tmp_path / "tube.msh", "mm")
+    assert np.array_equal(Group("foot").triangles(back), base)
+
+
+def test_linear_tetrahedra_of_either_hand_get_nodes_in_the_middle_of_their_edges(tmp_path: Path) -> None:
+    straight = box((0.1, 0.1, 0.1), (2, 2, 2))
+    corners = straight.tetrahedra[:, :4].copy()
+    corners[::2] = corners[::2][:, [1, 0, 2, 3]]
+    used, corners = np.unique(corners, return_inverse=True)
+    meshlane.Mesh(straight.points[used], [("tetra", corners.reshape(-1, 4))]).write(tmp_path / "box.vtu")
+    back = read_mesh(tmp_path / "box.vtu", "m")
+    assert len(back.points) == len(straight.points)
+    mass, _ = mass_and_stiffness(back, GRAY_CAST_IRON)
+    assert mass.sum() == pytest.approx(GRAY_CAST_IRON.density * 1e-3, rel=1e-12)
+
+
+def test_a_regular_tetrahedron_is_the_best_shape() -> None:
+    points = np.array([[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]])
+    assert element_shape(type(MESH)(points, np.array([[0, 2, 1, 3, *6 * [0]]]))) == pytest.approx([1.0])
+
+
+@pytest.mark.parametrize("placed", [False, True])
+def test_all_nodes_of_an_abaqus_file_are_read(tmp_path: Path, placed: bool) -> None:
+    """In several blocks; in a part, where its instance places it."""
+    rows = [f"{n}, {x!r}, {y!r}, {z!r}" for n, (x, y, z) in enumerate(MILLIMETERS.tolist(), 1)]
+    cells = [", ".join(map(str, (n, *nodes))) for n, nodes in enumerate((MESH.tetrahedra + 1).tolist(), 1)]
+    blocks = ["*NODE", *rows[:100], "*NODE", *rows[100:], "*ELEMENT, TYPE=C3D10", *cells]
+    if placed:
+        instance = ["*INSTANCE, NAME=case-1, PART=case", "10., 20., 30.", "*END INSTANCE"]
+        blocks = ["*PART, NAME=case", *blocks, "*END PART", "*ASSEMBLY, NAME=all", *instance, "*END ASSEMBLY"]
+    (tmp_path / "case.inp").write_text("\n".join(["*HEADING", *blocks, ""]))
+    expected = MESH.points + placed * np.array([0.01, 0.02, 0.03])
+    assert read_mesh(tmp_path / "case.inp", "mm").points == pytest.approx(expected, abs=1e-12)
+
+
+def folded() -> meshlane.Mesh:
+    points = MILLIMETERS.copy()
+    points[MESH.tetrahedra[0, 4]] = points[MESH.tetrahedra[0, 3]]
+    return meshlane.Mesh(points, [("tetra10", MESH.tetrahedra)])
+
+
+def sliver() -> meshlane.Mesh:
+    flat = box((0.1, 0.1, 1e-5), (1, 1, 1))
+    return meshlane.Mesh(1000.0 * flat.points, [("tetra10", flat.tetrahedra)])
+
+
+def two_parts() -> meshlane.Mesh:
+    both = np.vstack([MILLIMETERS, MILLIMETERS + 500.0])
+    return meshlane.Mesh(
+        both, [("tetra10", np.vstack([MESH.tetrahedra, MESH.tetrahedra + len(MILLIMETERS)]))]
+    )
+
+
+def hexahedra() -> meshlane.Mesh:
+    return meshlane.Mesh(
+        100.0 * np.random.default_rng(0).random((8, 3)), [("hexahedron", np.arange(8)[None])]
+    )
+
+
+@pytest.mark.parametrize(
+    ("mesh", "unit", "field"),
+    [
+        (folded, "mm", "mesh_file.elements"),
+        (sliver, "mm", "mesh_file.shape"),
+        (two_parts, "mm", "mesh_file.parts"),
+        (hexahedra, "mm", "mesh_file.cells"),
+        (lambda: meshlane.Mesh(MILLIMETERS, [("tetra10", MESH.tetrahedra)]), "m", "mesh_file.size"),
+        (lambda: meshlane.Mesh(MILLIMETERS, [("tetra10", MESH.tetrahedra)]), "inch", "unit"),
+    ],
+)
+def test_a_bad_mesh_is_refused_by_name(tmp_path: Path, mesh, unit: str, field: str) -> None:
+    mesh().write(tmp_path / "bad.vtu")
+    with pytest.raises(InputError) as caught:
+        read_mesh(tmp_path / "bad.vtu", unit)
+    assert caught.value.field == field
+
+
+@pytest.mark.parametrize("name", ["absent.vtu", "damaged.vtu", "damaged.msh", "damaged.inp", "housing.stl"])
+def test_a_file_that_is_no_mesh_is_one_clear_error(tmp_path: Path, name: str) -> None:
+    if name != "absent.vtu":
+        (tmp_path / name).write_bytes(b"\x00\x01 no mesh")
+    with pytest.raises(InputError) as caught:
+        read_mesh(tmp_path / name, "mm")
+    assert caught.value.field.startswith("mesh_file")
+
+
+WRITE_STEP = """
+import sys, gmsh
+gmsh.initialize(readConfigFiles=False)
+gmsh.option.setNumber("General.Terminal", 0)
+occ = gmsh.model.occ
+block = occ.addBox(0, 0, 0, 120, 80, 60)
+bores = [(3, occ.addCylinder(x, -1, 30, 0, 82, 0, radius)) for x, radius in ((35, 20), (85, 15))]
+cut, _ = occ.cut([(3, block)], bores)
+if sys.argv[2:] == ["two"]:
+    occ.addBox(500, 0, 0, 10, 10, 10)
+occ.synchronize()
+gmsh.write(sys.argv[1])
+gmsh.finalize()
+"""
+
+
+def write_step(path: Path, *options: str) -> Path:
+    subprocess.run([sys.executable, "-c", WRITE_STEP, str(path), *options], check=True, capture_output=True)
+    return path
+
+
+def bore(x: float, diameter: float) -> Bore:
+    return Bore((x, 0.02, 0.03), (0.0, 1.0, 0.0), diameter, 0.04)
+
+
+def test_a_step_file_is_meshed_and_its_bores_are_seats(tmp_path: Path) -> None:
+    mesh = mesh_step(write_step(tmp_path / "block.step"), 0.025)
+    assert mesh.points.max(axis=0) == pytest.approx([0.12, 0.08, 0.06], rel=1e-6)
+    for x, diameter in ((0.035, 0.04), (0.085, 0.03)):
+        wall = mesh.points[np.unique(bore(x, diameter).triangles(mesh))]
+        radius = np.hypot(wall[:, 0] - x, wall[:, 2] - 0.03)
+        assert radius == pytest.approx(
+            diameter / 2.0, rel=1e-6
+        )  # mid-side nodes too: they follow the surface
+    with pytest.raises(InputError, match=r"diameter of 0\.04") as caught:
+        bore(0.035, 0.05).triangles(mesh)
+    assert caught.value.field == "diameter"
+    corner = BoundedPlane(Plane((0.0, 0.0, 0.0), (0.0, 0.0, -1.0)), Box((-1.0, -1.0, -1.0), (0.06, 1.0, 1.0)))
+    seats = (SeatBore("left", bore(0.035, 0.04)), SeatBore("right", bore(0.085, 0.03)))
+    found = reduce_housing(MeshedHousing(mesh, GRAY_CAST_IRON, seats, (Foot("half", corner),), modes=4))
+    exact = 0.12 * 0.08 * 0.06 - np.pi * 0.08 * (0.02**2 + 0.015**2)
+    assert found.body.mass == pytest.approx(GRAY_CAST_IRON.density * exact, rel=2e-4)
+    assert found.checks.volume < 1e-9
+    assert found.seats[1].axes == pytest.approx(
+        np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+    )
+
+
+def test_a_bore_shorter_than_the_elements_of_its_wall_is_a_fault_of_its_length() -> None:
+    """Two layers of 50 mm: a length of 30 mm holds none, whatever the diameter says."""
+    short = Bore((0.0, 0.0, 0.05), (0.0, 0.0, 1.0), 0.08, 0.03)
+    with pytest.raises(InputError, match=r"elements up to 0\.05 m along the axis") as caught:
+        short.triangles(MESH)
+    assert (caught.value.field, caught.value.value) == ("length", 0.03)
+    with pytest.raises(InputError, match=r"has a diameter of 0\.08 m") as wrong:
+        Bore((0.0, 0.0, 0.05), (0.0, 0.0, 1.0), 0.09, 0.1).triangles(MESH)
+    assert wrong.value.field == "diameter"
+    assert "(0% is)" not in str(wrong.value)
+
+
+def test_without_a_size_elements_fit_the_wall(tmp_path: Path) -> None:
+    step = write_step(tmp_path / "block.step")
+    assert mesh_step(step).freedoms > mesh_step(step, 0.1).freedoms
+
+
+@pytest.mark.parametrize(
+    ("code", "complaint"),
+    [
+        ("raise ValueError('bytes of the file')", "mesher: ended with exit code 1. Heal"),
+        ("""print('{"error": "Surface mesh failed"}')""", "Surface mesh failed"),
+        ("import sys; sys.exit('std::bad_alloc')", "larger element_size"),
+        ("import time; time.sleep(60)", "no answer within 0.5 s"),
+    ],
+)
+def test_a_mesher_that_fails_says_why(tmp_path: Path, code: str, complaint: str) -> None:
+    step = tmp_path / "any.step"
+    step.write_text("")
+    with pytest.raises(SolveError, match=complaint):
+        mesh_step(step, 0.01, seconds=0.5 if "sleep" in code else 60.0, command=(sys.executable, "-c", code))
+
+
+def test_a_step_file_with_two_solids_or_none_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError) as caught:
+        mesh_step(write_step(tmp_path / "two.step", "two"), 0.05)
+    assert (caught.value.field, caught.value.value) == ("step_file.solids", 2)
+    for name in ("absent.step", "block.iges"):
+        with pytest.raises(InputError, match="step_file"):
+            mesh_step(tmp_path / name)
+
+
+def test_the_example_of_the_documentation_runs(tmp_path: Path, monkeypatch) -> None:
+    text = (Path(__file__).parents[4] / "docs" / "theory" / "housing.md").read_text(encoding="utf-8")
+    (block,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    write_step(tmp_path / "housing.step")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("LINEOFACTION_CACHE", str(tmp_path / "cache"))
+    found: dict = {}
+    exec(block, found)
+    assert found["cover"].shape == (2, 3, 10)
+    assert len(list((tmp_path / "cache").glob("*.nc"))) == 1
+
+
+@pytest.mark.skipif(bool(missing_protections()), reason="this system does not confine processes")
+@pytest.mark.parametrize("command", [read_mesh, mesh_step])
+def test_a_reader_that_is_led_elsewhere_reaches_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: Callable[..., object]
+) -> None:
+    """Whatever a library makes of a file: here it reads a canary beside it and says what is in it."""
+    canary = tmp_path / "canary"
+    canary.write_text("canary")
+    libraries = tmp_path / "libraries"
+    for name in ("meshlane", "gmsh"):
+        (libraries / name).mkdir(parents=True)
+        (libraries / name / "__init__.py").write_text(f"raise RuntimeError(open({str(canary)!r}).read())")
+    monkeypatch.syspath_prepend(str(libraries))
+    (tmp_path / "any.step").write_text("")
+    (tmp_path / "any.msh").write_text("")
+    arguments: tuple[Any, ...] = (
+        (tmp_path / "any.msh", "mm") if command is read_mesh else (tmp_path / "any.step",)
+    )
+    with pytest.raises((InputError, SolveError)) as refused:
+        command(*arguments)
+    assert "canary" not in str(refused.value)
