@@ -19,7 +19,7 @@ from dynamics.scene import Outputs, Scene, pair_scene
 from dynamics.shafts import BeamSection, GearBody, Inertia, hollow_cylinder
 from dynamics.types import FloatArray
 from fe_contact import GearPair, analyze
-from lineofaction.cli.scene_tables import scene_with_tables
+from lineofaction.cli.simulate import scene_with_tables
 from lineofaction.gearbox.subjects import scene_of
 
 EXAMPLES = Path(__file__).parents[1] / "examples"

@@ -12,7 +12,7 @@ from benchmarks.figures import Figure
 from dynamics.joints import Housing
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
-from lineofaction.cli.scene_tables import scene_with_tables
+from lineofaction.cli.simulate import scene_with_tables
 from lineofaction.gearbox.subjects import scene_of
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "palermo_scene.toml"

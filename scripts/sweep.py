@@ -12,8 +12,7 @@ from collections import Counter
 from pathlib import Path
 
 from lineofaction.hardcases import run_scenes
-from lineofaction.hardcases.sweep.outcome import kind_of_end
-from lineofaction.hardcases.sweep.sweep_case import sweep_case
+from lineofaction.hardcases.sweep import kind_of_end, sweep_case
 
 
 def main(folder: Path, kind: str, count: int, first: int = 0) -> int:

@@ -1,4 +1,4 @@
-"""``loa analyze``."""
+"""``loa analyze`` and ``loa plan``: case files read and assessed, their tables computed or predicted."""
 
 from __future__ import annotations
 
@@ -9,11 +9,13 @@ from typing import Any
 
 from bounds import engineering
 from fe_contact.analysis import ste_database
+from fe_contact.analysis.run_plan import PlannedLevel, RunPlan
 from fe_contact.options import Run
+from fe_contact.planning.cost_model import STAGES
 from fe_contact.ste import SteDatabase
 from fe_contact.workers import InProcess, Workers
 from host.directories import cache_home
-from lineofaction.cli.assessed_case import assessed_case
+from lineofaction.cli.guard import warn
 from lineofaction.cli.output import (
     Report,
     check_netcdf_output,
@@ -23,19 +25,63 @@ from lineofaction.cli.output import (
     progress_bar,
     table,
 )
-from lineofaction.cli.warned import warn
 from lineofaction.gearbox.convert.answers import summary_json
-from lineofaction.gearbox.convert.case import analysis_options, boundary_errors, case_json, table_axes
+from lineofaction.gearbox.convert.case import (
+    analysis_options,
+    boundary_errors,
+    case_at,
+    case_json,
+    table_axes,
+)
 from lineofaction.gearbox.convert.checks import check_case
 from lineofaction.gearbox.convert.drafts import draft_line
 from lineofaction.gearbox.convert.effect_lines import assumption_lines, ledger_lines
-from lineofaction.gearbox.convert.plausibility import phrased_database
+from lineofaction.gearbox.convert.plan import plan_of
+from lineofaction.gearbox.convert.plausibility import case_warnings, phrased_database
 from lineofaction.gearbox.convert.task_workers import ExecutorChoice, open_executor
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import JobFailed
-from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas import Case, read_model
+from lineofaction.gearbox.schemas.flank import FlankPoint
+from lineofaction.gearbox.schemas.lines import located
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.schemas.warning import left_out_warnings
+from lineofaction.gearbox.subjects import scene_of
 from lineofaction.gearbox.units import MM, NM, UM
 from lineofaction.report.tables.static_part import static_headlines
+
+
+def assessed_case(file: InputFile, point: FlankPoint | None = None) -> Case:
+    """Return the case in a file, at one load and alignment if requested; warn of what is implausible.
+
+    Raises
+    ------
+    BadInput
+        The file holds no case, or no such pair exists.
+    """
+    case = read_model(Case, file)
+    if point is not None:
+        case = case_at(case, point)
+    with located(file):
+        warn(case_warnings(case))
+    return case
+
+
+def assessed_scene(file: Path | InputFile) -> tuple[SceneInput, Path]:
+    """Return the scene in a file and the folder its files are relative to; warn of what its import left out.
+
+    Raises
+    ------
+    BadInput
+        The file holds no scene.
+    """
+    scene, folder = scene_of(file)
+    warn(left_out_warnings(scene.left_out))
+    return scene, folder
+
+
+# ``loa analyze``.
+
 
 # Lines of `loa analyze` about a tolerance: drafts while it refines, its passes, and whether it is met.
 
@@ -214,3 +260,57 @@ def _row(load: dict[str, Any]) -> list[str]:
         bands = [engineering(error, 1) for error in errors]
         figures = [f"{figure} ±{band}" for figure, band in zip(figures, bands, strict=False)]
     return [f"{load['torque_n_m']:.6g}", f"{load['normal_force_n']:.6g}", *figures]
+
+
+# ``loa plan``.
+
+
+def run_plan(file: InputFile, time_budget_s: float | None, *, as_json: bool) -> None:
+    """Plan, print."""
+    plan = plan_of(assessed_case(file), time_budget_s, cache_home() / "compliance")
+    if as_json:
+        print_json(plan.to_json())
+    else:
+        _show_plan(plan)
+
+
+def _show_plan(plan: RunPlan) -> None:
+    """Print the plan for people."""
+    out = console()
+    for line in ledger_lines(plan.to_json()["effect_ledger"]):
+        out.print(line, highlight=False)
+    head = ["mesh", "CPU s", *STAGES, "memory MiB", "error %", "of which model %", "mean um", "p-p um", ""]
+    rows = [
+        [
+            _mesh(entry, plan.chosen),
+            engineering(entry.cost.cpu_seconds, 2),
+            *(engineering(entry.cost.stages[stage], 2) for stage in STAGES),
+            f"{entry.cost.memory_bytes / 2**20:.0f}",
+            engineering(100.0 * entry.error.total, 2),
+            engineering(100.0 * entry.error.model, 2),
+            *(_micrometers(error) for error in (entry.error.mean, entry.error.peak_to_peak)),
+            "chosen" if entry is plan.chosen else "",
+        ]
+        for entry in plan.levels
+    ]
+    out.print(table(head, rows, "Predicted, nothing computed"))
+    model = plan.plan.discretization.to_json()["model"].replace("_", " ")
+    positions = plan.plan.positions or f"about {plan.chosen.cost.positions}, placed where the curve bends"
+    out.print(
+        f"model {model}; positions {positions}; mesh {plan.choice.option.name}: {plan.choice.reason}",
+        highlight=False,
+    )
+    if plan.conflict or not plan.choice.met:
+        out.print(plan.conflict or f"cannot be had: {plan.choice.reason}", highlight=False)
+
+
+def _mesh(entry: PlannedLevel, chosen: PlannedLevel) -> str:
+    """Name a mesh, and its model where that is not the chosen one."""
+    model = [] if entry.model == chosen.model else [entry.model]
+    slices = [] if entry.slices == 1 else [f"{entry.slices} slices"]
+    return ", ".join([*model, entry.level, *slices])
+
+
+def _micrometers(error: float | None) -> str:
+    """Return an expected error in um: per cent of a small ripple mean little; none where no size is known."""
+    return "" if error is None else engineering(error / UM, 2)

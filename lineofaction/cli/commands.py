@@ -8,7 +8,7 @@ from typing import Annotated, TextIO
 import typer
 
 from host import keep_to_one_thread
-from lineofaction.cli.verbs import keys, motion, new, pages, remote_jobs, serving, studies, tables, upkeep
+from lineofaction.cli.verbs import of_files, of_services
 from lineofaction.cli.verbs.of_studies import StudyGroup
 
 _EPILOG = (
@@ -29,14 +29,14 @@ app = typer.Typer(
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for family in (new, tables, motion, studies, pages, serving, remote_jobs):
+for family in (of_files, of_services):
     for verb in family.verbs.registered_commands:  # the whole sentence, which the list would cut off
         verb.short_help = (verb.callback.__doc__ or "").partition("\n")[0]
     app.add_typer(family.verbs)
-app.add_typer(keys.verbs, name="keys")
-app.add_typer(upkeep.cache, name="cache")
-app.add_typer(upkeep.database, name="database")
-app.add_typer(upkeep.store, name="store")
+app.add_typer(of_services.access_keys, name="keys")
+app.add_typer(of_services.cache, name="cache")
+app.add_typer(of_services.database, name="database")
+app.add_typer(of_services.store, name="store")
 
 
 def main() -> None:
@@ -72,7 +72,7 @@ def _version(requested: bool) -> None:
 
 
 @app.callback()
-def options(
+def _options(
     version: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
     ] = False,

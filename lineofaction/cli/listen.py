@@ -1,25 +1,180 @@
-"""``loa listen``."""
+"""``loa listen``: runs as sounds, by what they hold or through the housings of a scene."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from bounds import engineering
-from dynamics.acoustics import wav_file
-from lineofaction.cli.listen_sounds import RunSound, bearing_sounds
-from lineofaction.cli.listen_through_housing import HousingReceiver, housing_sounds
-from lineofaction.cli.output import check_writable, console, print_json, table
+from dynamics.acoustics import Recording, wav_file
+from dynamics.results import RunResult
+from host.directories import cache_home
+from lineofaction.cli.analyze import assessed_scene
+from lineofaction.cli.guard import warn
+from lineofaction.cli.output import check_writable, console, print_json, progress_bar, table
+from lineofaction.gearbox.convert.housings import HousedScene, housings_in
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.studies.listen.heard_run import recording_facts, rms
+from lineofaction.gearbox.studies.listen.heard_run import (
+    NO_LOUDNESS,
+    Receiver,
+    heard_run,
+    recording_facts,
+    rms,
+    sound_facts,
+)
+from lineofaction.gearbox.studies.listen.sound_figures import SoundFigures
+from lineofaction.gearbox.studies.listen.through_housing import SceneHousings
 from lineofaction.report.comparison.compare import named_files
 from lineofaction.report.document.inputs import read_run
-from lineofaction.report.drawing.figure import number
+from lineofaction.report.drawing.figure import number, unit_of
+from lineofaction.report.runs.loudest import Loudest, loudest
 from lineofaction.report.runs.run_view import RunView
-from lineofaction.report.runs.sound import full_scale_of
+from lineofaction.report.runs.sound import full_scale_of, heard_runs
 
 Json = dict[str, Any]
+FAINT = 1e-3
+"""Of the overall level: weaker orders are not printed."""
+
+
+@dataclass(frozen=True)
+class RunSound:
+    """A run as it is heard.
+
+    Attributes
+    ----------
+    name : str
+    recording : Recording
+    facts : dict
+        Plain JSON beside the recording's own.
+    cells : dict of str to str
+        What is printed in the columns of these names.
+    """
+
+    name: str
+    recording: Recording
+    facts: Json = field(default_factory=dict)
+    cells: dict[str, str] = field(default_factory=dict)
+
+
+def bearing_sounds(runs: Mapping[str, RunResult], view: RunView) -> tuple[list[RunSound], str]:
+    """Return runs by what they hold, e.g. forces on a bearing, and what to say of all."""
+    sounds = []
+    for one in heard_runs(dict(runs), view):
+        recording, moment = one.recording(), loudest(one.run, one.signal)
+        facts = {"loudest": None if moment is None else _moment_facts(moment)}
+        sounds.append(RunSound(one.name, recording, facts, _moment_cells(moment, recording.unit)))
+    return sounds, NO_LOUDNESS
+
+
+def _moment_facts(moment: Loudest) -> Json:
+    """Return where a run is loudest as JSON."""
+    orders = {str(order): value for order, value in moment.orders.items()}
+    return {"time_s": moment.time, "rms": moment.overall, "orders_rms": orders}
+
+
+def _moment_cells(moment: Loudest | None, unit: str) -> dict[str, str]:
+    """Say where a run is loudest, and the levels of its orders there."""
+    where, text = "", "too short for orders"
+    if moment is not None:
+        levels = [
+            f"{order}x {20.0 * math.log10(value):.1f}"
+            for order, value in moment.orders.items()
+            if value > FAINT * moment.overall
+        ]
+        where, text = f"{number(moment.where, 4)} {unit_of(moment.axis.label)}", ", ".join(levels)
+    return {"loudest at": where, f"orders there, dB re 1 {unit} rms": text}
+
+
+# What ``loa listen`` makes of runs through the housings of a scene: velocities, sound pressures.
+
+
+@dataclass(frozen=True)
+class HousingReceiver:
+    """A scene file, and where runs are heard through its housings."""
+
+    scene: Path
+    receiver: Receiver
+
+
+def housing_receiver(scene: Path | None, point: str, microphone: str) -> HousingReceiver | None:
+    """Return where runs are heard by the options of the verb; None: as what the runs hold.
+
+    Raises
+    ------
+    BadInput
+        A scene without one of point and microphone, one of these without a scene, or no position.
+    """
+    if scene is None and not point and not microphone:
+        return None
+    if scene is None or bool(point) == bool(microphone):
+        given = [name for name, value in (("--point", point), ("--microphone", microphone)) if value]
+        bound = "given with --scene, one of --point and --microphone"
+        raise BadInput.of("--scene", None if scene is None else str(scene), bound, f"Given: {given}.")
+    return HousingReceiver(scene, Receiver(_position(microphone) if microphone else (), point))
+
+
+def _position(text: str) -> tuple[float, ...]:
+    """Return the position that X,Y,Z says, mm."""
+    try:
+        x, y, z = (float(part) for part in text.split(","))
+    except ValueError:
+        bound = "three numbers in mm, X,Y,Z"
+        raise BadInput.of("--microphone", text, bound, "For example 1000,0,200.") from None
+    return x, y, z
+
+
+def housing_sounds(
+    runs: Mapping[str, RunResult], through: HousingReceiver, view: RunView
+) -> tuple[list[RunSound], str]:
+    """Return runs through the housings of a scene, and what to say of all."""
+    receiver = replace(through.receiver, direction=view.direction)
+    _require_no_view(view, receiver)
+    scene, folder = assessed_scene(through.scene)
+    with progress_bar() as report:
+        bodies = housings_in(scene, cache_home(), folder, report)
+    housings = SceneHousings.of(HousedScene(scene, bodies))
+    sounds: list[RunSound] = []
+    remarks: list[str] = []
+    for name, run in runs.items():
+        try:
+            heard = heard_run(name, run, housings, receiver)
+        except BadInput as error:
+            raise error.within(name) from None
+        warn(heard.warnings)
+        cells = {} if heard.figures is None else _figures_cells(heard.figures)
+        sounds.append(RunSound(name, heard.recording, sound_facts(heard), cells))
+        remarks += heard.remarks
+    return sounds, "; ".join(dict.fromkeys(remarks))
+
+
+def _require_no_view(view: RunView, receiver: Receiver) -> None:
+    """Refuse options for what a run itself holds."""
+    named = {"quantity": view.quantity, "bearing": view.bearing, "mesh": view.mesh}
+    if not receiver.point:
+        named["direction"] = view.direction
+    for name, value in named.items():
+        if value:
+            raise BadInput.of(f"--{name}", value, "left out with --microphone or --point")
+
+
+def _figures_cells(figures: SoundFigures) -> dict[str, str]:
+    """Say what the ear makes of a sound."""
+    loudness = "without extra" if figures.loudness is None else engineering(figures.loudness, 3)
+    sharpness = "" if figures.sharpness is None else engineering(figures.sharpness, 3)
+    tones = ", ".join(number(hertz, 4) for hertz, _ in figures.tones)
+    return {
+        "dB": f"{figures.level:.1f}",
+        "dB(A)": f"{figures.weighted_level:.1f}",
+        "sone" if figures.steady else "sone (N5)": loudness,
+        "acum": sharpness,
+        "tones, Hz": tones if figures.steady else "not steady",
+    }
+
+
+# ``loa listen``.
 
 
 def run_listen(

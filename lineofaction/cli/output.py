@@ -15,7 +15,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from lineofaction.cli.warned import warnings_so_far
+from lineofaction.cli.guard import warnings_so_far
 from lineofaction.gearbox.problems import BadInput
 from model_studies.progress import stage_name
 

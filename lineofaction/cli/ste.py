@@ -11,8 +11,8 @@ from typing import Any
 
 from bounds import engineering
 from fe_contact.ste import SteDatabase
+from lineofaction.cli.guard import warn
 from lineofaction.cli.output import console, print_json, table
-from lineofaction.cli.warned import warn
 from lineofaction.gearbox.convert.answers import curve_json
 from lineofaction.gearbox.problems import BadInput
 

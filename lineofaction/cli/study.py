@@ -17,8 +17,8 @@ from fe_contact.workers import Remembering, Workers
 from fe_contact.workers.content import content_digest
 from host import cpu_seconds
 from host.directories import cache_home
-from lineofaction.cli.assessed_case import assessed_scene
-from lineofaction.cli.interrupt import until_interrupted
+from lineofaction.cli.analyze import assessed_scene
+from lineofaction.cli.guard import messages, until_interrupted, warn, warnings_so_far
 from lineofaction.cli.output import (
     Report,
     check_writable,
@@ -30,8 +30,7 @@ from lineofaction.cli.output import (
     progress_bar,
     table,
 )
-from lineofaction.cli.scene_tables import tabled_scene
-from lineofaction.cli.warned import messages, warn, warnings_so_far
+from lineofaction.cli.simulate import tabled_scene
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.convert.stamp import stamp
 from lineofaction.gearbox.convert.task_workers import ExecutorChoice, open_executor

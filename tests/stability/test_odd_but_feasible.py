@@ -14,7 +14,7 @@ from fe_contact.analysis import analyze
 from fe_contact.errors import InputError
 from fe_contact.geometry import FlankModification, PitchDeviation
 from fe_contact.material import Material
-from lineofaction.hardcases.sweep.sweep_case import assessed
+from lineofaction.hardcases.sweep import assessed
 
 MM, UM, DEG = 1e-3, 1e-6, math.pi / 180.0
 Fields = dict[str, Any]

@@ -11,8 +11,15 @@ import typer
 from typer.core import TyperGroup
 
 from lineofaction.cli.guard import computing
-from lineofaction.cli.verbs.options import AsCsv, AsJson, DaskScheduler, TableService, TaskWorkers
-from lineofaction.cli.verbs.overrides import file_argument, overridable
+from lineofaction.cli.options import (
+    AsCsv,
+    AsJson,
+    DaskScheduler,
+    TableService,
+    TaskWorkers,
+    file_argument,
+    overridable,
+)
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.registry import STUDIES, Study
 from lineofaction.gearbox.schemas.spelling import is_list, spelling_of

@@ -9,7 +9,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from lineofaction.cli.signature import grouped, parameters_of
+from lineofaction.cli.guard import grouped, parameters_of
 
 
 @dataclass(frozen=True)

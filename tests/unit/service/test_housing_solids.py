@@ -28,7 +28,7 @@ from dynamics.housings import (
     reduced_housing,
 )
 from dynamics.housings import reduction as kept
-from lineofaction.cli.scene_tables import tabled_scene
+from lineofaction.cli.simulate import tabled_scene
 from lineofaction.gearbox.convert import solid_housings
 from lineofaction.gearbox.convert.scene import TabledScene, check_scene
 from lineofaction.gearbox.problems import BadInput, JobFailed

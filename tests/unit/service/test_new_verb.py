@@ -13,8 +13,8 @@ from typer.testing import CliRunner, Result
 from fe_contact.geometry import specific_sliding
 from fe_contact.ste import SteDatabase
 from lineofaction.cli.commands import app
-from lineofaction.cli.new.run import KINDS, new_text
-from lineofaction.cli.new.sketch import Wanted
+from lineofaction.cli.new import KINDS, new_text
+from lineofaction.cli.pair_sketch import Wanted
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model, validated

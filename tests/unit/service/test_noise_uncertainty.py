@@ -13,7 +13,7 @@ from housing_solid import housed_scene, write_block
 
 from dynamics.acoustics import EquivalentRadiatedPower
 from dynamics.noise import GUESSES, SoundModel, forced_power, housing_radiation, largest_level
-from lineofaction.cli.scene_tables import tabled_scene
+from lineofaction.cli.simulate import tabled_scene
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import validated

@@ -13,7 +13,7 @@ from dynamics.results import RunResult
 from dynamics.simulation import simulate
 from dynamics.types import RunStatus
 from lineofaction.cli.commands import app
-from lineofaction.cli.interrupt import until_interrupted
+from lineofaction.cli.guard import until_interrupted
 from lineofaction.cli.simulate import _run, run_headlines
 from lineofaction.gearbox.convert.run_effects import effect_lines
 

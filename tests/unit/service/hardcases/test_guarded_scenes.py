@@ -19,8 +19,8 @@ from lineofaction.hardcases import HARD_SCENES, Measured, run_scenes
 def _imported_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Fork the processes of the scenes from one that has imported them."""
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["lineofaction.hardcases.guarded", "scenes_that_break"])
-    monkeypatch.setattr("lineofaction.hardcases.guarded.multiprocessing.get_context", lambda _: context)
+    context.set_forkserver_preload(["lineofaction.hardcases.scene", "scenes_that_break"])
+    monkeypatch.setattr("lineofaction.hardcases.scene.multiprocessing.get_context", lambda _: context)
 
 
 def test_crash_hang_and_exception_each_end_one_scene_only() -> None:

@@ -7,8 +7,7 @@ import scenes_that_break as fake
 
 from fe_contact.errors import InputError
 from lineofaction.hardcases import Outcome
-from lineofaction.hardcases.sweep.outcome import kind_of_end
-from lineofaction.hardcases.sweep.random_request import random_request
+from lineofaction.hardcases.sweep import kind_of_end, random_request
 
 REFUSAL = str(InputError("teeth", 3, "at least 4", "Add teeth."))
 

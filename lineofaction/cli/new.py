@@ -1,0 +1,460 @@
+"""``loa new`` and ``loa open``: first cases and scenes, by rule or from a file of another tool."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from lineofaction.cli.guard import warn
+from lineofaction.cli.options import PairWishes as Wanted
+from lineofaction.cli.output import check_writable, console, print_json
+from lineofaction.cli.pair_sketch import (
+    GearSketch,
+    PairSketch,
+    bore_of,
+    case_tables,
+    case_text,
+    external_pair,
+    face_width,
+    internal_pair,
+    ring_pair,
+)
+from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
+from lineofaction.gearbox.from_rexs.account import FATES
+from lineofaction.gearbox.from_rexs.assumption import Assumption
+from lineofaction.gearbox.from_rexs.files import report_lines, unit_files
+from lineofaction.gearbox.from_rexs.left_out import headline
+from lineofaction.gearbox.from_rexs.load_case import LoadCase
+from lineofaction.gearbox.from_rexs.opened import OpenedUnit, opened
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.rexs import read_rexs
+from lineofaction.gearbox.schemas import Case, validated
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.schemas.toml_table import toml_table
+from lineofaction.gearbox.schemas.warning import left_out_warnings
+from lineofaction.gearbox.units import DEGREE
+
+# The text of scene files: a pair between two shafts, and a planetary stage.
+
+
+HEAD = """# {head}
+# Made by loa new; every figure may be changed. All fields: docs/case-file.md#scene.
+# Next: loa simulate FILE -o run.nc, then loa report run.nc; loa modes FILE for natural frequencies.
+"""
+ACCURACY = """
+[meshes.case.accuracy]
+level = "draft" # a table for a first run; "standard" or a tolerance once the scene is right
+"""
+
+
+def _pair_scene_text(pair: PairSketch, head: str) -> str:
+    """Return a motor, a pair between two shafts on two bearings each, and a brake; the motor runs up."""
+    length = 4.0 * pair.width
+    sides = (("input", "pinion", pair.pinion, 0.0), ("output", "wheel", pair.wheel, pair.center_distance))
+    shafts = "".join(
+        _shaft(name, length, gear.held, origin)
+        + _gear(tooth, name, 0.5 * length, gear.held)
+        + _scene_text_bearings(name, length)
+        for name, tooth, gear, origin in sides
+    )
+    load = pair.torque[-2] * pair.wheel.teeth / pair.pinion.teeth
+    return f"""{HEAD.format(head=head)}
+[run]
+duration_s = 1.0
+{shafts}
+[[meshes]]
+name = "mesh"
+driver = "pinion"
+driven = "wheel"
+damping_ratio = 0.07 # measured ones lie between 0.03 and 0.17
+
+{case_tables(pair, "meshes.case.")}{ACCURACY}
+[[drives]] # the angle is imposed: a run-up
+name = "motor"
+shaft = "input"
+time_s = [0.0, 1.0]
+speed_rpm = [300.0, 3000.0]
+
+[[loads]]
+name = "brake"
+shaft = "output"
+torque_n_m = [{load:.4g}] # three quarters of the table's highest load
+
+[outputs]
+bearing_forces = true
+"""
+
+
+def _shaft(name: str, length: float, diameter: float, origin: float) -> str:
+    return f"""
+[[shafts]]
+name = "{name}"
+length_mm = {length:g}
+diameter_mm = {diameter:g}
+origin_mm = [{origin:.10g}, 0.0, 0.0]
+"""
+
+
+def _gear(name: str, shaft: str, position: float, bore: float) -> str:
+    """Return a gear whose body follows from its case."""
+    return f"""
+[[gears]]
+name = "{name}"
+shaft = "{shaft}"
+position_mm = {position:g} # along the shaft
+bore_diameter_mm = {bore:g}
+"""
+
+
+def _scene_text_bearings(shaft: str, length: float) -> str:
+    """Return the two bearings of a shaft; the left one carries the axial force."""
+    return "".join(
+        f"""
+[[bushings]]
+name = "{shaft} {side}"
+shaft = "{shaft}"
+position_mm = {position:g}
+radial_stiffness_n_per_m = 3e8
+{"axial_stiffness_n_per_m = 1e8" + chr(10) if side == "left" else ""}damping_ratio = 0.02
+"""
+        for side, position in (("left", 0.0), ("right", length))
+    )
+
+
+# The text of a scene file of a planetary stage.
+
+
+_PLANETS = 3
+_LEAST_TEETH = 18
+"""Of a planet: with fewer, teeth without profile shift are undercut."""
+_LOAD_SHARE = 0.6
+"""Of the sun's highest torque in the table."""
+
+
+@dataclass(frozen=True)
+class StageSketch:
+    """Both meshes of a stage with a held ring, and its ratio of sun to carrier."""
+
+    sun: PairSketch
+    ring: PairSketch
+    ratio: float
+
+
+def planetary_stage(wanted: Wanted) -> StageSketch:
+    """Return a stage of three planets; its ring has the teeth of the sun and twice those of a planet.
+
+    Raises
+    ------
+    BadInput
+        No planets fit a ratio that small.
+    """
+    module, teeth, helix = wanted.module or 2.0, wanted.teeth or 24, wanted.helix or 0.0
+    wished = 0.5 * teeth * ((wanted.ratio or 5.0) - 2.0)
+    fitting = [count for count in range(_LEAST_TEETH, int(wished) + 4) if (teeth + count) % _PLANETS == 0]
+    if not fitting or wished < _LEAST_TEETH:
+        least = 2.0 + 2.0 * _LEAST_TEETH / teeth
+        bound = f"at least {least:.3g} with {teeth} teeth of the sun"
+        raise BadInput.of("--ratio", wanted.ratio, bound, "Or leave it out.")
+    planet = min(fitting, key=lambda count: abs(count - wished))
+    width = wanted.width or face_width(module, helix)
+    ring = ring_pair(module, helix, width, planet, teeth + 2 * planet)
+    transverse = module / math.cos(helix * DEGREE)
+    sun = GearSketch(teeth, 0.0, bore_of(teeth, module, helix, width), ring.wheel.allowance)
+    torque = tuple(float(f"{value * teeth / planet:.2g}") for value in ring.torque)
+    pair = PairSketch(module, helix, width, 0.5 * transverse * (teeth + planet), sun, ring.pinion, torque)
+    return StageSketch(pair, ring, 2.0 + 2.0 * planet / teeth)
+
+
+def _planetary_text(stage: StageSketch, head: str) -> str:
+    """Return a stage whose sun is driven, whose carrier is braked, and whose ring is held."""
+    length = 2.0 * stage.sun.width
+    middle = 0.5 * length
+    brake = _PLANETS * _LOAD_SHARE * stage.sun.torque[-1] * stage.ratio
+    offset = 0.5 if stage.sun.wheel.teeth % 2 == 0 else 0.0
+    return f"""{HEAD.format(head=head)}
+[run]
+duration_s = 0.5
+{_shafts(stage, length)}{_gears(stage, middle)}{_bearings(middle)}
+[[planets]] # all are copies of the first
+planet = "planet"
+number = {_PLANETS}
+
+[[meshes]]
+name = "sun mesh"
+driver = "sun gear"
+driven = "planet gear"
+damping_ratio = 0.07 # measured ones lie between 0.03 and 0.17
+
+{case_tables(stage.sun, "meshes.case.")}{ACCURACY}
+[[meshes]]
+name = "ring mesh"
+driver = "planet gear"
+driven = "ring gear"
+damping_ratio = 0.07
+position_offset = {offset} # planets with an even number of teeth meet sun and ring half a pitch apart
+
+{case_tables(stage.ring, "meshes.case.")}{ACCURACY}
+[[drives]] # the angle is imposed: a run-up
+name = "motor"
+shaft = "sun"
+time_s = [0.0, 0.5]
+speed_rpm = [300.0, 1500.0]
+
+[[drives]]
+name = "ring held"
+shaft = "ring"
+speed_rpm = [0.0]
+
+[[loads]]
+name = "brake"
+shaft = "carrier"
+torque_n_m = [{brake:.3g}]
+"""
+
+
+def _shafts(stage: StageSketch, length: float) -> str:
+    """Return carrier, sun, ring and the first planet; inertia of the carrier grows as its size."""
+    radius = 1e-3 * stage.sun.center_distance
+    mass = 800.0 * radius**2 * 1e-3 * length * math.pi * 7.85
+    none = "{ mass_kg = 0.0, polar_kg_m2 = 0.0, transverse_kg_m2 = 0.0 }"
+    polar = 0.5 * mass * radius**2
+    carrier = f"{{ mass_kg = {mass:.3g}, polar_kg_m2 = {polar:.3g}, transverse_kg_m2 = {0.6 * polar:.3g} }}"
+    return f"""
+[[shafts]]
+name = "carrier"
+frame = "carrier" # a carrier names itself
+length_mm = {length:g}
+inertia = {carrier}
+
+[[shafts]]
+name = "sun"
+frame = "carrier"
+length_mm = {length:g}
+diameter_mm = {stage.sun.pinion.held:g}
+
+[[shafts]]
+name = "ring"
+frame = "carrier"
+length_mm = {length:g}
+inertia = {none}
+
+[[shafts]] # the first planet
+name = "planet"
+frame = "carrier"
+length_mm = {length:g}
+diameter_mm = {stage.sun.wheel.held:g}
+origin_mm = [{stage.sun.center_distance:.10g}, 0.0, 0.0]
+"""
+
+
+def _gears(stage: StageSketch, middle: float) -> str:
+    """Return the gears at mid-length; the ring's inertia counts for nothing while it is held."""
+    return f"""
+[[gears]]
+name = "sun gear"
+shaft = "sun"
+position_mm = {middle:g}
+bore_diameter_mm = {stage.sun.pinion.held:g}
+
+[[gears]]
+name = "planet gear"
+shaft = "planet"
+position_mm = {middle:g}
+bore_diameter_mm = {stage.sun.wheel.held:g}
+
+[[gears]]
+name = "ring gear"
+shaft = "ring"
+position_mm = {middle:g}
+inertia = {{ mass_kg = 1.0, polar_kg_m2 = 1e-2, transverse_kg_m2 = 5e-3 }}
+"""
+
+
+def _bearings(middle: float) -> str:
+    """Return the sun's soft bearing, the ring's mount, the carrier's bearing and the planet's pin."""
+    return (
+        "".join(
+            f"""
+[[bushings]]
+name = "{name}"
+shaft = "{shaft}"
+position_mm = {middle:g}
+radial_stiffness_n_per_m = {stiffness}
+axial_stiffness_n_per_m = 1e8
+"""
+            for name, shaft, stiffness in (
+                ("sun bearing", "sun", "1e6 # soft: the sun floats between the planets"),
+                ("ring mount", "ring", "1e9"),
+                ("carrier bearing", "carrier", "2e8"),
+            )
+        )
+        + f"""
+[[planet_bearings]]
+name = "pin"
+shaft = "planet"
+carrier = "carrier"
+position_mm = {middle:g}
+radial_stiffness_n_per_m = 2e8
+axial_stiffness_n_per_m = 1e8
+"""
+    )
+
+
+def _spur(wanted: Wanted) -> str:
+    return case_text(external_pair(wanted, teeth=24, ratio=1.5, helix=0.0, module=3.0), "A spur pair")
+
+
+def _helical(wanted: Wanted) -> str:
+    pair = external_pair(wanted, teeth=23, ratio=67 / 23, helix=22.0, module=1.8)
+    return case_text(pair, "A helical pair")
+
+
+def _internal(wanted: Wanted) -> str:
+    return case_text(internal_pair(wanted, teeth=36, ratio=96 / 36, module=2.0), "A pinion in a ring gear")
+
+
+def _planetary(wanted: Wanted) -> str:
+    head = "A planetary stage: the sun drives, the carrier is braked, the ring is held"
+    return _planetary_text(planetary_stage(wanted), head)
+
+
+def _scene(wanted: Wanted) -> str:
+    """Return a helical pair between two shafts."""
+    pair = external_pair(wanted, teeth=23, ratio=67 / 23, helix=22.0, module=1.8)
+    return _pair_scene_text(pair, "A helical pair between two shafts: motor, brake, four bearings")
+
+
+KINDS: Mapping[str, Callable[[Wanted], str]] = {
+    "spur": _spur,
+    "helical": _helical,
+    "internal": _internal,
+    "planetary": _planetary,
+    "scene": _scene,
+}
+"""What is made, by the option that names it."""
+
+
+def run_new(kinds: Mapping[str, bool], wanted: Wanted, output: Path | None) -> None:
+    """Write or print the file of the one kind that was named; a helical pair if none was."""
+    named = [kind for kind, chosen in kinds.items() if chosen]
+    if len(named) > 1:
+        given = " ".join(f"--{kind}" for kind in named)
+        raise BadInput.of("kind", given, f"one of {', '.join(f'--{kind}' for kind in KINDS)}", "Choose one.")
+    if output is not None:
+        _check_new(output)
+    text = new_text(named[0] if named else "helical", wanted)
+    if output is None:
+        sys.stdout.write(text)
+        return
+    output.write_text(text, encoding="utf-8")
+    verb = "simulate" if "[[shafts]]" in text else "geometry"
+    out = console()
+    out.print(text.partition("\n")[0].removeprefix("# "), highlight=False)
+    out.print(f"next: loa {verb} {output}" + (" -o run.nc" if verb == "simulate" else ""), highlight=False)
+    out.print(f"written to {output}", highlight=False)
+
+
+def new_text(kind: str, wanted: Wanted) -> str:
+    """Return the file of a kind; it is read once, so that what is written can be run.
+
+    Raises
+    ------
+    BadInput
+        No such pair exists.
+    """
+    with boundary_errors():
+        text = KINDS[kind](wanted)
+    table = toml_table(text, "file")
+    if "shafts" in table:
+        scene = validated(SceneInput, table)
+        cases = [mesh.case for mesh in scene.meshes if mesh.case is not None]
+    else:
+        cases = [validated(Case, table)]
+    for case in cases:
+        gear_pair(case)
+    return text
+
+
+def _check_new(output: Path) -> None:
+    """Refuse a file that exists, and one that is no TOML by its name."""
+    if output.suffix != ".toml":
+        raise BadInput.of("output", str(output), "a file ending in .toml")
+    check_writable(output)
+    if output.exists():
+        raise BadInput.of("output", str(output), "a new file", "Choose another name, or remove it first.")
+
+
+# ``loa open``.
+
+
+def run_open(file: Path, out: Path | None, assume: Sequence[str] = (), *, as_json: bool) -> None:
+    """Open a REXS file: write cases, scene, load cases and account, and print what is not taken as it is.
+
+    What is left out of the scene comes first and last.
+    """
+    unit = opened(read_rexs(file), [Assumption.of(text) for text in assume])
+    folder = out or Path(file.name).with_suffix("")
+    written = _write_unit(unit, folder)
+    counts = Counter[str](line.fate for line in unit.lines)
+    left_out = headline(unit.lines)
+    if left_out and not as_json:
+        console().print(left_out, highlight=False, soft_wrap=True)
+    warn(left_out_warnings(unit.left_out))
+    if as_json:
+        print_json(
+            {
+                "written": [str(path) for path in written],
+                "cases": [case.name for case in unit.cases],
+                "scene": unit.scene is not None,
+                "load_cases": [case.table() for case in unit.load_cases],
+                "account": {fate: counts[fate] for fate in FATES},
+                "lines": list(report_lines(unit.lines)),
+            }
+        )
+        return
+    _show_unit(unit, counts, written)
+    if left_out:
+        console().print(left_out, highlight=False, soft_wrap=True)
+
+
+def _others(load: LoadCase) -> str:
+    """Return the forces that are not as in the scene."""
+    return "".join(
+        f", {force['name']} {force['force_n']} N and {force['moment_n_m']} N m in x, y, z"
+        for force in load.forces
+    )
+
+
+def _write_unit(unit: OpenedUnit, folder: Path) -> list[Path]:
+    """Write the files into a folder, which is made."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise BadInput.of("out", str(folder), f"a folder that can be made ({error.strerror})") from None
+    written = []
+    for name, text in unit_files(unit).items():
+        path = folder / name
+        path.write_text(text, encoding="utf-8")
+        written.append(path)
+    return written
+
+
+def _show_unit(unit: OpenedUnit, counts: Counter[str], written: list[Path]) -> None:
+    """Print the report for people."""
+    out = console()
+    values = ", ".join(f"{counts[fate]} {fate}" for fate in FATES if counts[fate])
+    out.print(f"{len(unit.lines)} components and values: {values}", highlight=False, soft_wrap=True)
+    for line in report_lines(unit.lines, ("assumed", "defaulted", "derived")):
+        out.print(line, highlight=False, soft_wrap=True)
+    for case in unit.cases:
+        others = f" (and {len(case.equal)} equal)" if case.equal else ""
+        gears = f"gears {case.driver} and {case.driven}, {case.center_distance * 1e3:.6g} mm"
+        out.print(f"stage {case.stage}{others}: {case.name}.toml, {gears}", highlight=False)
+    for load in unit.load_cases:
+        words = f"{load.torque_n_m:g} N m at {load.speed_rpm:g} rpm, {load.direction}, share {load.share:g}"
+        out.print(f"{load.name}: {words}{_others(load)}", highlight=False, soft_wrap=True)
+    out.print(f"written to {', '.join(map(str, written))}", highlight=False, soft_wrap=True)

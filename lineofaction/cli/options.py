@@ -1,0 +1,178 @@
+"""Arguments and options that several verbs share; ``--set`` and its shorthands by one decorator."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, TypeVar
+
+import typer
+from typer.models import OptionInfo
+
+from lineofaction.cli.guard import parameters_of, with_parameters
+from lineofaction.gearbox.input_file import InputFile, Override
+
+DEFAULT_SERVICE = "http://127.0.0.1:8321"
+
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON on standard output and nothing else.")]
+AsCsv = Annotated[bool, typer.Option("--csv", help="Print CSV on standard output and nothing else.")]
+Service = Annotated[str, typer.Option("--service", envvar="LOA_SERVICE", help="Address of the service.")]
+TableService = Annotated[
+    str | None,
+    typer.Option("--service", help="Fetch the tables from this service instead of computing them locally."),
+]
+
+TaskWorkers = Annotated[
+    int, typer.Option("--workers", min=1, max=256, help="Local processes that share the tasks.")
+]
+DaskScheduler = Annotated[
+    str | None, typer.Option("--dask", help="Address of a Dask scheduler whose workers run the tasks.")
+]
+
+
+Force = Annotated[float | None, typer.Option(help="Normal tooth force in N, instead of a torque.")]
+
+
+@dataclass(frozen=True)
+class LoadPoint:
+    """One load and alignment."""
+
+    torque: Annotated[
+        float | None, typer.Option(help="Torque on the driving gear in N m; default: the highest load.")
+    ] = None
+    force: Force = None
+    misalignment_um: Annotated[
+        float | None, typer.Option(help="Misalignment in um; default: the value of the case nearest to 0.")
+    ] = None
+    center_distance_change_mm: Annotated[
+        float | None,
+        typer.Option(help="Change of the center distance in mm; default: the value nearest to 0."),
+    ] = None
+
+    @property
+    def inputs(self) -> dict[str, float | None]:
+        """The load and the alignment under the names of their fields."""
+        return {
+            "torque_n_m": self.torque,
+            "normal_force_n": self.force,
+            "misalignment_um": self.misalignment_um,
+            "center_distance_change_mm": self.center_distance_change_mm,
+        }
+
+
+# What the caller of ``loa new`` says of a pair, as its options.
+
+
+@dataclass(frozen=True)
+class PairWishes:
+    """What the caller says, each field an option; None is by rule. Lengths in mm, angles in deg."""
+
+    module: Annotated[float | None, typer.Option(min=0.05, max=100.0, help="Normal module in mm.")] = None
+    teeth: Annotated[int | None, typer.Option(min=6, max=500, help="Teeth of the pinion, or of the sun.")] = (
+        None
+    )
+    ratio: Annotated[
+        float | None, typer.Option(min=1.0, max=50.0, help="Speed ratio, driving to driven gear.")
+    ] = None
+    helix: Annotated[float | None, typer.Option(min=-45.0, max=45.0, help="Helix angle in deg.")] = None
+    width: Annotated[float | None, typer.Option(min=0.05, max=5000.0, help="Face width in mm.")] = None
+
+
+# ``--set`` and its shorthands: on every verb that takes a case or a scene, by one decorator.
+
+
+R = TypeVar("R")
+
+_SET = "Override a value of the file, as pair.pinion.tip_relief_um=20; repeatable; empty: remove the field."
+_LEVEL = "Short for --set accuracy.level=: draft, standard or fine, instead of a tolerance."
+_TOLERANCE = "Short for --set accuracy.tolerance=: relative, instead of a level."
+_TORQUE = "Short for --set load.torque_n_m=[...]: torques on the driving gear in N m, as 50,100."
+_SHORTHANDS: Mapping[str, tuple[str, tuple[str, ...]]] = {
+    "level": ("accuracy.level", ("accuracy.tolerance", "accuracy.time_budget_s")),
+    "tolerance": ("accuracy.tolerance", ("accuracy.level",)),
+    "torque": ("load.torque_n_m", ("load.normal_force_n",)),
+}
+"""Option to the path it sets, and those that it leaves out."""
+
+
+def file_argument(text: str, metavar: str) -> Any:
+    """Return the argument of a case or scene file."""
+    return typer.Argument(
+        help=f"{text} (TOML, or JSON of the same shape).", parser=InputFile.named, metavar=metavar
+    )
+
+
+CaseFile = Annotated[InputFile, file_argument("Case file", "CASE")]
+SceneFile = Annotated[InputFile, file_argument("Scene file", "SCENE")]
+
+
+def _options(subject: str) -> list[inspect.Parameter]:
+    """Return the options for what is read: a scene has ``--set`` alone."""
+    shown = [
+        _parameter(
+            "overrides", Annotated[list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help=_SET)]
+        )
+    ]
+    if subject != "scene":
+        shown += [
+            _parameter("level", Annotated[str | None, typer.Option(help=_LEVEL)]),
+            _parameter("tolerance", Annotated[float | None, typer.Option(help=_TOLERANCE)]),
+            _parameter("torque", Annotated[str | None, typer.Option(help=_TORQUE)]),
+        ]
+    return shown
+
+
+def _parameter(name: str, annotation: Any) -> inspect.Parameter:
+    """Return an option that may be left out."""
+    return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=annotation)
+
+
+def overridable(argument: str, subject: str = "case") -> Callable[[Callable[..., R]], Callable[..., R]]:
+    """Return a decorator that gives a verb ``--set`` for the files of an argument.
+
+    Of a case also the shorthands, but for those whose name the verb has for something else.
+    """
+
+    def decorate(verb: Callable[..., R]) -> Callable[..., R]:
+        own = parameters_of(verb)
+        taken = {spelling for option in own for spelling in _spellings(option)}
+        added = [option for option in _options(subject) if not taken & set(_spellings(option))]
+
+        @functools.wraps(verb)
+        def run(**options: Any) -> R:
+            typed = {option.name: options.pop(option.name, None) for option in added}
+            options[argument] = _with(options[argument], _overrides(typed))
+            return verb(**options)
+
+        return with_parameters(run, [*own, *added])
+
+    return decorate
+
+
+def _spellings(option: inspect.Parameter) -> list[str]:
+    """Return how an option is typed; the first of its names stands where a default would."""
+    facts = [fact for fact in getattr(option.annotation, "__metadata__", ()) if isinstance(fact, OptionInfo)]
+    names = [name for fact in facts for name in (fact.default, *(fact.param_decls or ()))]
+    spelled = [name for name in names if isinstance(name, str) and name.startswith("-")]
+    return spelled or [f"--{option.name.replace('_', '-')}"]
+
+
+def _with(files: InputFile | list[InputFile], overrides: tuple[Override, ...]) -> Any:
+    if isinstance(files, InputFile):
+        return replace(files, overrides=overrides)
+    return [replace(file, overrides=overrides) for file in files]
+
+
+def _overrides(typed: Mapping[str, Any]) -> tuple[Override, ...]:
+    """Return what was typed as overrides, shorthands first."""
+    from lineofaction.gearbox.schemas.number_list import number_list  # noqa: PLC0415 (start-up time)
+
+    made = []
+    for name, (path, others) in _SHORTHANDS.items():
+        value = typed.get(name)
+        if value is not None:
+            value = number_list("--torque", value) if name == "torque" else value
+            made += [Override(path, value), *(Override(other, None) for other in others)]
+    return (*made, *(Override.of(text) for text in typed["overrides"] or ()))

@@ -1,0 +1,174 @@
+"""``loa geometry``, ``loa report`` and ``loa compare``: data sheets and pages."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pydantic import ValidationError
+
+from bounds import engineering
+from fe_contact.geometry import ParallelAxes
+from host.directories import cache_home
+from lineofaction.cli.analyze import assessed_case
+from lineofaction.cli.guard import messages, warn
+from lineofaction.cli.output import Report, check_writable, console, print_json, progress_bar, table
+from lineofaction.gearbox.convert.case import case_at, gear_pair
+from lineofaction.gearbox.convert.stamp import stamped
+from lineofaction.gearbox.convert.topology import facts_of
+from lineofaction.gearbox.input_file import InputFile
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.registry import STUDIES
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.flank import FlankPoint
+from lineofaction.gearbox.units import UM
+from lineofaction.report.comparison.compare import compare
+from lineofaction.report.document.content import nominal_force
+from lineofaction.report.document.inputs import Inputs, read_inputs
+from lineofaction.report.document.stored_study import page_beside
+from lineofaction.report.document.write import write_page, write_whole
+from lineofaction.report.drawing.figure import number
+from lineofaction.report.drawing.image import png, svg
+from lineofaction.report.drawing.page import Page
+from lineofaction.report.runs.run_view import RunView
+from lineofaction.report.tables.aligned import aligned, headline_load
+from lineofaction.report.tables.data_sheet import data_sheet, data_sheet_json, data_sheet_section
+from lineofaction.report.tables.pair import pair_lead, pair_title
+from lineofaction.report.tables.pair_drawing import pair_drawing
+from lineofaction.report.tables.pair_remarks import pair_remarks
+
+if TYPE_CHECKING:
+    from fe_contact.analysis import LoadDistribution
+
+_ENDINGS = (".html", ".png", ".svg")
+_WORDS = ("quantity", "symbol", "unit", "point")
+
+
+def run_geometry(file: InputFile, output: Path | None, *, as_json: bool) -> None:
+    """Print the data sheet of a case; draw it if requested."""
+    pair = gear_pair(assessed_case(file))
+    implausible = messages()
+    warn(pair_remarks(pair))
+    if output is not None:
+        _write_sheet(pair, output, implausible)
+    if as_json:
+        written = {} if output is None else {"written": str(output)}
+        print_json(written | data_sheet_json(pair))
+    else:
+        _show_sheet(pair, output)
+
+
+def _write_sheet(pair: ParallelAxes, output: Path, implausible: list[str]) -> None:
+    """Write the page, or the drawing alone."""
+    if output.suffix not in _ENDINGS:
+        raise BadInput.of("output", str(output), f"a file ending in one of {', '.join(_ENDINGS)}")
+    check_writable(output)
+    if output.suffix == ".html":
+        facts = facts_of(pair)
+        page = Page(pair_title(facts), pair_lead(facts), (), (data_sheet_section(pair),))
+        write_whole(page, output, warnings=implausible)
+    else:
+        output.write_bytes({".png": png, ".svg": svg}[output.suffix](pair_drawing(pair)))
+
+
+def _show_sheet(pair: ParallelAxes, output: Path | None) -> None:
+    """Print the data sheet for people."""
+    out = console()
+    for part in data_sheet(pair):
+        out.print(table(part.head, part.rows, part.caption, words=_WORDS))
+        out.print()
+    for line in _summary(pair):
+        out.print(line, highlight=False)
+    if output is not None:
+        out.print(f"written to {output}", highlight=False)
+
+
+def _summary(pair: ParallelAxes) -> tuple[str, str]:
+    """Say what decides about noise and strength first."""
+    facts = facts_of(pair)
+    transverse, overlap = pair.active_contact_ratio, pair.overlap_ratio
+    ratios = f"contact ratio {transverse:.3f} + {overlap:.3f} = {transverse + overlap:.3f}"
+    backlash = f"circumferential backlash {number(pair.circumferential_backlash / UM, 3)} um"
+    return f"{pair_title(facts)}: {pair_lead(facts)}", f"{ratios}; {backlash}"
+
+
+# ``loa report``.
+
+
+def run_report(
+    files: Sequence[Path], output: Path, images: Path | None, view: RunView, *, flank: bool, as_json: bool
+) -> None:
+    """Write the page; draw the pictures and compute the flank results if requested."""
+    for file in files:
+        if not file.is_file():
+            raise BadInput.of("file", str(file), "a file of results", "Check the path.")
+    check_writable(output)
+    read = replace(read_inputs(files), view=view)
+    warn(warning for file in files for warning in stamped(file))
+    spent = 0.0
+    if flank:
+        with progress_bar() as report:
+            found = _flanks(read, report)
+        page = page_beside(STUDIES["flank"], found, read.database)
+        read = replace(read, pages={**read.pages, "flanks": page})
+        spent = found.metadata.receipt["cpu_seconds"]
+    written = write_page(read, output, images)
+    if as_json:
+        print_json({"file": str(output), "written": [str(path) for path in written]})
+        return
+    if flank:
+        console().print(f"flank results {engineering(spent, 3)} CPU s", highlight=False)
+    for path in written:
+        console().print(f"written to {path}", highlight=False)
+
+
+def _flanks(read: Inputs, report: Report) -> LoadDistribution:
+    """Compute the flank results of the database's case, at the load and the alignment of the page's figures.
+
+    Raises
+    ------
+    BadInput
+        There is no database to take the case from, or flank results are there already.
+    """
+    from lineofaction.gearbox.studies.flank.run import flanks_of  # noqa: PLC0415 (start-up time)
+
+    database = read.database
+    if "flanks" in read.pages:
+        raise BadInput.of("--flank", True, "left out with a file of flank results", "Name one or the other.")
+    if database is None:
+        raise BadInput.of("--flank", True, "given with an STE database", "Its case says what to compute.")
+    try:
+        # strict models take JSON's lists for tuples only from text
+        case = Case.model_validate_json(json.dumps(database.metadata.case))
+    except ValidationError:
+        advice = "It was made in Python: write the file with flank_results(...).to_netcdf, and name it."
+        raise BadInput.of("--flank", True, "given with the database of a case file", advice) from None
+    misalignment, change = aligned(database)
+    point = FlankPoint(
+        normal_force_n=float(database.force[headline_load(database, nominal_force(read))]),
+        misalignment_um=1e6 * misalignment,
+        center_distance_change_mm=1e3 * change,
+    )
+    return flanks_of(case_at(case, point), cache_home() / "compliance", report)
+
+
+# ``loa compare``.
+
+
+def run_compare(
+    files: Sequence[Path], output: Path, view: RunView, torque: float | None, *, as_json: bool
+) -> None:
+    """Write the page; print what differs and what is not shown to."""
+    check_writable(output)
+    page = compare(files, view, torque)
+    write_whole(page, output)
+    if as_json:
+        found = {line.name: {"difference": line.value, "finding": line.remark} for line in page.headlines}
+        print_json({"file": str(output), "differences": found})
+        return
+    for line in page.headlines:
+        console().print(f"{line.name}: {line.value}: {line.remark}", highlight=False)
+    console().print(f"written to {output}", highlight=False)

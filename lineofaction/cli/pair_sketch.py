@@ -1,0 +1,223 @@
+"""A pair from few arguments, its data by rule, and the text of its case file."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+from fe_contact.geometry import Gear
+from fe_contact.geometry.backlash import reference_center_distance
+from fe_contact.geometry.balanced_shift import balanced_shifts
+from lineofaction.cli.options import PairWishes as Wanted
+from lineofaction.gearbox.units import DEGREE, MM
+
+OVERLAP = 1.5
+"""Overlap ratio that a helical face width makes."""
+LOAD = 60.0
+"""Tangential force over face width and module, N/mm^2: about what hardened gears carry for long."""
+_FRACTIONS = (0.1, 0.25, 0.5, 0.75, 1.0)
+_BORE = 0.45
+"""Of the root diameter."""
+_RIM = 3.0
+"""Modules between the ring's root circle and the outside of its rim."""
+
+
+@dataclass(frozen=True)
+class GearSketch:
+    """A gear, in mm and um; `held` is the bore, of a ring gear the outside of the rim."""
+
+    teeth: int
+    shift: float
+    held: float
+    allowance: float
+
+
+@dataclass(frozen=True)
+class PairSketch:
+    """A pair as its case file has it, in mm, um, deg and N m."""
+
+    module: float
+    helix: float
+    width: float
+    center_distance: float
+    pinion: GearSketch
+    wheel: GearSketch
+    torque: tuple[float, ...]
+    ring_addendum: float | None = None
+
+    @property
+    def internal(self) -> bool:
+        """Whether the wheel is a ring gear, which then has the addendum `ring_addendum`."""
+        return self.ring_addendum is not None
+
+    @property
+    def relief(self) -> tuple[float, float]:
+        """Tip relief in um and its length in mm: what teeth under this load bend, over 0.4 modules."""
+        return round(5.0 + 5.0 * self.module), round(0.4 * self.module, 2)
+
+    @property
+    def crowning(self) -> float:
+        """Lead crowning in um: a fifth of the face width in mm, at least 3."""
+        return max(3, round(0.2 * self.width))
+
+
+def external_pair(wanted: Wanted, *, teeth: int, ratio: float, helix: float, module: float) -> PairSketch:
+    """Return an external pair; the keywords stand for what is left open."""
+    module = wanted.module or module
+    helix = helix if wanted.helix is None else wanted.helix
+    first = wanted.teeth or teeth
+    second = _hunting_teeth(first, wanted.ratio or ratio)
+    width = wanted.width or face_width(module, helix)
+    pinion, wheel = (_blank(count, module, helix, width) for count in (first, second))
+    distance = _round_up(reference_center_distance(pinion, wheel) / MM, 0.5 if module >= 1.0 else 0.1)
+    shifts = balanced_shifts(pinion, wheel, distance * MM)
+    allowance = float(round(20.0 * module + 10.0))
+    gears = [
+        GearSketch(gear.teeth, round(shift, 4), _bore(gear, shift), allowance)
+        for gear, shift in zip((pinion, wheel), shifts, strict=True)
+    ]
+    return PairSketch(module, helix, width, distance, gears[0], gears[1], _torques(pinion))
+
+
+def internal_pair(wanted: Wanted, *, teeth: int, ratio: float, module: float) -> PairSketch:
+    """Return a pinion in a ring gear, without profile shift."""
+    module = wanted.module or module
+    helix, first = wanted.helix or 0.0, wanted.teeth or teeth
+    width = wanted.width or face_width(module, helix)
+    return ring_pair(module, helix, width, first, round(first * (wanted.ratio or ratio)))
+
+
+def ring_pair(module: float, helix: float, width: float, teeth: int, ring_teeth: int) -> PairSketch:
+    """Return a pinion in a ring gear of these numbers of teeth; lengths in mm, angles in deg."""
+    pinion = _blank(teeth, module, helix, width)
+    transverse = module / math.cos(helix * DEGREE)
+    rim = _round_up(transverse * ring_teeth + 2.0 * module * (1.25 + _RIM), 1.0)
+    allowance = float(round(20.0 * module + 10.0))
+    distance = 0.5 * transverse * (ring_teeth - teeth)
+    return PairSketch(
+        module,
+        helix,
+        width,
+        distance,
+        GearSketch(teeth, 0.0, _bore(pinion, 0.0), 0.0),
+        GearSketch(ring_teeth, 0.0, rim, 2.0 * allowance),
+        _torques(pinion),
+        _ring_addendum(pinion, ring_teeth, distance),
+    )
+
+
+def _ring_addendum(pinion: Gear, ring_teeth: int, distance: float) -> float:
+    """Return the addendum in modules of a ring whose tip meets the pinion on its involute, at most 0.9."""
+    ratio = ring_teeth / pinion.teeth
+    tangent = distance * MM * math.sin(pinion.transverse_pressure_angle)
+    least = math.hypot(ratio * pinion.base_radius, tangent + pinion.form_roll_length)
+    free = (ratio * pinion.reference_radius - least) / pinion.normal_module
+    return min(0.9, math.floor(20.0 * (free - 0.02)) / 20.0)
+
+
+def _hunting_teeth(teeth: int, ratio: float) -> int:
+    """Return the teeth of the wheel nearest to a ratio that have no divisor in common with the pinion's."""
+    wished = teeth * ratio
+    counts = sorted(range(max(4, int(wished) - 4), int(wished) + 6), key=lambda count: abs(count - wished))
+    return next((count for count in counts if math.gcd(count, teeth) == 1), counts[0])
+
+
+def face_width(module: float, helix: float) -> float:
+    """Return a face width in mm: 10 modules, of helical gears what `OVERLAP` takes."""
+    if not helix:
+        return float(math.ceil(10.0 * module))
+    return float(math.ceil(OVERLAP * math.pi * module / math.sin(abs(helix) * DEGREE)))
+
+
+def _blank(teeth: int, module: float, helix: float, width: float) -> Gear:
+    """Return a gear without profile shift; enough of one that is undercut to measure it."""
+    lengths = (module * MM, width * MM, 0.1 * teeth * module * MM)
+    return Gear(teeth, *lengths, helix_angle=helix * DEGREE)
+
+
+def bore_of(teeth: int, module: float, helix: float, width: float) -> float:
+    """Return the bore in mm of a gear without profile shift; lengths in mm, the angle in deg."""
+    return _bore(_blank(teeth, module, helix, width), 0.0)
+
+
+def _bore(gear: Gear, shift: float) -> float:
+    shifted = replace(gear, profile_shift_coefficient=round(shift, 4))
+    diameter = 2.0 * _BORE * shifted.root_radius / MM
+    return float(math.floor(diameter)) if diameter > 5.0 else round(diameter, 2)
+
+
+def _torques(pinion: Gear) -> tuple[float, ...]:
+    """Return torques in N m up to that of `LOAD`, two digits each."""
+    module, width = pinion.normal_module / MM, pinion.face_width / MM
+    highest = LOAD * width * module * pinion.reference_radius
+    return tuple(float(f"{part * highest:.2g}") for part in _FRACTIONS)
+
+
+def _round_up(value: float, step: float) -> float:
+    return round(math.ceil(value / step - 1e-9) * step, 6)
+
+
+# The text of a case file: tables with a comment beside every figure.
+
+
+_PINION, _WHEEL = "the driving gear", "the driven gear"
+
+
+def case_text(pair: PairSketch, head: str) -> str:
+    """Return a case file under a line that says what it holds."""
+    return f"""# {head}
+# Made by loa new; every figure may be changed. All fields: docs/case-file.md.
+# Next: loa geometry FILE, then loa analyze FILE -o ste.nc, then loa report ste.nc.
+
+{case_tables(pair)}
+[accuracy]
+tolerance = 0.02 # relative, of mean and peak-to-peak STE; or level = "draft" for a first look
+"""
+
+
+def case_tables(pair: PairSketch, prefix: str = "") -> str:
+    """Return the tables of a case but for its accuracy, within another table if `prefix` names it."""
+    torques = ", ".join(f"{torque:g}" for torque in pair.torque)
+    helix = f"helix_angle_deg = {pair.helix:g} # of the pinion; > 0: right hand\n" if pair.helix else ""
+    return f"""[{prefix}pair]
+normal_module_mm = {pair.module:g}
+{helix}center_distance_mm = {pair.center_distance:.10g}
+
+[{prefix}pair.pinion] # {_PINION}
+{_gear(pair, pair.pinion)}
+[{prefix}pair.wheel] # {_WHEEL}
+{_wheel(pair)}
+[{prefix}load]
+torque_n_m = [{torques}] # on the pinion, to {LOAD:g} N/mm^2 of tangential force over face width and module
+"""
+
+
+def _wheel(pair: PairSketch) -> str:
+    if not pair.internal:
+        return _gear(pair, pair.wheel)
+    wheel = pair.wheel
+    return f"""internal = true # a ring gear
+teeth = {wheel.teeth}
+face_width_mm = {pair.width:g}
+rim_diameter_mm = {wheel.held:g} # outside of the rim, which is held
+addendum_coefficient = {pair.ring_addendum:g} # the full addendum would meet the pinion below its involute
+thickness_allowance_um = {wheel.allowance:g} # is backlash
+"""
+
+
+def _gear(pair: PairSketch, gear: GearSketch) -> str:
+    """Return the fields of an external gear."""
+    relief, length = pair.relief
+    shift = (
+        f"profile_shift_coefficient = {gear.shift:g} # balances the sliding of both roots\n"
+        if gear.shift
+        else ""
+    )
+    allowance = f"thickness_allowance_um = {gear.allowance:g} # is backlash\n" if gear.allowance else ""
+    return f"""teeth = {gear.teeth}
+face_width_mm = {pair.width:g}
+bore_diameter_mm = {gear.held:g}
+{shift}{allowance}tip_relief_um = {relief:g}
+tip_relief_length_mm = {length:g} # along the radius
+helix_crowning_um = {pair.crowning:g} # at both ends of the face
+"""

@@ -1,0 +1,456 @@
+"""Arguments, help and examples of the verbs on files: first files, tables, runs, pages, plans."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from lineofaction.cli.guard import computing, grouped, guarded
+from lineofaction.cli.options import (
+    AsJson,
+    CaseFile,
+    DaskScheduler,
+    Force,
+    LoadPoint,
+    SceneFile,
+    TableService,
+    TaskWorkers,
+    file_argument,
+    overridable,
+)
+from lineofaction.cli.options import PairWishes as Wanted
+from lineofaction.gearbox.input_file import InputFile
+
+if TYPE_CHECKING:
+    from lineofaction.cli.listen import HousingReceiver
+    from lineofaction.report.runs.run_view import RunView
+
+verbs = typer.Typer()
+
+_ASSUME = (
+    "Set a value over the file's before it is opened, in its unit: 14.helix_angle_reference_diameter=-12; "
+    "repeatable."
+)
+
+NewFile = Annotated[
+    Path | None, typer.Option("-o", "--output", help="New file to write (TOML); default: print it.")
+]
+
+
+@verbs.command("new", epilog="Example: loa new --helical --module 1.8 --teeth 23 --ratio 2.9 -o pair.toml")
+@guarded
+@grouped
+def _new(
+    *,
+    spur: Annotated[bool, typer.Option("--spur", help="A spur pair.")] = False,
+    helical: Annotated[bool, typer.Option("--helical", help="A helical pair (default).")] = False,
+    internal: Annotated[bool, typer.Option("--internal", help="A pinion in a ring gear.")] = False,
+    planetary: Annotated[bool, typer.Option("--planetary", help="A planetary stage, as a scene.")] = False,
+    scene: Annotated[bool, typer.Option("--scene", help="A helical pair between shafts.")] = False,
+    wanted: Wanted,
+    output: NewFile = None,
+) -> None:
+    """Write a first case or scene file; rules set all data that are not given."""
+    from lineofaction.cli.new import run_new  # noqa: PLC0415 (start-up time)
+
+    kinds = {"spur": spur, "helical": helical, "internal": internal, "planetary": planetary, "scene": scene}
+    run_new(kinds, wanted, output)
+
+
+@verbs.command("open", epilog="Example: loa open gearbox.rexs --out gearbox")
+@computing
+def _open_unit(
+    file: Annotated[Path, typer.Argument(help="Gear unit as REXS: .rexs, .rexsj, .rexsz or .rexs.zip.")],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", help="Folder for the files; default: that of the file's name, here."),
+    ] = None,
+    assume: Annotated[
+        list[str] | None,
+        typer.Option("--assume", metavar="COMPONENT.ATTRIBUTE=VALUE", help=_ASSUME),
+    ] = None,
+    json: AsJson = False,
+) -> None:
+    """Open a gear unit of another tool (REXS): write its cases, its scene and the report of the import."""
+    from lineofaction.cli.new import run_open  # noqa: PLC0415 (start-up time)
+
+    run_open(file, out, assume or (), as_json=json)
+
+
+# Verbs on one gear pair: its table, curves, and files for other programs.
+
+
+@verbs.command("analyze", epilog="Example: loa analyze examples/palermo_spur_20_20.toml -o ste.nc")
+@computing
+@overridable("case")
+def _analyze(
+    case: CaseFile,
+    output: Annotated[Path, typer.Option("-o", "--output", help="STE database to write (netCDF).")],
+    workers: TaskWorkers = 1,
+    dask: DaskScheduler = None,
+    json: AsJson = False,
+) -> None:
+    """Compute the STE database of a case."""
+    from lineofaction.cli.analyze import run_analyze  # noqa: PLC0415 (start-up time)
+    from lineofaction.gearbox.convert.task_workers import ExecutorChoice  # noqa: PLC0415
+
+    run_analyze(case, output, ExecutorChoice(workers, dask), as_json=json)
+
+
+@verbs.command("geometry", epilog="Example: loa geometry examples/sensitivity_automotive.toml -o pair.html")
+@computing
+@overridable("case")
+def _geometry(
+    case: CaseFile,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", help="Drawing or page to write, ending in .html, .png or .svg."),
+    ] = None,
+    json: AsJson = False,
+) -> None:
+    """Print the data sheet of a pair (ISO 21771-1), and draw its mesh and its flank modifications."""
+    from lineofaction.cli.pages import run_geometry  # noqa: PLC0415 (start-up time)
+
+    run_geometry(case, output, as_json=json)
+
+
+@verbs.command("ste", epilog="Example: loa ste ste.nc --torque 100 --at 0,0.25,0.5")
+@computing
+def _ste(
+    database: Annotated[Path, typer.Argument(help="STE database (netCDF).")],
+    torque: Annotated[float | None, typer.Option(help="Torque on the driving gear in N m.")] = None,
+    force: Force = None,
+    at: Annotated[
+        str | None,
+        typer.Option(help="Positions of the driving gear in base pitches, 0 = pitch point: 0,0.25,0.5"),
+    ] = None,
+    misalignment_um: Annotated[float | None, typer.Option(help="Misalignment in um.")] = None,
+    center_distance_change_mm: Annotated[
+        float | None, typer.Option(help="Change of the center distance in mm.")
+    ] = None,
+    csv: Annotated[bool, typer.Option("--csv", help="Print CSV.")] = False,
+    json: AsJson = False,
+) -> None:
+    """Print one STE curve of a database, with load sharing, mean, peak-to-peak and harmonics."""
+    from lineofaction.cli.ste import CurveRequest, run_ste  # noqa: PLC0415 (start-up time)
+
+    request = CurveRequest(torque, force, at, misalignment_um, center_distance_change_mm)
+    run_ste(database, request, as_csv=csv, as_json=json)
+
+
+@dataclass(frozen=True)
+class FmuOptions:
+    """Start values of an exported FMU."""
+
+    damping_n_s_per_m: Annotated[
+        float, typer.Option(help="Start value of an FMU's mesh damping along the line of action in N s/m.")
+    ] = 0.0
+    backlash_um: Annotated[
+        float | None,
+        typer.Option(help="Backlash of an FMU with coast flanks, along the transverse line of action in um."),
+    ] = None
+
+
+@dataclass(frozen=True)
+class RunPart:
+    """What of a run is exported."""
+
+    function: Annotated[
+        str,
+        typer.Option(
+            help="Exported from a run: time, spectrum (over frequency) or orders (over mesh orders)."
+        ),
+    ] = "time"
+    start: Annotated[
+        float | None, typer.Option("--from", help="Start time of the exported part of a run in s.")
+    ] = None
+    end: Annotated[
+        float | None, typer.Option("--to", help="End time of the exported part of a run in s.")
+    ] = None
+
+
+@verbs.command(
+    "export", epilog="Example: loa export examples/palermo_spur_20_20.toml --torque 100 -o deformed"
+)
+@computing
+@overridable("case")
+@grouped
+def _export(
+    *,
+    case: Annotated[
+        InputFile,
+        file_argument("Case file; STE database for an FMU; a run; with --rexs a table or deflection", "CASE"),
+    ],
+    output: Annotated[
+        Path,
+        typer.Option(
+            "-o",
+            "--output",
+            help="Folder for pinion.vtu and wheel.vtu, or MESH.fmu; for a run .unv or .csv; "
+            "with --rexs .rexs, .rexsj or .rexsz.",
+        ),
+    ],
+    point: LoadPoint,
+    at: Annotated[str, typer.Option(help="Positions of the driving gear in base pitches.")] = "0",
+    beside: Annotated[
+        int, typer.Option(min=0, max=100, help="Unloaded teeth to show on either side, in three dimensions.")
+    ] = 1,
+    rexs: Annotated[
+        Path | None,
+        typer.Option(help="REXS file of the unit to which the results are added."),
+    ] = None,
+    fmu: FmuOptions,
+    part: RunPart,
+    json: AsJson = False,
+) -> None:
+    """Write gears as they bend in mesh, the mesh force as FMU, results into REXS, a run as UFF or CSV."""
+    from lineofaction.cli.export import (  # noqa: PLC0415
+        is_for_runs,
+        run_export,
+        run_export_fmu,
+        run_export_rexs,
+        run_export_run,
+    )
+
+    if rexs is not None:
+        run_export_rexs(case.as_it_is, rexs, output, point.inputs, as_json=json)
+    elif is_for_runs(output):
+        run_export_run(case.as_it_is, output, part.function, (part.start, part.end), as_json=json)
+    elif output.suffix == ".fmu":
+        facts = point.inputs, fmu.damping_n_s_per_m, fmu.backlash_um
+        run_export_fmu(case.as_it_is, output, *facts, as_json=json)
+    else:
+        run_export(case, output, point.inputs, at, beside, as_json=json)
+
+
+# Verbs on scenes that are no studies: runs.
+
+
+@dataclass(frozen=True)
+class HeardOptions:
+    """What of a run is heard."""
+
+    quantity: Annotated[
+        str,
+        typer.Option(
+            help="Quantity to hear: force, moment, acceleration, mesh_force, transmission_error.",
+            show_default="force",
+        ),
+    ] = ""
+    bearing: Annotated[str, typer.Option(help="Bearing to hear.", show_default="the loudest")] = ""
+    mesh: Annotated[
+        str, typer.Option(help="Mesh to hear, or whose orders are listed.", show_default="the first")
+    ] = ""
+    direction: Annotated[
+        str,
+        typer.Option(
+            help="Direction at the bearing or point: x, y, z or principal.",
+            show_default="in which it varies most",
+        ),
+    ] = ""
+
+    @property
+    def view(self) -> RunView:
+        """The view that the options name."""
+        from lineofaction.report.runs.run_view import RunView  # noqa: PLC0415 (start-up time)
+
+        return RunView(self.quantity, self.bearing, self.mesh, direction=self.direction)
+
+
+@dataclass(frozen=True)
+class HousingOptions:
+    """Where a run is heard through the housings of a scene."""
+
+    scene: Annotated[
+        Path | None,
+        typer.Option(help="Scene file whose housings the forces on bearings move.", show_default="none"),
+    ] = None
+    point: Annotated[
+        str, typer.Option(help="Point of a housing whose velocity is heard.", show_default="none")
+    ] = ""
+    microphone: Annotated[
+        str,
+        typer.Option(
+            metavar="X,Y,Z",
+            help="Where the sound pressure is heard, in mm in the frame of the scene: free field.",
+            show_default="none",
+        ),
+    ] = ""
+
+    @property
+    def receiver(self) -> HousingReceiver | None:
+        """What the options name."""
+        from lineofaction.cli.listen import housing_receiver  # noqa: PLC0415 (start-up time)
+
+        return housing_receiver(self.scene, self.point, self.microphone)
+
+
+@verbs.command("simulate", epilog="Example: loa simulate examples/palermo_scene.toml -o run.nc")
+@computing
+@overridable("scene", "scene")
+def _simulate(
+    scene: SceneFile,
+    output: Annotated[Path, typer.Option("-o", "--output", help="Run to write (netCDF).")],
+    service: TableService = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Continue a run that was interrupted or killed.")
+    ] = False,
+    json: AsJson = False,
+) -> None:
+    """Run the dynamics of a scene; Ctrl-C stops it, stores the results so far, and --resume continues."""
+    from lineofaction.cli.simulate import run_simulate  # noqa: PLC0415 (start-up time)
+
+    run_simulate(scene, output, service, resume=resume, as_json=json)
+
+
+@verbs.command("listen", epilog="Example: loa listen before.nc after.nc -o sounds")
+@computing
+@grouped
+def _listen(
+    *,
+    runs: Annotated[list[Path], typer.Argument(help="Runs (netCDF); several are written on one full scale.")],
+    output: Annotated[
+        Path,
+        typer.Option("-o", "--output", help="WAV file, or folder of one file per run, named as the run."),
+    ],
+    heard: HeardOptions,
+    housing: HousingOptions,
+    json: AsJson = False,
+) -> None:
+    """Write runs as WAV files of stated quantity and level, to hear and to compare by ear."""
+    from lineofaction.cli.listen import run_listen  # noqa: PLC0415 (start-up time)
+
+    run_listen(runs, output, heard.view, housing.receiver, as_json=json)
+
+
+# Verbs on accuracy and robustness that are not studies of the registry: plans, hard scenes.
+
+
+@verbs.command("plan", epilog="Example: loa plan examples/palermo_spur_20_20.toml --time-budget-s 5")
+@computing
+@overridable("case")
+def _plan(
+    case: CaseFile,
+    time_budget_s: Annotated[
+        float | None,
+        typer.Option(help="Budget in CPU seconds to compare the plan with, besides the case's tolerance."),
+    ] = None,
+    json: AsJson = False,
+) -> None:
+    """Predict time by stage, memory and error of a case, with its effects; computes no contact."""
+    from lineofaction.cli.analyze import run_plan  # noqa: PLC0415 (start-up time)
+
+    run_plan(case, time_budget_s, as_json=json)
+
+
+@verbs.command("hardcases", epilog="Example: loa hardcases --only table -o hardcases.html")
+@guarded
+def _hardcases(
+    only: Annotated[
+        list[str] | None, typer.Option("--only", help="Names or families of scenes, separated by commas.")
+    ] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Report page to write (HTML).")
+    ] = None,
+    json: AsJson = False,
+) -> None:
+    """Run the hard scenes: cases known to break solvers, each checked against laws of physics."""
+    from lineofaction.cli.hardcases import run_hardcases  # noqa: PLC0415 (start-up time)
+
+    run_hardcases(only or [], output, as_json=json)
+
+
+# The verbs that write pages.
+
+
+@dataclass(frozen=True)
+class ViewOptions:
+    """What of a run is shown."""
+
+    quantity: Annotated[
+        str,
+        typer.Option(
+            help="Quantity of a run to show: force, moment, acceleration, mesh_force, transmission_error.",
+            show_default="force",
+        ),
+    ] = ""
+    bearing: Annotated[str, typer.Option(help="Bearing of a run to show.", show_default="the loudest")] = ""
+    mesh: Annotated[
+        str, typer.Option(help="Mesh of a run whose orders are shown.", show_default="the first")
+    ] = ""
+    orders: Annotated[
+        str,
+        typer.Option(help="Mesh orders over speed, as 1,2,4 or 1:8:1.", show_default="the five largest"),
+    ] = ""
+    window: Annotated[
+        str, typer.Option(help="Window of the spectra of a run: hann, flat_top, rectangular.")
+    ] = "hann"
+    scale: Annotated[str, typer.Option(help="Amplitudes of a run: rms or peak.")] = "rms"
+    direction: Annotated[
+        str,
+        typer.Option(
+            help="Direction of a quantity of bearings: x, y, z, or principal, in which it varies most.",
+            show_default="orders of all three in power",
+        ),
+    ] = ""
+
+    @property
+    def view(self) -> RunView:
+        """The view that the options name."""
+        from lineofaction.gearbox.schemas.number_list import number_list  # noqa: PLC0415 (start-up time)
+        from lineofaction.report.runs.run_view import RunView  # noqa: PLC0415 (start-up time)
+
+        cuts = tuple(number_list("--orders", self.orders)) if self.orders else ()
+        return RunView(self.quantity, self.bearing, self.mesh, cuts, self.window, self.scale, self.direction)
+
+
+@verbs.command("report", epilog="Example: loa report ste.nc run.nc -o report.html")
+@computing
+@grouped
+def _report(
+    *,
+    files: Annotated[
+        list[Path],
+        typer.Argument(
+            help="Result files, netCDF or JSON: STE database, flank results, studies, run; one of each kind."
+        ),
+    ],
+    output: Annotated[Path, typer.Option("-o", "--output", help="Page to write.")] = Path("report.html"),
+    images: Annotated[Path | None, typer.Option(help="Folder to write the plots to as PNG.")] = None,
+    flank: Annotated[
+        bool,
+        typer.Option("--flank", help="Compute the flank results at the load of the page."),
+    ] = False,
+    view: ViewOptions,
+    json: AsJson = False,
+) -> None:
+    """Write one HTML page with the plots of a database, flank results, studies or a run."""
+    from lineofaction.cli.pages import run_report  # noqa: PLC0415 (start-up time)
+
+    run_report(files, output, images, view.view, flank=flank, as_json=json)
+
+
+@verbs.command("compare", epilog="Example: loa compare before.nc after.nc measured.csv -o comparison.html")
+@computing
+@grouped
+def _compare(
+    *,
+    files: Annotated[
+        list[Path],
+        typer.Argument(help="Two STE databases, two runs, or one of them and a measurement (CSV, UFF)."),
+    ],
+    output: Annotated[Path, typer.Option("-o", "--output", help="Page to write.")] = Path("comparison.html"),
+    torque: Annotated[
+        float | None,
+        typer.Option(help="Torque of the ripples shown, N m.", show_default="the middle one"),
+    ] = None,
+    view: ViewOptions,
+    json: AsJson = False,
+) -> None:
+    """Compare two tables or two runs, or one with a measurement: differences with their errors."""
+    from lineofaction.cli.pages import run_compare  # noqa: PLC0415 (start-up time)
+
+    run_compare(files, output, view.view, torque, as_json=json)

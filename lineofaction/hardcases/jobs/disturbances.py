@@ -1,0 +1,293 @@
+"""Jobs that lack memory, time or space, and jobs whose processes die."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+import numpy as np
+
+from fe_contact.analysis import ste_database
+from fe_contact.types import FloatArray
+from host import halt, limit_file_size, memory_figure
+from host import kill as end
+from lineofaction.gearbox.convert.case import analysis_options, gear_pair, table_axes
+from lineofaction.gearbox.schemas import Case, validated
+from lineofaction.hardcases.jobs.aftermath import (
+    LARGE,
+    LONG,
+    MEDIUM,
+    Disturb,
+    JobService,
+    aftermath,
+    largest_difference,
+    undisturbed,
+)
+from lineofaction.hardcases.scene import HardScene, Measured
+from service.queue.job import Job
+
+MEMORY_MB = 384
+"""Half-way, in proportion, between what the small job needs and what the large one does."""
+
+
+def _out_of_memory() -> Sequence[Measured]:
+    """Run the large job with little memory."""
+    outcome = aftermath(LARGE, settle=lambda _seconds: {"memory_limit_mb": MEMORY_MB})
+    job = outcome.job
+    stated = f"{MEMORY_MB} MB (LOA_MEMORY_LIMIT_MB)" in job.message and "coarser level" in job.message
+    return (
+        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), least=1.0),
+        Measured("names the limit and what to try", float(stated), least=1.0),
+        *outcome.figures,
+    )
+
+
+def _past_the_deadline() -> Sequence[Measured]:
+    """Run the large job with a deadline of a few times what the small one takes."""
+    allowed = []
+
+    def settle(seconds: float) -> dict[str, float]:
+        allowed.append(round(2.5 * seconds, 1))
+        return {"deadline_s": allowed[0]}
+
+    outcome = aftermath(LONG, settle=settle)
+    job = outcome.job
+    stated = f"The deadline of {allowed[0]:g} s (LOA_DEADLINE_S) passed" in job.message
+    return (
+        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), least=1.0),
+        Measured("names the deadline and what to try", float(stated and "coarser" in job.message), least=1.0),
+        Measured("deadline, s", allowed[0]),
+        *outcome.figures,
+    )
+
+
+AFTER = (
+    "nothing of it is left, and the jobs behind it end as they should, in their turn, with results that are "
+    "those of an undisturbed service to the last bit."
+)
+
+OUT_OF_MEMORY = HardScene(
+    "job_out_of_memory",
+    "service",
+    "A three-dimensional analysis that needs three times the memory a worker may have: an allocation fails "
+    "somewhere in numerical libraries.",
+    f"The job fails at its first attempt, with the limit and what to try; {AFTER}",
+    _out_of_memory,
+)
+DEADLINE = HardScene(
+    "job_past_deadline",
+    "service",
+    "A job that is inside compiled code when its deadline passes, and hears of nothing.",
+    f"The job fails at its first attempt, with the deadline and what to try; {AFTER}",
+    _past_the_deadline,
+)
+
+
+# Processes that die under a job: its mesher, its worker, and its worker every time.
+
+
+MESHER_COMMAND, WORKER_COMMAND = "gmsh_worker", "service.worker."
+"""What their commands hold; a worker is started anew or forked."""
+
+
+def _kill_meshers(times: int, killed: list[int]) -> Disturb:
+    """Return what kills so many meshers as they run, and notes them."""
+
+    def kill(service: JobService, _job: Job) -> None:
+        if len(killed) < times:
+            killed.extend(_reached(end, service.processes(MESHER_COMMAND)))
+
+    return kill
+
+
+def _kill_workers(times: int, killed: list[int]) -> Disturb:
+    """Return what kills so many workers while their mesher runs, and notes them.
+
+    The mesher is stopped first: it would be left for ever if nobody ended it.
+    """
+
+    def kill(service: JobService, _job: Job) -> None:
+        if len(killed) < times and _reached(halt, service.processes(MESHER_COMMAND)):
+            killed.extend(_reached(end, service.processes(WORKER_COMMAND)))
+
+    return kill
+
+
+def _reached(act: Callable[[int], None], processes: Sequence[int]) -> list[int]:
+    """Act on processes; return those that were there."""
+    reached = []
+    for pid in processes:
+        with suppress(ProcessLookupError):
+            act(pid)
+            reached.append(pid)
+    return reached
+
+
+def _mesher_killed() -> Sequence[Measured]:
+    killed: list[int] = []
+    outcome = aftermath(MEDIUM, _kill_meshers(1, killed))
+    stated = "gmsh worker: killed by SIGKILL" in outcome.job.message
+    return (
+        Measured("meshers killed", float(len(killed)), 1.0, 1.0),
+        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), least=1.0),
+        Measured("says that the mesh failed, and how", float(stated), least=1.0),
+        *outcome.figures,
+    )
+
+
+def worker_killed_once() -> Sequence[Measured]:
+    """Kill the first worker in mid-mesh."""
+    killed: list[int] = []
+    outcome = aftermath(MEDIUM, _kill_workers(1, killed))
+    off = np.inf if outcome.errors is None else largest_difference(outcome.errors, of_python())
+    return (
+        Measured("workers killed", float(len(killed)), 1.0, 1.0),
+        Measured("done at the second attempt", float(outcome.ended_as("successful", 2)), least=1.0),
+        Measured("result off that of Python, m", off, most=0.0),
+        *outcome.figures,
+    )
+
+
+def _worker_killed_always() -> Sequence[Measured]:
+    """Kill every worker in mid-mesh."""
+    killed: list[int] = []
+    outcome = aftermath(MEDIUM, _kill_workers(2, killed))
+    message = outcome.job.message
+    stated = "ended by SIGKILL" in message and message.endswith("That was attempt 2 of 2.")
+    return (
+        Measured("workers killed", float(len(killed)), 2.0, 2.0),
+        Measured("failed at the last attempt", float(outcome.ended_as("failed", 2)), least=1.0),
+        Measured("says what ended it, and how often it was tried", float(stated), least=1.0),
+        *outcome.figures,
+    )
+
+
+def of_python() -> FloatArray:
+    """Return the transmission errors of the job, computed here."""
+    case = validated(Case, MEDIUM)
+    return ste_database(gear_pair(case), table_axes(case), analysis_options(case)).static_transmission_error
+
+
+MESHER = HardScene(
+    "job_whose_mesh_fails",
+    "service",
+    "The mesher is killed in mid-mesh: a process started by the worker, of which the service knows nothing.",
+    f"The job fails at its first attempt and says that the mesher was killed; {AFTER}",
+    _mesher_killed,
+)
+WORKER_ONCE = HardScene(
+    "worker_killed_once",
+    "service",
+    "The worker is killed (SIGKILL) while its mesher hangs: nobody tells the service, and the mesher stays.",
+    f"The second attempt gives what Python gives undisturbed, to the last bit; {AFTER}",
+    worker_killed_once,
+)
+WORKER_ALWAYS = HardScene(
+    "worker_killed_at_every_attempt",
+    "service",
+    "Every worker of the job is killed while its mesher hangs: tried for ever, it would block all others.",
+    f"The job fails at its second attempt, with the signal and the number of attempts; {AFTER}",
+    _worker_killed_always,
+)
+
+
+# Jobs whose disk takes nothing more, and whose mesher takes memory without end.
+
+
+_MB = 1 << 20
+_DEVOURER = """
+held = []
+while True:
+    held.append(b"x" * 2**22)
+"""
+"""Stands in the mesher's way as the module that it loads first."""
+
+
+def _no_room(held: list[int]) -> Disturb:
+    """Return what keeps the first worker from writing to any file, by the system's limit on their size."""
+
+    def fill(service: JobService, _job: Job) -> None:
+        for pid in service.processes(WORKER_COMMAND) if not held else ():
+            with suppress(ProcessLookupError):
+                limit_file_size(pid, 0)
+                held.append(pid)
+
+    return fill
+
+
+def _disk_full() -> Sequence[Measured]:
+    """Let no write of the worker succeed, then submit the job again."""
+    held: list[int] = []
+    outcome = aftermath(MEDIUM, _no_room(held), resubmit=True)
+    stated = "no space left" in outcome.job.message and "Make room" in outcome.job.message
+    off = np.inf if outcome.errors is None else largest_difference(outcome.errors, of_python())
+    return (
+        Measured("workers without room", float(len(held)), 1.0, 1.0),
+        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), least=1.0),
+        Measured("names the cause and what to try", float(stated), least=1.0),
+        Measured("submitted again with room, off that of Python, m", off, most=0.0),
+        *outcome.figures,
+    )
+
+
+@contextmanager
+def _devouring_mesher() -> Iterator[Path]:
+    """Put a mesher without end on the path of the workers, which hand it to what they start."""
+    before = os.environ.get("PYTHONPATH")
+    with tempfile.TemporaryDirectory(prefix="loa-hard-greedy-") as name:
+        greed = Path(name, "gmsh.py")
+        greed.write_text(_DEVOURER, encoding="utf-8")
+        os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (name, before)))
+        try:
+            yield greed
+        finally:
+            os.environ.pop("PYTHONPATH") if before is None else os.environ.update(PYTHONPATH=before)
+
+
+def _greedy_mesher() -> Sequence[Measured]:
+    """Let the first mesher take memory until the system gives it no more."""
+    undisturbed()
+    most = [0.0]
+    with _devouring_mesher() as greed:
+
+        def look(service: JobService, _job: Job) -> None:
+            for pid in service.processes(MESHER_COMMAND):
+                most[0] = max(most[0], (memory_figure("VmData", pid) or 0) / _MB)
+
+        def settle(_seconds: float) -> dict[str, float]:
+            return {"memory_limit_mb": MEMORY_MB}
+
+        def after(service: JobService, job: Job) -> None:
+            look(service, job)
+            if most[0] > 0.0 and not service.processes(MESHER_COMMAND):
+                greed.unlink(missing_ok=True)
+
+        outcome = aftermath(MEDIUM, after, settle)
+    stated = "ran out of memory" in outcome.job.message and "coarser level" in outcome.job.message
+    return (
+        Measured("memory the mesher was seen with, MB", most[0], most=float(MEMORY_MB), least=64.0),
+        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), least=1.0),
+        Measured("names the mesher's memory and what to try", float(stated), least=1.0),
+        *outcome.figures,
+    )
+
+
+DISK_FULL = HardScene(
+    "job_without_disk_space",
+    "service",
+    "No write of the worker succeeds any more, as on a full disk: libraries that write may crash.",
+    "The job fails at its first attempt, with the cause and what to try, and serves nothing; submitted again "
+    f"with room it gives what Python gives, to the last bit; {AFTER}",
+    _disk_full,
+)
+GREEDY_MESHER = HardScene(
+    "mesher_without_end",
+    "service",
+    "The mesher, a process started by the worker that the service knows nothing of, takes memory without "
+    "end.",
+    f"It never has more than a worker may; the job fails at its first attempt, with the cause; {AFTER}",
+    _greedy_mesher,
+)

@@ -1,1 +1,0 @@
-"""Hard scenes of the STE database, its force extraction and its repair."""
