@@ -21,27 +21,27 @@ from fe_contact.ste import SteDatabase
 from lineofaction.client.process import Offered
 from lineofaction.client.surface import Surface
 from lineofaction.gearbox.schemas.figures import Figures, RunFigures, TableFigures
-from lineofaction.gearbox.studies.ablate.answer import AblationFigures as GearboxAblationFigures
-from lineofaction.gearbox.studies.deflect.answer import DeflectionFigures as GearboxDeflectionFigures
+from lineofaction.gearbox.studies.ablate import AblationFigures as GearboxAblationFigures
+from lineofaction.gearbox.studies.deflect import DeflectionFigures as GearboxDeflectionFigures
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection as GearboxGearboxDeflection
-from lineofaction.gearbox.studies.flank.answer import FlankFigures as GearboxFlankFigures
-from lineofaction.gearbox.studies.frontier.answer import FrontierFigures as GearboxFrontierFigures
-from lineofaction.gearbox.studies.listen.answer import RecordingFigures as GearboxRecordingFigures
+from lineofaction.gearbox.studies.flank import FlankFigures as GearboxFlankFigures
+from lineofaction.gearbox.studies.frontier import FrontierFigures as GearboxFrontierFigures
+from lineofaction.gearbox.studies.listen import RecordingFigures as GearboxRecordingFigures
 from lineofaction.gearbox.studies.listen.heard_run import HeardRun as GearboxHeardRun
-from lineofaction.gearbox.studies.modes.answer import ModesFigures as GearboxModesFigures
-from lineofaction.gearbox.studies.noise.answer import NoiseFigures as GearboxNoiseFigures
-from lineofaction.gearbox.studies.optimize.answer import OptimizationFigures as GearboxOptimizationFigures
-from lineofaction.gearbox.studies.response.answer import ResponseFigures as GearboxResponseFigures
-from lineofaction.gearbox.studies.root_stress.answer import RootStressFigures as GearboxRootStressFigures
+from lineofaction.gearbox.studies.modes import ModesFigures as GearboxModesFigures
+from lineofaction.gearbox.studies.noise import NoiseFigures as GearboxNoiseFigures
+from lineofaction.gearbox.studies.optimize import OptimizationFigures as GearboxOptimizationFigures
+from lineofaction.gearbox.studies.response import ResponseFigures as GearboxResponseFigures
+from lineofaction.gearbox.studies.root_stress import RootStressFigures as GearboxRootStressFigures
 from lineofaction.gearbox.studies.root_stress.run import Roots as GearboxRoots
-from lineofaction.gearbox.studies.scatter.answer import ScatterFigures as GearboxScatterFigures
-from lineofaction.gearbox.studies.sensitivity.answer import SensitivityFigures as GearboxSensitivityFigures
+from lineofaction.gearbox.studies.scatter import ScatterFigures as GearboxScatterFigures
+from lineofaction.gearbox.studies.sensitivity import SensitivityFigures as GearboxSensitivityFigures
 from lineofaction.gearbox.studies.sensitivity.stored import PairStudy as GearboxPairStudy
-from lineofaction.gearbox.studies.steady.answer import SteadyFigures as GearboxSteadyFigures
-from lineofaction.gearbox.studies.study.answer import StudyFigures as GearboxStudyFigures
-from lineofaction.gearbox.studies.sweep.answer import SweepFigures as GearboxSweepFigures
+from lineofaction.gearbox.studies.steady import SteadyFigures as GearboxSteadyFigures
+from lineofaction.gearbox.studies.study import StudyFigures as GearboxStudyFigures
+from lineofaction.gearbox.studies.sweep import SweepFigures as GearboxSweepFigures
 from lineofaction.gearbox.studies.sweep.run import SweepResult as GearboxSweepResult
-from lineofaction.gearbox.studies.vibration.answer import VibrationFigures as GearboxVibrationFigures
+from lineofaction.gearbox.studies.vibration import VibrationFigures as GearboxVibrationFigures
 from lineofaction.gearbox.studies.vibration.run import HousingVibrationResult as GearboxHousingVibrationResult
 from lineofaction.gearbox.subjects import CaseLike, SceneLike, StudyLike
 

@@ -101,7 +101,7 @@ class Study:
     @property
     def answer(self) -> Any:
         """Model of its figures, a `lineofaction.gearbox.schemas.figures.Figures`."""
-        return self._part(".answer", "ANSWER")
+        return self._part("", "ANSWER")
 
     def _part(self, module: str, name: str) -> Any:
         """Load a module of the package; return what it offers."""

@@ -6,11 +6,20 @@ what is not known is None.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
 Json = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where a figure of another name is in a result, in SI: members joined by dots, or what reads them."""
+
+    of: str | Callable[[Any], Any]
 
 
 class Part(BaseModel):

@@ -13,5 +13,5 @@ class Equilibrium(Part):
 
 
 def equilibrium_figures(found: Json) -> Json:
-    """Return the figures of an `Equilibrium`, of what a result says of it: status, and residual in N."""
-    return {"status": found["status"].lower(), "residual_n": found["residual"]}
+    """Return what a result says of its equilibrium for an `Equilibrium`: the status as it is written."""
+    return {**found, "status": found["status"].lower()}

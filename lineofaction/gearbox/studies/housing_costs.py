@@ -29,18 +29,6 @@ def reduction_costs(subject: TabledScene) -> Json:
     return {name: asdict(body.cost) for name, body in subject.housings.items() if body.cost is not None}
 
 
-def reduction_figures(facts: Mapping[str, Any]) -> Json:
-    """Return the figures of the reductions by housing; none of results of versions that did not know them."""
-    return {name: cost_figures(cost) for name, cost in facts.get("reduction_cost", {}).items()}
-
-
-def cost_figures(cost: Json | None) -> Json | None:
-    """Return the figures of a `HousingCost` from the fields of a `WorkCost`."""
-    if cost is None:
-        return None
-    return {
-        "predicted_cpu_seconds": cost["predicted_seconds"],
-        "predicted_bytes": cost["predicted_bytes"],
-        "cpu_seconds": cost["seconds"],
-        "bytes": cost["bytes"],
-    }
+def kept_costs(facts: Mapping[str, Any]) -> Json:
+    """Return the costs of the reductions by housing; none of results of versions that did not know them."""
+    return facts.get("reduction_cost") or {}

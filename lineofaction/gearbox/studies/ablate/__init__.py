@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field, Strict
 
 from lineofaction.gearbox.schemas.case_or_scene import Name
+from lineofaction.gearbox.schemas.figures import Figures, Json, Part
 from lineofaction.gearbox.schemas.model import BoundaryModel
 
 
@@ -20,3 +21,52 @@ class Inputs(BoundaryModel):
         description="Effects to toggle, by name; default: all",
         examples=[["tooth_coupling", "profile_modification"]],
     )
+
+
+class Toggled(Part):
+    """Figures of a case (by load) or of a scene (by mesh), with or without an effect."""
+
+    mean_um: list[float]
+    peak_to_peak_um: list[float]
+    cpu_seconds: float
+    harmonics_um: list[list[float]] | None = None
+    predicted_cpu_seconds: float | None = None
+    orders_um: list[list[float]] | None = None
+    bearing_orders_n: list[list[float]] | None = None
+
+
+class EffectFigures(Part):
+    """One effect toggled: the figures with and without it, and their changes without it."""
+
+    name: str
+    on: bool
+    reason: str
+    with_effect: Toggled = Field(alias="with")
+    without_effect: Toggled = Field(alias="without")
+    estimate: Json | None
+    mean_change_um: list[float]
+    peak_to_peak_change_um: list[float]
+    cost_ratio: float
+    harmonic_change_um: list[list[float]] | None = None
+    relative_mean_change: list[float] | None = None
+    relative_peak_to_peak_change: list[float] | None = None
+    worth_um: float | None = None
+    order_change_um: list[list[float]] | None = None
+    bearing_order_change_n: list[list[float]] | None = None
+
+
+class AblationFigures(Figures):
+    """All effects, each toggled by itself; of a case the loads, of a scene its meshes and bearings."""
+
+    of: Literal["case", "scene"]
+    nominal: Toggled
+    effects: list[EffectFigures]
+    left_out: dict[str, str]
+    torque_n_m: list[float] | None = None
+    normal_force_n: list[float] | None = None
+    misalignment_um: float | None = None
+    mesh: list[str] | None = None
+    bearing: list[str] | None = None
+
+
+ANSWER = AblationFigures

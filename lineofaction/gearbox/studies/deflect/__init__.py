@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import ConfigDict, Field, Strict, model_validator
 
+from dynamics.settings import load_case
 from dynamics.settings.case_force import CaseForce
-from dynamics.settings.load_case import LoadCase
 from lineofaction.gearbox.schemas.declared import declared_in, with_fields
+from lineofaction.gearbox.schemas.figures import Figures, Part, Source
 from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
 from lineofaction.gearbox.schemas.rules import own_or_factor, stated
 from lineofaction.gearbox.schemas.scene_loads import ACTING, Vector
@@ -40,7 +41,7 @@ class CaseForceInput(BoundaryModel):
 CaseForces = Annotated[tuple[CaseForceInput, ...], Strict(False), Field(max_length=MOST_FORCES)]
 
 
-@with_fields(declared_in(LoadCase))
+@with_fields(declared_in(load_case.LoadCase))
 class LoadCaseInput(BoundaryModel):
     """A load of the scene and the share of its duration."""
 
@@ -79,3 +80,128 @@ class Inputs(BoundaryModel):
         if len(set(names)) < len(names):
             refuse("load_cases", names, "names that differ", "Rename one of them.")
         return self
+
+
+RatingLife = Literal["limited", "unlimited", "none: no capacity"]
+
+
+class Agreement(Part):
+    """Whether tables and deflections agree."""
+
+    agreed: bool
+    passes: int
+    relative_change: Annotated[float | None, Source("change")]
+
+
+class Flanks(Part):
+    """A mesh on its flanks; K_Hbeta is None in the plane."""
+
+    torque_n_m: float
+    k_h_beta: Annotated[float | None, Source("face_load_factor")]
+    largest_pressure_mpa: float
+    mean_um: float
+    mean_error_um: float | None
+    peak_to_peak_um: float
+    peak_to_peak_error_um: float | None
+    harmonics_um: list[float]
+    harmonics_error_um: list[float | None]
+    centroid_difference_mm: float | None
+
+
+class Mesh(Part):
+    """A mesh under a load case."""
+
+    name: str
+    force_n: float
+    misalignment_um: float
+    misalignment_over_cycle_um: Annotated[
+        tuple[float, float], Source(lambda mesh: (mesh.least, mesh.largest))
+    ]
+    causes_um: dict[str, float]
+    center_distance_change_um: float
+    lead_torsion_um: float
+    face_centroid_mm: float | None
+    in_table: bool
+    flanks: Flanks | None
+
+
+class Bearing(Part):
+    """A bearing under a load case, in the axes x, y, z; no life in hours: `rating_life` says why."""
+
+    name: str
+    shaft: str
+    speed_rpm: float
+    force_n: Annotated[list[float], Source(lambda load: load.force[:3])]
+    moment_n_m: Annotated[list[float], Source(lambda load: load.force[3:])]
+    radial_force_n: Annotated[float, Source("radial")]
+    axial_force_n: Annotated[float, Source("axial")]
+    largest_radial_force_n: Annotated[float, Source("largest_radial")]
+    elastic_um: Annotated[list[float], Source(lambda load: load.elastic[:3])]
+    clearance_um: Annotated[list[float], Source(lambda load: load.clearance[:3])]
+    seat_um: Annotated[list[float], Source(lambda load: load.seat[:3])]
+    tilt_mrad: Annotated[list[float], Source(lambda load: (load.elastic + load.clearance)[3:])]
+    rating_life_hours: float | None
+    rating_life: RatingLife
+
+
+class Force(Part):
+    """A force of the scene under a load case in the axes x, y, z, before the factor of its course."""
+
+    name: str
+    shaft: str
+    force_n: list[float]
+    moment_n_m: list[float]
+
+
+class LoadCase(Part):
+    """A load case."""
+
+    name: str
+    direction: str
+    share: float
+    torque_n_m: float
+    speed_rpm: float
+    status: str
+    residual: float | None
+    forces: list[Force]
+    meshes: list[Mesh]
+    bearings: list[Bearing]
+
+
+class MeshOverCases(Part):
+    """A mesh over all load cases, means by their shares."""
+
+    name: str
+    mean_misalignment_um: float
+    largest_misalignment_um: float
+    largest_in: str
+    mean_peak_to_peak_um: float | None
+    largest_k_h_beta: float | None
+
+
+class BearingOverCases(Part):
+    """A bearing over all load cases: its life, and constant loads of the same life by kind of element."""
+
+    name: str
+    mean_speed_rpm: float
+    largest_radial_force_n: float
+    equivalent_radial_force_n: dict[str, float]
+    equivalent_axial_force_n: dict[str, float]
+    rating_life_hours: float | None
+    rating_life: RatingLife
+
+
+class DeflectionFigures(Figures):
+    """Misalignment by cause, flanks and bearings under every load case."""
+
+    leading_shaft: Annotated[str, Source("deflection.leading_shaft")]
+    agreement: Annotated[Agreement, Source(lambda result: result)]
+    load_cases: list[LoadCase]
+    meshes: list[MeshOverCases]
+    bearings: list[BearingOverCases]
+    cpu_seconds: Annotated[float, Source("seconds")] = Field(
+        description="With the tables and housings that were made for it"
+    )
+
+
+ANSWER = DeflectionFigures

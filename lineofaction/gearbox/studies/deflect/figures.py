@@ -13,13 +13,14 @@ from dynamics.deflection import (
     CAUSES,
     BearingLoad,
     CaseDeflection,
-    ForceUnderCase,
     MeshAlignment,
     equivalent_load,
     life_duration,
 )
+from lineofaction.gearbox.studies.deflect import DeflectionFigures
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks
-from lineofaction.gearbox.units import MM, MRAD, RPM, UM
+from lineofaction.gearbox.studies.figures import figures_of
+from lineofaction.gearbox.units import RPM, UM
 
 # Figures of bearings under load cases: loads, displacements and rating life.
 
@@ -71,38 +72,20 @@ def _at_least(values: FloatArray, least: float) -> FloatArray:
     return np.asarray(np.where(np.abs(values) < least, 0.0, values))
 
 
-def _bearing_in_case(load: BearingLoad) -> Json:
-    return {
-        "name": load.name,
-        "shaft": load.shaft,
-        "speed_rpm": load.speed / RPM,
-        "force_n": load.force[:3].tolist(),
-        "moment_n_m": load.force[3:].tolist(),
-        "radial_force_n": load.radial,
-        "axial_force_n": load.axial,
-        "largest_radial_force_n": load.largest_radial,
-        "elastic_um": (load.elastic[:3] / UM).tolist(),
-        "clearance_um": (load.clearance[:3] / UM).tolist(),
-        "seat_um": (load.seat[:3] / UM).tolist(),
-        "tilt_mrad": ((load.elastic + load.clearance)[3:] / MRAD).tolist(),
-        **_life([load], [1.0]),
-    }
-
-
-def _bearing_over_cases(loads: Sequence[BearingLoad], weights: Sequence[float]) -> Json:
+def _over_cases(loads: Sequence[BearingLoad], weights: Sequence[float]) -> Json:
+    """Return a bearing over the load cases by their shares."""
     speed = [load.speed for load in loads]
     radial, axial = [load.radial for load in loads], [abs(load.axial) for load in loads]
     return {
         "name": loads[0].name,
         "mean_speed_rpm": float(np.dot(weights, speed)) / RPM,
-        "largest_radial_force_n": max(load.largest_radial for load in loads),
-        "equivalent_radial_force_n": {
-            "ball": equivalent_load(radial, speed, weights, 3.0),
-            "roller": equivalent_load(radial, speed, weights),
-        },
-        "equivalent_axial_force_n": {
-            "ball": equivalent_load(axial, speed, weights, 3.0),
-            "roller": equivalent_load(axial, speed, weights),
+        "largest_radial_force": max(load.largest_radial for load in loads),
+        **{
+            f"equivalent_{direction}_force": {
+                "ball": equivalent_load(size, speed, weights, 3.0),
+                "roller": equivalent_load(size, speed, weights),
+            }
+            for direction, size in (("radial", radial), ("axial", axial))
         },
         **_life(loads, weights),
     }
@@ -116,15 +99,7 @@ def _life(loads: Sequence[BearingLoad], weights: Sequence[float]) -> Json:
         status = "none: no capacity"
     else:
         status = "limited" if math.isfinite(seconds) else "unlimited"
-    return {"rating_life_hours": known(seconds / HOUR), "rating_life": status}
-
-
-def known(value: float) -> float | None:
-    """Return a number, None if it is not known."""
-    return float(value) if math.isfinite(value) else None
-
-
-MPA = 1e6
+    return {"rating_life_hours": seconds / HOUR, "rating_life": status}
 
 
 def facts(result: GearboxDeflection) -> Json:
@@ -133,18 +108,13 @@ def facts(result: GearboxDeflection) -> Json:
     cases = result.deflection.cases
     by_case = _loads_by_case(cases)
     weights = shares(result)
-    return {
-        "leading_shaft": result.deflection.leading_shaft,
-        "agreement": {
-            "agreed": result.agreed,
-            "passes": result.passes,
-            "relative_change": known(result.change),
-        },
-        "load_cases": [_case(case, flanks, loads) for case, loads in zip(cases, by_case, strict=True)],
-        "meshes": [_over_cases(result, name) for name in mesh_names(result)],
-        "bearings": [_bearing_over_cases(loads, weights) for loads in zip(*by_case, strict=True)],
-        "cpu_seconds": result.seconds,
-    }
+    return figures_of(
+        DeflectionFigures,
+        result,
+        load_cases=[_case(case, flanks, loads) for case, loads in zip(cases, by_case, strict=True)],
+        meshes=[_mesh_over_cases(result, name) for name in mesh_names(result)],
+        bearings=[_over_cases(loads, weights) for loads in zip(*by_case, strict=True)],
+    )
 
 
 def mesh_names(result: GearboxDeflection) -> list[str]:
@@ -160,62 +130,18 @@ def shares(result: GearboxDeflection) -> list[float]:
 
 def _case(
     case: CaseDeflection, flanks: dict[tuple[str, str], MeshFlanks], loads: Sequence[BearingLoad]
-) -> Json:
-    return {
-        "name": case.name,
-        "direction": case.direction,
-        "share": case.share,
-        "torque_n_m": case.torque,
-        "speed_rpm": case.speed / RPM,
-        "status": case.status,
-        "residual": known(case.residual),
-        "forces": [_force(force) for force in case.forces],
+) -> tuple[CaseDeflection, Json]:
+    return case, {
         "meshes": [_mesh(mesh, flanks.get((case.name, mesh.name))) for mesh in case.meshes],
-        "bearings": [_bearing_in_case(load) for load in loads],
+        "bearings": [(load, _life([load], [1.0])) for load in loads],
     }
 
 
-def _force(force: ForceUnderCase) -> Json:
-    return {
-        "name": force.name,
-        "shaft": force.shaft,
-        "force_n": force.force.tolist(),
-        "moment_n_m": force.moment.tolist(),
-    }
+def _mesh(mesh: MeshAlignment, flanks: MeshFlanks | None) -> tuple[MeshAlignment, Json]:
+    return mesh, {"causes": dict(zip(CAUSES, mesh.causes, strict=True)), "flanks": flanks}
 
 
-def _mesh(mesh: MeshAlignment, flanks: MeshFlanks | None) -> Json:
-    """Return one mesh under one load case."""
-    return {
-        "name": mesh.name,
-        "force_n": mesh.force,
-        "misalignment_um": mesh.misalignment / UM,
-        "misalignment_over_cycle_um": [mesh.least / UM, mesh.largest / UM],
-        "causes_um": {cause: float(part) / UM for cause, part in zip(CAUSES, mesh.causes, strict=True)},
-        "center_distance_change_um": mesh.center_distance_change / UM,
-        "lead_torsion_um": mesh.lead_torsion / UM,
-        "face_centroid_mm": known(mesh.face_centroid / MM),
-        "in_table": mesh.in_table,
-        "flanks": None if flanks is None else _flanks(flanks),
-    }
-
-
-def _flanks(flanks: MeshFlanks) -> Json:
-    return {
-        "torque_n_m": flanks.torque,
-        "k_h_beta": known(flanks.face_load_factor),
-        "largest_pressure_mpa": flanks.largest_pressure / MPA,
-        "mean_um": flanks.mean / UM,
-        "mean_error_um": known(flanks.mean_error / UM),
-        "peak_to_peak_um": flanks.peak_to_peak / UM,
-        "peak_to_peak_error_um": known(flanks.peak_to_peak_error / UM),
-        "harmonics_um": [float(value) / UM for value in flanks.harmonics],
-        "harmonics_error_um": [known(float(value) / UM) for value in flanks.harmonics_error],
-        "centroid_difference_mm": known(flanks.centroid_difference / MM),
-    }
-
-
-def _over_cases(result: GearboxDeflection, name: str) -> Json:
+def _mesh_over_cases(result: GearboxDeflection, name: str) -> Json:
     """Return the means of a mesh over the load cases by their shares, and its worst case."""
     weights, cases = shares(result), result.deflection.cases
     own = [next(mesh for mesh in case.meshes if mesh.name == name) for case in cases]
@@ -233,7 +159,7 @@ def _over_cases(result: GearboxDeflection, name: str) -> Json:
 
 def _mean(weights: Sequence[float], values: Sequence[float]) -> float | None:
     """Return the weighted mean, None where a value is missing."""
-    return known(float(np.dot(weights, values))) if len(values) == len(weights) else None
+    return float(np.dot(weights, values)) if len(values) == len(weights) else None
 
 
 def _largest(values: Sequence[float]) -> float | None:

@@ -2,8 +2,36 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
+from pydantic import Field
+
+from lineofaction.gearbox.schemas.figures import Figures, Json, Source
 from lineofaction.gearbox.schemas.flank import FlankPoint
 
 
 class Inputs(FlankPoint):
     """One load and one alignment; what is left out is taken from the case."""
+
+
+class FlankFigures(Figures):
+    """Figures of the flanks over a mesh cycle, at one load and one alignment."""
+
+    content_hash: Annotated[str, Source("metadata.content_hash")]
+    torque_n_m: float
+    normal_force_n: Annotated[float, Source("scene.normal_force")]
+    misalignment_um: float
+    center_distance_change_mm: float
+    positions: Annotated[int, Source("position.size")]
+    slices: Annotated[int, Source("face_position.size")]
+    k_h_beta: Annotated[float, Source("mean_face_load_factor")]
+    largest_face_load_factor: float
+    load_centroid_mm: tuple[float, float]
+    largest_line_load_n_per_mm: float
+    largest_pressure_mpa: float = Field(description="Where no strip reaches an edge of a flank")
+    edge_pressure_mpa: float = Field(description="At edges as if the flank went on; the true one is singular")
+    effect_ledger: Annotated[list[Json] | Json, Source("metadata.effect_ledger")]
+    receipt: Annotated[Json, Source("metadata.receipt")]
+
+
+ANSWER = FlankFigures

@@ -21,6 +21,8 @@ from lineofaction.gearbox.convert.checks import check_case
 from lineofaction.gearbox.convert.plausibility import phrased_for
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.studies.computation import Computation
+from lineofaction.gearbox.studies.figures import figures_of
+from lineofaction.gearbox.studies.flank import FlankFigures
 from lineofaction.gearbox.studies.result_file import ResultFile
 from lineofaction.gearbox.units import MM, UM, as_typed
 from model_studies import Progress, silent
@@ -52,23 +54,18 @@ def flanks_of(case: Case, cache: Path | None, progress: Progress = silent) -> Lo
 def flank_json(flanks: LoadDistribution) -> Json:
     """Return the figures of flank results."""
     scene, centroid = flanks.scene, flanks.load_centroid
-    return {
-        "content_hash": flanks.metadata.content_hash,
-        "torque_n_m": as_typed(scene.torque),
-        "normal_force_n": scene.normal_force,
-        "misalignment_um": as_typed(scene.misalignment, UM),
-        "center_distance_change_mm": as_typed(scene.center_distance_change, MM),
-        "positions": int(flanks.position.size),
-        "slices": int(flanks.face_position.size),
-        "k_h_beta": flanks.mean_face_load_factor,
-        "largest_face_load_factor": float(flanks.face_load_factor.max()),
-        "load_centroid_mm": [float(centroid.min() / MM), float(centroid.max() / MM)],
-        "largest_line_load_n_per_mm": float(flanks.line_load.max() * MM),
-        "largest_pressure_mpa": float(flanks.clear_pressure.max() * 1e-6),
-        "edge_pressure_mpa": flanks.edge_pressure * 1e-6,
-        "effect_ledger": flanks.metadata.effect_ledger,
-        "receipt": flanks.metadata.receipt,
-    }
+    return figures_of(
+        FlankFigures,
+        flanks,
+        torque_n_m=as_typed(scene.torque),
+        misalignment_um=as_typed(scene.misalignment, UM),
+        center_distance_change_mm=as_typed(scene.center_distance_change, MM),
+        largest_face_load_factor=flanks.face_load_factor.max(),
+        load_centroid=(centroid.min(), centroid.max()),
+        largest_line_load_n_per_mm=flanks.line_load.max() * MM,
+        largest_pressure_mpa=flanks.clear_pressure.max() * 1e-6,
+        edge_pressure_mpa=flanks.edge_pressure * 1e-6,
+    )
 
 
 RUN = Computation(

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, Strict
 
 from lineofaction.gearbox.schemas.case_or_scene import Name
+from lineofaction.gearbox.schemas.figures import Figures, Json, Part
 from lineofaction.gearbox.schemas.model import BoundaryModel
 
 MOST_FULL_CONTACT = 64
@@ -37,3 +38,40 @@ class Inputs(BoundaryModel):
         "CPU s each in plane strain, 70 or more over the face",
         examples=[4],
     )
+
+
+class FidelityFigures(Part):
+    """One fidelity: its CPU time, and its errors against the finest one, relative."""
+
+    name: str
+    title: str
+    cpu_seconds: float
+    mean_m: list[float] | None = None
+    peak_to_peak_m: list[float] | None = None
+    stated_error: float | None = None
+    stages: dict[str, float] | None = None
+    peak_memory_bytes: int | None = None
+    mean_error: float | None = None
+    peak_to_peak_error: float | None = None
+    family: str | None = None
+    errors: dict[str, float] | None = None
+
+
+class FrontierFigures(Figures):
+    """Error against time; the reference is the finest fidelity, the knee where time buys least."""
+
+    rungs: list[FidelityFigures]
+    left_out: dict[str, str]
+    knee: str | None
+    chosen: str | None
+    reference: str
+    solves: int | None = None
+    full_finite_element_contact: list[Json] | None = None
+    full_finite_element_contact_origin: str | None = None
+    full_contact: Json | None = None
+    orders: int | None = None
+    blocks: int | None = None
+    transmission_error_rms_m: list[list[float]] | None = None
+
+
+ANSWER = FrontierFigures

@@ -6,6 +6,7 @@ from typing import Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
+from lineofaction.gearbox.schemas.figures import Figures, Part
 from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
 from lineofaction.gearbox.schemas.rules import exactly_one_of, stated
 from lineofaction.gearbox.schemas.scene_types import Point
@@ -44,3 +45,39 @@ class Inputs(BoundaryModel):
         if self.direction is not None and self.point is None:
             refuse("direction", self.direction, "left out with microphone_mm", "A pressure has none.")
         return self
+
+
+class Tone(Part):
+    """A prominent tone of a steady sound."""
+
+    frequency_hz: float
+    tone_to_noise_db: float
+
+
+class SoundPressure(Part):
+    """What the ear makes of a sound pressure; loudness and sharpness need the extra `psychoacoustics`."""
+
+    level_db: float
+    level_db_a: float
+    steady: bool
+    loudness_sone: float | None
+    sharpness_acum: float | None
+    tones: list[Tone]
+
+
+class RecordingFigures(Figures):
+    """Figures of a run at a microphone, or at a point of a housing."""
+
+    run: str
+    quantity: str
+    unit: str
+    rms: float
+    duration_s: float
+    sample_rate_hz: int
+    full_scale: float
+    remark: str
+    sound: SoundPressure | None
+    other_housings: list[str]
+
+
+ANSWER = RecordingFigures

@@ -6,7 +6,10 @@ from typing import Annotated
 
 from pydantic import Field, Strict
 
+from lineofaction.gearbox.schemas.figures import Figures, Json, Part, Source
+from lineofaction.gearbox.schemas.housing_costs import HousingCost
 from lineofaction.gearbox.schemas.speeds import MOST_SPEEDS, Orders, OverSpeeds, Speed
+from lineofaction.gearbox.studies.equilibrium import Equilibrium
 
 
 class Inputs(OverSpeeds):
@@ -26,3 +29,67 @@ class Inputs(OverSpeeds):
         description="Highest frequency for flexible shafts; default: the highest order at the highest speed",
         examples=[5000.0],
     )
+
+
+class LoadedMeshes(Equilibrium):
+    """The loaded equilibrium with the mean force of each mesh."""
+
+    mesh_force_n: dict[str, float]
+
+
+class Mode(Part):
+    """What a mode is: where its strain and kinetic energy are, in parts; parts below 0.1 % are left out."""
+
+    mode: int
+    kind: str
+    strain_energy: dict[str, float]
+    kinetic_energy: dict[str, float]
+
+
+class NaturalMode(Mode):
+    """A natural mode at rest."""
+
+    frequency_hz: float
+    damping_ratio: float
+
+
+class WhirlMode(Mode):
+    """A mode over the speeds at which it oscillates; whirl > 0 is forward."""
+
+    speed_rpm: list[float]
+    frequency_hz: list[float]
+    damping_ratio: list[float]
+    whirl: list[float]
+
+
+class CriticalSpeed(Part):
+    """A speed at which a mesh order excites a mode."""
+
+    speed_rpm: float
+    frequency_hz: float
+    order: int
+    mesh: str
+    mode: int
+    kind: str
+    whirl: float
+    damping_ratio: float
+    residual_hz: float
+
+
+class ModesFigures(Figures):
+    """Natural modes at rest, modes over speed, critical speeds."""
+
+    leading_shaft: str
+    highest_frequency_hz: float
+    equilibrium: LoadedMeshes
+    at_rest: list[NaturalMode]
+    speed_rpm: list[float]
+    mesh_frequency_hz: dict[str, list[float]]
+    modes: list[WhirlMode]
+    critical_speeds: list[CriticalSpeed]
+    cpu_seconds: Annotated[dict[str, float], Source("seconds")]
+    reduction_cost: dict[str, HousingCost]
+    effect_ledger: Json
+
+
+ANSWER = ModesFigures

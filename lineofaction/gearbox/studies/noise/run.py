@@ -24,7 +24,6 @@ from dynamics.acoustics.recording import LOWEST
 from dynamics.housings import ReducedHousing, write_surface
 from dynamics.noise import (
     HousingRadiation,
-    LoudPoint,
     PanelSound,
     RadiatedSound,
     Region,
@@ -53,12 +52,13 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.bearing_forces import LINEAR, forces_of
 from lineofaction.gearbox.studies.computation import Computation, Means
 from lineofaction.gearbox.studies.equilibrium import equilibrium_figures
-from lineofaction.gearbox.studies.housing_costs import cost_figures, reduction_costs, reduction_figures
+from lineofaction.gearbox.studies.figures import figures_of
+from lineofaction.gearbox.studies.housing_costs import kept_costs, reduction_costs
 from lineofaction.gearbox.studies.listen.through_housing import require_surface, silent
-from lineofaction.gearbox.studies.noise import Inputs
+from lineofaction.gearbox.studies.noise import Inputs, NoiseFigures
 from lineofaction.gearbox.studies.noise.uncertainty import uncertainty
 from lineofaction.gearbox.studies.result_file import array_file
-from lineofaction.gearbox.units import MM, RPM
+from lineofaction.gearbox.units import RPM
 
 # Figures of a radiated sound in the units of the boundary.
 
@@ -68,37 +68,26 @@ Json = dict[str, Any]
 
 def facts(sound: RadiatedSound) -> Json:
     """Return levels (lists by order, then by speed), third octaves and the loudest points."""
-    orders, about = sound.orders, sound.facts
-    center, bands = orders.third_octaves()
-    return {
-        "leading_shaft": about["leading_shaft"],
-        "speed_rpm": (sound.speed / RPM).tolist(),
-        "order": sound.order.tolist(),
-        "frequency_hz": orders.frequency.tolist(),
-        "level_db": orders.level.tolist(),
-        "level_db_a": orders.weighted_level.tolist(),
-        "total_level_db": orders.total_level.tolist(),
-        "total_level_db_a": orders.total_weighted_level.tolist(),
-        "third_octave_hz": center.tolist(),
-        "third_octave_db": sound_power_level(bands).tolist(),
-        "radiation_efficiency": sound.efficiency.T.tolist(),
-        "bearings": {name: _bearing(sound, index) for index, name in enumerate(sound.bearing)},
-        "loudest": [
-            _point(point, regions) for point, regions in zip(loudest(sound), about["regions"], strict=True)
-        ],
-        "housings": {name: _housing(about, name) for name in sound.housing},
-        "natural_frequency_hz": sound.natural_frequency.tolist(),
-        "parting_rpm": (sound.speed[~sound.in_contact] / RPM).tolist(),
-        "equilibrium": None if about["equilibrium"] is None else equilibrium_figures(about["equilibrium"]),
-        "forces": about.get("forces", LINEAR),
-        "over_time": about.get("over_time"),
-        "band": about["band"],
-        "sensitivities": about["sensitivities"],
-        "sensitivities_left_out": about["sensitivities_left_out"],
-        "cpu_seconds": about["seconds"],
-        "reduction_cost": reduction_figures(about),
-        "effect_ledger": about["effect_ledger"],
-    }
+    about = sound.facts
+    center, bands = sound.orders.third_octaves()
+    start = about["equilibrium"]
+    points = zip(loudest(sound), about["regions"], strict=True)
+    return figures_of(
+        NoiseFigures,
+        sound,
+        about,
+        third_octave_hz=center,
+        third_octave_db=sound_power_level(bands),
+        radiation_efficiency=sound.efficiency.T,
+        bearings={name: _bearing(sound, index) for index, name in enumerate(sound.bearing)},
+        loudest=[(point, {"regions": regions}) for point, regions in points],
+        housings={name: _housing(about, name) for name in sound.housing},
+        parting=sound.speed[~sound.in_contact],
+        equilibrium=None if start is None else equilibrium_figures(start),
+        forces=about.get("forces", LINEAR),
+        over_time=about.get("over_time"),
+        reduction_cost=kept_costs(about),
+    )
 
 
 def _bearing(sound: RadiatedSound, bearing: int) -> Json:
@@ -106,66 +95,22 @@ def _bearing(sound: RadiatedSound, bearing: int) -> Json:
     weighting = a_weighting(sound.frequency)
     alone, without = sound.bearing_alone[bearing], sound.without_bearing[bearing]
     return {
-        "alone_db_a": (sound_power_level(np.maximum(alone, 0.0)) + weighting).T.tolist(),
-        "without_db_a": (sound_power_level(without) + weighting).T.tolist(),
+        "alone": (sound_power_level(np.maximum(alone, 0.0)) + weighting).T,
+        "without": (sound_power_level(without) + weighting).T,
     }
 
 
-def _housing(about: Json, name: str) -> Json:
-    """Return what is known of the radiation of a housing."""
+def _housing(about: Json, name: str) -> tuple[Json, Json]:
+    """Return what is known of the radiation of a housing, and of the models that were compared."""
     radiation, compared = about["radiation"][name], about["models"][name]
-    return {
-        "radiation": radiation["model_name"],
-        "outer_area_m2": radiation["area"],
-        "inner_area_m2": radiation["inner_area"],
-        "cap_area_m2": radiation["cap_area"],
-        "panels": radiation["panels"],
-        "resolved_hz": radiation["resolved_frequency"],
-        "valid_hz": radiation["valid_frequency"],
-        "interpolation_error_db": radiation["interpolation_error"],
-        "models_db": compared.get("level", {}),
-        "model_error_db": compared.get("error", {}),
+    return radiation, {
+        "models": compared.get("level", {}),
+        "model_error": compared.get("error", {}),
         "models_left_out": compared.get("left_out", {}),
         "models_cpu_seconds": compared.get("seconds", {}),
-        "models_error_band_db": compared.get("error_band", {}),
-        "models_predicted": {
-            model: {"cpu_seconds": cost["seconds"], "bytes": cost["bytes"]}
-            for model, cost in compared.get("predicted", {}).items()
-        },
-        "radiation_cost": cost_figures(radiation.get("cost")),
-    }
-
-
-def _figures_region(region: Json) -> Json:
-    return {
-        "housing": region["housing"],
-        "facing": region["facing"],
-        "points": region["points"],
-        "normal": region["normal"],
-        "center_mm": [value / MM for value in region["center"]],
-        "area_m2": region["area"],
-        "power_w": region["power"],
-        "share": region["share"],
-    }
-
-
-def _point(point: LoudPoint, regions: list[Json]) -> Json:
-    return {
-        "order": point.order,
-        "speed_rpm": point.speed / RPM,
-        "frequency_hz": point.frequency,
-        "level_db": point.level,
-        "level_db_a": point.weighted_level,
-        "radiation_efficiency": point.efficiency,
-        "housing": point.mode_housing,
-        "mode": point.mode,
-        "natural_frequency_hz": point.natural_frequency,
-        "mode_share": point.mode_share,
-        "bearing": point.bearing,
-        "bearing_alone_db_a": point.bearing_level,
-        "without_bearing_db_a": point.level_without_bearing,
-        "in_contact": point.in_contact,
-        "regions": [_figures_region(region) for region in regions],
+        "models_error_band": compared.get("error_band", {}),
+        "models_predicted": compared.get("predicted", {}),
+        "radiation_cost": radiation.get("cost"),
     }
 
 

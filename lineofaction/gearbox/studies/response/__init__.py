@@ -2,8 +2,82 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
+from lineofaction.gearbox.schemas.figures import Figures, Json, Part, Source
+from lineofaction.gearbox.schemas.housing_costs import HousingCost
 from lineofaction.gearbox.schemas.speeds import OverOrders
+from lineofaction.gearbox.studies.equilibrium import Equilibrium
 
 
 class Inputs(OverOrders):
     """Speeds at which the forced response is looked for."""
+
+
+class MeshResponse(Part):
+    """Amplitudes of a mesh by order, then by speed."""
+
+    mean_force_n: float
+    mean_stiffness_n_per_um: float
+    static_transmission_error_um: list[float]
+    dynamic_transmission_error_um: list[list[float]]
+    mesh_force_n: list[list[float]]
+    least_mesh_force_n: list[float]
+    excitation_difference: list[float]
+
+
+class BearingResponse(Part):
+    """Amplitudes of a bearing force by order, then by speed."""
+
+    force_n: list[list[float]]
+
+
+class PeakFigures(Part):
+    """A peak over speed."""
+
+    quantity: str
+    name: str
+    order: float
+    speed_rpm: float
+    frequency_hz: float
+    amplitude_n: float
+    amplification: float
+    natural_frequency_hz: float
+
+
+class PowerLoss(Part):
+    """Mean power that a part loses by order, then by speed."""
+
+    part: str
+    kind: str
+    loss_w: list[list[float]]
+
+
+class Power(Part):
+    """Mean power that errors of meshes and loads put in, where it is lost, and the rest over the input."""
+
+    input_w: dict[str, list[list[float]]]
+    losses: list[PowerLoss]
+    residual: float
+
+
+class ResponseFigures(Figures):
+    """Amplitudes of meshes and bearings, peaks, and the speeds at which flanks would part."""
+
+    leading_shaft: str
+    speed_rpm: list[float]
+    order: list[float]
+    meshes: dict[str, MeshResponse]
+    bearings: dict[str, BearingResponse]
+    peaks: list[PeakFigures]
+    parting_rpm: list[float]
+    natural_frequency_hz: list[float]
+    power: Power
+    residual: float
+    equilibrium: Equilibrium
+    cpu_seconds: Annotated[dict[str, float], Source("seconds")]
+    reduction_cost: dict[str, HousingCost]
+    effect_ledger: Json
+
+
+ANSWER = ResponseFigures

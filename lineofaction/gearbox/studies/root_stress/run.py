@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -21,9 +20,9 @@ from lineofaction.gearbox.convert.checks import check_case
 from lineofaction.gearbox.convert.plausibility import phrased_for
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.studies.computation import Computation, Means
+from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.result_file import record_file
-from lineofaction.gearbox.studies.root_stress import Inputs
-from lineofaction.gearbox.units import MM, UM
+from lineofaction.gearbox.studies.root_stress import Inputs, RootStressFigures
 from model_studies import in_unit
 
 Json = dict[str, Any]
@@ -103,44 +102,8 @@ def _roots(history: RootStressHistory, nominal: float | None) -> GearRoots:
 
 
 def root_stress_json(roots: Roots) -> Json:
-    """Return the stresses in MPa, places in mm and degrees."""
-    return {
-        "torque_n_m": roots.torque,
-        "normal_force_n": roots.normal_force,
-        "misalignment_um": roots.misalignment / UM,
-        "center_distance_change_mm": roots.center_distance_change / MM,
-        **{gear: _gear_json(getattr(roots, gear)) for gear in GEARS},
-        "receipt": roots.receipt,
-        "warnings": roots.warnings,
-    }
-
-
-def _gear_json(roots: GearRoots) -> Json:
-    passage = roots.passage
-    return {
-        **{root: _peak_json(getattr(roots, root)) for root in ROOTS},
-        "critical_section_mm": roots.critical_coordinate / MM,
-        "iso_6336_3_mpa": None if roots.nominal is None else roots.nominal / MPA,
-        "passage": {
-            "position": passage.position.tolist(),
-            "tension_mpa": (passage.tension / MPA).tolist(),
-            "compression_mpa": (passage.compression / MPA).tolist(),
-            "at_tension_peak_mpa": (passage.at_tension_peak / MPA).tolist(),
-            "at_compression_peak_mpa": (passage.at_compression_peak / MPA).tolist(),
-        },
-    }
-
-
-def _peak_json(peak: RootPeak) -> Json:
-    """One root; the position is that of the tooth's own pair."""
-    return {
-        "stress_mpa": peak.stress.value / MPA,
-        "error_mpa": peak.stress.error / MPA,
-        "position": peak.position % 1.0 + peak.pair,
-        "flank_coordinate_mm": peak.flank_coordinate / MM,
-        "tangent_angle_deg": math.degrees(peak.tangent_angle),
-        "face_position_mm": peak.face_position / MM,
-    }
+    """Return the figures; the position of a peak is that of the tooth's own pair."""
+    return figures_of(RootStressFigures, roots) | {"warnings": roots.warnings}
 
 
 RUN = Computation(

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from lineofaction.gearbox.schemas.figures import Figures, Json, Part
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.spelling import Spelling
 
@@ -49,3 +50,35 @@ class Inputs(BoundaryModel):
         description="Seed of the sample; equal seeds give equal results",
         examples=[0],
     )
+
+
+class QuantileFigures(Part):
+    """A quantile by torque with its confidence bounds; None: the sample is too small for one."""
+
+    fraction: float
+    value_um: list[float]
+    low_um: list[float] | None
+    high_um: list[float] | None
+
+
+class ScatterFigures(Figures):
+    """Peak-to-peak STE of the sampled pairs (rows) by torque, and by what they deviate (`names`)."""
+
+    torque_n_m: list[float]
+    samples: int
+    nominal_um: list[float]
+    error_um: list[float]
+    mean_um: list[float]
+    mean_standard_error_um: list[float]
+    confidence: float
+    quantiles: list[QuantileFigures]
+    names: list[str]
+    influence: list[list[float]]
+    deviation_um: list[list[float]]
+    peak_to_peak_um: list[list[float]]
+    first_order_um: list[list[float]]
+    cost: Json
+    asked: Json
+
+
+ANSWER = ScatterFigures

@@ -7,6 +7,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, Strict, model_validator
 
+from lineofaction.gearbox.schemas.figures import Figures, Part, Source
 from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
 
 Misalignment = Annotated[float, Field(ge=-10_000.0, le=10_000.0)]
@@ -41,3 +42,49 @@ class Inputs(BoundaryModel):
             if any(b <= a for a, b in pairwise(values)):
                 refuse(name, list(values), "strictly increasing", "Sort the list and drop repeats.")
         return self
+
+
+class Ripple(Part):
+    """Peak-to-peak STE over a deviation, with its error, and its change."""
+
+    peak_to_peak_um: list[float]
+    peak_to_peak_error_um: Annotated[list[float], Source("error")]
+    change_percent: Annotated[list[float], Source(lambda curve: 100.0 * curve.relative_change)]
+
+
+class MisalignmentRipple(Ripple):
+    """Over the misalignment."""
+
+    misalignment_um: Annotated[list[float], Source("deviation")]
+
+
+class CenterDistanceRipple(Ripple):
+    """Over the change of the center distance."""
+
+    center_distance_change_percent: list[float]
+
+
+class DeviationCurves(Part):
+    """Both curves with or without corner contact."""
+
+    corner_contact: bool
+    misalignment: MisalignmentRipple
+    center_distance: CenterDistanceRipple
+
+
+class PairFigures(Part):
+    """One pair."""
+
+    name: str
+    normal_force_n: float
+    center_distance_mm: float
+    curves: list[DeviationCurves]
+
+
+class SensitivityFigures(Figures):
+    """The pairs of a study."""
+
+    pairs: list[PairFigures]
+
+
+ANSWER = SensitivityFigures

@@ -7,17 +7,18 @@ from dataclasses import replace
 from typing import Any
 
 from fe_contact.analysis import check_request
-from fe_contact.analysis.studies.sensitivity import RippleCurve, Sensitivity, study_sensitivity
+from fe_contact.analysis.studies.sensitivity import study_sensitivity
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import Run, TableAxes
 from lineofaction.gearbox.convert.case import boundary_errors, gear_pair, study_options
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.stages import TableFraction
 from lineofaction.gearbox.studies.computation import Computation, Means
+from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.result_file import ResultFile
-from lineofaction.gearbox.studies.sensitivity import Inputs
+from lineofaction.gearbox.studies.sensitivity import Inputs, SensitivityFigures
 from lineofaction.gearbox.studies.sensitivity.stored import FORMAT, PairStudy, read_studies, write_studies
-from lineofaction.gearbox.units import MM, UM
+from lineofaction.gearbox.units import UM
 from model_studies import Progress
 
 Json = dict[str, Any]
@@ -106,38 +107,21 @@ def _axes(case: Case, pair: ParallelAxes, inputs: Inputs) -> TableAxes:
 
 def studies_json(studies: Sequence[PairStudy]) -> Json:
     """Return the figures of all pairs."""
-    return {"pairs": [_pair_json(study) for study in studies]}
+    return figures_of(SensitivityFigures, pairs=[(study, {"curves": _curves(study)}) for study in studies])
 
 
-def _pair_json(study: PairStudy) -> Json:
-    return {
-        "name": study.name,
-        "normal_force_n": study.normal_force,
-        "center_distance_mm": study.center_distance / MM,
-        "curves": [_curves_json(curves, study.center_distance) for curves in study.curves],
-    }
-
-
-def _curves_json(curves: Sensitivity, center_distance: float) -> Json:
-    """Both curves with or without corner contact."""
-    skew, distance = curves.misalignment, curves.center_distance_change
-    return {
-        "corner_contact": curves.corner_contact,
-        "misalignment": {"misalignment_um": (skew.deviation / UM).tolist(), **_ripple_json(skew)},
-        "center_distance": {
-            "center_distance_change_percent": (100.0 * distance.deviation / center_distance).tolist(),
-            **_ripple_json(distance),
-        },
-    }
-
-
-def _ripple_json(curve: RippleCurve) -> Json:
-    """Peak-to-peak with its error, and its change."""
-    return {
-        "peak_to_peak_um": (curve.peak_to_peak / UM).tolist(),
-        "peak_to_peak_error_um": (curve.error / UM).tolist(),
-        "change_percent": (100.0 * curve.relative_change).tolist(),
-    }
+def _curves(study: PairStudy) -> list[tuple[Any, ...]]:
+    """Return both curves without and with corner contact, the changes of the distance in parts of it."""
+    percent = [
+        (100.0 * curves.center_distance_change.deviation / study.center_distance) for curves in study.curves
+    ]
+    return [
+        (
+            curves,
+            {"center_distance": (curves.center_distance_change, {"center_distance_change_percent": change})},
+        )
+        for curves, change in zip(study.curves, percent, strict=True)
+    ]
 
 
 RUN = Computation(

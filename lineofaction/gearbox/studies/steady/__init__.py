@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field, Strict
 
+from lineofaction.gearbox.schemas.figures import Figures, Json, Part, Source
+from lineofaction.gearbox.schemas.housing_costs import HousingCost
 from lineofaction.gearbox.schemas.speeds import MOST_SPEEDS, OverSpeeds, TurningSpeed
 
 
@@ -30,3 +32,75 @@ class Inputs(OverSpeeds):
     settling_periods: Annotated[int, Field(ge=0, le=100_000)] = Field(
         default=64, description="Periods of settling at each speed of a sweep", examples=[64]
     )
+
+
+class MeshMotion(Part):
+    """A mesh over a period; parts of it are without contact or on the coast flank."""
+
+    mean_error_um: float
+    rms_error_um: float
+    peak_to_peak_error_um: float
+    least_force_n: float
+    largest_force_n: float
+    parted: float
+    coasting: float
+
+
+class BearingMotion(Part):
+    """A bearing over a period."""
+
+    rms_force_n: float
+
+
+class SteadyMotion(Part):
+    """A motion at a speed; of one that was not found only how the search ended."""
+
+    speed_rpm: float
+    status: str
+    iterations: int
+    residual_um: float | None = None
+    step_error_um: float | None = None
+    stability: str | None = None
+    largest_multiplier: tuple[float, float] | None = None
+    meshes: dict[str, MeshMotion] | None = None
+    bearings: dict[str, BearingMotion] | None = None
+
+
+class BranchFigures(Part):
+    """The branch that was followed, unstable parts included."""
+
+    status: str
+    points: list[SteadyMotion]
+
+
+class Bifurcation(Part):
+    """Where a motion changes its stability."""
+
+    kind: str
+    speed_rpm: float
+
+
+class Jump(Part):
+    """Between which speeds a sweep jumps."""
+
+    sweep: Literal["up", "down"]
+    between_rpm: tuple[float, float]
+
+
+class SteadyFigures(Figures):
+    """Motions of both sweeps and of the branch, jumps and bifurcations."""
+
+    leading_shaft: str
+    period_pitches: dict[str, int]
+    up: list[SteadyMotion]
+    down: list[SteadyMotion]
+    branch: BranchFigures
+    bifurcations: list[Bifurcation]
+    jumps: list[Jump]
+    steps_per_period: int
+    cpu_seconds: Annotated[dict[str, float], Source("seconds")]
+    reduction_cost: dict[str, HousingCost]
+    effect_ledger: Json
+
+
+ANSWER = SteadyFigures

@@ -12,10 +12,11 @@ from dynamics.periodic.steady_states import BRANCH, CURVES, UP
 from dynamics.scene import Scene
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.studies.computation import Computation, Means
-from lineofaction.gearbox.studies.housing_costs import reduction_figures, with_housing_costs
+from lineofaction.gearbox.studies.figures import Row, figures_of, rows
+from lineofaction.gearbox.studies.housing_costs import kept_costs, with_housing_costs
 from lineofaction.gearbox.studies.result_file import array_file
-from lineofaction.gearbox.studies.steady import Inputs
-from lineofaction.gearbox.units import RPM, UM
+from lineofaction.gearbox.studies.steady import Inputs, SteadyFigures
+from lineofaction.gearbox.units import RPM
 
 Json = dict[str, Any]
 KINDS = ("stable", "fold", "period doubling", "Neimark-Sacker")
@@ -41,68 +42,40 @@ def status_name(status: int) -> str:
 def facts(states: SteadyStates) -> Json:
     """Return the motions of both sweeps and of the branch, jumps and bifurcations."""
     about = states.facts
-    points: dict[str, list[Json]] = {
-        name: [_point(states, int(index)) for index in np.flatnonzero(states.curve == curve)]
+    points: dict[str, list[Any]] = {
+        name: [_motion(states, int(index)) for index in np.flatnonzero(states.curve == curve)]
         for curve, name in enumerate(CURVES)
     }
-    return {
-        "leading_shaft": about["leading_shaft"],
-        "period_pitches": about["period_pitches"],
-        "up": points["up"],
-        "down": points["down"],
-        "branch": {
-            "status": about["branch"].lower().replace("_", " "),
-            "points": points[CURVES[BRANCH]],
-        },
-        "bifurcations": [
-            {"kind": KINDS[int(kind)], "speed_rpm": float(speed) / RPM}
-            for kind, speed in zip(states.bifurcation_kind, states.bifurcation_speed, strict=True)
-        ],
-        "jumps": [
-            {"sweep": "up" if curve == UP else "down", "between_rpm": (ends / RPM).tolist()}
-            for curve, ends in zip(states.jump_curve, states.jump_speed, strict=True)
-        ],
-        "steps_per_period": about["steps_per_period"],
-        "cpu_seconds": about["seconds"],
-        "reduction_cost": reduction_figures(about),
-        "effect_ledger": about["effect_ledger"],
-    }
+    changes = zip(states.bifurcation_kind, states.bifurcation_speed, strict=True)
+    jumps = zip(states.jump_curve, states.jump_speed, strict=True)
+    return figures_of(
+        SteadyFigures,
+        about,
+        up=points["up"],
+        down=points["down"],
+        branch={"status": about["branch"].lower().replace("_", " "), "points": points[CURVES[BRANCH]]},
+        bifurcations=[{"kind": KINDS[int(kind)], "speed": speed} for kind, speed in changes],
+        jumps=[{"sweep": "up" if curve == UP else "down", "between": ends} for curve, ends in jumps],
+        reduction_cost=kept_costs(about),
+    )
 
 
-def _point(states: SteadyStates, index: int) -> Json:
-    """One motion; of one that was not found only how the search ended."""
-    point: Json = {
-        "speed_rpm": float(states.speed[index]) / RPM,
-        "status": status_name(int(states.status[index])),
-        "iterations": int(states.iterations[index]),
-    }
-    for name, value in (("residual_um", states.residual[index]), ("step_error_um", states.step_error[index])):
-        if np.isfinite(value):
-            point[name] = float(value) / UM
-    if states.status[index] != OrbitStatus.CONVERGED:
-        return point
-    largest = states.multiplier[index, 0]
-    return point | {
-        "stability": KINDS[int(states.instability[index])],
-        "largest_multiplier": [float(largest.real), float(largest.imag)],
-        "meshes": {name: _mesh(states, index, mesh) for mesh, name in enumerate(states.mesh)},
-        "bearings": {
-            name: {"rms_force_n": float(states.rms_bearing_force[index, bearing])}
-            for bearing, name in enumerate(states.bearing)
-        },
-    }
-
-
-def _mesh(states: SteadyStates, index: int, mesh: int) -> Json:
-    return {
-        "mean_error_um": float(states.mean_error[index, mesh]) / UM,
-        "rms_error_um": float(states.rms_error[index, mesh]) / UM,
-        "peak_to_peak_error_um": float(states.peak_to_peak_error[index, mesh]) / UM,
-        "least_force_n": float(states.least_force[index, mesh]),
-        "largest_force_n": float(states.largest_force[index, mesh]),
-        "parted": float(states.parted[index, mesh]),
-        "coasting": float(states.coasting[index, mesh]),
-    }
+def _motion(states: SteadyStates, index: int) -> tuple[Any, ...]:
+    """Return a motion; of one that was not found only how the search ended."""
+    point = Row(states, index)
+    own: Json = {"status": status_name(int(point.status)), "meshes": None, "bearings": None}
+    if point.status == OrbitStatus.CONVERGED:
+        largest = point.multiplier[0]
+        own |= {
+            "stability": KINDS[int(point.instability)],
+            "largest_multiplier": [largest.real, largest.imag],
+            "meshes": rows(point, states.mesh),
+            "bearings": {
+                name: {"rms_force": force}
+                for name, force in zip(states.bearing, point.rms_bearing_force, strict=True)
+            },
+        }
+    return point, own
 
 
 def _not_found(states: SteadyStates) -> str:

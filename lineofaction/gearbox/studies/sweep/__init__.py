@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, Strict
 
+from lineofaction.gearbox.schemas.figures import Figures, Json, Part
 from lineofaction.gearbox.schemas.model import BoundaryModel
 
 Axis = Annotated[str, Field(min_length=1, max_length=1000)]
@@ -41,3 +42,32 @@ class Inputs(BoundaryModel):
         "harmonic_2, harmonic_3, max_pressure, face_load_factor (K_Hbeta; not in the plane)",
         examples=[["peak_to_peak", "max_pressure"]],
     )
+
+
+class AxisFigures(Part):
+    """One axis of the map."""
+
+    path: str
+    unit: str
+    values: list[float]
+
+
+class SweepFigures(Figures):
+    """Points of the map: each has the paths of the axes and the figures with their errors.
+
+    Attributes
+    ----------
+    least : dict
+        By figure: the point where it is least, and the number of points that are as low within the errors.
+    """
+
+    over: list[AxisFigures]
+    held: dict[str, float]
+    shown: list[str]
+    points: list[dict[str, float]]
+    least: dict[str, dict[str, float]]
+    failed: list[dict[str, float | str]]
+    cost: Json
+
+
+ANSWER = SweepFigures

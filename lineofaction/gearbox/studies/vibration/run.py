@@ -27,9 +27,10 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.bearing_forces import LINEAR, forces_of
 from lineofaction.gearbox.studies.computation import Computation, Means
-from lineofaction.gearbox.studies.housing_costs import reduction_costs, reduction_figures
+from lineofaction.gearbox.studies.figures import figures_of
+from lineofaction.gearbox.studies.housing_costs import kept_costs, reduction_costs
 from lineofaction.gearbox.studies.result_file import record_file
-from lineofaction.gearbox.studies.vibration import Inputs
+from lineofaction.gearbox.studies.vibration import Inputs, VibrationFigures
 from lineofaction.gearbox.units import RPM
 
 MM_PER_S = 1e-3
@@ -115,59 +116,50 @@ def check(scene: SceneInput, _inputs: Inputs) -> None:
 def facts(result: HousingVibrationResult) -> Json:
     """Return velocities by order and speed, and contributions where the parts were looked at."""
     found, vibration = result.analysis, result.analysis.vibration
-    surface = np.sqrt(vibration.mean_square_velocity).T / MM_PER_S
-    return {
-        "leading_shaft": found.facts["leading_shaft"],
-        "housing": found.housing,
-        "natural_frequency_hz": result.natural_frequency.tolist(),
-        "highest_valid_frequency_hz": vibration.highest_valid_frequency,
-        "orders_beyond": vibration.order[~np.all(vibration.valid, axis=0)].tolist(),
-        "speed_rpm": (vibration.speed / RPM).tolist(),
-        "order": vibration.order.tolist(),
-        "points": {name: _point(vibration.velocity[k]) for k, name in enumerate(vibration.point)},
-        "surface_mm_per_s": None if found.deflection is None else surface.tolist(),
-        "contributions": {
-            "speed_rpm": float(vibration.speed[found.at_speed]) / RPM,
-            "order": float(vibration.order[found.at_order]),
-            "frequency_hz": float(vibration.frequency[found.at_speed, found.at_order]),
+    return figures_of(
+        VibrationFigures,
+        vibration,
+        found.facts,
+        housing=found.housing,
+        natural_frequency=result.natural_frequency,
+        orders_beyond=vibration.order[~np.all(vibration.valid, axis=0)],
+        points={name: _point(vibration.velocity[k]) for k, name in enumerate(vibration.point)},
+        surface=None if found.deflection is None else np.sqrt(vibration.mean_square_velocity).T,
+        contributions={
+            "speed": vibration.speed[found.at_speed],
+            "order": vibration.order[found.at_order],
+            "frequency": vibration.frequency[found.at_speed, found.at_order],
             "bearings": _contributions(found.bearings, vibration.point),
             "modes": _contributions(found.modes, vibration.point),
         },
-        "forces": found.facts.get("forces", LINEAR),
-        "cpu_seconds": found.facts["seconds"],
-        "reduction_cost": reduction_figures(found.facts),
-        "effect_ledger": found.facts["effect_ledger"],
-    }
+        forces=found.facts.get("forces", LINEAR),
+        reduction_cost=kept_costs(found.facts),
+    )
 
 
 def _point(velocity: ComplexArray) -> Json:
-    """Return the velocities of a point, (3, S, H), as root mean squares in mm/s."""
+    """Return the velocities of a point, (3, S, H), as root mean squares."""
     xyz = np.abs(velocity) / np.sqrt(2.0)
     rms = np.sqrt(np.sum(xyz**2, axis=0))
     return {
-        "velocity_mm_per_s": (rms.T / MM_PER_S).tolist(),
-        "velocity_xyz_mm_per_s": (np.swapaxes(xyz, 1, 2) / MM_PER_S).tolist(),
-        "overall_mm_per_s": (overall(rms) / MM_PER_S).tolist(),
-        "level_db": vibration_level(rms.T).tolist(),
+        "velocity": rms.T,
+        "velocity_xyz": np.swapaxes(xyz, 1, 2),
+        "overall": overall(rms),
+        "level": vibration_level(rms.T),
     }
 
 
 def _contributions(shares: Shares, points: tuple[str, ...]) -> list[Json]:
-    """Return the contributions of bearings or modes; None for what has no frequency or no surface."""
+    """Return the contributions of bearings or modes."""
     return [
         {
             "name": name,
-            "frequency_hz": _number(shares.frequency[p]),
-            "points": {point: float(shares.point[k, p]) for k, point in enumerate(points)},
-            "surface": _number(shares.surface[p]),
+            "frequency": shares.frequency[p],
+            "points": dict(zip(points, shares.point[:, p], strict=True)),
+            "surface": shares.surface[p],
         }
         for p, name in enumerate(shares.name)
     ]
-
-
-def _number(value: float) -> float | None:
-    """Return a number, None if there is none."""
-    return float(value) if np.isfinite(value) else None
 
 
 def _write_shape(result: HousingVibrationResult, _scene: Any, file: Path) -> None:
