@@ -38,8 +38,7 @@ from lineofaction.gearbox.to_rexs.calculated import CALCULATED
 from lineofaction.gearbox.to_rexs.deflected import deflected, left_out
 from lineofaction.gearbox.to_rexs.exported import exported
 from lineofaction.gearbox.units import UM
-from lineofaction.report.document.inputs import file_attributes, read_run
-from lineofaction.report.document.stored_study import read_stored, stored_study
+from lineofaction.report.document.inputs import file_attributes, read_run, read_stored, stored_study
 
 _MOST_POSITIONS = 256
 

@@ -30,7 +30,7 @@ from lineofaction.gearbox.studies.listen.through_housing import SceneHousings
 from lineofaction.report.comparison.compare import named_files
 from lineofaction.report.document.inputs import read_run
 from lineofaction.report.drawing.figure import number, unit_of
-from lineofaction.report.runs.loudest import Loudest, loudest
+from lineofaction.report.runs.levels import Loudest, loudest
 from lineofaction.report.runs.run_view import RunView
 from lineofaction.report.runs.sound import full_scale_of, heard_runs
 

@@ -27,18 +27,22 @@ from lineofaction.gearbox.schemas.flank import FlankPoint
 from lineofaction.gearbox.units import UM
 from lineofaction.report.comparison.compare import compare
 from lineofaction.report.document.content import nominal_force
-from lineofaction.report.document.inputs import Inputs, read_inputs
-from lineofaction.report.document.stored_study import page_beside
+from lineofaction.report.document.inputs import Inputs, page_beside, read_inputs
 from lineofaction.report.document.write import write_page, write_whole
 from lineofaction.report.drawing.figure import number
 from lineofaction.report.drawing.image import png, svg
 from lineofaction.report.drawing.page import Page
 from lineofaction.report.runs.run_view import RunView
-from lineofaction.report.tables.aligned import aligned, headline_load
-from lineofaction.report.tables.data_sheet import data_sheet, data_sheet_json, data_sheet_section
-from lineofaction.report.tables.pair import pair_lead, pair_title
-from lineofaction.report.tables.pair_drawing import pair_drawing
-from lineofaction.report.tables.pair_remarks import pair_remarks
+from lineofaction.report.tables.pair import (
+    data_sheet,
+    data_sheet_json,
+    data_sheet_section,
+    pair_drawing,
+    pair_lead,
+    pair_remarks,
+    pair_title,
+)
+from lineofaction.report.tables.ste import aligned, headline_load
 
 if TYPE_CHECKING:
     from fe_contact.analysis import LoadDistribution

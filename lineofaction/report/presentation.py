@@ -13,7 +13,7 @@ from lineofaction.gearbox.loading import LOADING
 from lineofaction.gearbox.registry import Study
 from lineofaction.report.drawing.figure import Figure, Table
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
-from lineofaction.report.housing_cost_table import cost_tables
+from lineofaction.report.drawing.tables import cost_tables
 from lineofaction.report.runs.dynamic_part import ledger_section
 
 

@@ -21,8 +21,8 @@ from service.routes.scopes import ScopedRoute, needs
 from service.schemas.report import ReportBody
 from service.version import program_tag
 
-FIGURES = "lineofaction.report.document.as_json:stored_figures"
-COMPARISON = "lineofaction.report.comparison.as_json:stored_comparison"
+FIGURES = "lineofaction.report.document.content:stored_figures"
+COMPARISON = "lineofaction.report.comparison.compare:stored_comparison"
 
 router = APIRouter(tags=["results"], route_class=ScopedRoute)
 

@@ -24,7 +24,7 @@ from service.routes.results import FILE, Key, known_result
 from service.routes.scopes import ScopedRoute, needs
 from service.version import program_tag
 
-SOUND = "lineofaction.report.runs.stored_sound:stored_sound"
+SOUND = "lineofaction.report.runs.sound:stored_sound"
 HEARD = ("run", "recording")
 """Kinds of results that have a sound."""
 _NAME = 200  # characters

@@ -14,9 +14,9 @@ from page_visit import Visit, found_inaccessible, opened
 from playwright.sync_api import Browser, Route, expect
 from running_service import until
 
-from lineofaction.report.comparison.as_json import stored_comparison
-from lineofaction.report.document.as_json import stored_figures
-from lineofaction.report.runs.stored_sound import stored_sound
+from lineofaction.report.comparison.compare import stored_comparison
+from lineofaction.report.document.content import stored_figures
+from lineofaction.report.runs.sound import stored_sound
 
 LOUD, QUIET = "a" * 64, "b" * 64
 SHOW = """async ([hash, against]) => {

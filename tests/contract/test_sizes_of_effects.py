@@ -20,8 +20,7 @@ from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.studies.ablate import Inputs
 from lineofaction.gearbox.studies.ablate.run import ablation_of, facts
 from lineofaction.gearbox.studies.computation import Means
-from lineofaction.report.document.as_json import stored_figures
-from lineofaction.report.document.content import page_of
+from lineofaction.report.document.content import page_of, stored_figures
 from lineofaction.report.document.inputs import read_inputs
 from lineofaction.report.drawing.page import html
 from lineofaction.report.studies.ablate import ablation_table

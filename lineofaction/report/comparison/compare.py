@@ -1,4 +1,4 @@
-"""From result files to the page that compares them."""
+"""Comparison of two results, or of one with a measurement, as a page and as plain JSON."""
 
 from __future__ import annotations
 
@@ -17,25 +17,34 @@ from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
 from lineofaction.gearbox.convert.stamp import stamped
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.report.comparison.difference import COLORS, Difference, changed_fields, differences_table
-from lineofaction.report.comparison.measured import MeasuredCurve, MeasuredOrders, averaged, read_measured
+from lineofaction.report.comparison.measured import (
+    COLORS,
+    Difference,
+    MeasuredCurve,
+    MeasuredOrders,
+    averaged,
+    changed_fields,
+    differences_table,
+    read_measured,
+)
 from lineofaction.report.comparison.of_tables import compare_tables
+from lineofaction.report.document.content import of_the_store, page_json
 from lineofaction.report.document.inputs import read_result
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Dash, Figure, FloatArray, Line, Panel, number
 from lineofaction.report.drawing.page import Headline, Page, Section
-from lineofaction.report.runs.levels_over_speed import DEPTH, largest_orders, order_blocks
+from lineofaction.report.runs.levels import DEPTH, largest_orders, order_blocks
 from lineofaction.report.runs.run_view import (
     SCALES,
     RunView,
     Signal,
+    along_direction,
     decibels,
     run_axis,
     same_view,
     shown_signal,
 )
-from lineofaction.report.runs.signal_recording import along_direction
-from lineofaction.report.runs.signal_spectrum import ORDERS, amplitude_spectrum, spectrum_window
+from lineofaction.report.runs.signals import ORDERS, amplitude_spectrum, spectrum_window
 from lineofaction.report.runs.sound import Heard, sound_of
 
 # Runs against each other, and against a measured order spectrum.
@@ -341,3 +350,17 @@ def named_files(files: Sequence[Path]) -> list[tuple[str, Path]]:
     stems = [file.stem for file in files]
     short = len(set(stems)) == len(stems)
     return [(file.stem if short else str(file), file) for file in files]
+
+
+# The comparison of two stored results as plain JSON.
+
+
+Json = dict[str, Any]
+NAMES = ("first", "second")
+
+
+def stored_comparison(inputs: Json) -> Json:
+    """Compare ``{"files": [...]}``, two tables or two runs; work of the live worker."""
+    named = dict(zip(NAMES, map(Path, inputs["files"]), strict=True))
+    with of_the_store():
+        return page_json(compare_results(named, RunView()))

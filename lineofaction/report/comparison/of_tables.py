@@ -9,19 +9,22 @@ import numpy as np
 from fe_contact.ste import Curve, SteDatabase
 from fe_contact.types import Estimate, FloatArray
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.report.comparison.difference import COLORS, Difference, changed_fields, differences_table
 from lineofaction.report.comparison.measured import (
+    COLORS,
     PER_PITCH,
     Aligned,
+    Difference,
     MeasuredCurve,
     MeasuredOrders,
     aligned_to,
+    changed_fields,
+    differences_table,
 )
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Table, number
 from lineofaction.report.drawing.page import Headline, Page, Section
-from lineofaction.report.tables.aligned import aligned
 from lineofaction.report.tables.pair import pair_title
+from lineofaction.report.tables.ste import aligned
 
 HARMONICS = 3  # in the table of differences
 SHOWN_HARMONICS = 8

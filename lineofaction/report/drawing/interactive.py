@@ -28,8 +28,7 @@ from lineofaction.report.drawing.figure import (
     repeats_below,
     unit_of,
 )
-from lineofaction.report.drawing.line_labels import line_labels, vertical_limits
-from lineofaction.report.drawing.words import rewritten
+from lineofaction.report.drawing.placing import line_labels, rewritten, vertical_limits
 
 # Heat maps and strokes as plotly.js traces.
 

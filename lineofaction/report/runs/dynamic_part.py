@@ -19,25 +19,39 @@ from dynamics.results.mesh_figures import (
     planet_load_sharing,
 )
 from lineofaction.report.drawing import palette
-from lineofaction.report.drawing.effects_section import EffectRow, effects_section
-from lineofaction.report.drawing.envelope import envelope
-from lineofaction.report.drawing.facts import facts
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Table, number, unit_of
-from lineofaction.report.drawing.mode_bars import mode_bars
-from lineofaction.report.drawing.mode_lines import ModeLine, mode_lines, whirling
+from lineofaction.report.drawing.modes import ModeLine, mode_bars, mode_lines, whirling
 from lineofaction.report.drawing.page import Headline, Part, Section
-from lineofaction.report.drawing.sampling import peak_table, sampling_table
-from lineofaction.report.runs.campbell import campbell, frequency_blocks, top_frequency
-from lineofaction.report.runs.dynamic_error import dynamic_error
-from lineofaction.report.runs.level_map import DEPTH, level_map
-from lineofaction.report.runs.levels_over_speed import MAPPED, levels_over_speed, order_blocks
-from lineofaction.report.runs.loudest import has_orders
-from lineofaction.report.runs.octave_bands import octave_bands
-from lineofaction.report.runs.run_series import run_series, validity
-from lineofaction.report.runs.run_view import RunView, Signal, run_axis, shown_signal
-from lineofaction.report.runs.signal_over_time import signal_over_time
-from lineofaction.report.runs.signal_recording import along_direction
-from lineofaction.report.runs.signal_spectrum import TOO_SHORT, has_spectrum, signal_spectrum
+from lineofaction.report.drawing.placing import envelope
+from lineofaction.report.drawing.tables import EffectRow, effects_section, facts, peak_table, sampling_table
+from lineofaction.report.runs.levels import MAP_DEPTH as DEPTH
+from lineofaction.report.runs.levels import (
+    MAPPED,
+    campbell,
+    frequency_blocks,
+    has_orders,
+    level_map,
+    levels_over_speed,
+    order_blocks,
+    top_frequency,
+)
+from lineofaction.report.runs.run_view import (
+    RunView,
+    Signal,
+    along_direction,
+    run_axis,
+    run_series,
+    shown_signal,
+    validity,
+)
+from lineofaction.report.runs.signals import (
+    TOO_SHORT,
+    dynamic_error,
+    has_spectrum,
+    octave_bands,
+    signal_over_time,
+    signal_spectrum,
+)
 from lineofaction.report.runs.sound import Heard, sound_of
 
 # Load sharing of planets over a run.

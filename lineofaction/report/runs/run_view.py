@@ -1,4 +1,4 @@
-"""What of a run its page shows: a quantity, where it is taken, which orders, by which window, rms or peak."""
+"""What of a run is shown: its view, its signal along one direction, and its series."""
 
 from __future__ import annotations
 
@@ -8,13 +8,16 @@ from typing import Literal
 import numpy as np
 
 from bounds import one_of
-from dynamics.orders import highest_valid_order
+from dynamics.acoustics import Recording, principal_direction, series_recording
+from dynamics.acoustics.recording import SAMPLE_RATE
+from dynamics.errors import InputError
+from dynamics.orders import highest_valid_order, order_frequency
 from dynamics.orders.spectrum import WINDOWS
 from dynamics.results import RunResult
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.studies.listen.sound_figures import driving_shaft
 from lineofaction.gearbox.studies.listen.through_housing import DIRECTIONS, PRINCIPAL
-from lineofaction.report.drawing.figure import Axis, FloatArray
+from lineofaction.report.drawing.figure import Axis, FloatArray, number
 
 MONOTONE = 0.2  # least change of speed over the run, of the highest, for a speed axis
 SCALES = {"rms": float(np.sqrt(0.5)), "peak": 1.0}
@@ -218,3 +221,195 @@ def speed_axis(time: FloatArray, speed: FloatArray) -> tuple[Axis, FloatArray]:
 def decibels(values: FloatArray, floor: float) -> FloatArray:
     """Return levels in dB re 1 unit, of nothing below `floor`."""
     return np.asarray(20.0 * np.log10(np.maximum(values, max(floor, 1e-300))))
+
+
+# The series behind the figures of a run: one mesh with its driving gear.
+
+
+@dataclass(frozen=True)
+class RunSeries:
+    """Time series of a run, all on one uniform grid of n samples.
+
+    Attributes
+    ----------
+    time : (n,) array
+        s.
+    speed_rpm : (n,) array
+        Speed of the driving gear, without sign.
+    mesh_frequency : (n,) array
+        By which orders count, Hz.
+    position : (n,) array
+        Travel of the driving gear in base pitches, without gears of the shaft in turns, not wrapped.
+    dynamic_error, static_error : (n,) arrays
+        Transmission errors in m; the static one is the table's at the nominal force.
+    mesh_force, least_force, largest_force : (n,) arrays
+        Transverse, N; the extremes around each sample are those of the unfiltered force.
+    nominal_force : float
+        Transverse mesh force in N that the load asks for.
+    """
+
+    time: FloatArray
+    speed_rpm: FloatArray
+    mesh_frequency: FloatArray
+    position: FloatArray
+    dynamic_error: FloatArray
+    static_error: FloatArray
+    mesh_force: FloatArray
+    least_force: FloatArray
+    largest_force: FloatArray
+    nominal_force: float
+
+
+def run_series(run: RunResult, mesh: int = 0) -> RunSeries:
+    """Take the series of one mesh out of a run; of one without meshes those of its leading shaft alone."""
+    shaft = run.shaft.index(driving_shaft(run, mesh))
+    speed, frequency = np.abs(run.speed[shaft]) * 30.0 / np.pi, order_frequency(run, mesh)
+    if not run.mesh:
+        turns = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(run.time) * (frequency[1:] + frequency[:-1]))])
+        none = np.zeros(run.time.size)
+        return RunSeries(run.time, speed, frequency, turns, none, none, none, none, none, 0.0)
+    return RunSeries(
+        time=run.time,
+        speed_rpm=speed,
+        mesh_frequency=frequency,
+        position=np.abs(np.unwrap(run.position[mesh], period=1.0)),
+        dynamic_error=run.dynamic_transmission_error[mesh],
+        static_error=run.static_transmission_error[mesh],
+        mesh_force=run.mesh_force[mesh],
+        least_force=run.least_mesh_force[mesh],
+        largest_force=run.largest_mesh_force[mesh],
+        nominal_force=float(run.nominal_force[mesh]),
+    )
+
+
+def validity(valid_order: int, top: float, of: str = "mesh") -> str:
+    """Say up to which order of a `mesh` or `shaft` a picture holds at its highest frequency `top`, Hz."""
+    return f"Valid to {of} order {valid_order} at the highest {of} frequency, {number(top, 4)} Hz."
+
+
+def counted_by(run: RunResult) -> str:
+    """Say what orders of a run are multiples of: "mesh", or "shaft" where it has none."""
+    return "mesh" if run.mesh else "shaft"
+
+
+# A few base pitches of a run at the moment it passes a speed.
+
+
+PITCHES = 3
+STEADY = 0.1
+"""Greatest change of speed over a run, of the highest, at which it has one speed alone."""
+
+
+def window_speeds(speed: FloatArray, fractions: tuple[float, ...] = (0.1, 0.4, 0.9)) -> tuple[float, ...]:
+    """Choose speeds to look at: fractions of the highest one that the run passes, rounded but never above it.
+
+    Of a run at one speed, and of one that passes none of them, that at its end.
+    """
+    highest, lowest = float(np.max(np.abs(speed))), float(np.min(np.abs(speed)))
+    chosen = [_rounded(fraction * highest, highest) for fraction in fractions]
+    passed = tuple(dict.fromkeys(value for value in chosen if value > 0.0 and value >= lowest))
+    return (_at_end(speed),) if is_steady(speed) or not passed else passed
+
+
+def is_steady(speed: FloatArray) -> bool:
+    """Return whether a run has one speed alone."""
+    size = np.abs(speed)
+    return bool(np.ptp(size) <= STEADY * np.max(size))
+
+
+def _at_end(speed: FloatArray) -> float:
+    """Return the last speed, to four digits."""
+    return float(f"{abs(speed[-1]):.4g}")
+
+
+def _rounded(value: float, highest: float) -> float:
+    """Round to one digit, to two where that would exceed the highest."""
+    short = float(f"{value:.1g}")
+    return short if short <= highest else float(f"{value:.2g}")
+
+
+def speed_window(position: FloatArray, speed: FloatArray, target: float, pitches: int = PITCHES) -> slice:
+    """Return the samples of `pitches` whole base pitches around the first passing of the speed `target`.
+
+    Of a run at one speed the last ones, where what began with it has died away.
+
+    Parameters
+    ----------
+    position : (n,) array
+        Position of the driving gear in base pitches, not wrapped, monotone.
+    speed : (n,) array
+        Speed at the samples; its magnitude counts.
+    target : float
+        In the unit of `speed`.
+    """
+    traveled = np.abs(position - position[0])
+    passing = int(np.argmax(np.abs(speed) >= target)) or int(np.argmin(np.abs(np.abs(speed) - target)))
+    if is_steady(speed):
+        passing = traveled.size - 1
+    first = min(np.floor(traveled[passing] - pitches / 2), np.floor(traveled[-1]) - pitches)
+    start = int(np.searchsorted(traveled, max(first, 0.0)))
+    stop = int(np.searchsorted(traveled, max(first, 0.0) + pitches, side="right"))
+    return slice(start, max(stop, start + 2))
+
+
+# The shown quantity of a run along one direction: as orders are made of it, and as a recording.
+
+
+ROUNDING = 1e-12  # of the largest value: what varies less is constant
+
+
+def along_direction(run: RunResult, signal: Signal) -> RunResult:
+    """Return the run with the quantity along the signal's direction alone, (rows, 1, T); whole without one.
+
+    Raises
+    ------
+    BadInput
+        The direction is the principal one of what does not vary.
+    """
+    if not signal.direction:
+        return run
+    values = getattr(run, signal.quantity.series)
+    along = np.einsum("c,bct->bt", _axis(run, signal)[0], values)[:, None]
+    return replace(run, **{signal.quantity.series: along})
+
+
+def signal_recording(run: RunResult, signal: Signal, sample_rate: int = SAMPLE_RATE) -> Recording:
+    """Return what is shown of a run as a recording in the signal's unit; of bearings along one direction.
+
+    Raises
+    ------
+    BadInput
+        It does not vary, or the run is shorter than 4 samples.
+    """
+    values, where = getattr(run, signal.quantity.series)[signal.row], ""
+    if values.ndim == 2:
+        axis, where = _axis(run, signal)
+        values = axis @ values
+    name, unit = f"{signal.name}{where}; no sound pressure", signal.quantity.unit
+    try:
+        recording = series_recording(
+            signal.quantity.factor * values, run.sample_rate, name, unit, sample_rate
+        )
+    except InputError as error:
+        raise _silent(signal, error) from None
+    if not recording.peak > ROUNDING * np.abs(signal.quantity.factor * values).max():
+        raise _silent(signal, "It is silent.")
+    return recording
+
+
+def _axis(run: RunResult, signal: Signal) -> tuple[FloatArray, str]:
+    """Return the direction (3,) of a vector that is heard, and what to say of it beside the signal's name."""
+    if signal.direction not in ("", PRINCIPAL):
+        return np.eye(3)["xyz".index(signal.direction)], ""
+    values = getattr(run, signal.quantity.series)[signal.row]
+    try:
+        axis, share = principal_direction(values, run.sample_rate)
+    except InputError as error:
+        raise _silent(signal, error) from None
+    x, y, z = axis
+    joint = "," if signal.direction else " along"
+    return axis, f"{joint} ({x:.3f}, {y:.3f}, {z:.3f}), {number(100.0 * share, 3)} % of its variance"
+
+
+def _silent(signal: Signal, reason: object) -> BadInput:
+    return BadInput.of("quantity", signal.name, "one that varies over the run", f"{reason}")

@@ -8,7 +8,7 @@ from fe_contact.analysis.studies.ablation import Ablation, EffectAblation
 from fe_contact.effects.influence.influence import TRIFLE, Influence, signed
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Dash, Line, Note, Panel, Table, number
-from lineofaction.report.drawing.note_places import placed
+from lineofaction.report.drawing.placing import placed
 from lineofaction.report.studies.ablate_look import Look, over_orders
 
 _HEAD = (

@@ -9,13 +9,16 @@ from fe_contact.analysis import LoadDistribution
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.effect_lines import assumption_lines
 from lineofaction.gearbox.units import UM
-from lineofaction.report.drawing.facts import facts
 from lineofaction.report.drawing.figure import Figure, number
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
+from lineofaction.report.drawing.tables import facts
 from lineofaction.report.presentation import Presentation
-from lineofaction.report.tables.contact_lines import contact_lines
-from lineofaction.report.tables.contact_pattern import contact_pattern_figure
-from lineofaction.report.tables.face_distribution import line_load_figure, load_centroid_figure
+from lineofaction.report.tables.flanks import (
+    contact_lines,
+    contact_pattern_figure,
+    line_load_figure,
+    load_centroid_figure,
+)
 from lineofaction.report.tables.pair import pair_lead, pair_title
 from lineofaction.report.tables.static_part import case_tables, contact_effects, edge_words
 

@@ -12,8 +12,8 @@ from dynamics.accuracy import Frontier as SceneFrontier
 from fe_contact.analysis.studies.frontier import Frontier
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Note, Panel, Table, number
-from lineofaction.report.drawing.note_places import placed
 from lineofaction.report.drawing.page import Headline, Page, Section
+from lineofaction.report.drawing.placing import placed
 from lineofaction.report.presentation import Presentation
 from lineofaction.report.studies import frontier_full_contact as full_contact
 from lineofaction.report.studies.frontier_peer import Peer

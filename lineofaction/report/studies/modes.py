@@ -21,9 +21,9 @@ from lineofaction.report.drawing.figure import (
     Table,
     number,
 )
-from lineofaction.report.drawing.mode_bars import mode_bars
+from lineofaction.report.drawing.modes import mode_bars
 from lineofaction.report.drawing.page import Headline
-from lineofaction.report.housing_cost_table import cost_tables
+from lineofaction.report.drawing.tables import cost_tables
 from lineofaction.report.presentation import Presentation, dynamics_page
 
 RPM = np.pi / 30.0

@@ -10,7 +10,7 @@ from dynamics.noise import LoudPoint, RadiatedSound, loudest
 from lineofaction.gearbox.convert.run_effects import model_lines
 from lineofaction.report.drawing.figure import Figure, Table, number
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
-from lineofaction.report.housing_cost_table import cost_tables
+from lineofaction.report.drawing.tables import cost_tables
 from lineofaction.report.presentation import Presentation, dynamics_page
 from lineofaction.report.studies.bearing_force_words import force_words, of_run
 from lineofaction.report.studies.noise_drawings import (

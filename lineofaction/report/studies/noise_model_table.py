@@ -8,7 +8,7 @@ from typing import Any
 from dynamics.noise import RadiatedSound
 from lineofaction.gearbox.units import RPM
 from lineofaction.report.drawing.figure import Table, number
-from lineofaction.report.housing_cost_table import amount, gigabytes
+from lineofaction.report.drawing.tables import amount, gigabytes
 
 Json = dict[str, Any]
 HEAD = ("model", "level, dB", "stated error, dB", "CPU s", "CPU s predicted", "GB predicted")

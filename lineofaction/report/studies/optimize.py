@@ -26,7 +26,7 @@ from lineofaction.report.drawing.figure import (
 )
 from lineofaction.report.drawing.page import Headline, Page, Section
 from lineofaction.report.presentation import Presentation
-from lineofaction.report.tables.harris_map import MOST_CURVES, HarrisScale, harris_panel
+from lineofaction.report.tables.ste import MOST_CURVES, HarrisScale, harris_panel
 
 _POSITION = "position, base pitches"
 

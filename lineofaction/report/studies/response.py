@@ -12,7 +12,7 @@ from lineofaction.gearbox.convert.run_effects import model_lines
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Table, number
 from lineofaction.report.drawing.page import Headline
-from lineofaction.report.housing_cost_table import cost_tables
+from lineofaction.report.drawing.tables import cost_tables
 from lineofaction.report.presentation import Presentation, dynamics_page
 from lineofaction.report.studies.response_power_figure import loses_power, power_figure, power_table
 

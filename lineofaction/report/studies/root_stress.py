@@ -11,9 +11,9 @@ from bounds import engineering
 from lineofaction.gearbox.convert.effect_lines import assumption_lines
 from lineofaction.gearbox.studies.root_stress.run import GEARS, Roots, root_stress_json
 from lineofaction.report.drawing import palette
-from lineofaction.report.drawing.facts import facts
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Reference, Table, number
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
+from lineofaction.report.drawing.tables import facts
 from lineofaction.report.presentation import Presentation
 
 Json = dict[str, Any]

@@ -24,7 +24,7 @@ from lineofaction.report.drawing.figure import (
     number,
 )
 from lineofaction.report.drawing.page import Headline
-from lineofaction.report.housing_cost_table import cost_tables
+from lineofaction.report.drawing.tables import cost_tables
 from lineofaction.report.presentation import Presentation, dynamics_page
 
 RPM = np.pi / 30.0

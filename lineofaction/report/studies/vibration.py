@@ -17,7 +17,7 @@ from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Bars, Figure, Line, Panel, Reference, Table, number
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
 from lineofaction.report.drawing.surface_view import surface_panels
-from lineofaction.report.housing_cost_table import cost_tables
+from lineofaction.report.drawing.tables import cost_tables
 from lineofaction.report.presentation import Presentation, dynamics_page
 from lineofaction.report.studies.bearing_force_words import force_words, row_axis
 

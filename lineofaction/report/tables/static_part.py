@@ -13,11 +13,26 @@ from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
 from lineofaction.gearbox.convert.effect_sizes import by_size, influence_place, influence_words, trifles_title
 from lineofaction.report.drawing import palette
-from lineofaction.report.drawing.effects_section import EffectRow, effect_table, effects_section
-from lineofaction.report.drawing.facts import facts, records, side_by_side
 from lineofaction.report.drawing.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Table, number
 from lineofaction.report.drawing.page import Headline, Part, Section
-from lineofaction.report.tables.aligned import (
+from lineofaction.report.drawing.tables import (
+    EffectRow,
+    effect_table,
+    effects_section,
+    facts,
+    records,
+    side_by_side,
+)
+from lineofaction.report.tables.over_torque import (
+    budget_figure,
+    deviation_curves,
+    has_deviations,
+    load_sharing,
+    mesh_stiffness,
+    ripple_over_torque,
+)
+from lineofaction.report.tables.pair import data_sheet_section, pair_of
+from lineofaction.report.tables.ste import (
     aligned_index,
     headline_load,
     load_curve,
@@ -26,16 +41,9 @@ from lineofaction.report.tables.aligned import (
     position_axis,
     shown_loads,
     shown_rows,
+    ste_curves,
+    ste_spectrum,
 )
-from lineofaction.report.tables.data_sheet import data_sheet_section
-from lineofaction.report.tables.deflection_budget import budget_figure
-from lineofaction.report.tables.deviation_curves import deviation_curves, has_deviations
-from lineofaction.report.tables.load_sharing import load_sharing
-from lineofaction.report.tables.mesh_stiffness import mesh_stiffness
-from lineofaction.report.tables.pair import pair_of
-from lineofaction.report.tables.ripple_over_torque import ripple_over_torque
-from lineofaction.report.tables.ste_curves import ste_curves
-from lineofaction.report.tables.ste_spectrum import ste_spectrum
 
 # Position of the load along the face, and the largest pressure, over position.
 

@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 from dynamics.work_cost import WorkCost
 from lineofaction.cli.commands import app
-from lineofaction.report.housing_cost_table import amount, cost_tables
+from lineofaction.report.drawing.tables import amount, cost_tables
 
 STUDIES: dict[str, tuple[str, ...]] = {
     "modes": (),

@@ -11,9 +11,9 @@ import pytest
 from fe_contact.analysis import LoadDistribution
 from fe_contact.ste import SteDatabase
 from lineofaction.report.drawing.figure import Panel
-from lineofaction.report.tables.face_distribution import line_load_figure
-from lineofaction.report.tables.load_sharing import load_sharing
-from lineofaction.report.tables.ste_curves import ste_curves
+from lineofaction.report.tables.flanks import line_load_figure
+from lineofaction.report.tables.over_torque import load_sharing
+from lineofaction.report.tables.ste import ste_curves
 
 
 def of_high_contact_ratio(database: SteDatabase, more: int = 1, helix: float = 0.0) -> SteDatabase:

@@ -14,9 +14,9 @@ from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.report.comparison.compare import compare, compare_runs
-from lineofaction.report.comparison.difference import Difference
 from lineofaction.report.comparison.measured import (
     PER_PITCH,
+    Difference,
     MeasuredCurve,
     MeasuredOrders,
     aligned_to,

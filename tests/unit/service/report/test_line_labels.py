@@ -15,7 +15,7 @@ from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, legend_names
 from lineofaction.report.drawing.image import _panel_sheet
 from lineofaction.report.drawing.interactive import plotly_figure
-from lineofaction.report.drawing.line_labels import line_labels, spread
+from lineofaction.report.drawing.placing import line_labels, spread
 
 X = np.array([0.0, 1.0])
 HEIGHT = 0.11

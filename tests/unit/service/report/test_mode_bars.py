@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lineofaction.report.drawing import palette
-from lineofaction.report.drawing.mode_bars import OTHERS, largest_parts, mode_bars
+from lineofaction.report.drawing.modes import OTHERS, largest_parts, mode_bars
 
 SHARES = [{"input lateral": 0.7, "output torsional": 0.3}, {"output torsional": 0.6}]
 

@@ -19,7 +19,7 @@ from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Bars, Figure, HeatMap, Line, Note, Panel, Reference
 from lineofaction.report.drawing.image import _drawable, _panel_sheet, png
 from lineofaction.report.drawing.interactive import plotly_figure
-from lineofaction.report.drawing.words import rewritten
+from lineofaction.report.drawing.placing import rewritten
 
 X = np.linspace(0.0, 2.0, 5)
 

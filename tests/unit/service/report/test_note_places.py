@@ -6,7 +6,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from lineofaction.report.drawing.figure import Axis, Line, Note, Panel
 from lineofaction.report.drawing.image import _panel_sheet
-from lineofaction.report.drawing.note_places import placed
+from lineofaction.report.drawing.placing import placed
 
 X, Y = Axis("time, s", "log", (1e-3, 1e5)), Axis("error, %", "log")
 RANGE = (0.01, 100.0)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fe_contact.ste import SteDatabase
-from lineofaction.report.tables.deviation_curves import deviation_curves, has_deviations
+from lineofaction.report.tables.over_torque import deviation_curves, has_deviations
 from lineofaction.report.tables.static_part import face_load, has_face_load, static_results
 
 SKEW = np.array([-20e-6, 0.0, 40e-6])

@@ -11,8 +11,7 @@ from fe_contact.analysis import Frontier
 from fe_contact.analysis.studies.frontier import FidelityResult
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.studies.frontier.run import RUN
-from lineofaction.report.document.as_json import page_json, stored_figures
-from lineofaction.report.document.content import page_of
+from lineofaction.report.document.content import page_json, page_of, stored_figures
 from lineofaction.report.document.inputs import read_inputs
 from lineofaction.report.studies.frontier import frontier_page
 

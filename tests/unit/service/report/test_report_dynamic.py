@@ -8,19 +8,18 @@ import pytest
 from dynamics.results import RunResult
 from dynamics.types import RunStatus
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.report.runs.dynamic_error import dynamic_error
 from lineofaction.report.runs.dynamic_part import (
     dynamic_alarms,
     dynamic_headlines,
     dynamic_making,
     dynamic_results,
 )
-from lineofaction.report.runs.run_series import run_series
-from lineofaction.report.runs.run_view import RunView, shown_signal
-from lineofaction.report.runs.signal_over_time import signal_over_time
-from lineofaction.report.runs.signal_spectrum import (
+from lineofaction.report.runs.run_view import RunView, run_series, shown_signal
+from lineofaction.report.runs.signals import (
     amplitude_spectrum,
+    dynamic_error,
     order_amplitudes,
+    signal_over_time,
     signal_spectrum,
     spectrum_window,
 )

@@ -10,9 +10,9 @@ import pytest
 from dynamics.results import RunResult
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.problems import BadInput, DamagedFile
-from lineofaction.report.comparison.as_json import stored_comparison
+from lineofaction.report.comparison.compare import stored_comparison
 from lineofaction.report.document import write_report
-from lineofaction.report.document.as_json import stored_figures
+from lineofaction.report.document.content import stored_figures
 from lineofaction.report.document.inputs import read_inputs
 
 Work = Callable[[dict[str, Any]], Any]

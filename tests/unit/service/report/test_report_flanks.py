@@ -15,9 +15,13 @@ from lineofaction.report.drawing.figure import HeatMap, Panel, Strokes
 from lineofaction.report.drawing.image import png
 from lineofaction.report.drawing.interactive import plotly_figure
 from lineofaction.report.studies.flank import operating_point, page
-from lineofaction.report.tables.contact_lines import contact_lines
-from lineofaction.report.tables.contact_pattern import contact_pattern_figure, isolines
-from lineofaction.report.tables.face_distribution import line_load_figure, load_centroid_figure
+from lineofaction.report.tables.flanks import (
+    contact_lines,
+    contact_pattern_figure,
+    isolines,
+    line_load_figure,
+    load_centroid_figure,
+)
 
 
 def panels(figure: object) -> tuple[Panel, ...]:

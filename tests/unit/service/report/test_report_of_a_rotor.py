@@ -13,10 +13,13 @@ from dynamics.orders import highest_valid_order, order_frequency
 from dynamics.results import RunResult
 from lineofaction.cli.commands import app
 from lineofaction.report.document import write_report
-from lineofaction.report.runs.run_series import run_series
-from lineofaction.report.runs.run_view import RunView, shown_signal
-from lineofaction.report.runs.signal_over_time import signal_over_time
-from lineofaction.report.runs.signal_spectrum import order_amplitudes, signal_spectrum, spectrum_window
+from lineofaction.report.runs.run_view import RunView, run_series, shown_signal
+from lineofaction.report.runs.signals import (
+    order_amplitudes,
+    signal_over_time,
+    signal_spectrum,
+    spectrum_window,
+)
 
 ROTOR = Path(__file__).parents[4] / "examples" / "jeffcott_scene.toml"
 SPEED = 3843.5 / 60.0  # turns per second

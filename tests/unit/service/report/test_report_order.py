@@ -12,9 +12,7 @@ from fe_contact.ste import SteDatabase
 from lineofaction.report.document.content import page_of
 from lineofaction.report.document.inputs import Inputs, read_inputs
 from lineofaction.report.drawing.page import Part
-from lineofaction.report.tables.data_sheet import data_sheet_section
-from lineofaction.report.tables.pair import pair_of
-from lineofaction.report.tables.pair_remarks import pair_remarks
+from lineofaction.report.tables.pair import data_sheet_section, pair_of, pair_remarks
 
 
 def test_results_stand_before_effects_accuracy_input_and_receipts(

@@ -12,7 +12,6 @@ from dynamics.loads import TimeLaw
 from dynamics.results import RunResult
 from dynamics.simulation import simulate
 from lineofaction.report.drawing.figure import HeatMap, Panel
-from lineofaction.report.runs.campbell import campbell, frequency_blocks
 from lineofaction.report.runs.dynamic_part import (
     dynamic_factor_figure,
     dynamic_results,
@@ -20,10 +19,10 @@ from lineofaction.report.runs.dynamic_part import (
     planet_sharing,
     sideband_tables,
 )
-from lineofaction.report.runs.level_map import DEPTH
-from lineofaction.report.runs.levels_over_speed import levels_over_speed, order_blocks
-from lineofaction.report.runs.octave_bands import octave_bands
+from lineofaction.report.runs.levels import MAP_DEPTH as DEPTH
+from lineofaction.report.runs.levels import campbell, frequency_blocks, levels_over_speed, order_blocks
 from lineofaction.report.runs.run_view import RunView, shown_signal
+from lineofaction.report.runs.signals import octave_bands
 
 MODES = {
     "frequency": [0.0, 300.0, 301.0, 900.0],

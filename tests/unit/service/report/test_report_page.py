@@ -8,9 +8,9 @@ from itertools import pairwise
 import numpy as np
 
 from lineofaction.report.drawing import palette
-from lineofaction.report.drawing.facts import facts, records
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Table
 from lineofaction.report.drawing.page import Headline, Page, Section, html
+from lineofaction.report.drawing.tables import facts, records
 
 PNG = b"\x89PNG\r\n\x1a\n"
 HOSTILE = '</script><script src="http://example.org/x.js"></script>'

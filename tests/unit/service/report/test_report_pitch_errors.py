@@ -9,10 +9,9 @@ import pytest
 
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.answers import curve_json, metadata_json
-from lineofaction.report.tables.aligned import pitches_shown, position_axis, shown_rows, ste_shown
-from lineofaction.report.tables.load_sharing import load_sharing, pair_shares
+from lineofaction.report.tables.over_torque import load_sharing, pair_shares
 from lineofaction.report.tables.static_part import face_load, static_results
-from lineofaction.report.tables.ste_curves import ste_curves
+from lineofaction.report.tables.ste import pitches_shown, position_axis, shown_rows, ste_curves, ste_shown
 
 Tables = Callable[..., SteDatabase]
 

@@ -10,13 +10,16 @@ from fe_contact.geometry import Gear, GearPair
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.fields import DIMENSIONS
 from lineofaction.report.drawing.figure import Panel, number
-from lineofaction.report.tables.aligned import shown_loads, ste_shown
-from lineofaction.report.tables.load_sharing import load_sharing, pair_shares
-from lineofaction.report.tables.mesh_stiffness import mesh_stiffness, secant_stiffness
+from lineofaction.report.tables.over_torque import (
+    load_sharing,
+    mesh_stiffness,
+    pair_shares,
+    ripple_over_torque,
+    secant_stiffness,
+)
 from lineofaction.report.tables.pair import iso_mesh_stiffness
-from lineofaction.report.tables.ripple_over_torque import ripple_over_torque
 from lineofaction.report.tables.static_part import static_results
-from lineofaction.report.tables.ste_curves import ste_curves
+from lineofaction.report.tables.ste import shown_loads, ste_curves, ste_shown
 
 
 def test_two_pitches_repeat_the_period(database: SteDatabase) -> None:

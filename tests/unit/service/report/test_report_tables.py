@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from fe_contact.ste import SteDatabase
-from lineofaction.report.drawing.facts import facts, side_by_side
 from lineofaction.report.drawing.page import _is_number
+from lineofaction.report.drawing.tables import facts, side_by_side
 from lineofaction.report.tables.static_part import (
     case_tables,
     contact_effects,

@@ -21,12 +21,12 @@ from lineofaction.cli.commands import app
 from lineofaction.cli.output import console
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import STUDIES
-from lineofaction.report.comparison.as_json import stored_comparison
-from lineofaction.report.document.as_json import stored_figures
-from lineofaction.report.document.stored_study import study_page
-from lineofaction.report.runs.signal_spectrum import TOO_SHORT
+from lineofaction.report.comparison.compare import stored_comparison
+from lineofaction.report.document.content import stored_figures
+from lineofaction.report.document.inputs import study_page
+from lineofaction.report.runs.signals import TOO_SHORT
 
-STORED = "lineofaction.report.document.stored_study"
+STORED = "lineofaction.report.document.inputs"
 
 SHAPES = {series.name: series.dimensions for series in SERIES}
 

@@ -36,13 +36,12 @@ from fe_contact.types import FloatArray
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import STUDIES, Study
 from lineofaction.gearbox.schemas.warning import InputWarning
-from lineofaction.report.document.as_json import page_json, stored_figures
-from lineofaction.report.document.content import page_of
+from lineofaction.report.document.content import page_json, page_of, stored_figures
 from lineofaction.report.document.inputs import read_inputs
 from lineofaction.report.presentation import presentation_of
 from lineofaction.report.studies.ablate import ablation_page
 from lineofaction.report.studies.optimize import ripple_table
-from lineofaction.report.tables.harris_map import MOST_CURVES
+from lineofaction.report.tables.ste import MOST_CURVES
 from model_studies.record_file import write_record
 
 RELIEF = FlankModification(tip_relief=15e-6, tip_relief_length=1.2e-3)

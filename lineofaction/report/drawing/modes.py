@@ -1,7 +1,8 @@
-"""The modes of a run over its speed: whirl modes where gyroscopic terms are on, else those at rest."""
+"""Natural modes in plots: frequencies over speed as lines, parts of a mode as bars."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from dynamics.results import RunResult
 from lineofaction.report.drawing import palette
-from lineofaction.report.drawing.figure import FloatArray, Table, number
+from lineofaction.report.drawing.figure import Axis, Bars, FloatArray, Panel, Table, number
 
 SHOWN_MODES, LEAST_DISTANCE, CIRCULAR = 8, 0.01, 0.1
 MOVES = "moves, share of the kinetic energy"
@@ -157,3 +158,45 @@ def _meeting(mesh: FloatArray, gap: FloatArray) -> float | None:
 
 def _met(met: list[tuple[int, float]]) -> str:
     return ", ".join(f"{k} at {number(where, 3)} Hz" for k, where in met) or "none"
+
+
+# Modes as bars: how the energy of each is shared among parts.
+
+
+OTHERS = "others"
+_WIDTH = 0.62
+
+
+def mode_bars(modes: Sequence[str], shares: Sequence[Mapping[str, float]], energy: str) -> Panel:
+    """Draw a bar for each mode, made up of its parts' shares of an energy.
+
+    Parameters
+    ----------
+    modes : sequence of str, (a,)
+        Names, below the bars.
+    shares : sequence of mapping of str to float, (a,)
+        By part, each at least 0; the rest up to 1 is drawn as others.
+    energy : str
+        Of the label.
+    """
+    place, base = np.arange(len(modes), dtype=float), np.zeros(len(modes))
+    bars = []
+    for index, part in enumerate(largest_parts(shares)):
+        top = base + [100.0 * of.get(part, 0.0) for of in shares]
+        bars.append(Bars(part, place, top, base, _WIDTH, palette.CATEGORIES[index]))
+        base = top
+    rest = np.where(base > 0.0, 100.0, 0.0)
+    if np.any(rest > base + 0.5):
+        bars.append(Bars(OTHERS, place, rest, base, _WIDTH, palette.GRID))
+    names = tuple(zip(map(float, place), modes, strict=True))
+    x = Axis("mode", limits=(-0.6, len(modes) - 0.4), names=names)
+    return Panel(x, Axis(f"share of the {energy}, %", limits=(0.0, 100.0)), bars=tuple(bars))
+
+
+def largest_parts(shares: Sequence[Mapping[str, float]]) -> list[str]:
+    """Return the parts that have most of the energy of all modes together, as many as there are colors."""
+    total: dict[str, float] = {}
+    for of in shares:
+        for part, share in of.items():
+            total[part] = total.get(part, 0.0) + share
+    return sorted(total, key=lambda part: -total[part])[: len(palette.CATEGORIES)]

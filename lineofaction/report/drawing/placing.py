@@ -1,0 +1,198 @@
+"""Points, notes and labels of a plot: how many, where, and how its words are written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import fields, is_dataclass, replace
+from typing import Any, NamedTuple, TypeVar, cast
+
+import numpy as np
+
+from lineofaction.report.drawing.figure import Axis, FloatArray, Note, Panel
+
+
+def envelope(time: FloatArray, values: FloatArray, columns: int = 1200) -> tuple[FloatArray, FloatArray]:
+    """Keep the lowest and the highest sample of each of `columns` stretches, in their order in time.
+
+    A line through them covers the same pixels as the whole series. A short series comes back whole.
+    """
+    size = len(time)
+    if size <= 2 * columns:
+        return time, values
+    edges = np.linspace(0, size, columns + 1).astype(int)
+    kept = [edges[k] + np.sort(_extremes(values[edges[k] : edges[k + 1]])) for k in range(columns)]
+    index = np.unique(np.concatenate([[0], *kept, [size - 1]]))
+    return time[index], values[index]
+
+
+def _extremes(values: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
+    return np.array([np.argmin(values), np.argmax(values)], dtype=np.int64)
+
+
+# Short texts beside points that lie close together: none covers another, nor a point.
+
+
+# of an 8 point text in a panel of the usual size, in parts of its width and height
+_CHARACTER, _HEIGHT, _GAP, _RISE = 0.0072, 0.07, 0.008, 0.05
+_POINT_WIDTH, _POINT_HEIGHT = 0.012, 0.05
+_MARGIN = 0.05
+"""Of the panel above its curves, and below them where the axis has no limits: what goes beyond it runs into
+the title or the axis."""
+_PLACES = [(row, left) for row in (0, -1, 1, -2, 2, -3, 3) for left in (False, True)]
+"""Rows above (> 0) or below a note's usual place, and whether the text ends at the point."""
+
+
+class _Box(NamedTuple):
+    """A rectangle in parts of the panel."""
+
+    left: float
+    right: float
+    low: float
+    high: float
+
+    def covers(self, other: _Box) -> bool:
+        """Whether both share more than an edge."""
+        apart = self.right <= other.left or other.right <= self.left
+        return not (apart or self.high <= other.low or other.high <= self.low)
+
+
+def placed(notes: Sequence[Note], x: Axis, y: Axis, y_range: tuple[float, float]) -> tuple[Note, ...]:
+    """Return the notes in their order, moved to where no text covers another or a point.
+
+    Parameters
+    ----------
+    notes : sequence of Note
+    x, y : Axis
+        Of the panel; `x` with limits, and `y`, too, where the panel ends with `y_range`.
+    y_range : (float, float)
+        Values between which the panel's curves lie.
+    """
+    across = x.fraction(np.array([note.x for note in notes]), x.limits or (0.0, 1.0))
+    along = y.fraction(np.array([note.y for note in notes]), y_range)
+    size = 0.5 * _POINT_WIDTH, 0.5 * _POINT_HEIGHT
+    taken = [
+        _Box(a - size[0], a + size[0], b - size[1], b + size[1]) for a, b in zip(across, along, strict=True)
+    ]
+    moved, lowest = list(notes), -_MARGIN if y.limits is None else 0.0
+    for k in np.argsort(across, kind="stable"):
+        boxes = {slot: _text(notes[k].text, across[k], along[k], *slot) for slot in _PLACES}
+        slot = next((at for at, box in boxes.items() if _is_free(box, taken, lowest)), _PLACES[0])
+        taken.append(boxes[slot])
+        moved[k] = replace(notes[k], row=slot[0], left=slot[1])
+    return tuple(moved)
+
+
+def _text(text: str, x: float, y: float, row: int, left: bool) -> _Box:
+    """Return the box of a text beside the point (x, y)."""
+    width, low = _CHARACTER * len(text), y + row * _HEIGHT - 0.5 * _HEIGHT + (_RISE if row >= 0 else 0.0)
+    start = x - _GAP - width if left else x + _GAP
+    return _Box(start, start + width, low, low + _HEIGHT)
+
+
+def _is_free(box: _Box, taken: Sequence[_Box], lowest: float) -> bool:
+    """Whether a text lies in the panel and covers nothing."""
+    across = box.left >= 0.0 and box.right <= 1.0
+    along = box.low >= lowest and box.high <= 1.0 + _MARGIN
+    return across and along and not any(box.covers(other) for other in taken)
+
+
+# Labels at the right ends of lines, spread so that none covers another.
+
+
+_ROOM = 0.05  # of the height beyond the curves where the axis has no limits
+
+
+class LineLabel(NamedTuple):
+    """A label beside a panel; heights are parts of the panel's, 0 at the bottom.
+
+    `end` is the height at which its line ends, `middle` that of the label.
+    """
+
+    text: str
+    color: str
+    end: float
+    middle: float
+
+
+def line_labels(panel: Panel, row: float) -> list[LineLabel]:
+    """Return the labels of a panel's lines, each as near to its line's end as its neighbors allow.
+
+    Parameters
+    ----------
+    panel : Panel
+    row : float
+        Height of one row of text, as a part of the panel's.
+    """
+    lines = [line for line in panel.lines if line.label and _shown(line.y, panel.y).size]
+    ends = np.array([_shown(line.y, panel.y)[-1] for line in lines])
+    heights = row * np.array([line.label.count("\n") + 1.3 for line in lines])
+    at = np.clip(panel.y.fraction(ends, vertical_limits(panel)), 0.0, 1.0) if lines else ends
+    middles = spread(at, heights)
+    return [
+        LineLabel(line.label, line.color, float(end), float(middle))
+        for line, end, middle in zip(lines, at, middles, strict=True)
+    ]
+
+
+def spread(wanted: FloatArray, heights: FloatArray) -> FloatArray:
+    """Return the middles of texts (n,) of given heights that lie apart and nearest to where they are wanted.
+
+    The sum of squared shifts is least among all in this order (pool adjacent violators); then the stack is
+    moved into 0 to 1, its top first.
+    """
+    order = np.argsort(wanted, kind="stable")
+    below = np.cumsum(heights[order]) - 0.5 * heights[order]  # middle of each if all were stacked from 0
+    blocks: list[tuple[float, int]] = []
+    for offset in wanted[order] - below:
+        mean, count = float(offset), 1
+        while blocks and blocks[-1][0] >= mean:
+            other, many = blocks.pop()
+            mean, count = (mean * count + other * many) / (count + many), count + many
+        blocks.append((mean, count))
+    shift = np.concatenate([np.full(count, mean) for mean, count in blocks]) if blocks else np.empty(0)
+    middles = np.empty(wanted.size)
+    middles[order] = np.minimum(np.maximum(shift, 0.0), 1.0 - float(heights.sum())) + below
+    return middles
+
+
+def vertical_limits(panel: Panel) -> tuple[float, float]:
+    """Return the ends of a panel's vertical axis: its own, or those of the curves with some room."""
+    if panel.y.limits is not None:
+        return panel.y.limits
+    edges = [line.y + side * np.nan_to_num(line.band) for line in panel.lines for side in (-1.0, 1.0)]
+    curves = edges if panel.y.scale == "linear" else [line.y for line in panel.lines]
+    values = _shown(np.concatenate(curves), panel.y)
+    low, high = (float(values.min()), float(values.max())) if values.size else (1.0, 1.0)
+    if panel.y.scale == "log":
+        room = (high / low) ** _ROOM if high > low else 2.0
+        return low / room, high * room
+    room = _ROOM * (high - low) or 1.0
+    return low - room, high + room
+
+
+def _shown(values: FloatArray, axis: Axis) -> FloatArray:
+    return values[np.isfinite(values) & ((values > 0.0) | (axis.scale == "linear"))]
+
+
+# The words of a plot, which hold the names that callers chose: written so that what draws them shows them.
+
+
+Description = TypeVar("Description")
+
+
+def rewritten(description: Description, write: Callable[[str], str]) -> Description:
+    """Return a description with all its texts rewritten; colors and the like hold nothing to rewrite."""
+    return cast(Description, _rewritten(description, write))
+
+
+def _rewritten(part: Any, write: Callable[[str], str]) -> Any:
+    """Rewrite a text, the entries of a tuple, or the fields of a record; leave numbers alone."""
+    if isinstance(part, str):
+        return write(part)
+    if isinstance(part, tuple):
+        return tuple(_rewritten(entry, write) for entry in part)
+    if is_dataclass(part) and not isinstance(part, type):
+        return replace(
+            part, **{each.name: _rewritten(getattr(part, each.name), write) for each in fields(part)}
+        )
+    return part

@@ -1,0 +1,225 @@
+"""Tables of plain facts: settings and records, effects, sampling, what housings cost."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from dynamics.orders import highest_valid_order
+from dynamics.results import RunResult
+from lineofaction.report.drawing.figure import Table, number
+from lineofaction.report.drawing.page import Part, Section
+
+# endings of field names that state a unit, longest first
+_UNITS = {
+    "_n_m": "N m", "_n_per_m": "N/m", "_n_s_per_m": "N s/m", "_kg_m2": "kg m²",
+    "_um": "µm", "_mm": "mm", "_deg": "°", "_rpm": "rpm", "_gpa": "GPa", "_hz": "Hz", "_kg": "kg",
+    "_mib": "MiB", "_mb": "MB", "_n": "N", "_m": "m", "_s": "s",
+}  # fmt: skip
+
+
+def facts(caption: str, content: Mapping[str, Any]) -> Table:
+    """Flatten nested settings into a table of two columns; a list of numbers stays in one cell."""
+    return Table(caption, ("quantity", "value"), tuple(_rows(content)))
+
+
+def records(caption: str, content: Sequence[Mapping[str, Any]]) -> Table:
+    """Tabulate a list of records that share their fields; the fields of the first record make the columns."""
+    fields = tuple(dict.fromkeys(name for record in content for name in record))
+    rows = tuple(tuple(_cell(record.get(name)) for name in fields) for record in content)
+    return Table(caption, tuple(_words(name) for name in fields), rows)
+
+
+def side_by_side(caption: str, columns: Mapping[str, Mapping[str, Any]]) -> Table:
+    """Tabulate settings of the same names beside each other, for example of both gears."""
+    contents = {name: dict(_rows(content)) for name, content in columns.items()}
+    labels = dict.fromkeys(label for content in contents.values() for label in content)
+    rows = tuple((label, *(content.get(label, "") for content in contents.values())) for label in labels)
+    return Table(caption, ("quantity", *contents), rows)
+
+
+def _rows(content: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, str]]:
+    """Walk nested mappings, naming each leaf by its path."""
+    for name, value in content.items():
+        label = f"{before}{_words(name)}"
+        if isinstance(value, Mapping):
+            yield from _rows(value, f"{label} · ")
+        elif _is_record_list(value):
+            for index, record in enumerate(value):
+                yield from _rows(record, f"{label} {index + 1} · ")
+        elif value is not None:
+            yield label, _cell(value)
+
+
+def _is_record_list(value: object) -> bool:
+    return isinstance(value, list | tuple) and bool(value) and all(isinstance(v, Mapping) for v in value)
+
+
+def _words(name: str) -> str:
+    """Turn a field name into words, its unit after a comma."""
+    for ending, unit in _UNITS.items():
+        if name.endswith(ending) and len(name) > len(ending):
+            return f"{name.removesuffix(ending).replace('_', ' ')}, {unit}"
+    return name.replace("_", " ")
+
+
+def _cell(value: object) -> str:
+    if value is None:
+        return "none"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, Mapping):
+        return ", ".join(f"{_words(str(k))} {_cell(v)}" for k, v in value.items())
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return ", ".join(_cell(v) for v in value)
+    return str(value)
+
+
+# Effects on the page: one table, whichever model decided about them.
+
+
+_HEAD = ("effect", "in", "simulated", "without it", "because")
+
+
+@dataclass(frozen=True)
+class EffectRow:
+    """An effect: its name, what it acts in, whether it is simulated, its influence in words, and why."""
+
+    name: str
+    place: str
+    on: bool
+    without: str
+    because: str
+
+    @property
+    def cells(self) -> tuple[str, ...]:
+        """Return the row of the table."""
+        on = "yes" if self.on else "no"
+        return self.name, self.place, on, self.without, self.because
+
+
+def effect_table(caption: str, rows: Iterable[EffectRow]) -> Table:
+    """Tabulate effects."""
+    return Table(caption, _HEAD, tuple(row.cells for row in rows))
+
+
+def effects_section(text: str, rows: Iterable[EffectRow], folded: tuple[Table, ...] = ()) -> Section:
+    """Show effects under a sentence on their influences."""
+    return Section("Effects", text, tables=(effect_table("Effects", rows),), folded=folded, part=Part.EFFECTS)
+
+
+def one_effects_section(sections: Sequence[Section]) -> tuple[Section, ...]:
+    """Return sections with those of effects as one: their rows in one table, in the order of the sections."""
+    effects = [section for section in sections if section.part is Part.EFFECTS]
+    others = tuple(section for section in sections if section.part is not Part.EFFECTS)
+    if len(effects) < 2:
+        return tuple(sections)
+    rows = tuple(row for section in effects for table in section.tables for row in table.rows)
+    text = " ".join(section.text for section in effects if section.text)
+    table = replace(effects[0].tables[0], rows=rows)
+    folded = tuple(table for section in effects for table in section.folded)
+    return (*others, replace(effects[0], text=text, tables=(table,), folded=folded))
+
+
+# The sampling of a run: rate and filter, the part they removed, and the peaks between the samples.
+
+
+def sampling_table(run: RunResult) -> Table:
+    """Tabulate rate, filter, highest valid order and the sampling error of the mesh forces."""
+    sampling, error = run.receipt["sampling"], run.receipt["error"].get("sampling", {})
+    of = "mesh" if run.mesh else "shaft"
+    rows = [
+        ("rate, samples per second", number(float(sampling["rate"]), 6)),
+        ("chosen by", str(sampling["chosen"])),
+        ("passed up to, Hz", number(float(sampling["pass_frequency"]), 6)),
+        *_filter(sampling),
+        (f"highest valid {of} order at the highest speed", str(highest_valid_order(run))),
+    ]
+    for mesh, part in error.get("mesh_force", {}).items():
+        rows.append((f"mesh force of {mesh} above the pass band, N rms", number(float(part["removed"]), 3)))
+        rows.append((f"mesh force of {mesh} that may have folded, N rms", number(float(part["folded"]), 3)))
+    return Table("Sampling of the output", ("quantity", "value"), tuple(rows))
+
+
+def _filter(sampling: dict[str, Any]) -> list[tuple[str, str]]:
+    """Say how the filter works."""
+    if not sampling["stop_band"]:
+        return [("anti-alias filter", "none: unfiltered samples")]
+    stop = (
+        f"{number(float(sampling['stop_band']), 3)} dB from {number(float(sampling['stop_frequency']), 6)} Hz"
+    )
+    edge = f"{number(1e3 * float(sampling['edge']), 3)} ms"
+    return [
+        ("anti-alias filter stops", stop),
+        ("continued beyond start and end for the filter", edge),
+    ]
+
+
+def peak_table(run: RunResult) -> Table:
+    """Tabulate largest magnitude and rms of the forces, between the samples and before the filter."""
+    rows = []
+    for title, parts in run.receipt.get("peaks", {}).items():
+        for name, part in parts.items():
+            peaks, rms = (_each(part[key]) for key in ("peak", "rms"))
+            rows += [
+                (f"{title.replace('_', ' ')}, {name}{axis}", number(p, 5), number(r, 5))
+                for axis, p, r in zip(_axes(len(peaks)), peaks, rms, strict=True)
+            ]
+    return Table("Peaks of the whole run, unfiltered", ("force", "peak, N", "rms, N"), tuple(rows))
+
+
+def _each(value: Any) -> list[float]:
+    return [float(entry) for entry in value] if isinstance(value, list) else [float(value)]
+
+
+def _axes(count: int) -> tuple[str, ...]:
+    return ("",) if count == 1 else tuple(f" {axis}" for axis in "xyz"[:count])
+
+
+# The table of what the housings of a scene cost beside what was predicted.
+
+
+Json = dict[str, Any]
+GIGABYTE = 1e9
+
+
+HEAD = ("work", "CPU s", "CPU s predicted", "GB", "GB predicted")
+
+
+UNKNOWN, LEAST = "-", 1e-3
+
+
+def cost_tables(facts: Mapping[str, Any]) -> tuple[Table, ...]:
+    """Return the table of predicted and measured cost of the housings; none without any."""
+    rows = tuple(_row(name, cost) for name, cost in _work(facts))
+    return (Table("Cost of the housings, once: results are kept", HEAD, rows),) if rows else ()
+
+
+def _work(facts: Mapping[str, Any]) -> Iterator[tuple[str, Json]]:
+    """Yield reductions and radiation resistances, and what they cost."""
+    for housing, cost in facts.get("reduction_cost", {}).items():
+        yield f"{housing}: reduction", cost
+    for housing, radiation in facts.get("radiation", {}).items():
+        if "cost" in radiation:
+            model = radiation["model_name"].replace("_", " ")
+            yield f"{housing}: {model}, all frequencies", radiation["cost"]
+
+
+def _row(name: str, cost: Json) -> tuple[str, ...]:
+    seconds = amount(cost["seconds"]), amount(cost["predicted_seconds"])
+    return name, *seconds, gigabytes(cost["bytes"]), gigabytes(cost["predicted_bytes"])
+
+
+def amount(value: float | None) -> str:
+    """Write CPU seconds or GB; less than a thousandth is nothing that anybody weighs."""
+    if value is None:
+        return UNKNOWN
+    return number(value, 2) if value >= LEAST else f"< {LEAST:g}"
+
+
+def gigabytes(value: float | None) -> str:
+    """Write bytes in GB."""
+    return amount(None if value is None else value / GIGABYTE)
