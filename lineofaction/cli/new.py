@@ -24,12 +24,9 @@ from lineofaction.cli.pair_sketch import (
     ring_pair,
 )
 from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
-from lineofaction.gearbox.from_rexs.account import FATES
-from lineofaction.gearbox.from_rexs.assumption import Assumption
-from lineofaction.gearbox.from_rexs.files import report_lines, unit_files
-from lineofaction.gearbox.from_rexs.left_out import headline
-from lineofaction.gearbox.from_rexs.load_case import LoadCase
-from lineofaction.gearbox.from_rexs.opened import OpenedUnit, opened
+from lineofaction.gearbox.from_rexs.account import FATES, Assumption
+from lineofaction.gearbox.from_rexs.loads import LoadCase
+from lineofaction.gearbox.from_rexs.opened import OpenedUnit, headline, opened, report_lines, unit_files
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs import read_rexs
 from lineofaction.gearbox.schemas import Case, validated

@@ -25,7 +25,7 @@ from service.worker.propagated import propagated
 WORK = "service.reading.child"
 MODULES = (
     "lineofaction.gearbox.convert.errors",
-    "lineofaction.gearbox.from_rexs.answer",
+    "lineofaction.gearbox.from_rexs.opened",
     "service.reading.texts",
     "scipy.optimize",
 )

@@ -15,7 +15,7 @@ from service.schemas.unit import UnitBody, UnitFile
 
 router = APIRouter(tags=["units"], route_class=ScopedRoute)
 
-ENTRY = "lineofaction.gearbox.from_rexs.answer:unit_of_rexs"
+ENTRY = "lineofaction.gearbox.from_rexs.opened:unit_of_rexs"
 
 
 @router.post(

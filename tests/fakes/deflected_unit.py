@@ -11,8 +11,7 @@ from dynamics.scene import Scene
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.convert.topology import facts_of
-from lineofaction.gearbox.from_rexs.files import SCENE_FILE, load_case_tables, unit_files
-from lineofaction.gearbox.from_rexs.opened import OpenedUnit
+from lineofaction.gearbox.from_rexs.opened import SCENE_FILE, OpenedUnit, load_case_tables, unit_files
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.deflect import Inputs

@@ -6,9 +6,8 @@ from rexs_stage import (
     STAGE,
 )
 
-from lineofaction.gearbox.from_rexs.flank_sides import LoadedFlank, loaded_flank
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
-from lineofaction.gearbox.from_rexs.meshing import meshing_of
+from lineofaction.gearbox.from_rexs.meshing import LoadedFlank, loaded_flank, meshing_of
 
 
 def loaded(unit: GearUnit, gear: int, torque: float) -> LoadedFlank:

@@ -1,12 +1,108 @@
-"""The components of a model by their relations."""
+"""The parts of a gear unit as a REXS model states them: attributes, relations, stages, planetary sets."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 
-from lineofaction.gearbox.from_rexs.account import Account
-from lineofaction.gearbox.from_rexs.part import Part
-from lineofaction.gearbox.rexs import Model, Relation
+from bounds import Bound, Declared
+from lineofaction.gearbox.from_rexs.account import Account, Fate
+from lineofaction.gearbox.rexs import Attribute, Component, Model, Relation, quantities, quantity
+
+# A component as an import reads it: each value that is asked for is entered as taken.
+
+
+@dataclass(frozen=True)
+class Part:
+    """A component with the account of the import.
+
+    A value read is taken, in the words of the reader; `say` corrects the entry afterwards: derived,
+    defaulted, ignored or refused.
+    """
+
+    component: Component
+    account: Account
+
+    @property
+    def id(self) -> int:
+        """Id of the component."""
+        return self.component.id
+
+    @property
+    def type(self) -> str:
+        """Type of the component."""
+        return self.component.type
+
+    @property
+    def place(self) -> str:
+        """Where the component stands in the file."""
+        return self.account.place(self.component)
+
+    @property
+    def name(self) -> str:
+        """Name in the file, or type and id."""
+        return self.component.name or f"{self.type} {self.id}"
+
+    def number(self, item: str, words: str) -> float | None:
+        """Return a number in SI, None where the file gives none.
+
+        Raises
+        ------
+        BadInput
+            It is no number, is given twice, or its unit belongs to another quantity.
+        """
+        value = quantity(self.component, item, self.place)
+        if value is not None:
+            self.say(item, "taken", words)
+        return value
+
+    def numbers(self, item: str, words: str) -> tuple[float, ...] | None:
+        """Return an array of numbers in SI, None where the file gives none.
+
+        Raises
+        ------
+        BadInput
+            As of `number`.
+        """
+        values = quantities(self.component, item, self.place)
+        if values is not None:
+            self.say(item, "taken", words)
+        return values
+
+    def vector(self, item: str, words: str) -> tuple[float, ...] | None:
+        """Return an array of numbers in SI, None where the file gives none, or no array.
+
+        One writer's JSON has ``false`` in place of vectors: such a value is refused in the account.
+
+        Raises
+        ------
+        BadInput
+            As of `number`.
+        """
+        attribute = self.component.attribute(item)
+        if attribute is not None and attribute.value is not None and not isinstance(attribute.value, tuple):
+            self.say(item, "refused", f"{attribute.value} is no vector")
+            return None
+        return self.numbers(item, words)
+
+    def text(self, item: str, words: str) -> str | None:
+        """Return a word or a name, None where the file gives none."""
+        attribute = self.component.attribute(item)
+        if attribute is None or attribute.value is None:
+            return None
+        self.say(item, "taken", words)
+        return str(attribute.value)
+
+    def attribute(self, item: str) -> Attribute | None:
+        """Return an attribute as it stands, without an entry in the account."""
+        return self.component.attribute(item)
+
+    def say(self, item: str, fate: Fate, words: str) -> None:
+        """State what becomes of an attribute that the component has or lacks; "" is the component."""
+        self.account.say(self.component, item, fate, words)
+
+
+# The components of a model by their relations.
 
 
 class GearUnit:
@@ -75,3 +171,261 @@ class GearUnit:
             return ()
         cases = self.model.spectra[0].cases
         return tuple(tuple(Part(part, self.account) for part in case.components) for case in cases)
+
+
+# Names of a scene's parts: those of the file, made unlike each other.
+
+
+LONGEST = 64
+"""Characters of a name in a scene."""
+
+
+class Names:
+    """Gives each part of one kind its name.
+
+    A name that is too long, or that another part has, ends in the component's id.
+    """
+
+    def __init__(self) -> None:
+        self._names: dict[int, str] = {}
+
+    def of(self, part: Part, suffix: str = "") -> str:
+        """Return the name of a part; the same whenever it is asked for again without a suffix."""
+        if not suffix and part.id in self._names:
+            return self._names[part.id]
+        name = (" ".join(part.name.split()) or part.type) + suffix
+        if len(name) > LONGEST or name in self._names.values():
+            ending = f" ({part.id}){suffix}"
+            name = name[: LONGEST - len(ending)].rstrip() + ending
+        self._names[part.id if not suffix else -len(self._names) - 1] = name
+        return name
+
+
+# A number of a component that a field of the scene takes, or that the account refuses.
+
+
+def bounded_number(part: Part, item: str, words: str, field: Declared) -> float | None:
+    """Return a number in SI; None where the file gives none, or one out of the bounds of `field`.
+
+    Raises
+    ------
+    BadInput
+        As of `Part.number`.
+    """
+    value, attribute = part.number(item, words), part.attribute(item)
+    if value is None or attribute is None or not isinstance(field.bound, Bound) or field.bound.holds(value):
+        return value
+    part.say(item, "refused", f"{attribute.value} {attribute.unit} is not {field.bound} {field.unit}")
+    return None
+
+
+# What joins two components: couplings and bearings with an inner and an outer side.
+
+
+BEARINGS = (
+    "concept_bearing",
+    "rolling_bearing_with_catalog_geometry",
+    "rolling_bearing_with_detailed_geometry",
+)
+COUPLINGS = ("coupling", "switchable_coupling")
+GROUND = ("gear_casing", "assembly_group", "gear_unit")
+
+
+@dataclass(frozen=True)
+class Connection:
+    """A bearing or a coupling, and the components on its sides.
+
+    Attributes
+    ----------
+    part : Part
+        The bearing or coupling.
+    inner, outer : Part
+        The components it joins.
+    """
+
+    part: Part
+    inner: Part
+    outer: Part
+
+    @property
+    def on_ground(self) -> Part | None:
+        """The side that the ground holds, None if both can turn."""
+        return next((side for side in (self.inner, self.outer) if side.type in GROUND), None)
+
+    @property
+    def held(self) -> Part:
+        """The side that turns; the inner one if both do."""
+        return self.outer if self.inner.type in GROUND else self.inner
+
+    def other(self, side: Part) -> Part:
+        """Return the side opposite of one."""
+        return self.outer if side.id == self.inner.id else self.inner
+
+
+def bearings(unit: GearUnit) -> tuple[Connection, ...]:
+    """Return the bearings, in the order of the file."""
+    return tuple(_connections(unit, BEARINGS))
+
+
+def couplings(unit: GearUnit) -> tuple[Connection, ...]:
+    """Return the couplings that are engaged, in the order of the file."""
+    return tuple(entry for entry in _connections(unit, COUPLINGS) if _engaged(unit, entry.part))
+
+
+def _connections(unit: GearUnit, types: tuple[str, ...]) -> Iterator[Connection]:
+    """Yield components of these types that have both sides."""
+    for part in unit.of_type(*types):
+        inner = unit.related(part, "side", "assembly", "inner_part")
+        outer = unit.related(part, "side", "assembly", "outer_part")
+        if inner and outer and inner[0].id != outer[0].id:
+            yield Connection(part, inner[0], outer[0])
+        else:
+            part.say("", "refused", "no relation `side` says what its inner and outer side hold")
+
+
+def _engaged(unit: GearUnit, part: Part) -> bool:
+    attribute = part.attribute("is_engaged")
+    if attribute is None or attribute.value is None:
+        return True
+    values = attribute.value if isinstance(attribute.value, tuple) else (attribute.value,)
+    index = _shift_index(unit)
+    if not 0 <= index < len(values):
+        part.say("is_engaged", "refused", f"no value for gear {index + 1}; taken as engaged")
+        return True
+    part.say("is_engaged", "taken", f"in gear {index + 1}")
+    if not values[index]:
+        part.say("", "ignored", f"not engaged in gear {index + 1}")
+    return bool(values[index])
+
+
+def _shift_index(unit: GearUnit) -> int:
+    """Return which of its gears the unit runs in, counted from 0."""
+    for part in unit.of_type("gear_unit"):
+        attribute = part.attribute("gear_shift_index")
+        if attribute is not None and isinstance(attribute.value, int) and attribute.value > 0:
+            part.say("gear_shift_index", "taken", "gear that is engaged")
+            return attribute.value - 1
+    return 0
+
+
+# Stages of a REXS model: two gears in mesh, the shafts that carry them, and their ratio.
+
+
+_GEARS = ("gear_1", "gear_2")
+NO_STAGE = "relation `stage` needs two gears with teeth, on two shafts that carry them and turn by themselves"
+
+
+@dataclass(frozen=True)
+class GearStage:
+    """Two gears in mesh.
+
+    Attributes
+    ----------
+    stage : Part
+        The stage.
+    gears, shafts : (Part, Part)
+        Gear 1 and gear 2 of the file, and what carries them.
+    teeth : (int, int)
+        Their numbers of teeth, positive.
+    internal : bool
+        One of them is a ring gear.
+    """
+
+    stage: Part
+    gears: tuple[Part, Part]
+    shafts: tuple[Part, Part]
+    teeth: tuple[int, int]
+    internal: bool
+
+    @property
+    def is_cylindrical(self) -> bool:
+        """Whether it is a stage of parallel axes, which is computed."""
+        return self.stage.type == "cylindrical_stage"
+
+
+def gear_stages(unit: GearUnit) -> tuple[GearStage, ...]:
+    """Return the stages of the model, in the order of their relations."""
+    return tuple(_stages(unit))
+
+
+def _stages(unit: GearUnit) -> Iterator[GearStage]:
+    """Yield the stages whose gears, teeth and shafts the file states."""
+    for relation in unit.relations("stage"):
+        number = relation.of_role("stage")
+        ends = [relation.of_role(role) for role in _GEARS]
+        if number is None:
+            continue
+        stage = unit.part(number)
+        gears = [unit.part(end) for end in ends if end is not None]
+        shafts = [owner for gear in gears if (owner := unit.owner(gear, "shaft")) is not None]
+        signed = [teeth for gear in gears if (teeth := teeth_of(gear)) is not None]
+        if len(gears) != 2 or len(shafts) != 2 or len(signed) != 2 or shafts[0].id == shafts[1].id:
+            stage.say("", "refused", NO_STAGE)
+            continue
+        internal = any(gear.type == "ring_gear" for gear in gears)
+        first, second = (abs(teeth) for teeth in signed)
+        yield GearStage(stage, (gears[0], gears[1]), (shafts[0], shafts[1]), (first, second), internal)
+
+
+def teeth_of(gear: Part) -> int | None:
+    """Return the number of teeth, negative of some ring gears, None where the file gives none."""
+    attribute = gear.attribute("number_of_teeth")
+    value = None if attribute is None else attribute.value
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or value == 0 or value != value // 1:
+        return None
+    return int(value)
+
+
+# Planetary sets of a REXS model: carrier, planets, central shafts.
+
+
+@dataclass(frozen=True)
+class PlanetarySet:
+    """A planetary stage.
+
+    Attributes
+    ----------
+    stage : Part
+        The component `planetary_stage`.
+    planets : tuple of Part
+        The shafts of its planets.
+    central : tuple of Part
+        The shafts of sun and ring gear.
+    carrier : tuple of Part
+        All that turns as its carrier: shafts, pins, side plates.
+    """
+
+    stage: Part
+    planets: tuple[Part, ...]
+    central: tuple[Part, ...]
+    carrier: tuple[Part, ...]
+
+
+def planetary_sets(unit: GearUnit) -> tuple[PlanetarySet, ...]:
+    """Return the planetary sets that have a carrier and planets; the account says what the others lack."""
+    sets = []
+    for stage in unit.of_type("planetary_stage"):
+        planetary = PlanetarySet(
+            stage,
+            unit.related(stage, "planet_shaft", "planetary_stage", "shaft"),
+            unit.related(stage, "central_shaft", "planetary_stage", "shaft"),
+            _unique(_carrier(unit, stage)),
+        )
+        if planetary.planets and planetary.carrier:
+            sets.append(planetary)
+            stage.say("", "taken", f"planetary set of {len(planetary.planets)} planets")
+        else:
+            stage.say("", "refused", "relations `planet_shaft` and `planet_carrier_shaft` are needed")
+    return tuple(sets)
+
+
+def _carrier(unit: GearUnit, stage: Part) -> Iterable[Part]:
+    """Yield the parts that the file calls the carrier's, pins included."""
+    for relation in ("planet_carrier_shaft", "planet_pin"):
+        yield from unit.related(stage, relation, "planetary_stage", "shaft")
+    for carrier in unit.children(stage, "planet_carrier"):
+        yield from unit.children(carrier, "shaft", "side_plate")
+
+
+def _unique(parts: Iterable[Part]) -> tuple[Part, ...]:
+    return tuple({part.id: part for part in parts}.values())

@@ -1,23 +1,131 @@
-"""The layout of a gear unit: its shafts along the axes of the scene, its stages, what turns together."""
+"""The shafts, rotors and stages of a gear unit, and how fast each turns beside the others."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from bounds.types import FloatArray
-from lineofaction.gearbox.from_rexs.connections import Connection, bearings, couplings
-from lineofaction.gearbox.from_rexs.gear_stages import GearStage, gear_stages
-from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
-from lineofaction.gearbox.from_rexs.part import Part
-from lineofaction.gearbox.from_rexs.placement import FIXED, Placement, placement
-from lineofaction.gearbox.from_rexs.planetary_set import planetary_sets
-from lineofaction.gearbox.from_rexs.rotors import Rotors, rotors_of
-from lineofaction.gearbox.from_rexs.scene_axes import SceneAxes, scene_axes
-from lineofaction.gearbox.from_rexs.shafts import SAME_PLACE, PlacedShaft, placed_shaft
+from lineofaction.gearbox.from_rexs.gear_unit import (
+    Connection,
+    GearStage,
+    GearUnit,
+    Part,
+    PlanetarySet,
+    bearings,
+    couplings,
+    gear_stages,
+    planetary_sets,
+)
+from lineofaction.gearbox.from_rexs.placement import (
+    FIXED,
+    SAME_PLACE,
+    PlacedShaft,
+    Placement,
+    SceneAxes,
+    placed_shaft,
+    placement,
+    scene_axes,
+)
+from lineofaction.gearbox.problems import BadInput
+
+# What turns together: a shaft by itself, or all parts of a planet carrier; and what the ground holds.
+
+
+RIGID_ROTATION = 1e12
+"""N m/rad; no coupling of a gear unit is as stiff: files write 1e17 and more for one that does not yield."""
+
+
+@dataclass(frozen=True)
+class Rotors:
+    """The rotating bodies of a gear unit.
+
+    Attributes
+    ----------
+    of : mapping of int to int
+        The rotor of a shaft or side plate: the lowest id of the components that turn as one.
+    held : frozenset of int
+        Rotors that a coupling holds on the ground.
+    couplings : tuple of Connection
+        Couplings between two rotors.
+    sets : tuple of PlanetarySet
+        The planetary sets.
+    """
+
+    of: Mapping[int, int]
+    held: frozenset[int]
+    couplings: tuple[Connection, ...]
+    sets: tuple[PlanetarySet, ...]
+
+    def carrier_of(self, *shafts: int) -> int | None:
+        """Return the carrier's rotor if one of the shafts is a planet's, None otherwise."""
+        for planets in self.sets:
+            if {shaft.id for shaft in planets.planets} & set(shafts):
+                return self.of[planets.carrier[0].id]
+        return None
+
+    def members(self, rotor: int) -> tuple[int, ...]:
+        """Return the ids of the components that make up a rotor."""
+        return tuple(part for part, own in self.of.items() if own == rotor)
+
+
+def rotors_of(unit: GearUnit, sets: Sequence[PlanetarySet]) -> Rotors:
+    """Return the rotors: the parts of a carrier are one, with what is rigidly coupled to them."""
+    of = {part.id: part.id for part in unit.of_type("shaft", "side_plate")}
+    joined = [entry for entry in couplings(unit) if entry.on_ground is None and _turn(entry, of)]
+    for planets in sets:
+        _merge(of, [part.id for part in planets.carrier])
+    carriers = {of[planets.carrier[0].id] for planets in sets}
+    changed = True
+    while changed:
+        changed = False
+        for entry in joined:
+            ends = of[entry.inner.id], of[entry.outer.id]
+            if ends[0] != ends[1] and carriers & set(ends) and _rigid(entry):
+                carriers.add(_merge(of, list(ends)))
+                changed = True
+    grounded = [entry for entry in couplings(unit) if entry.on_ground is not None]
+    held = frozenset(of[entry.held.id] for entry in grounded if entry.held.id in of and _rotation(entry))
+    between = tuple(entry for entry in joined if of[entry.inner.id] != of[entry.outer.id])
+    for entry in joined:
+        if entry not in between:
+            entry.part.say("", "derived", "rigid: its sides are parts of one planet carrier")
+    return Rotors(of, held, between, tuple(sets))
+
+
+def _turn(entry: Connection, of: Mapping[int, int]) -> bool:
+    return entry.inner.id in of and entry.outer.id in of
+
+
+def _merge(of: dict[int, int], parts: list[int]) -> int:
+    """Make one rotor of several, and return it."""
+    rotors = {of[part] for part in parts}
+    lowest = min(rotors)
+    for part, rotor in of.items():
+        if rotor in rotors:
+            of[part] = lowest
+    return lowest
+
+
+def _rigid(entry: Connection) -> bool:
+    """Return whether a coupling does not yield in rotation."""
+    return _rotation(entry) >= RIGID_ROTATION
+
+
+def _rotation(entry: Connection) -> float:
+    """Return the torsional stiffness of a coupling, N m/rad; rigid where the file says none."""
+    value = entry.part.number("rotational_stiffness", "torsional stiffness, N mm/rad")
+    if value is None:
+        entry.part.say("rotational_stiffness", "defaulted", "rigid: the file gives none")
+        return RIGID_ROTATION
+    return value
+
+
+# The layout of a gear unit: its shafts along the axes of the scene, its stages, what turns together.
+
 
 # Where shafts stand: as the file says, else by the angles of the stages and by couplings.
 
@@ -224,3 +332,165 @@ def _by_stages(stages: tuple[GearStage, ...], places: Mapping[int, Placement]) -
     """Return the places of shafts, those of cylindrical stages first."""
     first = [shaft.id for stage in stages if stage.is_cylindrical for shaft in stage.shafts]
     return [places[shaft] for shaft in (*first, *places) if shaft in places]
+
+
+# Speeds and torques of a gear train: the ratios of its stages, and the statics that follow from them.
+
+
+EQUAL = 1e-9
+"""Relative; ratios of whole numbers, solved in floating point."""
+MOST_ROTORS = 300
+"""The largest trains that are solved have fewer; so many take 0.1 s."""
+
+
+@dataclass(frozen=True)
+class Train:
+    """The rotors of a train and what their ratios are.
+
+    Attributes
+    ----------
+    rotors : tuple of int
+        Their ids, the columns.
+    stages : tuple of GearStage
+        The first rows.
+    rows : (n, m) array
+        Stages, then couplings.
+    held : tuple of int
+        Columns of rotors at rest.
+    """
+
+    rotors: tuple[int, ...]
+    stages: tuple[GearStage, ...]
+    rows: FloatArray
+    held: tuple[int, ...]
+
+    def speeds(self, known: Mapping[int, float]) -> FloatArray | None:
+        """Return the speeds of all rotors, rad/s, None where the known ones do not fit or leave some open.
+
+        Rotors that nothing joins to the known ones are at rest.
+
+        Parameters
+        ----------
+        known : mapping of int to float
+            Speeds by rotor.
+        """
+        free = self._free(set(self.rotors) - self.joined_to(known))
+        columns = [self.rotors.index(rotor) for rotor in known]
+        values = np.array(list(known.values()))
+        if free.shape[1] == 0 or np.linalg.matrix_rank(free[columns], tol=EQUAL) < free.shape[1]:
+            return None
+        shares, *_ = np.linalg.lstsq(free[columns], values, rcond=None)
+        scale = float(np.max(np.abs(values), initial=0.0))
+        if np.any(np.abs(free[columns] @ shares - values) > 1e3 * EQUAL * scale):
+            return None
+        return np.asarray(free @ shares)
+
+    def joined_to(self, rotors: Iterable[int]) -> set[int]:
+        """Return these rotors and all that stages and couplings join to them."""
+        joined = np.isin(self.rotors, list(rotors))
+        count = -1
+        while count < (count := int(joined.sum())):
+            joined |= np.any(self.rows[np.any(self.rows[:, joined], axis=1)], axis=0)
+        return {rotor for rotor, is_joined in zip(self.rotors, joined, strict=True) if is_joined}
+
+    def _free(self, resting: set[int]) -> FloatArray:
+        """Return an orthonormal base (rotors, freedoms) of the speeds that ratios and resting ones permit."""
+        columns = [*self.held, *map(self.rotors.index, resting)]
+        held = np.zeros((len(columns), len(self.rotors)))
+        held[range(len(columns)), columns] = 1.0
+        scale = np.linalg.norm(self.rows, axis=1, keepdims=True)
+        return _null_space(np.vstack([self.rows / scale, held]))
+
+    def forces(self, known: Mapping[int, float], open_rotors: Sequence[int]) -> Flow | None:
+        """Return the torques of stages and open rotors that balance the known ones.
+
+        Parameters
+        ----------
+        known : mapping of int to float
+            Torques on rotors from outside, N m.
+        open_rotors : sequence of int
+            Rotors on which a torque from outside is unknown. Held rotors are such, too.
+
+        Returns
+        -------
+        Flow or None
+            None where no torque balances the known ones, or some open torque is not determined by them.
+            Stages whose shares statics leaves open (planets, power splits) share by least squares.
+        """
+        outside = [*(self.rotors.index(rotor) for rotor in open_rotors), *self.held]
+        load = np.zeros(len(self.rotors))
+        for rotor, torque in known.items():
+            load[self.rotors.index(rotor)] += torque
+        columns = np.zeros((len(self.rotors), len(outside)))
+        columns[outside, range(len(outside))] = 1.0
+        matrix = np.hstack([self.rows.T, columns])
+        solution, *_ = np.linalg.lstsq(matrix, -load, rcond=None)
+        left = matrix @ solution + load
+        if np.any(np.abs(left) > 1e3 * EQUAL * float(np.max(np.abs(load), initial=0.0))):
+            return None
+        loose = _null_space(matrix)[len(self.rows) :]
+        if np.any(np.abs(loose) > 1e3 * EQUAL):
+            return None
+        count = len(self.rows)
+        return Flow(
+            self.rows * solution[:count, None],
+            dict(zip(open_rotors, map(float, solution[count:]), strict=False)),
+            bool(_null_space(self.rows.T).shape[1]),
+        )
+
+
+@dataclass(frozen=True)
+class Flow:
+    """Torques through a train.
+
+    Attributes
+    ----------
+    on_rotor : (rows, rotors) array
+        Torque of each stage and coupling on each rotor, N m.
+    outside : mapping of int to float
+        Torque on each open rotor from outside, N m.
+    is_shared : bool
+        Statics leaves open how parallel stages share the load.
+    """
+
+    on_rotor: FloatArray
+    outside: Mapping[int, float]
+    is_shared: bool
+
+
+def train_of(stages: Sequence[GearStage], rotors: Rotors) -> Train:
+    """Return the train of stages and couplings; all speeds and torques are about z.
+
+    Those of a shaft that is not parallel are about its own u: the sense in which a bevel stage turns what
+    lies behind it is left open by the file, its power is not.
+
+    Raises
+    ------
+    BadInput
+        There are too many rotors.
+    """
+    ids = tuple(sorted(set(rotors.of.values())))
+    if len(ids) > MOST_ROTORS:
+        raise BadInput.of("model", f"{len(ids)} shafts and side plates", f"at most {MOST_ROTORS}")
+    rows = np.zeros((len(stages) + len(rotors.couplings), len(ids)))
+    for row, stage in zip(rows, stages, strict=False):
+        first, second = (ids.index(rotors.of[shaft.id]) for shaft in stage.shafts)
+        sign = -1.0 if stage.internal else 1.0
+        row[first] += stage.teeth[0]
+        row[second] += sign * stage.teeth[1]
+        carrier = rotors.carrier_of(*(shaft.id for shaft in stage.shafts))
+        if carrier is not None:
+            row[ids.index(carrier)] -= stage.teeth[0] + sign * stage.teeth[1]
+    for row, entry in zip(rows[len(stages) :], rotors.couplings, strict=True):
+        row[ids.index(rotors.of[entry.inner.id])] += 1.0
+        row[ids.index(rotors.of[entry.outer.id])] -= 1.0
+    return Train(ids, tuple(stages), rows, tuple(ids.index(rotor) for rotor in sorted(rotors.held)))
+
+
+def _null_space(matrix: FloatArray) -> FloatArray:
+    """Return an orthonormal base of the null space, by columns."""
+    if matrix.size == 0:
+        return np.eye(matrix.shape[1])
+    _, values, base = np.linalg.svd(matrix)
+    rank = int(np.sum(values > EQUAL * max(1.0, float(values[0]))))
+    return np.asarray(base[rank:].T)

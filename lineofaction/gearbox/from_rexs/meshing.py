@@ -1,17 +1,20 @@
-"""The cylindrical stages of a gear unit: which gears mesh, which drives, and which flanks carry."""
+"""How two gears of a stage turn and mesh, and which of their flanks is loaded."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from bounds.types import FloatArray
-from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
-from lineofaction.gearbox.from_rexs.part import Part
+from lineofaction.gearbox.from_rexs.gear_unit import GearUnit, Part
 from lineofaction.gearbox.from_rexs.placement import frame_of
 from lineofaction.gearbox.problems import BadInput
+
+# The cylindrical stages of a gear unit: which gears mesh, which drives, and which flanks carry.
+
 
 # In which sense the gears of a unit turn, from the speeds of shafts that the file gives.
 
@@ -208,3 +211,69 @@ def _sense(unit: GearUnit, stage: Part, driver: Part, torques: tuple[float, ...]
         return rotation.sense
     stage.say("sense_of_rotation", "defaulted", f"{driver.name} turns about +u: the file gives no speed")
     return 1.0
+
+
+# Which flank of a gear carries, and which of its faces is the datum face.
+
+
+_DIRECTIONS = {"positive": 1.0, "negative": -1.0}
+
+
+@dataclass(frozen=True)
+class LoadedFlank:
+    """The flank that carries, and where its face coordinates lie in the case.
+
+    Attributes
+    ----------
+    gear : Part
+    side : str
+        ``"right"`` or ``"left"``, seen from the datum face.
+    flank, other : Part or None
+        The flank that carries and its counterpart; None where the file has none.
+    datum : float
+        1 if the datum face is at the end of positive z, -1 if at the other.
+    """
+
+    gear: Part
+    side: str
+    flank: Part | None
+    other: Part | None
+    datum: float
+
+    @property
+    def flanks(self) -> Iterator[Part]:
+        """The flanks that the file has, the loaded one first."""
+        return (flank for flank in (self.flank, self.other) if flank is not None)
+
+
+def loaded_flank(unit: GearUnit, meshing: Meshing, gear: Part) -> LoadedFlank:
+    """Return the flank of a gear that carries in a stage.
+
+    Raises
+    ------
+    BadInput
+        Axes of the gear that are no directions.
+    """
+    u_along_z = 1.0 if float(np.dot(frame_of(unit, gear).u, meshing.z)) > 0.0 else -1.0
+    datum = u_along_z * _datum_along_u(gear)
+    sides = ("right", "left") if datum > 0.0 else ("left", "right")
+    flank, other = (_flank(unit, gear, side) for side in sides)
+    return LoadedFlank(gear, sides[0], flank, other, datum)
+
+
+def _datum_along_u(gear: Part) -> float:
+    """Return 1 if the datum face is in the direction of the gear's u axis, -1 if in the other."""
+    word = gear.text("datum_face_orientation", "from where flanks and coordinates are seen")
+    if word in _DIRECTIONS:
+        return _DIRECTIONS[word]
+    default = "negative: coordinates of the face count along +u"
+    gear.say("datum_face_orientation", "defaulted" if word is None else "refused", default)
+    return -1.0
+
+
+def _flank(unit: GearUnit, gear: Part, side: str) -> Part | None:
+    for relation in unit.relations("flank"):
+        number = relation.of_role(side)
+        if relation.of_role("gear") == gear.id and number is not None:
+            return unit.part(number)
+    return None

@@ -1,28 +1,105 @@
-"""Open a gear unit: from a REXS document to cases, a scene, load cases and the account of the import."""
+"""A gear unit opened from a REXS file: its cases, scenes, reports and the answer over HTTP."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+import base64
+import binascii
+import csv
+import io
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, fields
+from pathlib import Path
 from typing import Any
 
-from lineofaction.gearbox.from_rexs.account import Line
-from lineofaction.gearbox.from_rexs.assumption import Assumption, assumed
-from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
-from lineofaction.gearbox.from_rexs.layout import Layout, layout_of
-from lineofaction.gearbox.from_rexs.left_out import say_left_out, statements
-from lineofaction.gearbox.from_rexs.load_case import LoadCase, load_case
-from lineofaction.gearbox.from_rexs.operating_points import operating_points
-from lineofaction.gearbox.from_rexs.power_flow import REPLACED, PowerFlow, power_flow
-from lineofaction.gearbox.from_rexs.scene import SceneTable, scene_table
-from lineofaction.gearbox.from_rexs.scene_loads import AppliedTorque
-from lineofaction.gearbox.from_rexs.scene_parts import SceneParts
-from lineofaction.gearbox.from_rexs.stage_case import StageCase, stage_cases
-from lineofaction.gearbox.from_rexs.train import train_of
+from lineofaction.gearbox.convert.case import case_json
+from lineofaction.gearbox.convert.toml import toml_text
+from lineofaction.gearbox.from_rexs.account import Assumption, Line, assumed
+from lineofaction.gearbox.from_rexs.gear_unit import GearUnit, Part
+from lineofaction.gearbox.from_rexs.gears import StageCase, stage_cases
+from lineofaction.gearbox.from_rexs.layout import Layout, layout_of, train_of
+from lineofaction.gearbox.from_rexs.loads import AppliedTorque, LoadCase, load_case
+from lineofaction.gearbox.from_rexs.power_flow import REPLACED, PowerFlow, operating_points, power_flow
+from lineofaction.gearbox.from_rexs.scene import SceneParts, SceneTable, scene_table
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.rexs import Change, Document, upgrade
+from lineofaction.gearbox.rexs import Change, Document, parsed, upgrade
+from lineofaction.gearbox.rexs.vocabulary import words
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
+
+# What a file has and its scene has not: every refused line of the account, by its reason.
+
+
+MOST, LONGEST = 100, 2000
+"""Statements of a unit, and characters of one."""
+_NO_REASON = "no part of the scene is made of it"
+_OF_TYPE = {
+    "cylindrical_gear": "it is in no stage of the scene",
+    "ring_gear": "it is in no stage of the scene",
+    "external_load": "it acts on no shaft of the scene",
+    "side_plate": "it is part of no planet carrier of the scene",
+}
+
+
+def say_left_out(unit: GearUnit) -> None:
+    """State of every part of which nothing is said that the scene has not got it."""
+    descriptive = words("descriptive_components")
+    for component in unit.model.components:
+        if component.type not in descriptive and not unit.account.is_stated(component):
+            reason = _OF_TYPE.get(component.type, _NO_REASON)
+            Part(component, unit.account).say("", "refused", reason)
+
+
+def headline(lines: Iterable[Line]) -> str:
+    """Return all that is left out on one line, with its attributes in brackets; empty for nothing."""
+    parts: dict[str, list[str]] = {}
+    for line in _refused(lines):
+        parts.setdefault(_named(line), []).append(line.item)
+    texts = [f"{named}{_brackets(filter(None, items))}" for named, items in parts.items()]
+    return f"left out of the scene: {'; '.join(texts)}" if parts else ""
+
+
+def statements(lines: Iterable[Line]) -> tuple[str, ...]:
+    """Return what is left out with lines of the file and the reason, a sentence for each reason.
+
+    Stages come first, for what stands behind them is left out with them; then other parts, then values of
+    parts, each in the order of the file.
+    """
+    groups: dict[str, list[Line]] = {}
+    for line in _refused(lines):
+        groups.setdefault(line.words, []).append(line)
+    texts = [_statement(group, reason) for reason, group in groups.items()]
+    rest = len(texts) - MOST
+    return tuple(texts if rest <= 0 else [*texts[:MOST], f"and {rest} more: see the account of the import"])
+
+
+def _refused(lines: Iterable[Line]) -> list[Line]:
+    """Return the refused lines: stages, other parts, values of parts."""
+    refused = (line for line in lines if line.fate == "refused")
+    return sorted(refused, key=lambda line: (bool(line.item), not line.kind.endswith("_stage")))
+
+
+def _statement(group: list[Line], reason: str) -> str:
+    """Return what is left out for one reason, with the lines of the file if it has lines."""
+    lines = {line: "" if line.line is None else f" (line {line.line})" for line in group}
+    named = "; ".join(
+        f"{_named(line)}{place}{f', {line.item}' if line.item else ''}" for line, place in lines.items()
+    )
+    most = max(LONGEST - len(reason) - 2, LONGEST // 2)
+    named = named if len(named) <= most else f"{named[: most - 4]} ..."
+    return f"{named}: {reason}"[:LONGEST]
+
+
+def _named(line: Line) -> str:
+    return f"{line.kind} {line.component}" + (f' "{line.name}"' if line.name else "")
+
+
+def _brackets(items: Iterable[str]) -> str:
+    text = ", ".join(dict.fromkeys(items))
+    return f" ({text})" if text else ""
+
+
+# Open a gear unit: from a REXS document to cases, a scene, load cases and the account of the import.
+
 
 _DIGITS = 9
 """Of torques: those of equal planets agree to the rounding of the statics."""
@@ -181,3 +258,123 @@ def _say(layout: Layout, item: str, fate: str, words: str) -> None:
     """State something of the whole unit."""
     for part in layout.unit.of_type("gear_unit")[:1]:
         part.say(item, fate, words)  # type: ignore[arg-type]
+
+
+# An opened gear unit as files: a case a stage, the scene, its load cases, and the account.
+
+
+SCENE_FILE, LOAD_CASES_FILE, ACCOUNT_FILE = "scene.toml", "load_cases.toml", "import.csv"
+_FILE_DIGITS = 12
+
+
+def unit_files(unit: OpenedUnit) -> dict[str, str]:
+    """Return the texts of the files by their names."""
+    files = {f"{case.name}.toml": toml_text(_plain(case.case)) for case in unit.cases}
+    if unit.scene is not None:
+        files[SCENE_FILE] = toml_text(_plain(unit.scene))
+    if unit.load_cases:
+        files[LOAD_CASES_FILE] = toml_text(load_case_tables(unit.load_cases))
+    files[ACCOUNT_FILE] = _account_csv(unit.lines)
+    return files
+
+
+def load_case_tables(cases: Iterable[LoadCase]) -> dict[str, Any]:
+    """Return the tables of load cases."""
+    return {"load_cases": [case.table() for case in cases]}
+
+
+def _account_csv(lines: Iterable[Line]) -> str:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    names = [field.name for field in fields(Line)]
+    writer.writerow(names)
+    writer.writerows([_safe(getattr(line, name)) for name in names] for line in lines)
+    return text.getvalue()
+
+
+def _safe(value: object) -> object:
+    """Return a cell that no spreadsheet takes for a formula: names come from the file."""
+    return f"'{value}" if isinstance(value, str) and value.startswith(("=", "+", "-", "@", "\t")) else value
+
+
+def _plain(model: Any) -> dict[str, Any]:
+    """Return what a model states, its numbers without the rounding of their computation."""
+    return dict(_rounded(model.model_dump(mode="json", exclude_unset=True)))
+
+
+def _rounded(value: Any) -> Any:
+    """Return a value with numbers of twelve digits."""
+    if isinstance(value, dict):
+        return {key: _rounded(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_rounded(item) for item in value]
+    return float(f"{value:.{_FILE_DIGITS}g}") if isinstance(value, float) else value
+
+
+def report_lines(
+    lines: Iterable[Line], fates: tuple[str, ...] = ("refused", "assumed", "defaulted", "derived")
+) -> Iterator[str]:
+    """Yield the lines of the account that an engineer reads, in order of the fates.
+
+    Components of one type of which the same is said share a line.
+    """
+    groups: dict[tuple[str, str, str, str], list[Line]] = {}
+    for line in lines:
+        if line.fate in fates:
+            groups.setdefault((line.fate, line.kind, line.item, line.words), []).append(line)
+    for fate, kind, item, reason in sorted(groups, key=lambda key: fates.index(key[0])):
+        group = groups[fate, kind, item, reason]
+        ids = ", ".join(dict.fromkeys(str(line.component) for line in group))
+        name = f' "{group[0].name}"' if len(group) == 1 and group[0].name else ""
+        yield f"{fate:9} {kind} {ids}{name}{', ' + item if item else ''}: {reason}"
+
+
+# An opened gear unit as the answer of the service; a process of its own reads the file.
+
+
+Json = dict[str, Any]
+
+
+def unit_of_rexs(inputs: Json, _folder: Path) -> Json:
+    """Return a gear unit as JSON; its scene has the cases of its meshes written out.
+
+    Raises
+    ------
+    BadInput
+        No base64, no REXS, no assumption, or as `opened`.
+    """
+    try:
+        data = base64.b64decode(inputs["rexs_base64"], validate=True)
+    except (binascii.Error, ValueError):
+        raise BadInput.of("rexs_base64", inputs["rexs_base64"][:20], "base64 of the file's bytes") from None
+    return unit_json(opened(parsed(data), [Assumption.of(text) for text in inputs.get("assume", ())]))
+
+
+def unit_json(unit: OpenedUnit) -> Json:
+    """Return an opened unit as JSON."""
+    cases = {f"{case.name}.toml": case_json(case.case) for case in unit.cases}
+    return {
+        "left_out": list(unit.left_out),
+        "cases": [
+            {
+                "name": case.name,
+                "stage": case.stage,
+                "equal": list(case.equal),
+                "case": cases[f"{case.name}.toml"],
+            }
+            for case in unit.cases
+        ],
+        "scene": None if unit.scene is None else _whole(unit, cases),
+        "load_cases": [{"forces": [], **case.table()} for case in unit.load_cases],
+        "lines": [asdict(line) for line in unit.lines],
+        "summary": list(report_lines(unit.lines)),
+    }
+
+
+def _whole(unit: OpenedUnit, cases: dict[str, Json]) -> Json:
+    """Return the scene, its case files written out."""
+    assert unit.scene is not None
+    scene: Json = unit.scene.model_dump(mode="json", exclude_unset=True)
+    for mesh in scene["meshes"]:
+        mesh["case"] = cases[mesh.pop("case_file")]
+    return scene

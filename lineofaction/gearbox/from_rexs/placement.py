@@ -1,16 +1,21 @@
-"""Where components stand: points and axes u, v, w, composed over the components they refer to."""
+"""Where shafts and their parts stand, in the frame of the file and of the scene."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from itertools import accumulate
 
 import numpy as np
 
 from bounds.types import FloatArray
-from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
-from lineofaction.gearbox.from_rexs.part import Part
+from dynamics.shafts import BeamSection
+from lineofaction.gearbox.from_rexs.gear_unit import GearUnit, Part
 from lineofaction.gearbox.problems import BadInput
+
+# Where components stand: points and axes u, v, w, composed over the components they refer to.
+
 
 PARALLEL = 1e-6
 """Sine of the angle up to which two directions are the same."""
@@ -157,3 +162,220 @@ def _vector(part: Part, item: str, words: str) -> FloatArray | None:
     if len(numbers) != 3 or not np.all(np.isfinite(numbers)):
         raise BadInput.of(f"{part.place}, {item}", list(numbers), "three finite numbers")
     return np.array(numbers, dtype=float)
+
+
+# The axes of the scene: z along the shafts, x and y along v and w of the gear unit.
+
+
+@dataclass(frozen=True)
+class SceneAxes:
+    """The frame of the scene.
+
+    Attributes
+    ----------
+    rows : (3, 3) array
+        Unit vectors x, y, z of the scene in the frame of the model.
+    """
+
+    rows: FloatArray
+
+    def point(self, origin: FloatArray) -> FloatArray:
+        """Return a point of the model in x, y, z, m."""
+        return np.asarray(self.rows @ origin)
+
+    def sense(self, place: Placement) -> int:
+        """Return +1 where u of a place is along z, -1 where it is against it, 0 where it is neither."""
+        along = float(self.rows[2] @ place.axes[0])
+        across = float(np.linalg.norm(np.cross(self.rows[2], place.axes[0])))
+        return 0 if across > PARALLEL else (1 if along > 0.0 else -1)
+
+    def turn(self, place: Placement) -> FloatArray:
+        """Return the matrix that takes u, v, w of a place to x, y, z."""
+        return np.asarray(self.rows @ place.axes.T)
+
+
+def scene_axes(root: Placement | None, shafts: Iterable[Placement]) -> SceneAxes:
+    """Return the axes for shafts that are parallel to the first of them.
+
+    Parameters
+    ----------
+    root : Placement or None
+        The gear unit's: its u is z if the first shaft is parallel to it, in either sense.
+    shafts : iterable of Placement
+        The first gives the direction otherwise.
+    """
+    unit = root or FIXED
+    first = next(iter(shafts), unit)
+    parallel = float(np.linalg.norm(np.cross(unit.axes[0], first.axes[0]))) <= PARALLEL
+    u, v, w = unit.axes if parallel else first.axes
+    return SceneAxes(np.array([v, w, u]))
+
+
+# Shafts of a REXS model: where they stand along the scene's z axis, and their sections.
+
+
+SAME_PLACE = 1e-6
+"""m; file and sum of lengths agree to rounding."""
+_LENGTHS = ("length", "outer_diameter_begin", "outer_diameter_end")
+
+
+@dataclass(frozen=True)
+class PlacedShaft:
+    """A shaft along the z axis of the scene.
+
+    Attributes
+    ----------
+    part : Part
+        The component.
+    place : Placement
+        In the frame of the model; its origin is u = 0.
+    start : (3,) array
+        Of u = 0 in the scene, m.
+    sense : int
+        +1 where u is along z, -1 where it is against it.
+    begin, end : float
+        u of both ends, m.
+    sections : tuple of BeamSection
+        From the left end, the lower z; none where the file has none.
+    """
+
+    part: Part
+    place: Placement
+    start: FloatArray
+    sense: int
+    begin: float
+    end: float
+    sections: tuple[BeamSection, ...] = ()
+
+    @property
+    def length(self) -> float:
+        """Length, m."""
+        return self.end - self.begin
+
+    @property
+    def origin(self) -> FloatArray:
+        """Left end of the axis in the scene, m."""
+        left = self.begin if self.sense > 0 else -self.end
+        return np.asarray(self.start + np.array([0.0, 0.0, left]))
+
+    def position(self, u: float) -> float:
+        """Return the position of a u from the left end, m."""
+        return u - self.begin if self.sense > 0 else self.end - u
+
+    def along(self, point: FloatArray) -> float:
+        """Return u of a point of the model, m."""
+        return self.place.along(point)
+
+    def off_axis(self, point: FloatArray) -> float:
+        """Return the distance of a point of the model from the axis, m."""
+        return float(np.linalg.norm(np.cross(self.place.axes[0], point - self.place.origin)))
+
+    def outer_diameter(self, u: float) -> float:
+        """Return the outer diameter at a u, m; 0 without sections."""
+        position, left = self.position(u), 0.0
+        for section in self.sections:
+            if left - SAME_PLACE <= position <= left + section.length + SAME_PLACE:
+                share = min(1.0, max(0.0, (position - left) / section.length))
+                first, last = section.outer_diameters
+                return first + share * (last - first)
+            left += section.length
+        return 0.0
+
+
+def placed_shaft(unit: GearUnit, part: Part, place: Placement, axes: SceneAxes) -> PlacedShaft:
+    """Return a shaft with its sections.
+
+    Raises
+    ------
+    BadInput
+        A section lacks its length or its diameter, or has no such size.
+    """
+    rows = tuple(_rows(unit, part))
+    sense = axes.sense(place)
+    begin = rows[0][0] if rows else 0.0
+    sections = tuple(section if sense > 0 else _turned(section) for _, section in rows)
+    end = begin + sum(section.length for section in sections)
+    return PlacedShaft(
+        part, place, axes.point(place.origin), sense, begin, end, sections if sense > 0 else sections[::-1]
+    )
+
+
+def _rows(unit: GearUnit, shaft: Part) -> Iterator[tuple[float, BeamSection]]:
+    """Yield u of the left end and the section of each piece, one after the other."""
+    pieces = [
+        (part.number("u_coordinate_on_shaft", "left end of the section, mm"), part)
+        for part in unit.children(shaft, "shaft_section")
+    ]
+    if all(u is not None for u, _ in pieces):
+        pieces.sort(key=lambda piece: piece[0] or 0.0)
+    first = (pieces[0][0] or 0.0) if pieces else 0.0
+    sections = [_section(unit, shaft, part) for _, part in pieces]
+    summed = list(accumulate((section.length for section in sections), initial=first))[:-1]
+    for (_, part), at, section in zip(pieces, summed, sections, strict=True):
+        _say_place(part, at)
+        yield at, section
+
+
+def _say_place(part: Part, at: float) -> None:
+    """State where a section begins if the file does not say so, or says something else."""
+    item = "u_coordinate_on_shaft"
+    stated = part.number(item, "left end of the section, mm")
+    derived = f"{at * 1e3:.6g} mm, the sum of the lengths before it"
+    if stated is None:
+        part.say(item, "derived", derived)
+    elif abs(stated - at) > SAME_PLACE:
+        part.say(item, "refused", f"{stated * 1e3:.6g} mm leaves a gap or overlaps; taken: {derived}")
+
+
+def _section(unit: GearUnit, shaft: Part, part: Part) -> BeamSection:
+    """Return a section in the order of u."""
+    length, begin, end = (_size(part, name) for name in _LENGTHS)
+    bore = part.number("inner_diameter_begin", "bore of the section, mm") or 0.0
+    end_bore = part.number("inner_diameter_end", "bore at the end of the section, mm")
+    tapers = end != begin or end_bore not in (None, bore)
+    if bore >= begin or (end_bore or 0.0) >= end:
+        bound = f"smaller than the outer diameter, {begin * 1e3:g} mm"
+        raise BadInput.of(f"{part.place}, inner_diameter_begin", bore * 1e3, bound)
+    return BeamSection(
+        length,
+        begin,
+        bore,
+        **_material(unit, shaft),
+        end_outer_diameter=end if tapers else None,
+        end_bore_diameter=(bore if end_bore is None else end_bore) if tapers else None,
+    )
+
+
+def _size(part: Part, item: str) -> float:
+    """Return a length of a section, m."""
+    value = part.number(item, f"{item} of the section, mm")
+    if value is None and item == "outer_diameter_end":
+        value = part.number("outer_diameter_begin", "outer diameter of the section, mm")
+        part.say(item, "derived", "as at the begin")
+    if value is None or not 0.0 < value <= 100.0:
+        written = None if value is None else value * 1e3
+        raise BadInput.of(f"{part.place}, {item}", written, "above 0 mm and at most 100000 mm")
+    return value
+
+
+def _material(unit: GearUnit, shaft: Part) -> dict[str, float]:
+    """Return what the file says of the shaft's material."""
+    names = {
+        "elastic_modulus": "youngs_modulus",
+        "poisson_ratio": "poissons_ratio",
+        "density": "density",
+    }
+    for part in unit.related(shaft, "reference", "origin", "referenced"):
+        if part.type == "material":
+            values = {own: part.number(item, f"{own} of the shaft") for item, own in names.items()}
+            return {own: value for own, value in values.items() if value}
+    return {}
+
+
+def _turned(section: BeamSection) -> BeamSection:
+    """Return a section seen from its other end."""
+    if section.end_outer_diameter is None:
+        return section
+    outer, bore = section.outer_diameters, section.bore_diameters
+    material = section.youngs_modulus, section.poissons_ratio, section.density
+    return BeamSection(section.length, outer[1], bore[1], *material, outer[0], bore[0])

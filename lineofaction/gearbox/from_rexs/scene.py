@@ -1,27 +1,35 @@
-"""The scene of a gear unit: shafts, gears, bearings, housing and loads, put together and validated."""
+"""The scene of a gear unit at an operating point, and which of its parts is which of the file."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from bounds.types import FloatArray
-from lineofaction.gearbox.from_rexs.gear_stages import NO_STAGE, GearStage
+from lineofaction.gearbox.from_rexs.gear_unit import (
+    NO_STAGE,
+    Connection,
+    GearStage,
+    Names,
+    Part,
+    bearings,
+    couplings,
+)
+from lineofaction.gearbox.from_rexs.gears import (
+    StageCase,
+    cases_by_stage,
+    driving_gears,
+    scene_discs,
+    scene_gears,
+)
+from lineofaction.gearbox.from_rexs.housing import scene_housings
 from lineofaction.gearbox.from_rexs.layout import Layout
-from lineofaction.gearbox.from_rexs.load_case import DIGITS
-from lineofaction.gearbox.from_rexs.names import Names
-from lineofaction.gearbox.from_rexs.operating_points import FORCES, OperatingPoint
-from lineofaction.gearbox.from_rexs.part import Part
-from lineofaction.gearbox.from_rexs.placement import FIXED, placement
-from lineofaction.gearbox.from_rexs.power_flow import PowerFlow
-from lineofaction.gearbox.from_rexs.scene_bearings import scene_bearings, stub_couplings
-from lineofaction.gearbox.from_rexs.scene_gears import cases_by_stage, scene_discs, scene_gears
-from lineofaction.gearbox.from_rexs.scene_housing import scene_housings
-from lineofaction.gearbox.from_rexs.scene_loads import (
+from lineofaction.gearbox.from_rexs.loads import (
+    DIGITS,
     AppliedTorque,
     applied_torques,
     driving,
@@ -29,11 +37,147 @@ from lineofaction.gearbox.from_rexs.scene_loads import (
     slowest_mesh,
     trains_of,
 )
-from lineofaction.gearbox.from_rexs.scene_parts import SceneParts, scene_parts
+from lineofaction.gearbox.from_rexs.placement import FIXED, SAME_PLACE, PlacedShaft, placement
+from lineofaction.gearbox.from_rexs.power_flow import FORCES, OperatingPoint, PowerFlow
+from lineofaction.gearbox.from_rexs.scene_bearings import scene_bearings, stub_couplings
 from lineofaction.gearbox.from_rexs.scene_shafts import SceneShaft, SceneShafts, scene_shafts
-from lineofaction.gearbox.from_rexs.shafts import SAME_PLACE, PlacedShaft
-from lineofaction.gearbox.from_rexs.stage_case import StageCase
 from lineofaction.gearbox.units import MM
+
+# Which component each part of a scene is, and how its axes u, v, w lie in the scene.
+
+
+@dataclass(frozen=True)
+class ShaftPart:
+    """A shaft.
+
+    Attributes
+    ----------
+    component : int
+    turn : (3, 3) array
+        Takes components along u, v, w to x, y, z.
+    sense : int
+        +1 where u is along z, -1 where it is against it.
+    zero : float
+        Position of u = 0 from the left end of the scene's shaft, m.
+    """
+
+    component: int
+    turn: FloatArray
+    sense: int
+    zero: float
+
+
+@dataclass(frozen=True)
+class BearingPart:
+    """A bearing, or a coupling, on the ground.
+
+    Attributes
+    ----------
+    component : int
+    turn : (3, 3) array
+        Takes components along its u, v, w to x, y, z.
+    shaft_inside : bool
+        Whether the shaft is on the inner side.
+    """
+
+    component: int
+    turn: FloatArray
+    shaft_inside: bool
+
+
+@dataclass(frozen=True)
+class MeshPart:
+    """A stage.
+
+    Attributes
+    ----------
+    component : int
+    case : str
+        Name of its case.
+    sense : int
+        +1 where the face positions of the case count along u of the shaft of the stage's gear 1, -1 against
+        it; the opposite where a load case turns the train the other way.
+    """
+
+    component: int
+    case: str
+    sense: int
+
+
+@dataclass(frozen=True)
+class SceneParts:
+    """The components of shafts, bearings on the ground and meshes by their names in the scene.
+
+    Copies of planets, planet bearings and stubs are not among them.
+    """
+
+    shafts: Mapping[str, ShaftPart] = field(default_factory=dict)
+    bearings: Mapping[str, BearingPart] = field(default_factory=dict)
+    meshes: Mapping[str, MeshPart] = field(default_factory=dict)
+
+
+def scene_parts(
+    layout: Layout,
+    flow: PowerFlow,
+    shafts: SceneShafts,
+    seats: Mapping[int, str],
+    meshes: Sequence[tuple[str, StageCase]],
+) -> SceneParts:
+    """Return the components of a scene's parts.
+
+    Parameters
+    ----------
+    layout : Layout
+    flow : PowerFlow
+        At the operating point of the scene.
+    shafts : SceneShafts
+    seats : mapping of int to str
+        The bushing of each bearing on the ground, by its component.
+    meshes : sequence of (str, StageCase)
+        Names and cases of the scene's meshes, in the order of `shafts.stages`.
+    """
+    parts = {
+        name: MeshPart(stage.stage.id, case.name, _face_sense(layout, flow, stage, case))
+        for stage, (name, case) in zip(shafts.stages, meshes, strict=True)
+    }
+    return SceneParts(dict(_shafts(layout, shafts)), dict(_bearings(layout, seats)), parts)
+
+
+def _shafts(layout: Layout, shafts: SceneShafts) -> Iterator[tuple[str, ShaftPart]]:
+    """Yield the shafts; a carrier only if the component of its rotor is a shaft of its own."""
+    for rotor, shaft in shafts.by_rotor.items():
+        if rotor in layout.shafts:
+            placed = layout.shafts[rotor]
+            zero = float(placed.start[2]) - shaft.begin
+            yield shaft.name, ShaftPart(rotor, layout.axes.turn(placed.place), placed.sense, zero)
+
+
+def _bearings(layout: Layout, seats: Mapping[int, str]) -> Iterator[tuple[str, BearingPart]]:
+    """Yield what holds shafts on the ground."""
+    entries: tuple[Connection, ...] = (*bearings(layout.unit), *couplings(layout.unit))
+    for entry in entries:
+        if entry.part.id in seats and entry.held.id in layout.shafts:
+            place = placement(layout.unit, entry.part) or layout.shafts[entry.held.id].place
+            inside = entry.held.id == entry.inner.id
+            yield seats[entry.part.id], BearingPart(entry.part.id, layout.axes.turn(place), inside)
+
+
+def _face_sense(layout: Layout, flow: PowerFlow, stage: GearStage, case: StageCase) -> int:
+    """Return how the face positions of the case count along u of gear 1's shaft.
+
+    They count against the scene's z if the case's driving gear turns about +z; a ring gear that drives is
+    pushed back by it.
+    """
+    driver, _ = driving_gears(stage, case)
+    number = 0 if driver.id == stage.gears[0].id else 1
+    rotor, carrier = layout.rotor(stage.shafts[number].id), layout.carrier(stage)
+    relative = flow.speed(rotor) - (0.0 if carrier is None else flow.speed(carrier))
+    pushed = -relative if case.wheel_drives else relative
+    return -int(np.sign(pushed)) * layout.sense(stage.shafts[0].id)
+
+
+# The scene of a gear unit: shafts, gears, bearings, housing and loads, put together and validated.
+
 
 # Forces of the scene: what acts on shafts from outside across and along their axes, by load case.
 

@@ -12,20 +12,25 @@ from bounds.types import FloatArray
 from dynamics.bearings import BallBearing, CatalogLine, RollerBearing
 from dynamics.bearings.roller_bearing import BOTH, NEGATIVE, NONE, POSITIVE
 from dynamics.bearings.rolling_bearing import AXIAL_PRELOAD, DYNAMIC_CAPACITY
-from lineofaction.gearbox.from_rexs.bearing_geometry import BearingGeometry, bearing_geometry
-from lineofaction.gearbox.from_rexs.bearing_stiffness import (
+from lineofaction.gearbox.from_rexs.bearings import (
+    BearingGeometry,
     BearingStiffness,
+    bearing_geometry,
     bearing_stiffness,
     operating_point,
     stated_stiffness,
 )
-from lineofaction.gearbox.from_rexs.bounded_number import bounded_number
-from lineofaction.gearbox.from_rexs.connections import Connection, bearings, couplings
+from lineofaction.gearbox.from_rexs.gear_unit import (
+    Connection,
+    Names,
+    Part,
+    bearings,
+    bounded_number,
+    couplings,
+)
+from lineofaction.gearbox.from_rexs.housing import loosely_housed
 from lineofaction.gearbox.from_rexs.layout import Layout
-from lineofaction.gearbox.from_rexs.names import Names
-from lineofaction.gearbox.from_rexs.part import Part
 from lineofaction.gearbox.from_rexs.placement import placement
-from lineofaction.gearbox.from_rexs.scene_housing import loosely_housed
 from lineofaction.gearbox.from_rexs.scene_shafts import SceneShafts
 from lineofaction.gearbox.schemas.declared import figures
 

@@ -8,12 +8,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from dynamics.shafts import BeamSection, Inertia, hollow_cylinder
-from lineofaction.gearbox.from_rexs.gear_stages import GearStage
+from lineofaction.gearbox.from_rexs.gear_unit import GearStage, Names, Part
 from lineofaction.gearbox.from_rexs.layout import Layout
-from lineofaction.gearbox.from_rexs.names import Names
-from lineofaction.gearbox.from_rexs.part import Part
-from lineofaction.gearbox.from_rexs.placement import placement
-from lineofaction.gearbox.from_rexs.shafts import PlacedShaft
+from lineofaction.gearbox.from_rexs.placement import PlacedShaft, placement
 from lineofaction.gearbox.units import MM
 
 # The rigid body of a planet carrier: the inertia of its shafts, pins and side plates together.

@@ -11,9 +11,9 @@ import numpy as np
 
 from bounds.types import FloatArray, Json
 from dynamics.deflection import BearingLoad, CaseDeflection, MeshAlignment
-from lineofaction.gearbox.from_rexs.load_case import LoadCase
+from lineofaction.gearbox.from_rexs.loads import LoadCase
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit
-from lineofaction.gearbox.from_rexs.scene_parts import BearingPart, SceneParts, ShaftPart
+from lineofaction.gearbox.from_rexs.scene import BearingPart, SceneParts, ShaftPart
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs import Attribute, Document, upgrade
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks

@@ -10,7 +10,7 @@ import numpy as np
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import Curve, SteDatabase
 from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
-from lineofaction.gearbox.from_rexs.stage_case import StageCase
+from lineofaction.gearbox.from_rexs.gears import StageCase
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs import Attribute, Document, upgrade
 from lineofaction.gearbox.schemas import Case

@@ -93,7 +93,7 @@ def test_its_own_folder_and_python_stay(confined: Run) -> None:
         "writes": "open('made', 'w').write('x')",
         "reads": "open('made').read()",
         "imports": "__import__('scipy.linalg')",
-        "imports ours": "__import__('lineofaction.gearbox.from_rexs.answer')",
+        "imports ours": "__import__('lineofaction.gearbox.from_rexs.opened')",
         "pipes": "socket.socketpair()",
     }
     assert set(outcomes(confined(own)).values()) == {"done"}

@@ -26,7 +26,7 @@ from fe_contact.geometry import Toothing
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
-from lineofaction.gearbox.from_rexs.stage_case import stage_cases
+from lineofaction.gearbox.from_rexs.gears import stage_cases
 from lineofaction.gearbox.schemas import Case
 
 MODIFICATION = 50

@@ -14,9 +14,7 @@ from lineofaction.cli.commands import app
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.convert.topology import facts_of
-from lineofaction.gearbox.from_rexs.answer import unit_json
-from lineofaction.gearbox.from_rexs.files import LOAD_CASES_FILE, unit_files
-from lineofaction.gearbox.from_rexs.opened import OpenedUnit, opened
+from lineofaction.gearbox.from_rexs.opened import LOAD_CASES_FILE, OpenedUnit, opened, unit_files, unit_json
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs import Document, serialized
 from lineofaction.gearbox.schemas import validated

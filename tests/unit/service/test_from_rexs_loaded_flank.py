@@ -14,8 +14,7 @@ from rexs_stage import (
     stage_unit,
 )
 
-from lineofaction.gearbox.from_rexs.flank_sides import loaded_flank
-from lineofaction.gearbox.from_rexs.meshing import meshing_of
+from lineofaction.gearbox.from_rexs.meshing import loaded_flank, meshing_of
 
 SIGNS = (1, -1)
 DIRECTION = {1: "positive", -1: "negative"}

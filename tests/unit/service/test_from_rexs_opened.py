@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lineofaction.gearbox.from_rexs.files import unit_files
-from lineofaction.gearbox.from_rexs.opened import opened
+from lineofaction.gearbox.from_rexs.opened import opened, unit_files
 from lineofaction.gearbox.rexs import Document
 from tests.fakes.opened_unit import content, said, scene_of
 from tests.fakes.rexs_stage import relation

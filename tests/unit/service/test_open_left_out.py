@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 from lineofaction.cli.commands import app as loa
 from lineofaction.gearbox.convert.stamp import stamped
 from lineofaction.gearbox.convert.toml import toml_text
-from lineofaction.gearbox.from_rexs.answer import unit_of_rexs
+from lineofaction.gearbox.from_rexs.opened import unit_of_rexs
 from lineofaction.gearbox.input_file import InputFile, Override
 from lineofaction.gearbox.schemas import read_model, validated
 from lineofaction.gearbox.schemas.scene import SceneInput

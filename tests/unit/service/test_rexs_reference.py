@@ -36,11 +36,10 @@ from small_table import small_table
 from dynamics.deflection import BearingLoad
 from fe_contact.ste import Metadata
 from lineofaction.gearbox.convert.case import case_json
-from lineofaction.gearbox.from_rexs.connections import BEARINGS, COUPLINGS
-from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
+from lineofaction.gearbox.from_rexs.gear_unit import BEARINGS, COUPLINGS, GearUnit
+from lineofaction.gearbox.from_rexs.gears import stage_cases
 from lineofaction.gearbox.from_rexs.opened import opened
-from lineofaction.gearbox.from_rexs.scene_parts import BearingPart
-from lineofaction.gearbox.from_rexs.stage_case import stage_cases
+from lineofaction.gearbox.from_rexs.scene import BearingPart
 from lineofaction.gearbox.rexs import Document, parsed, read_rexs, serialized, upgrade
 from lineofaction.gearbox.rexs.kinds import KINDS, kind_of
 from lineofaction.gearbox.rexs.units import UNITS

@@ -8,9 +8,7 @@ from pathlib import Path
 import pytest
 
 from lineofaction.client.offers import offers
-from lineofaction.gearbox.from_rexs.answer import unit_json
-from lineofaction.gearbox.from_rexs.files import unit_files
-from lineofaction.gearbox.from_rexs.opened import opened
+from lineofaction.gearbox.from_rexs.opened import opened, unit_files, unit_json
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs import read_rexs
 from lineofaction.gearbox.studies.deflect import Inputs

@@ -16,7 +16,7 @@ from fe_contact.ste import Metadata, SteDatabase
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.convert.case import case_json, gear_pair
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
-from lineofaction.gearbox.from_rexs.stage_case import StageCase, stage_cases
+from lineofaction.gearbox.from_rexs.gears import StageCase, stage_cases
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs import Attribute, Component, Document, parsed, serialized
 from lineofaction.gearbox.to_rexs.exported import exported

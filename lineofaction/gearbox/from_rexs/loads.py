@@ -1,21 +1,22 @@
-"""Drives and loads of the scene: what acts from outside, and stages that are cut off."""
+"""Torques, drives and laws of motion of a scene at an operating point."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
-from lineofaction.gearbox.from_rexs.gear_stages import GearStage
+from lineofaction.gearbox.from_rexs.gear_unit import GearStage, Names, Part
 from lineofaction.gearbox.from_rexs.layout import Layout
-from lineofaction.gearbox.from_rexs.names import Names
-from lineofaction.gearbox.from_rexs.part import Part
 from lineofaction.gearbox.from_rexs.power_flow import PowerFlow
 from lineofaction.gearbox.from_rexs.scene_shafts import SceneShafts
 from lineofaction.gearbox.units import RPM
+
+# Drives and loads of the scene: what acts from outside, and stages that are cut off.
+
 
 HELD_TORQUE = 1e-9
 """Of the largest torque; less is rounding."""
@@ -177,3 +178,85 @@ def slowest_mesh(layout: Layout, flow: PowerFlow, shafts: SceneShafts) -> float:
         rates.append(abs(speed) * stage.teeth[0] / (2.0 * np.pi))
     turning = [rate for rate in rates if rate > 0.0]
     return float(min(turning, default=0.0))
+
+
+# Load cases of a scene: torque and speed of its driving shaft, its forces, and the share of the time.
+
+
+DIGITS = 12
+
+
+@dataclass(frozen=True)
+class LoadCase:
+    """A load case of a scene.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    number : int
+        Its place in the spectrum of the file, from 1.
+    share : float
+        Of the time, 0 to 1.
+    torque_n_m : float
+        Torque on the shaft of the scene's first drive, positive.
+    speed_rpm : float
+        Speed of that shaft, positive.
+    direction : "drive" or "coast"
+        Whether the flanks that carry are those of the scene.
+    forces : tuple of mapping
+        Tables of the scene's forces that differ under it.
+    """
+
+    name: str
+    number: int
+    share: float
+    torque_n_m: float
+    speed_rpm: float
+    direction: Literal["drive", "coast"]
+    forces: tuple[Mapping[str, Any], ...] = ()
+
+    def table(self) -> dict[str, Any]:
+        """Return its table in a file."""
+        table = {
+            "name": self.name,
+            "share": self.share,
+            "torque_n_m": self.torque_n_m,
+            "speed_rpm": self.speed_rpm,
+            "direction": self.direction,
+        }
+        return table | ({"forces": [dict(force) for force in self.forces]} if self.forces else {})
+
+
+def load_case(
+    flow: PowerFlow,
+    leader: AppliedTorque,
+    torque: float,
+    scene_torque: float,
+    forces: tuple[Mapping[str, Any], ...],
+) -> LoadCase:
+    """Return the load case of an operating point.
+
+    Parameters
+    ----------
+    flow : PowerFlow
+        At the operating point.
+    leader : AppliedTorque
+        What drives the scene.
+    torque, scene_torque : float
+        Torque on the leader at the operating point and in the scene, N m about z: of opposite signs, the
+        other flanks carry, in whichever sense the shafts turn.
+    forces : tuple of mapping
+        Tables of the forces that are not those of the scene at the operating point.
+    """
+    speed = flow.speed(leader.rotor)
+    same = torque * scene_torque >= 0.0
+    return LoadCase(
+        flow.point.name,
+        flow.point.number,
+        float(f"{flow.point.share:.{DIGITS}g}"),
+        float(f"{abs(torque):.{DIGITS}g}"),
+        float(f"{abs(speed) / RPM:.{DIGITS}g}"),
+        "drive" if same else "coast",
+        forces,
+    )

@@ -9,9 +9,8 @@ import numpy as np
 from bounds.types import FloatArray
 from dynamics.bearings.matrix import least_share
 from dynamics.joints.housing import DEFINITE
+from lineofaction.gearbox.from_rexs.gear_unit import Names, Part
 from lineofaction.gearbox.from_rexs.layout import Layout
-from lineofaction.gearbox.from_rexs.names import Names
-from lineofaction.gearbox.from_rexs.part import Part
 from lineofaction.gearbox.from_rexs.placement import FIXED, placement
 
 _MATRIX = "reduced_static_stiffness_matrix"
