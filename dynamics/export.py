@@ -26,7 +26,7 @@ EVEN = 1  # abscissa by its first value and its increment
 NO_AXIS = (0, 0, 0, "NONE", "NONE")
 
 
-class FunctionType(IntEnum):
+class _FunctionType(IntEnum):
     """Kinds of function of dataset 58."""
 
     TIME_RESPONSE = 1
@@ -62,7 +62,7 @@ class NodalFunction:
 
     Attributes
     ----------
-    kind : FunctionType
+    kind : _FunctionType
     lines : tuple of str
         Up to five lines of text.
     entity : str
@@ -75,7 +75,7 @@ class NodalFunction:
     values : (N,) array
     """
 
-    kind: FunctionType
+    kind: _FunctionType
     lines: tuple[str, ...]
     entity: str
     node: int
@@ -155,9 +155,9 @@ ROTATIONS = ("bearing_moment",)
 SPECTRUM = "amplitude (peak), Hann window"
 TEXT = {"time": "time series", "spectrum": SPECTRUM, "orders": f"{SPECTRUM}, power mean of all blocks"}
 ABSCISSAE = {
-    "time": (FunctionType.TIME_RESPONSE, Quantity(17, 0, 0, "Time", "s")),
-    "spectrum": (FunctionType.SPECTRUM, Quantity(18, 0, 0, "Frequency", "Hz")),
-    "orders": (FunctionType.ORDER, Quantity(20, 0, 0, "Mesh order", "1")),
+    "time": (_FunctionType.TIME_RESPONSE, Quantity(17, 0, 0, "Time", "s")),
+    "spectrum": (_FunctionType.SPECTRUM, Quantity(18, 0, 0, "Frequency", "Hz")),
+    "orders": (_FunctionType.ORDER, Quantity(20, 0, 0, "Mesh order", "1")),
 }
 
 

@@ -18,7 +18,12 @@ from dynamics.acoustics.levels import (
     level_sum,
     sound_power_level,
 )
-from dynamics.acoustics.model_ladder import ElementalRadiators, ModelLadder, ModelResult, compare_models
+from dynamics.acoustics.model_comparison import (
+    ElementalRadiators,
+    ModelComparison,
+    ModelResult,
+    compare_models,
+)
 from dynamics.acoustics.order_power import ModalResistance, OrderPower, modal_resistance, order_power
 from dynamics.acoustics.outer_hull import OuterHull, outer_hull
 from dynamics.acoustics.radiation import (
@@ -61,7 +66,7 @@ __all__ = [
     "Hull",
     "LevelBand",
     "ModalResistance",
-    "ModelLadder",
+    "ModelComparison",
     "ModelResult",
     "OrderPower",
     "OuterHull",

@@ -38,7 +38,7 @@ MARGIN = 8
 MIDDLES = 0.5 * (np.ones((3, 3)) - np.eye(3))  # barycentric coordinates of the edges' middles
 
 
-def far_field_resistance(
+def _far_field_resistance(
     hull: Hull, wavenumber: float, pressure: ComplexArray, slope: ComplexArray
 ) -> ComplexArray:
     """Return the integral over all directions of conj(p_i) p_j, (M, M), Pa^2 m^2, p r in the far field.
@@ -220,7 +220,7 @@ def surface_pressure(
     if not residual <= RESIDUAL:
         left = engineering(residual, 2)
         raise SolveError(f"boundary elements: the relative residual {left} is above {RESIDUAL:g}")
-    far = far_field_resistance(hull, wavenumber, pressure, slope) / air.impedance
+    far = _far_field_resistance(hull, wavenumber, pressure, slope) / air.impedance
     surface = shapes.T @ (hull.areas[:, None] * np.asarray(panels.mean @ pressure))
     return SurfacePressure(pressure.conj(), far.conj(), 0.5 * (surface.conj() + surface.T), residual)
 

@@ -74,11 +74,11 @@ class Recording:
         least 70 dB.
         """
         integer("sample_rate", sample_rate, 1, 10_000_000)
-        samples = at_rate(self.samples, self.sample_rate, sample_rate)
+        samples = _at_rate(self.samples, self.sample_rate, sample_rate)
         return Recording(samples, sample_rate, self.quantity, self.unit)
 
 
-def at_rate(values: FloatArray, sample_rate: float, to_rate: int) -> FloatArray:
+def _at_rate(values: FloatArray, sample_rate: float, to_rate: int) -> FloatArray:
     """Return a series (T,) at another rate as `Recording.resampled` does; both rates above 0 Hz.
 
     Their ratio is taken as one of integers, within 3e-9: the lower rate has at most 20 000 steps.
@@ -206,7 +206,7 @@ def series_recording(
         As `audible` and `Recording`.
     """
     lasting = (np.size(values) - 1) / sample_rate
-    samples = at_rate(audible(values, sample_rate), sample_rate, to_rate)[: int(lasting * to_rate) + 1]
+    samples = _at_rate(audible(values, sample_rate), sample_rate, to_rate)[: int(lasting * to_rate) + 1]
     fade = min(round(FADE * to_rate), samples.size // 2)
     rise = 0.5 - 0.5 * np.cos(np.pi * np.arange(fade) / fade)
     samples[:fade] *= rise

@@ -48,7 +48,7 @@ def as_records(forces: Sequence[AppliedForce]) -> tuple[ForceUnderCase, ...]:
     )
 
 
-def forces_under(forces: Sequence[AppliedForce], stated: Sequence[CaseForce]) -> tuple[AppliedForce, ...]:
+def _forces_under(forces: Sequence[AppliedForce], stated: Sequence[CaseForce]) -> tuple[AppliedForce, ...]:
     """Return the forces of a scene with what a load case states of some of them."""
     by_name = {part.name: part for part in stated}
     return tuple(_stated(force, by_name[force.name]) if force.name in by_name else force for force in forces)
@@ -121,7 +121,7 @@ def loaded_scene(scene: Scene, case: LoadCase) -> Scene:
         scene,
         drives=(*_drives(scene, scale), *_held_trains(scene, leader, scale)),
         free_rotations=(),
-        forces=forces_under(scene.forces, case.forces),
+        forces=_forces_under(scene.forces, case.forces),
     )
     factor = case.factor if case.torque is None else _factor(driven, speed, case.torque)
     return replace(

@@ -169,7 +169,7 @@ class EffectLedger:
         return {"entries": entries, "left_out": dict(LEFT_OUT)}
 
 
-def check_choices(choices: Mapping[str, str], registry: Sequence[Effect]) -> None:
+def _check_choices(choices: Mapping[str, str], registry: Sequence[Effect]) -> None:
     """Refuse unknown effects and choices.
 
     Raises
@@ -191,7 +191,7 @@ def mechanism_of(scene: Scene, registry: tuple[Effect, ...] = EFFECTS) -> Mechan
     InputError
         If a choice is unknown, parts do not fit each other, or an effect cannot do without a part.
     """
-    check_choices(scene.effects, registry)
+    _check_choices(scene.effects, registry)
     allowed = [effect for effect in registry if scene.effects.get(effect.name) != "off"]
     requested = [effect for effect in registry if scene.effects.get(effect.name) == "on"]
     mechanism = gather_mechanism(scene, Additions(_added(allowed), _added(requested)))

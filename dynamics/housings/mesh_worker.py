@@ -36,7 +36,7 @@ class Unreadable(Exception):
     """The file is not what its format says."""
 
 
-class OtherCells(Exception):
+class _OtherCells(Exception):
     """The solid is not of one kind of tetrahedra."""
 
 
@@ -65,7 +65,7 @@ def tetrahedra(content: Any) -> Nodes:
     solid = sorted(kind for kind, dimension in dimensions.items() if dimension == 3)
     others = [kind for kind in solid if kind not in NODES]
     if others or len(solid) != 1:
-        raise OtherCells(others or solid or list(blocks))
+        raise _OtherCells(others or solid or list(blocks))
     nodes = np.vstack(blocks[solid[0]])
     if nodes.shape[1] != NODES[solid[0]]:
         raise Unreadable
@@ -110,7 +110,7 @@ def main() -> None:
         answer: dict[str, Any] = {"groups": names}
     except Unreadable:
         answer = {"unreadable": True}
-    except OtherCells as error:
+    except _OtherCells as error:
         answer = {"cells": error.args[0]}
     except MemoryError:
         answer = {"error": "MemoryError"}

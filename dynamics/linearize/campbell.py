@@ -63,10 +63,10 @@ def whirl_modes(system: System, time: float = 0.0) -> WhirlModes:
     SolveError
         If there is no static equilibrium.
     """
-    return whirl_modes_with(linearize(system, time), *speed_terms(system, time))
+    return _whirl_modes_with(linearize(system, time), *speed_terms(system, time))
 
 
-def whirl_modes_with(linear: LinearSystem, gyroscopic: FloatArray, stiffening: FloatArray) -> WhirlModes:
+def _whirl_modes_with(linear: LinearSystem, gyroscopic: FloatArray, stiffening: FloatArray) -> WhirlModes:
     """Return the modes of `linear` with the terms G and S (n, n) of its speeds."""
     eigenvalue, vector = _eigen(linear, linear.damping + gyroscopic, linear.stiffness + stiffening)
     kept = np.flatnonzero(eigenvalue.imag > OSCILLATING * np.max(np.abs(eigenvalue), initial=0.0))
@@ -195,7 +195,7 @@ class WhirlBranches:
 
 def modes_at(system: System, linear: LinearSystem, speed: float) -> WhirlModes:
     """Return the whirl modes where the leading law has `speed` in rad/s."""
-    return whirl_modes_with(linear, *terms_at(system, law_speeds(system, speed)))
+    return _whirl_modes_with(linear, *terms_at(system, law_speeds(system, speed)))
 
 
 def whirl_branches(

@@ -244,10 +244,10 @@ def housing_radiation(
     InputError
         The housing has no surface, a frequency is not above zero, or what the model refuses.
     """
-    air, asked = air or Air(), np.asarray(frequencies, dtype=float)
-    if not asked.size:
+    air, requested = air or Air(), np.asarray(frequencies, dtype=float)
+    if not requested.size:
         raise InputError("frequencies", [], "at least one frequency")
-    low, high = positive("frequencies", float(asked.min())) / BAND, float(asked.max()) * BAND
+    low, high = positive("frequencies", float(requested.min())) / BAND, float(requested.max()) * BAND
     outer = outer_hull(housing)
     resolved = 0.0 if isinstance(model, EquivalentRadiatedPower) else resolved_frequency(outer, air)
     ends, done = octaves(low, min(high, resolved)), progress or (lambda _fraction: None)

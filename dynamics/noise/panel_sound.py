@@ -13,7 +13,7 @@ from scipy.sparse.csgraph import connected_components
 from dynamics.acoustics import (
     Air,
     Hull,
-    ModelLadder,
+    ModelComparison,
     PanelModel,
     RadiationModel,
     compare_models,
@@ -41,7 +41,7 @@ def models_at(
     progress: Progress = silent,
     offered: Sequence[RadiationModel] = (),
     cache: Path | None = None,
-) -> ModelLadder:
+) -> ModelComparison:
     """Compute the sound power at one speed and order by several radiation models, on one hull in usual air.
 
     Parameters

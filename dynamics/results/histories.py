@@ -25,7 +25,7 @@ FIELDS = (MISALIGNMENT, CENTER_DISTANCE_CHANGE)
 """Axes of tables, as meshes and effects name them."""
 
 
-def axis_series(system: System, coordinate: FloatArray, force: FloatArray) -> dict[str, FloatArray]:
+def _axis_series(system: System, coordinate: FloatArray, force: FloatArray) -> dict[str, FloatArray]:
     """Return `misalignment`, `center_distance_change` and `load_centroid`, (m, T) in m.
 
     `coordinate` and `force` (R, T) are those of all rows. A series is (0, T) if its effect is on in no mesh.
@@ -137,7 +137,7 @@ def histories(
         "least_mesh_force": np.ascontiguousarray(states.least[:, driving].T),
         "largest_mesh_force": np.ascontiguousarray(states.largest[:, driving].T),
         "contact": _contact(system, seen.force),
-        **axis_series(system, signals.coordinate, signals.force),
+        **_axis_series(system, signals.coordinate, signals.force),
         "speed": _speed(system, laws[SPEED], v),
         "drive_torque": _drive_torque(system, time, laws[ACCELERATION], signals.force, q, v),
         "coupling_torque": _coupling_torque(system, q, v),
@@ -161,7 +161,7 @@ def checked_series(system: System, time: FloatArray, states: States, seen: Obser
         "coast_force": _coast_force(system, seen.force),
         "least_mesh_force": states.least[:, driving].T,
         "largest_mesh_force": states.largest[:, driving].T,
-        **axis_series(system, seen.coordinate, seen.force),
+        **_axis_series(system, seen.coordinate, seen.force),
         "bearing_force": _on_the_ground(system, laws, seen.force, states.q, states.v, states.moved)[0],
     }
 

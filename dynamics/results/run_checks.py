@@ -302,7 +302,7 @@ def _directions(force: FloatArray) -> FloatArray:
     return np.asarray(np.where(carries[:, None], force / np.where(carries, size, 1.0)[:, None], 0.0))
 
 
-class SeriesCheck(Protocol):
+class _SeriesCheck(Protocol):
     """A check of series."""
 
     def see(self, series: dict[str, Any]) -> None:
@@ -315,7 +315,7 @@ class SeriesCheck(Protocol):
 class RunChecks:
     """All checks of a run; `further` ones look at its series too."""
 
-    def __init__(self, system: System, further: Sequence[SeriesCheck] = ()) -> None:
+    def __init__(self, system: System, further: Sequence[_SeriesCheck] = ()) -> None:
         self._further, self._operating_points = tuple(further), HeldOperatingPointChecks(system)
         self._contact, self._axes = ContactChecks(system), AxisChecks(system)
         self._force, self._bearings = ForceChecks(system), BearingLoadChecks(system)

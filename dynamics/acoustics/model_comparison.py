@@ -29,7 +29,6 @@ from model_studies.variants import run_variants
 
 # Panels as small pistons that work against each other's sound.
 
-
 BLOCK = 512  # panels whose mutual resistances are held at a time
 PAIR, PAIR_SHAPE = 48e-9, 0.1e-9
 """CPU seconds of a pair of panels: its resistance, and for each shape."""
@@ -178,7 +177,7 @@ class ModelResult:
 
 
 @dataclass(frozen=True)
-class ModelLadder:
+class ModelComparison:
     """Results by the model's name, from coarse to fine, and why others have none.
 
     Attributes
@@ -186,7 +185,7 @@ class ModelLadder:
     results : mapping of str to ModelResult
     left_out : mapping of str to str
     predicted : mapping of str to Cost
-        Cost of every model at this frequency on this host, also of those that were not asked.
+        Cost of every model at this frequency on this host, also of those that were not requested.
     error_band : mapping of str to (float, float)
         By how much the level of each may be off, dB, from and to; below 0: too quiet.
     """
@@ -212,7 +211,7 @@ def compare_models(
     progress: Progress = silent,
     offered: Sequence[RadiationModel] = (),
     cache: Path | None = None,
-) -> ModelLadder:
+) -> ModelComparison:
     """Compute the sound power of a vibration (T,) in m/s at a frequency in Hz by several models.
 
     A model that refuses the hull or the frequency, or whose extra is not installed, is left out.
@@ -234,9 +233,9 @@ def compare_models(
     moving = positive("normal_velocity", mean_square_velocity(hull, normal_velocity), "Nothing moves.")
     plane, wavenumber = air.impedance * hull.area * moving, 2.0 * np.pi * frequency / air.sound_speed
     by_name = {model.model_name: model for model in models}
-    ladder = {model.model_name: model for model in (*offered, *models)}
+    listed = {model.model_name: model for model in (*offered, *models)}
     panels, outer = len(hull.triangles), wavenumber * hull.outer_radius
-    reference = {name: model.cost(panels, outer, 1) for name, model in ladder.items()}
+    reference = {name: model.cost(panels, outer, 1) for name, model in listed.items()}
     predicted = {name: on_this_host(WORK.format(name), cost, cache) for name, cost in reference.items()}
 
     def compute(model: RadiationModel) -> ModelResult:
@@ -252,5 +251,5 @@ def compare_models(
 
     results, left_out = run_variants("models", by_name, compute, (DynamicsError, MissingExtra), progress)
     ka = wavenumber * hull.equivalent_radius
-    bands = {name: model.error_band(ka) for name, model in ladder.items()}
-    return ModelLadder(results, left_out, predicted, bands)
+    bands = {name: model.error_band(ka) for name, model in listed.items()}
+    return ModelComparison(results, left_out, predicted, bands)

@@ -10,7 +10,7 @@ import pytest
 from hulls import box, sphere
 
 from dynamics.acoustics import Air, BoundaryElements, ElementalRadiators, Hull, compare_models, errors_db
-from dynamics.acoustics.model_ladder import MODELS
+from dynamics.acoustics.model_comparison import MODELS
 from dynamics.errors import InputError
 
 AIR = Air()
