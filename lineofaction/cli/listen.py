@@ -59,7 +59,7 @@ class RunSound:
     cells: dict[str, str] = field(default_factory=dict)
 
 
-def bearing_sounds(runs: Mapping[str, RunResult], view: RunView) -> tuple[list[RunSound], str]:
+def _bearing_sounds(runs: Mapping[str, RunResult], view: RunView) -> tuple[list[RunSound], str]:
     """Return runs by what they hold, e.g. forces on a bearing, and what to say of all."""
     sounds = []
     for one in heard_runs(dict(runs), view):
@@ -126,7 +126,7 @@ def _position(text: str) -> tuple[float, ...]:
     return x, y, z
 
 
-def housing_sounds(
+def _housing_sounds(
     runs: Mapping[str, RunResult], through: HousingReceiver, view: RunView
 ) -> tuple[list[RunSound], str]:
     """Return runs through the housings of a scene, and what to say of all."""
@@ -183,7 +183,9 @@ def run_listen(
     """Read the runs, write a WAV file of each on one full scale, print what they hold."""
     paths = _outputs(files, output)
     runs = {name: read_run(file, "runs") for name, file in named_files(files)}
-    sounds, remark = bearing_sounds(runs, view) if receiver is None else housing_sounds(runs, receiver, view)
+    sounds, remark = (
+        _bearing_sounds(runs, view) if receiver is None else _housing_sounds(runs, receiver, view)
+    )
     scale = full_scale_of([sound.recording for sound in sounds])
     if output.suffix != ".wav":
         output.mkdir(exist_ok=True)

@@ -31,7 +31,7 @@ _NODES = (2, 12)
 """Fewest nodes of an axis, and one more than the most."""
 
 
-def with_random_grid(gear: Gear, random: np.random.Generator, size: float, across_face: bool) -> Gear:
+def _with_random_grid(gear: Gear, random: np.random.Generator, size: float, across_face: bool) -> Gear:
     """Return the gear with a grid of its own added to its modification.
 
     Parameters
@@ -165,7 +165,7 @@ def _gear(draw: _Draw, rack: Fields) -> Gear:
     gear = Gear(**(rack | fields))
     if not draw.sometimes(_FREE_FORM):
         return gear
-    return with_random_grid(gear, draw.random, draw.power((-4.5, -2.3), (-6.0, -0.5)), draw.across_face)
+    return _with_random_grid(gear, draw.random, draw.power((-4.5, -2.3), (-6.0, -0.5)), draw.across_face)
 
 
 def _material(draw: _Draw) -> Material:

@@ -30,7 +30,7 @@ _FACTS = PairFacts(
 )
 
 
-def table_of(position: FloatArray, force: FloatArray, ste: FloatArray, lift_off: FloatArray) -> SteDatabase:
+def _table_of(position: FloatArray, force: FloatArray, ste: FloatArray, lift_off: FloatArray) -> SteDatabase:
     """Return the database of STE (P, F) in m over lift-off (P,), tangents by differences."""
     levels = np.concatenate([lift_off[:, None], ste], axis=1)
     secant = np.abs(np.diff(levels, axis=1)) / np.diff(force, prepend=0.0)
@@ -70,7 +70,7 @@ _PLAIN = (
 )
 
 
-def over_misalignment(table: SteDatabase, misalignment: FloatArray, factor: FloatArray) -> SteDatabase:
+def _over_misalignment(table: SteDatabase, misalignment: FloatArray, factor: FloatArray) -> SteDatabase:
     """Return the table at each misalignment with its transmission errors `factor` times as large."""
     names = ("static_transmission_error", "tangent_compliance", "no_load_transmission_error")
     scaled: dict[str, Any] = {name: _along(getattr(table, name), factor) for name in names}
@@ -86,7 +86,7 @@ def _along(values: FloatArray, factor: FloatArray) -> FloatArray:
     return np.asarray(values * factor.reshape(shape))
 
 
-def square_wave(position: FloatArray) -> FloatArray:
+def _square_wave(position: FloatArray) -> FloatArray:
     """Return the compliance in m/N of one pair, and of two on the first half of the pitch."""
     return np.where(position < 0.5, 0.5 * COMPLIANCE, COMPLIANCE)
 
@@ -101,8 +101,8 @@ _FORCE = np.array([500.0, 1000.0, 2500.0, 5000.0])
 def square_wave_ste() -> Sequence[Measured]:
     """Extract forces from an STE that jumps to its double between two knots."""
     position = even_positions(64)
-    ste = square_wave(position)[:, None] * _FORCE
-    table = table_of(position, _FORCE, ste, np.zeros(64))
+    ste = _square_wave(position)[:, None] * _FORCE
+    table = _table_of(position, _FORCE, ste, np.zeros(64))
     x = np.linspace(0.0, 1.0, 20_001)
     curve = table.ste(x, 2500.0)
     over = max(
@@ -126,7 +126,7 @@ def _two_loads() -> Sequence[Measured]:
     compliance = COMPLIANCE * (1.0 + 0.3 * np.cos(2.0 * np.pi * position))
     figures: list[Measured] = []
     for force in (np.array([1000.0, 3000.0]), np.array([3000.0])):
-        table = table_of(position, force, compliance[:, None] * force, np.zeros(16))
+        table = _table_of(position, force, compliance[:, None] * force, np.zeros(16))
         between = np.linspace(0.0, 3000.0, 31)[1:]
         straight = compliance[:, None] * between
         growth = np.diff(table.ste(position[:, None], between), axis=1)
@@ -148,7 +148,7 @@ def _lift_off() -> Sequence[Measured]:
     position = even_positions(32)
     gap = 20e-6 * np.sin(2.0 * np.pi * position)
     ste = gap[:, None] + COMPLIANCE * _FORCE**0.9
-    table = table_of(position, _FORCE, ste, gap)
+    table = _table_of(position, _FORCE, ste, gap)
     x = np.linspace(0.0, 1.0, 501)
     first = table.ste(x, 0.0)
     below, at, above = (table.force_at(x, first + step) for step in (-1e-12, 0.0, 1e-12))
@@ -171,7 +171,7 @@ def queries_outside() -> Sequence[Measured]:
     """Ask beyond every end of the table, far away, and for what is no number."""
     position = even_positions(32)
     compliance = COMPLIANCE * (1.0 + 0.3 * np.cos(2.0 * np.pi * position))
-    table = table_of(position, _FORCE, compliance[:, None] * _FORCE, np.zeros(32))
+    table = _table_of(position, _FORCE, compliance[:, None] * _FORCE, np.zeros(32))
     x = np.linspace(0.0, 1.0, 101)[:-1]
     here = table.ste(x, 2500.0)
     far = np.abs(table.ste(x + 1e6, 2500.0) / here - 1.0).max()
@@ -199,7 +199,7 @@ def queries_outside() -> Sequence[Measured]:
 def _along_the_axis(table: SteDatabase, x: FloatArray) -> tuple[Measured, ...]:
     """Ask a table of three misalignments at each of them, between and beyond."""
     misalignment, factor = np.array([-20e-6, 0.0, 30e-6]), np.array([1.2, 1.0, 1.5])
-    wide = over_misalignment(table, misalignment, factor)
+    wide = _over_misalignment(table, misalignment, factor)
     here = table.ste(x, 2500.0)
     at = [wide.ste(x, 2500.0, misalignment=m) / here for m in misalignment]
     between = wide.ste(x, 2500.0, misalignment=15e-6) / here
@@ -223,9 +223,9 @@ def _nearly_parallel() -> Sequence[Measured]:
     """Keep loads apart whose curves run a picometer from each other over a square wave."""
     position = even_positions(48)
     force = 1000.0 + np.array([0.0, 1e-3, 2e-3, 1.0])
-    ste = square_wave(position)[:, None] * force
+    ste = _square_wave(position)[:, None] * force
     ste[:, 1:3] = ste[:, :1] + np.array([1e-12, 2e-12])
-    table = table_of(position, force, ste, np.zeros(48))
+    table = _table_of(position, force, ste, np.zeros(48))
     x = np.linspace(0.0, 1.0, 4001)
     levels = table.ste(x[:, None], np.r_[0.0, force])
     return (
@@ -335,7 +335,7 @@ def _broken_monotonicity() -> Sequence[Measured]:
     position, force = even_positions(32), np.linspace(500.0, 3000.0, 26)
     clean = COMPLIANCE * force * (1.0 + 0.2 * np.cos(2.0 * np.pi * position))[:, None]
     noise = np.random.default_rng(_SEED_NOISE).uniform(-_AMPLITUDE, _AMPLITUDE, clean.shape)
-    table = table_of(position, force, clean + noise, np.zeros(32))
+    table = _table_of(position, force, clean + noise, np.zeros(32))
     refusal = _refusal(table)
     repaired, report = table.monotone_repaired()
     ste = repaired.static_transmission_error[:, :, 0, 0]

@@ -102,7 +102,7 @@ class JobService:
 
 
 @contextmanager
-def fresh_service(**settings: Any) -> Iterator[JobService]:
+def _fresh_service(**settings: Any) -> Iterator[JobService]:
     """Run a service with one worker on a directory of its own, its log kept from the terminal."""
     with tempfile.TemporaryDirectory(prefix="loa-hard-jobs-") as name, capture_logs() as log:
         service = _service(Path(name).resolve(), log, settings)
@@ -186,7 +186,7 @@ def aftermath(
     With `resubmit` the first is submitted once more at the end, undisturbed.
     """
     before = undisturbed()
-    with fresh_service(**settle(before.seconds)) as service:
+    with _fresh_service(**settle(before.seconds)) as service:
         jobs = [service.submit(case), service.submit(_case_of("plane_strain", "draft", (30.0,)))]
         service.submissions.dismiss(jobs[1].id)
         jobs.append(service.submit(SMALL))
@@ -209,7 +209,7 @@ class Undisturbed:
 @cache
 def undisturbed() -> Undisturbed:
     """Run the small job, once for all scenes of a process."""
-    with fresh_service() as service:
+    with _fresh_service() as service:
         began = time.perf_counter()
         ended = service.ended(service.submit(SMALL))
         return Undisturbed(time.perf_counter() - began, service.errors(ended))

@@ -142,7 +142,7 @@ def worker_killed_once() -> Sequence[Measured]:
     """Kill the first worker in mid-mesh."""
     killed: list[int] = []
     outcome = aftermath(MEDIUM, _kill_workers(1, killed))
-    off = np.inf if outcome.errors is None else largest_difference(outcome.errors, of_python())
+    off = np.inf if outcome.errors is None else largest_difference(outcome.errors, _of_python())
     return (
         Measured("workers killed", float(len(killed)), 1.0, 1.0),
         Measured("done at the second attempt", float(outcome.ended_as("successful", 2)), least=1.0),
@@ -165,7 +165,7 @@ def _worker_killed_always() -> Sequence[Measured]:
     )
 
 
-def of_python() -> FloatArray:
+def _of_python() -> FloatArray:
     """Return the transmission errors of the job, computed here."""
     case = validated(Case, MEDIUM)
     return ste_database(gear_pair(case), table_axes(case), analysis_options(case)).static_transmission_error
@@ -223,7 +223,7 @@ def _disk_full() -> Sequence[Measured]:
     held: list[int] = []
     outcome = aftermath(MEDIUM, _no_room(held), resubmit=True)
     stated = "no space left" in outcome.job.message and "Make room" in outcome.job.message
-    off = np.inf if outcome.errors is None else largest_difference(outcome.errors, of_python())
+    off = np.inf if outcome.errors is None else largest_difference(outcome.errors, _of_python())
     return (
         Measured("workers without room", float(len(held)), 1.0, 1.0),
         Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), least=1.0),

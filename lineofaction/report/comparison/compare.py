@@ -300,10 +300,10 @@ def compare(files: Sequence[Path], view: RunView, torque: float | None = None) -
     results = dict(named_files([file for file in files if file not in measured]))
     if len(measured) > 1 or not results or not len(results) + len(measured) >= 2 or len(results) > 2:
         raise BadInput.of("files", ", ".join(map(str, files)) or None, _BOUND, _ADVICE)
-    return compare_results(results, view, measured, torque)
+    return _compare_results(results, view, measured, torque)
 
 
-def compare_results(
+def _compare_results(
     results: dict[str, Path], view: RunView, measured: Sequence[Path] = (), torque: float | None = None
 ) -> Page:
     """Compare result files by their names; parameters and errors as for `compare`."""
@@ -363,4 +363,4 @@ def stored_comparison(inputs: Json) -> Json:
     """Compare ``{"files": [...]}``, two tables or two runs; work of the live worker."""
     named = dict(zip(NAMES, map(Path, inputs["files"]), strict=True))
     with of_the_store():
-        return page_json(compare_results(named, RunView()))
+        return page_json(_compare_results(named, RunView()))

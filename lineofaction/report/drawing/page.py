@@ -55,12 +55,12 @@ def sound_json(sound: Sound) -> Json:
     return {"caption": sound.caption, "tracks": tracks}
 
 
-def player_script() -> str:
+def _player_script() -> str:
     """Return the script that joins players and plots, as a module."""
     return f'<script type="module">{_text(SCRIPT)}{_JOINED}</script>'
 
 
-def player_style() -> str:
+def _player_style() -> str:
     """Return the style sheet of players and cursor."""
     return _text(STYLE_SHEET)
 
@@ -210,7 +210,7 @@ def html(page: Page, images: dict[str, bytes]) -> str:
     """Write `page`; `images` are the PNG bytes of every figure by its key."""
     body = "\n".join(_section(section, index, images) for index, section in enumerate(page.sections, start=1))
     heard = any(figure.sound for section in page.sections for figure in section.figures)
-    style = STYLE + player_style() if heard else STYLE
+    style = STYLE + _player_style() if heard else STYLE
     return "\n".join(
         [
             '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
@@ -223,7 +223,7 @@ def html(page: Page, images: dict[str, bytes]) -> str:
             f'<main id="main">\n{body}\n</main>',
             "<footer>Written by lineofaction. This page needs no network.</footer>",
             f"<script>{_SCRIPT}</script>",
-            player_script() if heard else "",
+            _player_script() if heard else "",
             "</body>\n</html>\n",
         ]
     )

@@ -102,7 +102,7 @@ def _is_free(box: _Box, taken: Sequence[_Box], lowest: float) -> bool:
 _ROOM = 0.05  # of the height beyond the curves where the axis has no limits
 
 
-class LineLabel(NamedTuple):
+class _LineLabel(NamedTuple):
     """A label beside a panel; heights are parts of the panel's, 0 at the bottom.
 
     `end` is the height at which its line ends, `middle` that of the label.
@@ -114,7 +114,7 @@ class LineLabel(NamedTuple):
     middle: float
 
 
-def line_labels(panel: Panel, row: float) -> list[LineLabel]:
+def line_labels(panel: Panel, row: float) -> list[_LineLabel]:
     """Return the labels of a panel's lines, each as near to its line's end as its neighbors allow.
 
     Parameters
@@ -129,7 +129,7 @@ def line_labels(panel: Panel, row: float) -> list[LineLabel]:
     at = np.clip(panel.y.fraction(ends, vertical_limits(panel)), 0.0, 1.0) if lines else ends
     middles = spread(at, heights)
     return [
-        LineLabel(line.label, line.color, float(end), float(middle))
+        _LineLabel(line.label, line.color, float(end), float(middle))
         for line, end, middle in zip(lines, at, middles, strict=True)
     ]
 

@@ -64,7 +64,7 @@ MAPPED, NAMED = 10, 5
 """Mesh orders of an order map, as far as the output holds them, and how many of them are cut unless named."""
 
 
-def pitches_passed(run: RunResult, mesh: int = 0) -> float:
+def _pitches_passed(run: RunResult, mesh: int = 0) -> float:
     """Return how many base pitches a mesh passes; 0 of a run without meshes."""
     return float(np.ptp(np.unwrap(run.position[mesh], period=1.0))) if run.mesh else 0.0
 
@@ -78,7 +78,7 @@ def order_blocks(run: RunResult, signal: Signal) -> Waterfall:
         It has no mesh, or is shorter than one block.
     """
     highest = max((*signal.orders, min(MAPPED, highest_valid_order(run, signal.mesh)), 1))
-    travel = pitches_passed(run, signal.mesh)
+    travel = _pitches_passed(run, signal.mesh)
     if travel < SHORTEST:
         bound = f"at least {SHORTEST} base pitches of a mesh, in which its orders are counted"
         raise BadInput.of("run", f"{travel:.4g} base pitches", bound, "Simulate a longer one.")
@@ -290,7 +290,7 @@ class Loudest:
 
 def has_orders(run: RunResult, mesh: int = 0) -> bool:
     """Whether a run passes enough base pitches for orders over it."""
-    return pitches_passed(run, mesh) >= LEAST_PITCHES
+    return _pitches_passed(run, mesh) >= LEAST_PITCHES
 
 
 def loudest(run: RunResult, signal: Signal) -> Loudest | None:

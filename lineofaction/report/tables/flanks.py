@@ -25,7 +25,7 @@ from lineofaction.report.drawing.figure import (
 from lineofaction.report.tables.ste import POSITION_LABEL
 
 
-def face_axis(flanks: LoadDistribution) -> Axis:
+def _face_axis(flanks: LoadDistribution) -> Axis:
     """Return the axis across the face."""
     low, high = (1e3 * end for end in flanks.scene.common_face)
     return Axis("face position, mm (0 = mid-face of the pinion; right: +z end)", limits=(low, high))
@@ -68,7 +68,7 @@ def _axes(flanks: LoadDistribution) -> tuple[Axis, Axis]:
     start, *_, end = (1e3 * point for point in flanks.scene.path_of_contact)
     room = 0.06 * (end - start)
     return (
-        face_axis(flanks),
+        _face_axis(flanks),
         Axis("roll length of the pinion, mm", limits=(start - room, end + 1.5 * room)),
     )
 
@@ -188,7 +188,7 @@ def _shaded(flanks: LoadDistribution, gear: Gear, one: _Map) -> Panel:
     largest = 1e-6 * float(flanks.pressure.max())
     face = 1e3 * flanks.face_position
     return Panel(
-        face_axis(flanks),
+        _face_axis(flanks),
         Axis("roll length, mm", limits=_extent(flanks, gear, roll)),
         references=_roll_marks(flanks, gear, "horizontal"),
         title=_title(flanks, gear),
@@ -278,7 +278,7 @@ _ROUNDING = 1e-9
 def line_load_figure(flanks: LoadDistribution) -> Figure:
     """Draw the load of all pairs per unit of face width, and the gap that the most loaded pair leaves."""
     chosen = np.unique(np.linspace(0, flanks.position.size, CURVES_SHOWN, endpoint=False).astype(int))
-    face = face_axis(flanks)
+    face = _face_axis(flanks)
     mean = 1e-3 * flanks.face_load.mean(axis=0)
     names = [f"position {flanks.position[k]:.3g}" for k in chosen]
     x = 1e3 * flanks.face_position

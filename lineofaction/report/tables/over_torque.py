@@ -67,7 +67,7 @@ def ripple_over_torque(database: SteDatabase) -> Figure:
         title="Ripple over torque",
         caption="Peak-to-peak STE with the band of its error, and its mesh harmonics; dotted: below their "
         "errors.",
-        alternative=ripple_words({f"at {load_labels(database)[k]}": c for k, c in curves.items()}),
+        alternative=_ripple_words({f"at {load_labels(database)[k]}": c for k, c in curves.items()}),
         content=(
             _ripple(across, torque, curves),
             _harmonics(across, torque, value, known, "amplitude, µm"),
@@ -98,7 +98,7 @@ def _harmonics(across: Axis, torque: FloatArray, values: FloatArray, known: Bool
     return Panel(across, Axis(label), tuple(lines), title=f"Mesh harmonics 1 to {HARMONICS}")
 
 
-def ripple_words(curves: dict[str, Curve]) -> str:
+def _ripple_words(curves: dict[str, Curve]) -> str:
     """Say where, by the names of the curves, the ripple is least and largest, and whether that is shown."""
     ripple = {name: curve.peak_to_peak for name, curve in curves.items()}
     least, most = (ripple[end(ripple, key=lambda name: ripple[name].value)] for end in (min, max))
@@ -200,7 +200,7 @@ def _panel(database: SteDatabase, deviation: _Deviation) -> Panel:
 def _words(database: SteDatabase, deviation: _Deviation) -> str:
     """Say where peak to peak is least and largest at the largest load."""
     names = [f"at {name}" for name in deviation.places]
-    said = ripple_words(dict(zip(names, (row[-1] for row in deviation.curves), strict=True)))
+    said = _ripple_words(dict(zip(names, (row[-1] for row in deviation.curves), strict=True)))
     return f"At {load_labels(database)[-1]} {said[0].lower()}{said[1:]}"
 
 

@@ -178,7 +178,7 @@ def pair_range(database: SteDatabase, load: int) -> tuple[int, int]:
     return int(counts.min()), int(counts.max())
 
 
-def steps_with_pairs(database: SteDatabase, load: int) -> bool:
+def _steps_with_pairs(database: SteDatabase, load: int) -> bool:
     """Whether the deflection steps down where more pairs carry: of spur pairs, if flanks do not hide it."""
     counts = _counts(database, load)
     low, high = counts.min(), counts.max()
@@ -343,7 +343,7 @@ def _carriers(database: SteDatabase) -> str:
     carried = f"At {load_labels(database)[load]} {pairs_in_words(database, load)}"
     return (
         f"{carried}: low where more do, high where fewer."
-        if steps_with_pairs(database, load)
+        if _steps_with_pairs(database, load)
         else f"{carried}."
     )
 
