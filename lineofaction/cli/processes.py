@@ -45,7 +45,7 @@ from service.store.schema import shown
 from service.store.write_check import WriteCheck
 from service.tracing.tracer import tracer
 from service.worker.catalogue import default_registry
-from service.worker.remote_work import RemoteWork
+from service.worker.cluster import RemoteWork
 
 
 def log_to_standard_error() -> None:

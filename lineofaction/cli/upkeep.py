@@ -21,10 +21,9 @@ from service.settings import Settings, load_settings
 from service.store import DATABASE_FILE, ResultStore, open_database
 from service.store.database import database_engine
 from service.store.deployment import Deployment
-from service.store.maintenance import Leftover, verify_store
+from service.store.maintenance import Leftover, Quarantine, verify_store
 from service.store.migrations import REVISIONS
 from service.store.places import result_files
-from service.store.quarantine import Quarantine
 from service.store.reindex import reindex
 from service.store.schema import Schema, shown
 from service.worker.process import Registry

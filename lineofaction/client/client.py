@@ -32,8 +32,7 @@ from lineofaction.client.surface import Awaiting, Blocking, Session, Surface, op
 from lineofaction.gearbox import schemas
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.subjects import CaseLike, SceneLike, case_inputs, scene_inputs
-from service.schemas.offers import EffectBody, ExampleBody
-from service.schemas.unit import UnitBody
+from service.schemas.answers import EffectBody, ExampleBody, UnitBody
 from service.version import solver_version
 
 # What a service says before anything is computed: plans, drawings, examples, effects, files.

@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING, Generic, TypeVar, cast
 from lineofaction.client.job_calls import JobCalls, pace_of_known, result_of
 from lineofaction.client.report import Report
 from lineofaction.client.result_calls import ResultCalls
-from lineofaction.client.status import JobState, Result, Watch
+from lineofaction.client.status import JobState, Result, Watch, outlasting
 from lineofaction.client.steps import Item, Items, Steps
 from lineofaction.client.surface import Awaiting, Blocking, Surface, listing, operation
-from lineofaction.client.waiting import outlasting
 from lineofaction.gearbox.problems import BadInput, DamagedFile, JobDismissed, JobFailed, NotFound
 
 if TYPE_CHECKING:

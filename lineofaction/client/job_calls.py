@@ -7,23 +7,75 @@ import math
 import time
 import uuid
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import httpx2
 
 from lineofaction.client.answers import stranger
-from lineofaction.client.paging import pages
-from lineofaction.client.status import JobState, OfflineWarning, Result, Watch
+from lineofaction.client.exchange import Exchange
+from lineofaction.client.status import (
+    AWAY,
+    AWAY_PAUSE_S,
+    STOPS,
+    JobState,
+    OfflineWarning,
+    Pace,
+    Result,
+    Watch,
+    ended,
+    note_continuing,
+    outlasting,
+)
 from lineofaction.client.steps import Item, Items, Pause, Piece, Steps, Stream
 from lineofaction.client.surface import Session, Surface, listing, operation
-from lineofaction.client.waiting import AWAY, AWAY_PAUSE_S, STOPS, Pace, ended, note_continuing, outlasting
 from lineofaction.gearbox.problems import BadInput, ServiceError, Unreachable
 from service.version import solver_version
 
 if TYPE_CHECKING:
     from lineofaction.client.exchange import Exchange
+
+T = TypeVar("T")
+_PAGE = 100
+"""Entries that are fetched at a time."""
+
+
+def pages(
+    exchange: Exchange,
+    path: str,
+    entries: str,
+    reader: Callable[[dict[str, Any]], T],
+    parameters: Mapping[str, Any],
+    limit: int | None,
+) -> Items[T]:
+    """Hand out the entries of a list, at most `limit`; the next page is fetched when it is needed.
+
+    Parameters
+    ----------
+    path, entries : str
+        Of the list; the name of the entries in its pages.
+    reader : callable
+        JSON of an entry to the entry.
+    parameters : mapping
+        Of the first page.
+    """
+
+    def read(page: dict[str, Any]) -> tuple[list[T], str | None]:
+        following = (link["href"] for link in page["links"] if link["rel"] == "next")
+        return [reader(entry) for entry in page[entries]], next(following, None)
+
+    left = limit
+    size = _PAGE if limit is None else max(1, min(limit, _PAGE))
+    shown, following = yield from exchange.read(read, "GET", path, params={**parameters, "limit": size})
+    while True:
+        for entry in shown[:left]:
+            yield Item(entry)
+        left = None if left is None else left - len(shown)
+        if following is None or (left is not None and left <= 0):
+            return
+        shown, following = yield from exchange.read(read, "GET", following)
+
 
 # Events of a job as they come (server-sent events, HTML Living Standard, clause 9.2).
 

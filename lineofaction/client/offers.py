@@ -9,7 +9,7 @@ from inspect import Parameter, Signature
 from pathlib import Path
 from typing import Any
 
-from lineofaction.client.libraries import libraries
+from lineofaction.client.answers import libraries
 from lineofaction.gearbox.registry import STUDIES, Study
 from lineofaction.gearbox.subjects import case_inputs, inputs_of, scene_inputs, study_inputs
 

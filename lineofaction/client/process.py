@@ -13,10 +13,9 @@ from lineofaction.client.job import AsyncJob, Job
 from lineofaction.client.job_calls import JobCalls
 from lineofaction.client.offers import Offer
 from lineofaction.client.result_calls import ResultCalls
-from lineofaction.client.status import JobState, Result
+from lineofaction.client.status import JobState, Result, note_continuing, outlasting
 from lineofaction.client.steps import Steps
 from lineofaction.client.surface import Awaiting, Blocking, Surface
-from lineofaction.client.waiting import note_continuing, outlasting
 from lineofaction.gearbox.problems import BadInput, ServiceError
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from html import escape
 from typing import Any
 
-from service.schemas.report import ReportBody
+from service.schemas.answers import ReportBody
 
 Json = dict[str, Any]
 

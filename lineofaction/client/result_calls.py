@@ -7,10 +7,10 @@ from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict, Unpack
 
+from lineofaction.client.answers import libraries
 from lineofaction.client.cache import FIGURES
-from lineofaction.client.libraries import libraries
+from lineofaction.client.job_calls import pages
 from lineofaction.client.offers import ANALYZE
-from lineofaction.client.paging import pages
 from lineofaction.client.report import Report
 from lineofaction.client.steps import Items, Steps
 from lineofaction.client.surface import Session, Surface, listing, operation
@@ -19,7 +19,7 @@ from lineofaction.gearbox.problems import DamagedFile, NotFound
 from lineofaction.gearbox.registry import JSON, NETCDF
 from lineofaction.gearbox.schemas.query import QueryInput
 from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS, RESULTS, SUFFIX, figures_model
-from service.schemas.database_list import DatabaseEntry
+from service.schemas.answers import DatabaseEntry
 
 if TYPE_CHECKING:
     import xarray

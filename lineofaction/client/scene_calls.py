@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from host.directories import cache_home
+from lineofaction.client.answers import libraries
 from lineofaction.client.job_calls import JobCalls
-from lineofaction.client.libraries import libraries
 from lineofaction.client.offers import ANALYZE
 from lineofaction.client.process import obtained
 from lineofaction.client.result_calls import ResultCalls

@@ -1,13 +1,51 @@
-"""How much one server process does at once, within the files that the system lets it open."""
+"""How much callers may ask: the rate of one, and the capacity for all."""
 
 from __future__ import annotations
 
+import math
+import time
+from collections.abc import Callable
 from dataclasses import dataclass
+from threading import Lock
 
 import structlog
 
 from host import most_open_files
 from lineofaction.gearbox.problems import BadInput
+from service.access.holder import Holder
+
+logger = structlog.get_logger(__name__)
+
+_MINUTE_S = 60.0
+
+
+class RateLimits:
+    """The buckets of all keys, in the memory of one server process.
+
+    Parameters
+    ----------
+    clock : callable
+        Seconds, steady; replaced by tests.
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._lock = Lock()
+        self._left: dict[str, tuple[float, float]] = {}
+
+    def wait_s(self, key: Holder) -> int:
+        """Take one request out of the bucket of a holder; return 0, or the seconds until there is one."""
+        limit = key.requests_per_minute
+        if limit is None:
+            return 0
+        instant = self._clock()
+        with self._lock:
+            left, last = self._left.get(key.name, (float(limit), instant))
+            left = min(limit, left + (instant - last) * limit / _MINUTE_S)
+            taken = left >= 1.0
+            self._left[key.name] = (left - 1.0 if taken else left, instant)
+        return 0 if taken else math.ceil((1.0 - left) * _MINUTE_S / limit)
+
 
 _MOST_CONNECTIONS = 800
 _LEAST_CONNECTIONS = 32
@@ -15,8 +53,6 @@ _OTHER_FILES = 192
 """Kept for all else: up to four files in each of the 40 threads of handlers, pipes to workers, the rest."""
 _FILES_OF_A_WORKER = 4
 RAISE = "Raise the limit of the process (ulimit -n, LimitNOFILE= of systemd)."
-
-logger = structlog.get_logger(__name__)
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ from typing import BinaryIO, TypeAlias
 from host import kill_own_group, lower_priority
 from lineofaction.gearbox.problems import ServiceError
 from service.live.order import AnswerHead, LiveOrder, LiveWork
-from service.worker.memory import hold_to
+from service.worker.usage import hold_to
 
 Note: TypeAlias = Callable[[], None]
 _NICENESS = 5

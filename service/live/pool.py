@@ -28,8 +28,8 @@ from lineofaction.gearbox.problems import LiveUnavailable, QueueFull, Superseded
 from service.live.order import AnswerHead, LiveOrder
 from service.own_folder import own_folder, remove_left
 from service.settings import LEAST_MEMORY_MB, Settings
-from service.worker.memory import machine_memory_mb
 from service.worker.propagated import propagated
+from service.worker.usage import machine_memory_mb
 
 # The live worker seen from the service: start, ask, end.
 

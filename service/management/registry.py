@@ -12,7 +12,7 @@ from service.queue.workload import WorkloadReader
 from service.settings import Settings
 from service.store import ResultStore
 from service.store.write_check import WriteCheck
-from service.worker.remote_work import RemoteWork
+from service.worker.cluster import RemoteWork
 
 
 def process_registry(

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 from service.queue.scheduler import Scheduler
 from service.store.write_check import WriteCheck
-from service.worker.remote_work import RemoteWork
+from service.worker.cluster import RemoteWork
 
 TURN_WITHIN_S = 120.0
 """A scheduler whose turn takes longer is stuck: a turn may wait for locks of the database and for an object

@@ -15,13 +15,11 @@ from model_studies.progress import stage_name
 from service.queue.claims import Claim
 from service.queue.worker_figures import WorkerFigures
 from service.settings import LEAST_MEMORY_MB, Settings
-from service.tracing.traceparent import trace_facts
-from service.tracing.tracer import Fact, Span, tracer
+from service.tracing.tracer import Fact, Span, trace_facts, tracer
 from service.worker.child_process import Launch
-from service.worker.memory import machine_memory_mb
 from service.worker.order import USABLE, WorkOrder
 from service.worker.process import Process
-from service.worker.usage import Usage
+from service.worker.usage import Usage, machine_memory_mb
 from service.worker.worker import Step, Worker
 
 # The spans of one attempt: its wait in the queue, the attempt, and the stages of its worker.

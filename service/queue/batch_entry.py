@@ -14,9 +14,7 @@ from sqlalchemy import Connection, Engine, insert, select
 from lineofaction.gearbox.problems import BadInput
 from service.project import address_of
 from service.queue.batches import FOR_EVER, HELD, batch_steps
-from service.queue.caller import ANYBODY, Caller
 from service.queue.cost_limit import extended
-from service.queue.delivery import AS_IT_IS
 from service.queue.differences import NOT_COMPARED, Differences
 from service.queue.entry import (
     ended_since,
@@ -27,10 +25,8 @@ from service.queue.entry import (
     refuse_unless_same,
     shared_computation,
 )
-from service.queue.label import NO_LABEL
-from service.queue.priority import raised
 from service.queue.tables import computations, jobs
-from service.queue.terms import USUAL, Terms
+from service.queue.terms import ANYBODY, AS_IT_IS, NO_LABEL, USUAL, Caller, Terms, raised
 from service.store import now, retried, writing
 from service.version import solver_version
 

@@ -18,8 +18,8 @@ from sqlalchemy import ColumnElement, Connection, Engine, Row, delete, select, u
 
 from service.project import COMMON, address_of, at_address
 from service.queue.batches import batch_steps
-from service.queue.durations import end_computations
 from service.queue.tables import computations, jobs
+from service.queue.workload import end_computations
 from service.store import dialect_of, now, reading, retried, writing
 from service.version import solver_version
 

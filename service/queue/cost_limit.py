@@ -8,9 +8,9 @@ from bounds import engineering
 from host import family_cpu_seconds
 from lineofaction.gearbox.problems import BadInput
 from service.queue.attempt import Attempt
-from service.queue.caller import Caller
 from service.queue.claims import Claims
 from service.queue.tables import computations
+from service.queue.terms import Caller
 
 _LOWER = (
     "Select a coarser level, fewer positions, loads or samples, of a run a shorter one; or raise the limit."

@@ -10,11 +10,10 @@ from sqlalchemy import ColumnElement, Connection, func, insert, select
 
 from lineofaction.gearbox.problems import BadInput, QueueFull
 from service.project import COMMON
-from service.queue.caller import Caller
 from service.queue.tables import computations, jobs
-from service.queue.terms import Terms
+from service.queue.terms import Caller, Terms
 from service.store import now
-from service.tracing.traceparent import TRACEPARENT
+from service.tracing.tracer import TRACEPARENT
 
 LIVE = ("accepted", "running")
 """States of work that goes on."""

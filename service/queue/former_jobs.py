@@ -7,8 +7,8 @@ from typing import Any
 
 from sqlalchemy import Engine, Select, bindparam, select
 
-from service.queue.caller import Caller
 from service.queue.tables import computations, jobs
+from service.queue.terms import Caller
 from service.store import reading, retried
 
 _LOOKED_AT = 200

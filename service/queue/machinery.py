@@ -8,15 +8,14 @@ from sqlalchemy import Engine
 
 from host import require_sessions
 from service.queue.claims import Claims
-from service.queue.housekeeper import Housekeeper
-from service.queue.retention import Retention
+from service.queue.retention import Housekeeper, Retention
 from service.queue.scheduler import Scheduler
 from service.queue.submissions import Submissions
 from service.settings import Settings
 from service.store import DATABASE_FILE, ResultStore, identity_of, open_database, result_store
 from service.store.schema import Schema
+from service.worker.cluster import RemoteWork
 from service.worker.process import Registry
-from service.worker.remote_work import RemoteWork
 
 
 @dataclass(frozen=True)

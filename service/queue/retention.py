@@ -3,25 +3,30 @@
 from __future__ import annotations
 
 import shutil
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import structlog
 from sqlalchemy import Engine, delete, exists, func, select
 
+from lineofaction.gearbox.problems import ServiceError
 from service.queue.tables import computations, jobs, webhooks
 from service.store import reading, retried, writing
 from service.store.deployment import Deployment
 from service.store.maintenance import (
     GRACE_S,
     Leftover,
+    Quarantine,
     collect_orphans,
     days_ago,
     expire_results,
     purge_quarantine,
 )
-from service.store.quarantine import Quarantine
 from service.store.results import ResultStore
+
+logger = structlog.get_logger(__name__)
 
 _ENDED = ("successful", "failed", "dismissed")
 _AT_ONCE = 500
@@ -126,3 +131,51 @@ class Retention:
 
 
 _IDENTIFIER = 36  # of a computation: other logs are not ours to remove
+
+
+FIRST_S, EVERY_S = 60.0, 3600.0
+
+
+class Housekeeper:
+    """Collects beside the scheduler; several on one database do each other no harm.
+
+    Parameters
+    ----------
+    retention : Retention
+    days : float
+        How long results and ended jobs are kept that nobody asks for.
+    """
+
+    def __init__(self, retention: Retention, days: float) -> None:
+        self._retention, self._days = retention, days
+        self._stopping = threading.Event()
+        self._thread: threading.Thread | None = None
+
+    def start(self) -> None:
+        """Begin."""
+        self._stopping.clear()
+        self._thread = threading.Thread(target=self._loop, name="housekeeper", daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End, after what is being removed just now."""
+        self._stopping.set()
+        if self._thread is not None:
+            self._thread.join()
+
+    def _loop(self) -> None:
+        """Until stopped: collect, and wait."""
+        pause = FIRST_S
+        while not self._stopping.wait(pause):
+            pause = EVERY_S
+            try:
+                removed = 0
+                for _ in self._retention.expire(self._days):
+                    removed += 1
+                    if self._stopping.is_set():
+                        break
+                logger.info("collected", removed=removed)
+            except ServiceError as error:
+                logger.warning("nothing collected", error=str(error))
+            except Exception:
+                logger.exception("collection failed")

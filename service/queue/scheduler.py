@@ -18,8 +18,8 @@ from service.queue.adoption import Adoption
 from service.queue.attempt import Attempt, begun
 from service.queue.claims import Claim, Claims
 from service.queue.cost_limit import reached
-from service.queue.housekeeper import Housekeeper
 from service.queue.leases import RENEWALS, Leases
+from service.queue.retention import Housekeeper
 from service.queue.settlement import Ended, Settlement
 from service.queue.worker_figures import WorkerFigures
 from service.settings import Settings

@@ -13,8 +13,8 @@ import structlog
 from service.queue.claims import Claim, Claims
 from service.store import ResultStore
 from service.tracing.tracer import tracer
-from service.worker.disk import no_space
 from service.worker.order import Outcome
+from service.worker.usage import no_space
 
 logger = structlog.get_logger(__name__)
 

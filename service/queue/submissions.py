@@ -13,9 +13,7 @@ from lineofaction.gearbox.problems import NoSuchJob
 from service.project import COMMON, address_of
 from service.queue.batch_entry import BatchEntry
 from service.queue.batches import HELD
-from service.queue.caller import ANYBODY, Caller
 from service.queue.cost_limit import extended
-from service.queue.durations import end_computations
 from service.queue.entry import (
     LIVE,
     ended_since,
@@ -27,13 +25,10 @@ from service.queue.entry import (
     refuse_unless_same,
     shared_computation,
 )
-from service.queue.job import ENDED, Job, job_of, select_jobs
-from service.queue.job_filter import EVERY_JOB, JobFilter
-from service.queue.label import Label
-from service.queue.priority import raised
+from service.queue.job import ENDED, EVERY_JOB, Job, JobFilter, job_of, select_jobs
 from service.queue.tables import computations, jobs
-from service.queue.terms import USUAL, Terms
-from service.queue.workload import states_of
+from service.queue.terms import ANYBODY, USUAL, Caller, Label, Terms, raised
+from service.queue.workload import end_computations, states_of
 from service.store import BRIEF_MS, Mark, behind, instant, now, optional, reading, retried, writing
 from service.store.results import USE_NOTED_EVERY_S
 from service.version import solver_version

@@ -50,7 +50,7 @@ Index("computation_by_state", computations.c.state, computations.c.created)
 
 Index("computation_by_turn", computations.c.state, computations.c.priority, computations.c.created)
 
-# Counts of ended computations: they outlive the computations, see `service.queue.durations`.
+# Counts of ended computations: they outlive the computations, see `service.queue.workload`.
 durations = Table(
     "duration",
     metadata,

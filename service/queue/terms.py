@@ -1,12 +1,154 @@
-"""What is kept of a job beside its inputs."""
+"""What is kept of a job beside its inputs: caller, priority, label, delivery."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any, Literal, Self
 
-from service.queue.delivery import AS_IT_IS, Delivery
+from sqlalchemy import ColumnElement, Update, update
+
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.registry import NETCDF
 from service.queue.differences import NOT_COMPARED, Differences
-from service.queue.label import NO_LABEL, Label
+from service.queue.tables import computations, jobs
+
+
+@dataclass(frozen=True)
+class Caller:
+    """The caller who submits.
+
+    Attributes
+    ----------
+    name : str
+        Of the access key; empty without one.
+    unfinished_jobs : int or None
+        Jobs that may wait or run at the same time; None: no limit but the queue's.
+    highest_priority : int or None
+        Of its jobs; None: any.
+    max_cost_s : float or None
+        CPU seconds that each of its jobs may take; None: no limit.
+    """
+
+    name: str = ""
+    unfinished_jobs: int | None = None
+    highest_priority: int | None = None
+    max_cost_s: float | None = None
+
+
+ANYBODY = Caller()
+
+
+def check_priority(priority: int, caller: Caller) -> None:
+    """Raise `BadInput` if a caller may not have this priority."""
+    highest = caller.highest_priority
+    if highest is not None and priority > highest:
+        bound = f"at most {highest}, the limit of key {caller.name!r}"
+        raise BadInput.of("priority", priority, bound, "Leave it out, or ask the operator of the service.")
+
+
+def raised(computation: str, priority: int) -> Update:
+    """Return the statement that gives a computation at least this priority, as long as it waits."""
+    lower = computations.c.priority < priority
+    waits = (computations.c.id == computation) & (computations.c.state == "accepted")
+    return update(computations).where(waits & lower).values(priority=priority)
+
+
+@dataclass(frozen=True)
+class Label:
+    """Title and tags of a job; they say nothing about the work.
+
+    Attributes
+    ----------
+    title : str
+    tags : tuple[str, ...]
+        In lower case, each once.
+    """
+
+    title: str = ""
+    tags: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, title: str, tags: Iterable[str]) -> Self:
+        """Return the label that a caller writes: without outer spaces, tags in lower case and each once."""
+        return cls(title.strip(), tuple(dict.fromkeys(tag.lower() for tag in tags)))
+
+    @classmethod
+    def from_row(cls, row: Any) -> Self:
+        """Return the label of a row of the job table."""
+        return cls(row.title, tuple(row.tags.split()))
+
+    def columns(self) -> dict[str, str]:
+        """Return it as the job table has it: the title also as it is searched, tags one a line."""
+        lines = "".join(f"{tag}\n" for tag in self.tags)
+        return {"title": self.title, "title_folded": self.title.casefold(), "tags": f"\n{lines}"}
+
+
+NO_LABEL = Label()
+
+
+def labeled(tags: Iterable[str], words: Iterable[str]) -> list[ColumnElement[bool]]:
+    """Return the conditions of jobs that have all of these tags, and all of these words in their title."""
+    of_tags = [jobs.c.tags.contains(f"\n{tag.lower()}\n", autoescape=True) for tag in tags]
+    of_words = [jobs.c.title_folded.contains(word.casefold(), autoescape=True) for word in words]
+    return [*of_tags, *of_words]
+
+
+Response = Literal["raw", "document"]
+Transmission = Literal["value", "reference"]
+
+
+@dataclass(frozen=True)
+class Delivery:
+    """The form of a result.
+
+    Attributes
+    ----------
+    response : str
+        ``"raw"``: the result itself, or links in headers; ``"document"``: a JSON object by name of output.
+    transmission : str
+        ``"value"`` or ``"reference"``.
+    """
+
+    response: Response = "raw"
+    transmission: Transmission = "value"
+
+    @classmethod
+    def of(cls, text: str) -> Self:
+        """Return what `str` wrote."""
+        response, _, transmission = text.partition(" ")
+        return cls(response, transmission)  # type: ignore[arg-type]  # the table holds no others
+
+    def __str__(self) -> str:
+        return f"{self.response} {self.transmission}"
+
+
+AS_IT_IS = Delivery()
+
+
+def delivery(response: Response, transmission: Transmission | None, field: str) -> Delivery:
+    """Return the form that was requested.
+
+    Parameters
+    ----------
+    response, transmission
+        As requested; a transmission that is left out is by value, but in a document by reference.
+    field : str
+        What the caller calls the transmission.
+
+    Raises
+    ------
+    BadInput
+        A result in a document by value: JSON does not hold netCDF.
+    """
+    if response == "document":
+        if transmission == "value":
+            bound = f"reference in a document: JSON does not hold {NETCDF}"
+            raise BadInput.of(
+                field, transmission, bound, 'Request the response "raw" to get the file itself.'
+            )
+        return Delivery(response, "reference")
+    return Delivery(response, transmission or "value")
 
 
 @dataclass(frozen=True)

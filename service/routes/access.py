@@ -12,7 +12,7 @@ from lineofaction.gearbox.problems import KeyExpired, NotForUs, RateExceeded, Se
 from service.access import NOBODY, Held, Identities, RateLimits
 from service.routes.admission import Admission
 from service.routes.audit import Visit
-from service.routes.caching import for_one_caller
+from service.routes.media_types import for_one_caller
 
 # Whether a request was meant for this machine: what protects a service without keys from pages of others.
 

@@ -15,17 +15,15 @@ from lineofaction.gearbox.schemas.reading import validated
 from service.access import Scope
 from service.queue.batch_entry import BatchCase
 from service.queue.cost_limit import cost_limit
-from service.queue.label import Label
-from service.queue.priority import check_priority
-from service.queue.terms import Terms
+from service.queue.terms import Label, Terms, check_priority
 from service.routes.context import Context, Ctx, From
 from service.routes.jobs import status_info
+from service.routes.media_types import described_headers
 from service.routes.processes import IdempotencyKey
 from service.routes.refusals import documented
-from service.routes.response_headers import described_headers
 from service.routes.scopes import ScopedRoute, needs
 from service.routes.webhooks import checked_uris, enter_calls
-from service.schemas.batch import BatchRequest
+from service.schemas.execute import BatchRequest
 from service.schemas.ogc import StatusInfo
 from service.store import now
 from service.worker.process import Process, on_demand

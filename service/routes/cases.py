@@ -24,7 +24,7 @@ from service.routes.context import Context, Ctx, key_of
 from service.routes.media_types import JSON
 from service.routes.refusals import documented
 from service.routes.scopes import ScopedRoute, needs
-from service.schemas.offers import ExampleBody
+from service.schemas.answers import ExampleBody
 from service.worker.catalogue import ANALYZE
 from service.worker.process import on_demand
 

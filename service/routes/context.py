@@ -16,17 +16,17 @@ from service.access import Holder
 from service.live.kept_answers import KeptAnswers
 from service.live.pool import LivePool
 from service.project import COMMON
-from service.queue.caller import ANYBODY, Caller
 from service.queue.scheduler import Scheduler
 from service.queue.submissions import Submissions
+from service.queue.terms import ANYBODY, Caller
 from service.queue.watcher import Watcher
 from service.reading.pool import ReadingPool
 from service.routes.streams import JobEvent, Streams
 from service.settings import Settings
 from service.store import ResultStore
 from service.store.write_check import WriteCheck
+from service.worker.cluster import RemoteWork
 from service.worker.process import Registry
-from service.worker.remote_work import RemoteWork
 
 if TYPE_CHECKING:
     from fe_contact.ste import SteDatabase

@@ -10,7 +10,7 @@ from service.access import Scope
 from service.routes.context import Ctx
 from service.routes.cursor import Cursor, Limit, mark_of, page_links
 from service.routes.scopes import ScopedRoute, needs
-from service.schemas.database_list import DatabaseEntry, DatabaseList
+from service.schemas.answers import DatabaseEntry, DatabaseList
 from service.store import IndexLine, Mark, ResultStore
 from service.store.files import WrongContent
 

@@ -7,7 +7,7 @@ from fastapi import APIRouter
 from lineofaction.gearbox.loading import LOADING
 from service.access import Scope
 from service.routes.scopes import ScopedRoute, needs
-from service.schemas.offers import EffectBody
+from service.schemas.answers import EffectBody
 
 router = APIRouter(tags=["effects"], route_class=ScopedRoute)
 

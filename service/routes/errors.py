@@ -16,8 +16,7 @@ from starlette.routing import compile_path
 
 from lineofaction.gearbox.problems import BadInput, Fault, ServiceError, UnsupportedMediaType
 from lineofaction.gearbox.schemas.faults import fault_of, innermost
-from service.routes.caching import NO_STORE
-from service.routes.media_types import JSON, PROBLEM, media_type
+from service.routes.media_types import JSON, NO_STORE, PROBLEM, media_type
 
 
 def _problem_response(facts: Mapping[str, Any], headers: Mapping[str, str] | None = None) -> Response:

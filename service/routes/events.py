@@ -15,11 +15,10 @@ from starlette.types import Receive, Scope, Send
 from lineofaction.gearbox.problems import NoSuchJob, QueueFull
 from service import access
 from service.queue.job import Job
-from service.routes.caching import NO_STORE
 from service.routes.context import Context, Ctx
 from service.routes.jobs import status_info
+from service.routes.media_types import NO_STORE, described_headers
 from service.routes.refusals import documented
-from service.routes.response_headers import described_headers
 from service.routes.scopes import ScopedRoute, needs
 from service.routes.streams import JobEvent, Streams
 from service.worker.process import Registry

@@ -14,11 +14,11 @@ from service.access import Scope
 from service.live.order import LiveOrder
 from service.routes.context import Ctx
 from service.routes.kept_answers import VERSION, kept_answer
+from service.routes.media_types import described_headers
 from service.routes.refusals import documented
-from service.routes.response_headers import described_headers
 from service.routes.results import Key, known_result
 from service.routes.scopes import ScopedRoute, needs
-from service.schemas.report import ReportBody
+from service.schemas.answers import ReportBody
 from service.version import program_tag
 
 FIGURES = "lineofaction.report.document.content:stored_figures"

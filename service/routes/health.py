@@ -13,8 +13,8 @@ from lineofaction.gearbox.problems import ServiceError
 from service.access import Scope
 from service.management.server import METRICS_TYPE
 from service.management.vitals import Vitals
-from service.routes.caching import NO_STORE
 from service.routes.context import Ctx
+from service.routes.media_types import NO_STORE
 from service.routes.refusals import documented
 from service.routes.scopes import OPEN_TO_ALL, ScopedRoute, needs
 

@@ -20,18 +20,17 @@ from lineofaction.gearbox.problems import (
 from lineofaction.gearbox.registry import NETCDF
 from lineofaction.gearbox.schemas.result_kinds import RESULTS
 from service.access import Scope
-from service.queue.delivery import Delivery, Transmission, delivery
-from service.queue.delivery import Response as Form
 from service.queue.job import Job
+from service.queue.terms import Delivery, Transmission, delivery
+from service.queue.terms import Response as Form
 from service.routes.context import Context, Ctx
-from service.routes.media_types import JSON, negotiated
+from service.routes.media_types import JSON, OF_VERSIONS, described_headers, negotiated
 from service.routes.refusals import documented
-from service.routes.response_headers import OF_VERSIONS, described_headers
 from service.routes.results import FILE, OF_RESULT, file_response, known_result
 from service.routes.scopes import ScopedRoute, needs
-from service.schemas.batch import BatchResult, BatchResults
+from service.schemas.answers import ProblemBody
+from service.schemas.execute import BatchResult, BatchResults
 from service.schemas.ogc import JobStatus, ResultReference, results_document
-from service.schemas.problem import ProblemBody
 from service.worker.process import Registry
 
 AskedForm = Annotated[Form | None, Query(description="Form of the result; overrides that of the execution")]

@@ -13,17 +13,14 @@ from pydantic import Field
 from lineofaction.gearbox.problems import BadInput, NoSuchJob
 from service.access import Scope
 from service.queue.differences import Differences
-from service.queue.job import Job
-from service.queue.job_filter import JobFilter
-from service.queue.subject import subject_of
+from service.queue.job import Job, JobFilter, subject_of
 from service.routes.context import Context, Ctx, caller_of
 from service.routes.cursor import Cursor, Limit, mark_of, page_links
 from service.routes.refusals import documented
 from service.routes.scopes import ScopedRoute, needs, require
-from service.schemas.label import LabelChange, Tag, Title
+from service.schemas.execute import LabelChange, Tag, Title
 from service.schemas.ogc import Differences as ShownDifferences
-from service.schemas.ogc import JobInputs, JobList, JobStatus, Link, StatusInfo
-from service.schemas.subscriber import WebhookState
+from service.schemas.ogc import JobInputs, JobList, JobStatus, Link, StatusInfo, WebhookState
 from service.store import Mark
 from service.webhooks.calls import Calls
 from service.worker.process import Registry, on_demand

@@ -24,8 +24,7 @@ from lineofaction.gearbox.problems import (
 from service.routes.errors import problem_of
 from service.routes.media_types import CBOR, RAW, media_type
 from service.routes.metrics import Metrics
-from service.tracing.traceparent import TRACEPARENT, trace_facts, valid_traceparent
-from service.tracing.tracer import tracer
+from service.tracing.tracer import TRACEPARENT, trace_facts, tracer, valid_traceparent
 
 # Event streams as they are sent: how many are open, and how many events went out.
 

@@ -13,13 +13,11 @@ from lineofaction.gearbox.schemas.query import QueryInput
 from lineofaction.gearbox.schemas.warning import InputWarning
 from service.access import MEANINGS
 from service.routes.events import EVENT_STREAM
-from service.routes.media_types import CBOR, JSON
+from service.routes.media_types import CBOR, HEADERS, JSON, OF_ALL, described_headers
 from service.routes.refusals import describe_refusals
-from service.routes.response_headers import HEADERS, OF_ALL, described_headers
 from service.routes.scopes import KEY_SCHEME
 from service.schemas.answer_examples import answer_example
-from service.schemas.problem import ProblemBody
-from service.schemas.report import ReportSection
+from service.schemas.answers import ProblemBody, ReportSection
 from service.schemas.request_examples import request_example
 
 Json = dict[str, Any]

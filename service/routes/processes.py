@@ -16,19 +16,15 @@ from lineofaction.gearbox.registry import NETCDF
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from service.access import Scope
 from service.live.order import LiveOrder
-from service.queue.caller import Caller
 from service.queue.cost_limit import cost_limit, refuse_beyond
-from service.queue.delivery import delivery
 from service.queue.differences import Differences
 from service.queue.former_jobs import FormerJobs
-from service.queue.label import Label
-from service.queue.priority import check_priority
-from service.queue.terms import Terms
+from service.queue.terms import Caller, Label, Terms, check_priority, delivery
 from service.routes.context import Context, Ctx, From
 from service.routes.cursor import Limit
 from service.routes.jobs import status_info
+from service.routes.media_types import described_headers
 from service.routes.refusals import documented
-from service.routes.response_headers import described_headers
 from service.routes.scopes import ScopedRoute, needs
 from service.routes.webhooks import checked_uris, enter_calls
 from service.schemas.execute import execute_model

@@ -31,9 +31,8 @@ from lineofaction.gearbox.problems import (
 )
 from lineofaction.gearbox.problems.error import last_part
 from service.routes.access import OPEN_PATHS
-from service.routes.media_types import PROBLEM
+from service.routes.media_types import OF_ALL, OF_STATUS, PROBLEM, described_headers
 from service.routes.middleware import API_PREFIX
-from service.routes.response_headers import OF_ALL, OF_STATUS, described_headers
 from service.schemas.answer_examples import problem_example
 
 Json = dict[str, Any]

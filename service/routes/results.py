@@ -16,9 +16,8 @@ from lineofaction.gearbox.registry import NETCDF
 from lineofaction.gearbox.schemas.result_kinds import HASH, RESULT_KINDS, SUFFIX
 from service.access import Scope
 from service.routes.context import Context, Ctx
-from service.routes.media_types import JSON, negotiated
+from service.routes.media_types import JSON, OF_VERSIONS, described_headers, negotiated
 from service.routes.refusals import documented
-from service.routes.response_headers import OF_VERSIONS, described_headers
 from service.routes.scopes import ScopedRoute, needs
 from service.schemas.ogc import ResultFigures
 from service.store import StoredResult

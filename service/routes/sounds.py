@@ -17,9 +17,8 @@ from service.access import Scope
 from service.live.order import LiveOrder
 from service.routes.context import Ctx
 from service.routes.kept_answers import VERSION, kept_answer
-from service.routes.media_types import WAV
+from service.routes.media_types import WAV, described_headers
 from service.routes.refusals import documented
-from service.routes.response_headers import described_headers
 from service.routes.results import FILE, Key, known_result
 from service.routes.scopes import ScopedRoute, needs
 from service.version import program_tag

@@ -11,7 +11,7 @@ from service.routes.cases import READING_FAILURES, explained, read_by
 from service.routes.context import Ctx
 from service.routes.refusals import documented
 from service.routes.scopes import ScopedRoute, needs
-from service.schemas.unit import UnitBody, UnitFile
+from service.schemas.answers import UnitBody, UnitFile
 
 router = APIRouter(tags=["units"], route_class=ScopedRoute)
 

@@ -9,7 +9,7 @@ from service.origin import Origin
 from service.routes.context import Context
 from service.routes.job_results import batch_results, problem_of, reference_of
 from service.routes.jobs import status_info
-from service.schemas.subscriber import Subscriber
+from service.schemas.ogc import Subscriber
 from service.settings import Settings
 from service.webhooks.calls import Calls
 from service.webhooks.deliverer import Deliverer, Outbox

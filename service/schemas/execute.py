@@ -1,17 +1,69 @@
-"""Bodies of executions (OGC 18-062r2, clause 7.11.1): inputs, the output wanted, and its form."""
+"""Bodies of executions: labels, inputs of processes, batches."""
 
 from __future__ import annotations
 
 from functools import lru_cache
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, create_model, model_validator
+from pydantic import BaseModel, Field, create_model, model_validator
 
-from lineofaction.gearbox.registry import JSON, NETCDF
+from lineofaction.gearbox.registry import JSON, NETCDF, Study
+from lineofaction.gearbox.schemas.case import Case
+from lineofaction.gearbox.schemas.case_or_scene import CaseOrScene
 from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
-from service.schemas.label import Tags, Title
-from service.schemas.ogc import class_name
-from service.schemas.subscriber import Subscriber
+from lineofaction.gearbox.schemas.scene import SceneInput
+from service.schemas.answers import ProblemBody
+from service.schemas.ogc import JobStatus, ResultReference, Subscriber, class_name
+
+Title = Annotated[str, Field(max_length=200, pattern=r"^[^\x00-\x1f\x7f]*$")]
+Tag = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._:/+-]{0,39}$")]
+Tags = Annotated[list[Tag], Field(max_length=16)]
+
+
+class LabelChange(BoundaryModel):
+    """A change of a job's label; what is left out stays."""
+
+    title: Title | None = Field(None, description="Name of the job", examples=["Tip relief 20 um"])
+    tags: Tags | None = Field(None, description="Replace the tags of the job", examples=[["ev-3", "draft"]])
+
+
+class AnalyzeInputs(BoundaryModel):
+    """Inputs of the process analyze."""
+
+    case: Case = Field(description="The case, as in a case file")
+
+
+class SimulateInputs(BoundaryModel):
+    """Inputs of the process simulate."""
+
+    scene: SceneInput = Field(description="The scene, with cases written out or databases by hash")
+
+
+class OfCase(BoundaryModel):
+    """The subject of a study: a case."""
+
+    case: Case = Field(description="The case, as in a case file")
+
+
+class OfScene(BoundaryModel):
+    """The subject of a study: a scene."""
+
+    scene: SceneInput = Field(description="The scene, with cases written out or databases by hash")
+
+
+_SUBJECTS: dict[str, type[BoundaryModel]] = {
+    "case": OfCase,
+    "scene": OfScene,
+    "case or scene": CaseOrScene,
+}
+
+
+def study_inputs(study: Study) -> type[BoundaryModel]:
+    """Return the model of the inputs of a study's process: what is studied, and what is varied."""
+    bases = (study.inputs, _SUBJECTS[study.subject])
+    text = f"Inputs of the process {study.name}."
+    return create_model(f"{class_name(study.name)}Inputs", __base__=bases, __doc__=text)
+
 
 _FORMAT = {"mediaType", "encoding", "schema"}
 Priority = Annotated[int, Field(ge=-9, le=9)]
@@ -98,3 +150,68 @@ def execute_model(process: str, inputs: type[BoundaryModel], output: str) -> typ
         Field(False, description="Answer with the caller's equal job, if one is under way or done"),
     )
     return create_model(f"Execute{title}", __base__=ExecuteBody, **fields)
+
+
+MOST_JOBS = 200
+"""Of one batch: their inputs are checked while the caller waits, 4 to 40 ms each."""
+_DEEPEST = 32
+
+
+class BatchRequest(BoundaryModel):
+    """Many inputs of one process, written as differences from what they share."""
+
+    process: str = Field(max_length=64, description="Identifier of the process", examples=["analyze"])
+    inputs: dict[str, Any] = Field(
+        default_factory=dict, description="Inputs that the jobs share, as in an execution; default: none"
+    )
+    jobs: tuple[dict[str, Any], ...] = Field(
+        strict=False,
+        min_length=1,
+        max_length=MOST_JOBS,
+        description="For each job its differences from the shared inputs, as a JSON merge patch",
+        examples=[[{"case": {"load": {"torque_n_m": [100.0]}}}]],
+    )
+    title: Title = Field("", description="Name of the batch", examples=["Tip reliefs"])
+    tags: Tags = Field([], description="What the batch is found by", examples=[["ev-3", "draft"]])
+    priority: Priority = Field(0, description="Turn of its jobs", examples=[1])
+    max_cost_s: Cost | None = Field(
+        None, description="CPU seconds that each of its jobs may take; default: no limit", examples=[600.0]
+    )
+
+    subscriber: Subscriber | None = Field(None, description="Who is told about the batch")
+
+    def inputs_of(self, index: int) -> dict[str, Any]:
+        """Return the inputs of one job."""
+        merged: dict[str, Any] = _merge_patch(self.inputs, self.jobs[index])
+        return merged
+
+
+class BatchResult(BaseModel):
+    """What came of one job of a batch: its results by output, or the problem why there are none."""
+
+    jobID: str  # noqa: N815
+    status: JobStatus
+    results: dict[str, ResultReference] | None = Field(description="By name of the output")
+    problem: ProblemBody | None
+
+
+class BatchResults(BaseModel):
+    """What came of the jobs of a batch, in the order of the request."""
+
+    jobs: list[BatchResult]
+
+
+def _merge_patch(target: Any, patch: Any, deepest: int = _DEEPEST) -> Any:
+    """Return `target` with the changes of a JSON merge patch (RFC 7396): null removes a member.
+
+    What lies deeper than any inputs do is replaced as it is.
+    """
+    if not isinstance(patch, dict) or deepest == 0:
+        return patch
+    merged = dict(target) if isinstance(target, dict) else {}
+    for name, value in patch.items():
+        if value is None:
+            merged.pop(name, None)
+        else:
+            merged[name] = _merge_patch(merged.get(name), value, deepest - 1)
+    return merged

@@ -6,8 +6,34 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, create_model
 
+from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.named import Named
-from service.schemas.subscriber import WebhookState
+
+Uri = Annotated[str, Field(max_length=2000, examples=["https://hooks.example.com/loa?case=12"])]
+
+
+class Subscriber(BoundaryModel):
+    """Addresses that are called about a job; the service lists the origins that it calls."""
+
+    successUri: Uri | None = Field(None, description="Gets the document of the results")  # noqa: N815
+    failedUri: Uri | None = Field(None, description="Gets the problem of a job without result")  # noqa: N815
+    inProgressUri: Uri | None = Field(None, description="Gets the status of a job that runs")  # noqa: N815
+
+    @property
+    def uris(self) -> dict[str, str]:
+        """Addresses by event."""
+        named = {"inProgress": self.inProgressUri, "success": self.successUri, "failed": self.failedUri}
+        return {event: uri for event, uri in named.items() if uri is not None}
+
+
+class WebhookState(BaseModel):
+    """What came of a call about a job."""
+
+    event: Literal["inProgress", "success", "failed"]
+    state: Literal["waiting", "delivered", "skipped", "given up"]
+    attempts: int = Field(ge=0)
+    message: str = Field(description="Of the last attempt")
+
 
 JobStatus = Literal["accepted", "running", "successful", "failed", "dismissed"]
 

@@ -11,8 +11,7 @@ from pathlib import Path
 from model_studies.netcdf_input import opened
 from service.store.database import instant, now
 from service.store.deployment import Deployment
-from service.store.files import KeptFile
-from service.store.result_names import ResultName
+from service.store.files import KeptFile, ResultName
 from service.store.results import IndexLine, ResultStore
 
 

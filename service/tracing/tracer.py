@@ -3,12 +3,33 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Mapping
+from contextvars import ContextVar
 from functools import cache
 from importlib.util import find_spec
 from typing import Any, Protocol
 
 import structlog
+
+logger = structlog.get_logger(__name__)
+
+TRACEPARENT: ContextVar[str] = ContextVar("traceparent", default="")
+"""Of the request that is being answered; empty: it belongs to no trace."""
+
+_VALID = re.compile(r"(?!ff)[0-9a-f]{2}-(?!0{32})([0-9a-f]{32})-(?!0{16})[0-9a-f]{16}-[0-9a-f]{2}", re.ASCII)
+
+
+def valid_traceparent(text: str) -> str:
+    """Return a text that is a traceparent, empty if it is none."""
+    return text if _VALID.fullmatch(text) else ""
+
+
+def trace_facts(traceparent: str) -> dict[str, str]:
+    """Return the trace for a line of the log; nothing without one."""
+    found = _VALID.fullmatch(traceparent)
+    return {} if found is None else {"trace_id": found[1]}
+
 
 Fact = str | int | float
 
@@ -17,7 +38,6 @@ _DESTINATIONS = (
     "OTEL_EXPORTER_OTLP_ENDPOINT",
     "OTEL_EXPORTER_OTLP_TRACES_ENDPOINT",
 )
-logger = structlog.get_logger(__name__)
 
 
 class Span(Protocol):

@@ -6,7 +6,7 @@ from functools import partial
 
 from lineofaction.gearbox.registry import STUDIES, Study
 from lineofaction.gearbox.stages import Stage
-from service.schemas.process_inputs import AnalyzeInputs, SimulateInputs, study_inputs
+from service.schemas.execute import AnalyzeInputs, SimulateInputs, study_inputs
 from service.worker.process import Process, Registry, on_demand
 
 _HOUSING = Stage("housing", 0.3)

@@ -29,10 +29,8 @@ from typing import Any, TextIO
 from fe_contact.cache_reads import COMPLIANCE_READS
 from host import cpu_seconds, kill_own_group, lock, lower_priority
 from lineofaction.gearbox.problems import ServiceError
-from service.worker.disk import no_space
-from service.worker.memory import hold_to, machine_memory_mb, out_of_memory
 from service.worker.order import Product, WorkOrder
-from service.worker.usage import own_peak_mb
+from service.worker.usage import hold_to, machine_memory_mb, no_space, out_of_memory, own_peak_mb
 
 _NICENESS = 10
 _SHORTEST_INTERVAL_S = 0.1

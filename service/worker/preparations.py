@@ -12,7 +12,7 @@ from fe_contact.ste.content_hash import content_hash
 from fe_contact.ste.facts import SCHEMA_VERSION
 from lineofaction.gearbox.convert.checks import check_case
 from lineofaction.gearbox.schemas.model import BoundaryModel
-from service.schemas.process_inputs import AnalyzeInputs, SimulateInputs
+from service.schemas.execute import AnalyzeInputs, SimulateInputs
 from service.store import ResultStore
 from service.worker.scene_inputs import check_scene_inputs
 

@@ -1,10 +1,12 @@
-"""Resources that a worker used: time, CPU time, memory."""
+"""What work uses of the machine: CPU time, memory, disk."""
 
 from __future__ import annotations
 
+import errno
 from dataclasses import dataclass
+from pathlib import Path
 
-from host import peak_memory
+from host import limit_memory, peak_memory, physical_memory
 
 BYTES_PER_MB = float(1 << 20)
 
@@ -40,3 +42,44 @@ class Usage:
 def own_peak_mb() -> float:
     """Return the most resident memory this process has had, MB."""
     return peak_memory() / BYTES_PER_MB
+
+
+_MB = 1 << 20
+_GROUP_LIMIT = Path("/sys/fs/cgroup/memory.max")
+
+
+def machine_memory_mb(group_limit: Path = _GROUP_LIMIT) -> int:
+    """Return the memory of the machine, MB, or what its control group (a container) leaves of it."""
+    physical = physical_memory()
+    try:
+        allowed = int(group_limit.read_text())
+    except (OSError, ValueError):  # no control groups, or "max"
+        allowed = physical
+    return min(physical, allowed) // _MB
+
+
+def hold_to(limit_mb: int) -> None:
+    """Let allocations of this process fail beyond so many MB; a stricter limit of the system stays."""
+    limit_memory(limit_mb * _MB)
+
+
+def out_of_memory(limit_mb: int) -> str:
+    """Return the message of a job that needed more."""
+    return (
+        f"The computation ran out of memory: it may have {limit_mb} MB (LOA_MEMORY_LIMIT_MB). Select a "
+        "coarser level or fewer positions, or start the service with a higher limit."
+    )
+
+
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+"""No space, none left of a quota, none within the largest file a process may write."""
+
+
+def no_space(error: OSError) -> str:
+    """Return the message of a job whose files found no space; empty if that is not what went wrong."""
+    if error.errno not in _FULL:
+        return ""
+    return (
+        "The result could not be written: there is no space left in the data directory of the service "
+        "(LOA_DATA_DIRECTORY). Make room there, or raise the quota, and submit again."
+    )

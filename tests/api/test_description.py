@@ -10,13 +10,12 @@ from pathlib import Path
 
 import pytest
 from described_api import DESCRIPTION
-from openapi_spec_validator import OpenAPIV30SpecValidator, OpenAPIV31SpecValidator
+from openapi_spec_validator import OpenAPIV31SpecValidator
 
 from lineofaction.gearbox import problems
 from lineofaction.gearbox.problems import ServiceError
 from lineofaction.gearbox.registry import STUDIES
-from service.routes.description import in_version_30
-from service.routes.response_headers import OF_STATUS
+from service.routes.media_types import OF_STATUS
 from service.schemas.ogc import class_name
 from service.worker.catalogue import default_registry
 
@@ -37,15 +36,6 @@ RULES = {
 
 def test_it_is_openapi() -> None:
     assert [error.message for error in OpenAPIV31SpecValidator(DESCRIPTION).iter_errors()] == []
-
-
-def test_it_is_openapi_30_too() -> None:
-    older = in_version_30(DESCRIPTION)
-    assert [error.message for error in OpenAPIV30SpecValidator(older).iter_errors()] == []
-    assert set(older["paths"]) == set(DESCRIPTION["paths"])
-    assert set(older["components"]["schemas"]) == set(DESCRIPTION["components"]["schemas"])
-    tolerance = older["components"]["schemas"]["AccuracyInput"]["properties"]["tolerance"]
-    assert tolerance["nullable"] and tolerance["anyOf"][0]["maximum"] == 0.5
 
 
 def test_operations_are_named_by_words_and_processes_by_their_names() -> None:

@@ -24,11 +24,11 @@ from service.queue.job import Job
 from service.queue.machinery import job_machinery
 from service.queue.scheduler import Scheduler
 from service.queue.submissions import Submissions
-from service.schemas.process_inputs import AnalyzeInputs
+from service.schemas.execute import AnalyzeInputs
 from service.settings import Settings
 from service.store import DATABASE_FILE, ResultStore
 from service.worker.catalogue import ANALYZE, default_registry
-from service.worker.remote_work import RemoteWork
+from service.worker.cluster import RemoteWork
 
 LOOK_S = 0.02
 """Between two looks at a job: a mesher needs several times as long to load."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from alembic import context
 
-from service.store.schema_numbers import NEWEST
+from service.store.schema import NEWEST
 
 context.configure(
     connection=context.config.attributes["connection"], version_table=NEWEST, transactional_ddl=True

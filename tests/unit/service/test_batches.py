@@ -14,8 +14,7 @@ from sqlalchemy import select, update
 from service.project import COMMON
 from service.queue.batch_entry import BatchCase, BatchEntry
 from service.queue.claims import Claim
-from service.queue.job import Job
-from service.queue.job_filter import JobFilter
+from service.queue.job import Job, JobFilter
 from service.queue.retention import Retention
 from service.queue.tables import computations, durations, jobs
 from service.store import now, reading, writing

@@ -16,10 +16,9 @@ from host import family_cpu_seconds
 from lineofaction.gearbox.problems import BadInput
 from service.access import KeyFile
 from service.app import create_app
-from service.queue.caller import ANYBODY, Caller
 from service.queue.cost_limit import cost_limit, refuse_beyond
 from service.queue.job import Job
-from service.queue.terms import Terms
+from service.queue.terms import ANYBODY, Caller, Terms
 from service.schemas.request_examples import CASE
 from service.settings import Settings
 

@@ -19,8 +19,7 @@ from sqlalchemy import Connection, event, false
 
 from lineofaction.gearbox.problems import BadInput, DatabaseUnavailable
 from service.app import create_app
-from service.queue.caller import ANYBODY
-from service.queue.terms import USUAL
+from service.queue.terms import ANYBODY, USUAL
 from service.settings import Settings, load_settings
 from service.store import open_database
 from service.store.database import database_engine

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from service.queue.differences import Difference, Differences
-from service.queue.subject import subject_of
+from service.queue.job import subject_of
 from service.schemas.request_examples import CASE, SCENE
 
 

@@ -20,7 +20,7 @@ from lineofaction.gearbox.rexs import Document, serialized
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.studies.deflect import Inputs
 from lineofaction.gearbox.studies.deflect.run import load_cases
-from service.schemas.unit import UnitBody
+from service.schemas.answers import UnitBody
 from tests.fakes.deflected_unit import deflection_of_unit
 from tests.fakes.rexs_stage import relation
 from tests.fakes.rexs_unit import (

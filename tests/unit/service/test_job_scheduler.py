@@ -19,7 +19,7 @@ from service.store import ResultStore
 from service.store.results import StoredResult
 from service.worker.child_process import start_child
 from service.worker.forks import Forks
-from service.worker.memory import machine_memory_mb
+from service.worker.usage import machine_memory_mb
 
 
 @pytest.fixture(params=["started anew", "forked"])

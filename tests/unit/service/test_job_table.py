@@ -14,9 +14,8 @@ from running_service import Bench, bench
 from service_fakes import REGISTRY
 
 from lineofaction.gearbox.problems import NoSuchJob, QueueFull
-from service.queue.caller import ANYBODY, Caller
 from service.queue.job import Job
-from service.queue.terms import Terms
+from service.queue.terms import ANYBODY, Caller, Terms
 from service.store import Mark, instant, now
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from lineofaction.gearbox.problems import BadInput
 from service.page.examples import examples
-from service.schemas.process_inputs import AnalyzeInputs
+from service.schemas.execute import AnalyzeInputs
 from service.store import stored_results
 from service.worker import preparations
 from service.worker.preparations import name_database, prepare_analyze

@@ -20,7 +20,7 @@ from lineofaction.gearbox.from_rexs.opened import unit_of_rexs
 from lineofaction.gearbox.input_file import InputFile, Override
 from lineofaction.gearbox.schemas import read_model, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
-from service.schemas.unit import UnitBody
+from service.schemas.answers import UnitBody
 from tests.fakes.faulty_units import LEFT_OUT, REFUSED, TWO_STAGE
 
 EXAMPLES = Path(__file__).parents[3] / "examples"

@@ -11,10 +11,8 @@ from service_fakes import REGISTRY
 
 from lineofaction.gearbox.problems import BadInput
 from service.access import KeyFile
-from service.queue.caller import ANYBODY, Caller
 from service.queue.job import Job
-from service.queue.priority import check_priority
-from service.queue.terms import Terms
+from service.queue.terms import ANYBODY, Caller, Terms, check_priority
 
 
 @pytest.fixture

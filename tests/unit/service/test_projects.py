@@ -16,14 +16,14 @@ from sqlalchemy import text
 
 from lineofaction.gearbox.problems import NoSuchJob, NotFound
 from service.project import COMMON, PROJECT, address_of, at_address
-from service.queue.caller import Caller
 from service.queue.former_jobs import FormerJobs
 from service.queue.job import Job
+from service.queue.terms import Caller
 from service.store import Mark, ResultStore, writing
 from service.store.deployment import Deployment
+from service.store.files import ResultName, new_name
 from service.store.maintenance import verify_store
 from service.store.reindex import reindex
-from service.store.result_names import ResultName, new_name
 from service.worker.order import WorkOrder
 from service.worker.simulation_work import _table
 

@@ -22,8 +22,7 @@ from service.queue.retention import Retention
 from service.queue.tables import computations, jobs
 from service.store import writing
 from service.store.deployment import NOTE
-from service.store.maintenance import verify_store
-from service.store.quarantine import is_quarantined
+from service.store.maintenance import is_quarantined, verify_store
 from service.store.results import results
 
 LONG_AGO = "2026-01-01T00:00:00.000000Z"

@@ -12,7 +12,7 @@ from lineofaction.gearbox.from_rexs.opened import opened, unit_files, unit_json
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs import read_rexs
 from lineofaction.gearbox.studies.deflect import Inputs
-from service.schemas.unit import UnitBody
+from service.schemas.answers import UnitBody
 
 UNIT = Path(__file__).parents[3] / "examples" / "two_stage_gearbox.rexs"
 ROTOR = UNIT.with_name("jeffcott_scene.toml")

@@ -14,10 +14,9 @@ from service_fakes import REGISTRY
 from sqlalchemy import update
 
 from service.queue.claims import Claim
-from service.queue.durations import BOUNDS_S, bound_of
 from service.queue.retention import Retention
 from service.queue.tables import computations, jobs
-from service.queue.workload import Durations, WorkloadReader
+from service.queue.workload import BOUNDS_S, Durations, WorkloadReader, bound_of
 from service.store import writing
 from service.store.database import instant
 
