@@ -13,9 +13,9 @@ from fe_contact.compliance.sector_stiffness import ElementStiffness, flank_frame
 from fe_contact.compliance.sector_tree import sector_tree
 from fe_contact.compliance.substructure import Condensation, condense
 from fe_contact.geometry import Toothing, tooth_profile
-from fe_contact.mesh.bore_support import BoreSupport
 from fe_contact.mesh.quad_sector import QuadSector
-from fe_contact.mesh.sector_recipe import SectorRecipe
+from fe_contact.mesh.recipe import SectorRecipe
+from fe_contact.mesh.sector_grid import BoreSupport
 from fe_contact.mesh.swept_sector import SweptSector, swept_sector
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray

@@ -27,10 +27,9 @@ from fe_contact.compliance.flank_3d import FlankCompliance3D
 from fe_contact.compliance.sector_tree import sector_tree
 from fe_contact.compliance.usual_reach import usual_reach
 from fe_contact.geometry import Toothing, tooth_profile
-from fe_contact.mesh.bore_support import BoreSupport, bore_support
-from fe_contact.mesh.quad_sector import quad_sector
-from fe_contact.mesh.sector_outline import sector_outline
-from fe_contact.mesh.sector_recipe import SectorRecipe
+from fe_contact.mesh.quad_sector import quad_sector, sector_outline
+from fe_contact.mesh.recipe import SectorRecipe
+from fe_contact.mesh.sector_grid import BoreSupport, bore_support
 from fe_contact.mesh.swept_sector import SweptSector, swept_sector
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import Json

@@ -26,12 +26,11 @@ from fe_contact.compliance.hexahedron import (
 from fe_contact.compliance.sector_stiffness import flank_frames, lame_parameters, twist
 from fe_contact.errors import InputError
 from fe_contact.geometry import Toothing
-from fe_contact.mesh.bore_support import BoreSupport, bore_support
-from fe_contact.mesh.hexahedra import LOWER_FACE, Batch
-from fe_contact.mesh.quad_quality import quad_quality
 from fe_contact.mesh.quad_sector import QuadSector, quad_sector
-from fe_contact.mesh.sector_recipe import SectorRecipe
-from fe_contact.mesh.swept_sector import SweptSector, swept_sector
+from fe_contact.mesh.quality import quad_quality
+from fe_contact.mesh.recipe import SectorRecipe
+from fe_contact.mesh.sector_grid import BoreSupport, bore_support
+from fe_contact.mesh.swept_sector import LOWER_FACE, Batch, SweptSector, swept_sector
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, IntArray
 

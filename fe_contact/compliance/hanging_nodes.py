@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_contact.compliance.hexahedron import above, cylindrical_frames
-from fe_contact.mesh.hexahedra import LOWER_FACE
+from fe_contact.mesh.swept_sector import LOWER_FACE
 from fe_contact.types import FloatArray
 
 # Nodes of a face in the order of LOWER_FACE: position along the side 0-1, and across the layer.

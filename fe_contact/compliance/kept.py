@@ -12,7 +12,7 @@ from fe_contact.compliance.solvers import SuperLuMetis
 from fe_contact.compliance.usual_reach import usual_reach
 from fe_contact.geometry import Toothing
 from fe_contact.mesh import MeshRecipe, SectorRecipe
-from fe_contact.mesh.bore_support import PlaneStrain, bore_support
+from fe_contact.mesh.sector_grid import PlaneStrain, bore_support
 
 
 def solid_kept(gear: Toothing, recipe: SectorRecipe, cache: Path | None) -> int:

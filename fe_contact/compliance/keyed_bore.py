@@ -22,8 +22,7 @@ from fe_contact.body.bore_seat import Key
 from fe_contact.compliance.checks_3d import CondensedGear
 from fe_contact.compliance.hanging_nodes import face_functions
 from fe_contact.geometry import Toothing
-from fe_contact.mesh.hexahedra import LOWER_FACE
-from fe_contact.mesh.swept_sector import SweptSector, between_ends
+from fe_contact.mesh.swept_sector import LOWER_FACE, SweptSector, between_ends
 from fe_contact.types import FloatArray, IntArray
 
 POINTS = 3  # of Gauss each way on the part of a face that the key covers: exact along the bore

@@ -12,7 +12,7 @@ from fe_contact.compliance.flank_3d import FlankCompliance3D
 from fe_contact.compliance.usual_reach import usual_reach
 from fe_contact.geometry import Toothing
 from fe_contact.mesh import SectorRecipe
-from fe_contact.mesh.bore_support import BoreSupport, bore_support
+from fe_contact.mesh.sector_grid import BoreSupport, bore_support
 from fe_contact.workers import InProcess, Remembering, Workers
 from model_studies.progress import Report, unreported
 

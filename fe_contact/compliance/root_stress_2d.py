@@ -24,11 +24,10 @@ from fe_contact.compliance.root_stress import (
 )
 from fe_contact.compliance.sector_2d import freedoms
 from fe_contact.compliance.solvers import Solver
-from fe_contact.compliance.surface_stress import COMPONENTS, between_nodes, edge_stress
+from fe_contact.compliance.surface_stress import COMPONENTS, between_nodes, edge_stress, triangle_root
 from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.geometry.root_tangent import tangent_angle
 from fe_contact.mesh import MeshRecipe, mesh_gear
-from fe_contact.mesh.root_surface import triangle_root
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, IntArray
 

@@ -31,16 +31,17 @@ from fe_contact.compliance.surface_stress import (
     ACROSS,
     ALONG,
     COMPONENTS,
+    RootSurface,
     SurfaceElements,
     between_nodes,
     face_stress,
+    quad_root,
 )
 from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.geometry.root_tangent import tangent_angle
-from fe_contact.mesh.bore_support import BoreSupport
 from fe_contact.mesh.quad_sector import QuadSector, quad_sector
-from fe_contact.mesh.root_surface import RootSurface, quad_root
-from fe_contact.mesh.sector_recipe import SectorRecipe
+from fe_contact.mesh.recipe import SectorRecipe
+from fe_contact.mesh.sector_grid import BoreSupport
 from fe_contact.mesh.swept_sector import SweptSector
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, IntArray

@@ -18,10 +18,9 @@ from fe_contact.compliance.hexahedron import (
 )
 from fe_contact.geometry import Toothing
 from fe_contact.material import Material
-from fe_contact.mesh.hexahedra import LOWER_FACE, Batch
 from fe_contact.mesh.quad_sector import QuadSector
 from fe_contact.mesh.sector_grid import SectorGrid
-from fe_contact.mesh.swept_sector import SweptSector
+from fe_contact.mesh.swept_sector import LOWER_FACE, Batch, SweptSector
 from fe_contact.types import FloatArray, IntArray
 
 # Stiffness of an elastic seat under the bore: a foundation in cylindrical components.

@@ -18,7 +18,7 @@ from fe_contact.compliance.usual_reach import usual_reach
 from fe_contact.geometry import Toothing
 from fe_contact.geometry.seated_gear import refuse_key
 from fe_contact.mesh import MeshRecipe, SectorRecipe
-from fe_contact.mesh.bore_support import BoreSupport, bore_support
+from fe_contact.mesh.sector_grid import BoreSupport, bore_support
 
 MODEL_VERSION = 1  # raise it whenever the same input gives another result: old cache files are then not found
 

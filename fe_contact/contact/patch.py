@@ -1,7 +1,7 @@
 """Load patches on a flank and their consistent nodal forces.
 
 Away from the tip a patch is semi-elliptic, (2/(pi a)) sqrt(1 - x^2/a^2) about its center. Near a tip edge
-it takes the form that contact has there (see `fe_contact.hertz.edge_contact`): over a length c from the
+it takes the form that contact has there (see `fe_contact.hertz`): over a length c from the
 edge a mixture of the semi-ellipse and of (2/(pi c)) sqrt((c - x)/x), singular at the edge. With t the arc
 distance of the contact from the edge (negative, -phi R, off the line of action) the singular share is (c/2
 - t)/(3c/4 - t): none at t = c/2, where the patch is the semi-ellipse that just reaches the edge, so that

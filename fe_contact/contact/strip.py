@@ -16,7 +16,7 @@ curvature b_k, a tip edge is an end. On the strip c - h .. c + h, with x = c + h
 
 A strip between two edges is a flat punch. The approach is stationary in c and h, so that its slope in the
 load is k [ln(a/h) - 1/4]. Without breaks and edges this is Hertz; with an edge alone it is the law of
-`fe_contact.hertz.edge_contact`. `docs/theory/hertz.md` has the derivation.
+`fe_contact.hertz`. `docs/theory/hertz.md` has the derivation.
 
 References
 ----------

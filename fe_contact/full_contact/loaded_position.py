@@ -18,7 +18,7 @@ from fe_contact.full_contact.input_deck import HELD, MM, TURNING, Loading, input
 from fe_contact.full_contact.placed_pair import PlacedPair, no_load_gap, placed_pair
 from fe_contact.full_contact.point import FullContactPoint
 from fe_contact.geometry import ParallelAxes
-from fe_contact.hertz.line_contact import contact_modulus, peak_pressure
+from fe_contact.hertz import contact_modulus, peak_pressure
 from fe_contact.types import FloatArray, IntArray, Status
 from host import child_environment, ending_signal
 

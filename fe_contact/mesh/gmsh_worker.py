@@ -1,6 +1,6 @@
 """Child process that meshes polygons with gmsh, and does nothing else.
 
-Run as a script by `fe_contact.mesh.gmsh_child`, never imported by it: gmsh changes signal handlers, may
+Run as a script by `fe_contact.mesh.triangulation`, never imported by it: gmsh changes signal handlers, may
 crash on hard input and keeps global state, so it lives and dies here. It reads one JSON object from
 standard input and writes one to standard output::
 
@@ -34,7 +34,7 @@ FRONTAL_DELAUNAY = 6
 QUADRILATERAL = 3
 
 
-def _start_gmsh() -> Any:
+def start_gmsh() -> Any:
     """Import and start gmsh: one thread, silent, no user files, signal handlers left as they were."""
     sys.modules["numpy"] = None  # type: ignore[assignment] # gmsh's documented fallback; saves 0.2 CPU s of start-up
     import gmsh  # noqa: PLC0415
@@ -163,7 +163,7 @@ def main() -> None:
     request = json.load(sys.stdin)
     end_after(int(request["seconds"]) + 1)  # ends this process even when its parent is gone
     try:
-        gmsh = _start_gmsh()
+        gmsh = start_gmsh()
         answer: dict[str, Any] = {
             "regions": [_triangulate(gmsh, loops, request["growth"]) for loops in request.get("regions", [])],
             "blocks": [_fill_block(gmsh, sides) for sides in request.get("blocks", [])],

@@ -9,12 +9,10 @@ from itertools import pairwise
 import numpy as np
 
 from fe_contact.geometry import Toothing
-from fe_contact.mesh.grading import divide
-from fe_contact.mesh.outline import Outline, Piece, arc, piece
+from fe_contact.mesh.outline import Outline, Piece, arc, divide, piece
 from fe_contact.mesh.quadratic import QuadraticMesh, rotated
 from fe_contact.mesh.recipe import MeshRecipe
-from fe_contact.mesh.tooth_outline import LARGEST_ARC
-from fe_contact.mesh.tooth_sector import ToothSector
+from fe_contact.mesh.tooth_sector import LARGEST_ARC, ToothSector
 from fe_contact.types import FloatArray, IntArray
 
 HALF = 0.5  # largest element of the plain ring, in parts of its thickness

@@ -2,15 +2,48 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from fe_contact.errors import MeshError
-from fe_contact.mesh.gmsh_child import ask_gmsh
-from fe_contact.types import FloatArray, IntArray
+from fe_contact.types import FloatArray, IntArray, Json
+from host import ChildFailed, ChildOutOfMemory, ask_child
+
+# The child process that gmsh lives in: one request, one answer, its failures as `MeshError`.
+
+
+WORKER = Path(__file__).with_name("gmsh_worker.py")
+
+
+def ask_gmsh(request: Json, seconds: float, command: Sequence[str] | None = None) -> Json:
+    """Run the child on one request and return its answer.
+
+    Parameters
+    ----------
+    request : dict
+        Plain JSON, see `gmsh_worker`.
+    seconds : float
+        Time limit; the child is killed after it.
+    command : sequence of str, optional
+        Program to run in place of the gmsh worker.
+
+    Raises
+    ------
+    MeshError
+        The child failed, was killed, ran out of time or answered nonsense; the message says which.
+    """
+    try:
+        return ask_child(request, seconds, command or (sys.executable, "-P", str(WORKER)))
+    except ChildOutOfMemory as error:
+        advice = "Select a coarser level, or raise the memory limit."
+        raise MeshError(f"gmsh worker: {error}. {advice}") from error
+    except ChildFailed as error:
+        raise MeshError(f"gmsh worker: {error}") from error
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass, replace
 from fe_contact.compliance import PlaneHypothesis
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.mesh import MeshRecipe, SectorRecipe
-from fe_contact.mesh.sector_recipe import HELICAL_BODY_LAYERS
+from fe_contact.mesh.recipe import HELICAL_BODY_LAYERS
 from fe_contact.types import Json
 
 PLANE_REFINEMENT = {"draft": 0.6, "standard": 1.0, "fine": 2.0}

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from fe_contact.errors import InputError
 from fe_contact.geometry import Gear
 from fe_contact.mesh import SectorRecipe, quad_sector, swept_sector
-from fe_contact.mesh.quad_quality import quad_quality
+from fe_contact.mesh.quality import quad_quality
 
 
 @settings(max_examples=15, suppress_health_check=[HealthCheck.filter_too_much])

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from fe_contact.errors import InputError
 from fe_contact.geometry import RingGear
 from fe_contact.mesh import SectorRecipe, mesh_gear, mesh_quality, quad_sector
-from fe_contact.mesh.quad_quality import quad_quality
+from fe_contact.mesh.quality import quad_quality
 
 
 @settings(max_examples=12, suppress_health_check=[HealthCheck.filter_too_much])

@@ -1,6 +1,6 @@
 """The edge law against numerical solutions of the half-plane contact.
 
-Two routes, neither of which uses the inversion formula that `fe_contact.hertz.edge_contact` comes from:
+Two routes, neither of which uses the inversion formula that `fe_contact.hertz` comes from:
 
 - the logarithmic equation expanded in Chebyshev polynomials, where the end of the strip is found from the
   vanishing of its singularity;

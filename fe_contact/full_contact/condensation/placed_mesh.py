@@ -15,12 +15,10 @@ from fe_contact.full_contact.condensation.resolution import Resolution
 from fe_contact.full_contact.condensation.sites import ContactSite, SizedStrip
 from fe_contact.geometry import ParallelAxes, Toothing, tooth_profile
 from fe_contact.mesh.gear_mesh import real_teeth
-from fe_contact.mesh.grading import divide, middles, spread
-from fe_contact.mesh.outline import Outline, Piece, arc, piece
+from fe_contact.mesh.outline import Outline, Piece, arc, divide, middles, piece, spread
 from fe_contact.mesh.quadratic import QuadraticMesh, quadratic_mesh, region, rotated
 from fe_contact.mesh.quality import QualityLimits, refuse_poor_elements
-from fe_contact.mesh.tooth_outline import LARGEST_ARC
-from fe_contact.mesh.tooth_sector import MIRRORED
+from fe_contact.mesh.tooth_sector import LARGEST_ARC, MIRRORED
 from fe_contact.mesh.triangulation import triangulate
 from fe_contact.types import FloatArray, IntArray
 

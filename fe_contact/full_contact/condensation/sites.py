@@ -13,7 +13,7 @@ import numpy as np
 from fe_contact.full_contact.condensation.modified_flank import material_removed
 from fe_contact.full_contact.condensation.resolution import Resolution
 from fe_contact.geometry import CornerContact, ParallelAxes, Toothing, corner_contact, tooth_profile
-from fe_contact.hertz.line_contact import contact_modulus, half_width
+from fe_contact.hertz import contact_modulus, half_width
 from fe_contact.types import FloatArray
 
 STRIP, MATE_STRIP = 2.0, 2.5

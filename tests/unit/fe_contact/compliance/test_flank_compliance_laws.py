@@ -11,7 +11,7 @@ import pytest
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
-import fe_contact.mesh.meshing
+import fe_contact.mesh.gear_mesh
 from fe_contact.compliance import (
     ComplianceChecks,
     FlankCompliance,
@@ -167,7 +167,7 @@ def test_hub_and_sectors_to_the_bore_agree(
     gear = make_gear()
     recipe = coarse(gear)
     sectors = flank_compliance(gear, recipe)
-    monkeypatch.setattr(fe_contact.mesh.meshing, "SLENDER", 0.0)
+    monkeypatch.setattr(fe_contact.mesh.gear_mesh, "SLENDER", 0.0)
     with_hub = flank_compliance(gear, recipe)
     assert with_hub.condensed_unknowns != sectors.condensed_unknowns
     assert under_pressure(with_hub) == pytest.approx(under_pressure(sectors), rel=2e-4)

@@ -23,7 +23,7 @@ from fe_contact.compliance.root_stress import UnitRootStress, refuse_broken_stre
 from fe_contact.compliance.root_stress_3d import compute_root_stress_3d, root_functionals
 from fe_contact.compliance.sector_2d import freedoms, inward_loads
 from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
-from fe_contact.compliance.surface_stress import edge_stress
+from fe_contact.compliance.surface_stress import edge_stress, quad_root, triangle_root
 from fe_contact.compliance.unit_root_stress import (
     unit_root_stress,
     unit_root_stress_3d,
@@ -45,7 +45,6 @@ from fe_contact.mesh import (
     quad_sector,
     swept_sector,
 )
-from fe_contact.mesh.root_surface import quad_root, triangle_root
 
 GEARS = pytest.mark.parametrize("gear", [SPUR, HELICAL], ids=["spur", "helical"])
 PLANE = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)

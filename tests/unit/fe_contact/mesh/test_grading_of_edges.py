@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fe_contact.mesh.grading import divide, middles, spread
+from fe_contact.mesh.outline import divide, middles, spread
 
 
 @pytest.mark.parametrize(("start", "end"), [(0.0, 1.0), (2.0, -1.0)])

@@ -11,7 +11,7 @@ import pytest
 from fe_contact.errors import MeshError
 from fe_contact.geometry import Gear, RingGear, Toothing, tooth_profile
 from fe_contact.mesh import QualityLimits, SectorRecipe, quad_sector
-from fe_contact.mesh.quad_quality import quad_quality
+from fe_contact.mesh.quality import quad_quality
 from fe_contact.mesh.sector_grid import SectorGrid
 
 

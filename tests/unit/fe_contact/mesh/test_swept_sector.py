@@ -10,8 +10,8 @@ import pytest
 from fe_contact.errors import InputError
 from fe_contact.geometry import Gear
 from fe_contact.mesh import ClampedBore, PlaneStrain, SectorRecipe, swept_sector
-from fe_contact.mesh.layers import layers_across, layers_to_mid_face
 from fe_contact.mesh.sector_grid import SectorGrid
+from fe_contact.mesh.swept_sector import layers_across, layers_to_mid_face
 
 SPUR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 GRID = SectorGrid(body_rows=4, tooth_rows=3, land=1, across=2)

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from fe_contact.errors import MeshError
-from fe_contact.mesh.gmsh_child import WORKER
-from fe_contact.mesh.triangulation import Region, triangulate
+from fe_contact.mesh.triangulation import WORKER, Region, triangulate
 
 SQUARE = Region((np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]),))
 RING = Region(

@@ -12,8 +12,7 @@ import pytest
 from fe_contact.errors import InputError
 from fe_contact.geometry import Gear, GearBlank
 from fe_contact.mesh import MeshRecipe, SectorRecipe, mesh_gear, quad_sector, swept_sector
-from fe_contact.mesh.layers import layers_across
-from fe_contact.mesh.swept_sector import SweptSector, inner_breaks
+from fe_contact.mesh.swept_sector import SweptSector, inner_breaks, layers_across
 
 SOLID = Gear(teeth=30, normal_module=4e-3, face_width=40e-3, bore_diameter=30e-3)
 BLANK = GearBlank(rim_thickness=10e-3, web_thickness=9e-3, hub_diameter=50e-3, web_offset=4e-3)
