@@ -15,8 +15,7 @@ from lineofaction.gearbox.from_rexs.opened import SCENE_FILE, OpenedUnit, load_c
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.deflect import Inputs
-from lineofaction.gearbox.studies.deflect.outline import outline_of
-from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks
+from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks, outline_of
 from lineofaction.gearbox.studies.deflect.run import load_cases, scene_of
 
 HALF_FACE = 0.01

@@ -13,7 +13,6 @@ from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, Outli
 from lineofaction.gearbox.units import MM, UM
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, FloatArray, Line, Note, Panel, number
-from lineofaction.report.studies.deflect_tables import largest_motion
 
 # Names of gears outside their circles, seen along the axes.
 
@@ -22,6 +21,11 @@ WAYS = np.array([(math.cos(a), math.sin(a)) for a in np.radians(np.arange(45.0, 
 """Of the radii at whose ends a name may begin, the preferred first."""
 CHARACTER, ROW = 0.013, 0.03
 """Width and height of a character over the size of the drawing."""
+
+
+def largest_motion(case: CaseDeflection) -> float:
+    """Return the largest deflection of an axis in x or y, m."""
+    return float(np.max(np.abs(case.shafts.motion[:, :2]), initial=0.0))
 
 
 class GearName(NamedTuple):

@@ -9,7 +9,7 @@ import numpy as np
 
 from bounds import engineering
 from dynamics.study import Study
-from lineofaction.gearbox.studies.study.figures import in_boundary_units
+from lineofaction.gearbox.studies.study.run import in_boundary_units
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, FloatArray, HeatMap, Line, Panel, Table, number
 from lineofaction.report.drawing.page import Headline, Page, Section

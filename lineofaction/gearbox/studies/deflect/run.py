@@ -30,8 +30,7 @@ from lineofaction.gearbox.studies.deflect import CaseForceInput, Inputs
 from lineofaction.gearbox.studies.deflect.agreement import Agreement, in_agreement
 from lineofaction.gearbox.studies.deflect.figures import facts
 from lineofaction.gearbox.studies.deflect.mesh_contact import MeshContact, mesh_contact
-from lineofaction.gearbox.studies.deflect.outline import outline_of
-from lineofaction.gearbox.studies.deflect.result import HARMONICS, GearboxDeflection, MeshFlanks
+from lineofaction.gearbox.studies.deflect.result import HARMONICS, GearboxDeflection, MeshFlanks, outline_of
 from lineofaction.gearbox.studies.deflect.spectrum import write_spectrum
 from lineofaction.gearbox.studies.result_file import record_file
 

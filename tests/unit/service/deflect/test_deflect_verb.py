@@ -19,22 +19,21 @@ from typer.testing import CliRunner, Result
 from dynamics.deflection import BearingLoad, ForceUnderCase, deflect
 from dynamics.settings.load_case import LoadCase
 from lineofaction.cli.commands import app
-from lineofaction.gearbox.studies.deflect.outline import outline_of
-from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks
+from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks, outline_of
 from lineofaction.gearbox.studies.deflect.run import RUN, failure
 from lineofaction.gearbox.studies.deflect.spectrum import optimization_inputs, write_spectrum
 from lineofaction.gearbox.studies.optimize import Inputs as OptimizeInputs
 from lineofaction.report.document import write_report
 from lineofaction.report.drawing.figure import number
-from lineofaction.report.studies.deflect import page
-from lineofaction.report.studies.deflect_gearbox_drawing import exaggeration
-from lineofaction.report.studies.deflect_tables import (
+from lineofaction.report.studies.deflect import (
     bearing_table,
     force_table,
     life_table,
     mesh_table,
     meshes_worst_first,
+    page,
 )
+from lineofaction.report.studies.deflect_gearbox_drawing import exaggeration
 
 CASES = (
     LoadCase("climb", share=1.0, factor=1.0),

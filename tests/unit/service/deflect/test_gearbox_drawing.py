@@ -11,8 +11,7 @@ import pytest
 from two_stage_scenes import two_stages
 
 from dynamics.deflection import deflect
-from lineofaction.gearbox.studies.deflect.outline import outline_of
-from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, Outline
+from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, Outline, outline_of
 from lineofaction.gearbox.studies.deflect.run import _pattern
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, panel_height
 from lineofaction.report.drawing.interactive import plotly_figure
