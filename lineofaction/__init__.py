@@ -1,1 +1,191 @@
-"""Contact analysis of gears, their dynamics and their noise."""
+"""Contact analysis of gears, their dynamics and their noise: what a Python user imports.
+
+    import lineofaction as loa
+
+    unit = loa.open_unit("unit.rexs")
+    deflected = loa.deflect(unit)
+
+Names are loaded on first use. Gears, bearings and laws are in SI; cases, scenes and inputs of studies have
+the units in their names.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from dynamics.bearings.bushing import Bushing
+    from dynamics.bearings.rolling_bearing import RollingBearing
+    from dynamics.joints.housing import Housing
+    from dynamics.loads.time_law import TimeLaw
+    from dynamics.results import RunResult
+    from dynamics.scene import Integration, Outputs, PlanetarySet
+    from fe_contact import (
+        BoreSeat,
+        FlankGrid,
+        FlankModification,
+        Gear,
+        GearBlank,
+        GearPair,
+        InternalGearPair,
+        Material,
+        PitchDeviation,
+        RingGear,
+        SteDatabase,
+        Tolerances,
+    )
+    from fe_contact.types import Estimate, Status
+    from lineofaction.client import AsyncLineOfActionClient as AsyncClient
+    from lineofaction.client import LineOfActionClient as Client
+    from lineofaction.gearbox.from_rexs.opened import OpenedUnit as Unit
+    from lineofaction.gearbox.problems import BadInput, JobFailed
+    from lineofaction.gearbox.schemas import Case
+    from lineofaction.gearbox.schemas.scene import SceneInput as Scene
+    from lineofaction.gearbox.workbench import (
+        InputWarning,
+        ablate,
+        analyze,
+        deflect,
+        flank,
+        frontier,
+        listen,
+        modes,
+        noise,
+        open_unit,
+        optimize,
+        read,
+        response,
+        root_stress,
+        scatter,
+        sensitivity,
+        simulate,
+        steady,
+        study,
+        sweep,
+        vibration,
+    )
+    from lineofaction.report.written import facts, write
+
+_HOME = {
+    "ablate": ("lineofaction.gearbox.workbench", "ablate"),
+    "analyze": ("lineofaction.gearbox.workbench", "analyze"),
+    "AsyncClient": ("lineofaction.client", "AsyncLineOfActionClient"),
+    "BadInput": ("lineofaction.gearbox.problems", "BadInput"),
+    "BoreSeat": ("fe_contact", "BoreSeat"),
+    "Bushing": ("dynamics.bearings.bushing", "Bushing"),
+    "Case": ("lineofaction.gearbox.schemas", "Case"),
+    "Client": ("lineofaction.client", "LineOfActionClient"),
+    "deflect": ("lineofaction.gearbox.workbench", "deflect"),
+    "Estimate": ("fe_contact.types", "Estimate"),
+    "facts": ("lineofaction.report.written", "facts"),
+    "flank": ("lineofaction.gearbox.workbench", "flank"),
+    "FlankGrid": ("fe_contact", "FlankGrid"),
+    "FlankModification": ("fe_contact", "FlankModification"),
+    "frontier": ("lineofaction.gearbox.workbench", "frontier"),
+    "Gear": ("fe_contact", "Gear"),
+    "GearBlank": ("fe_contact", "GearBlank"),
+    "GearPair": ("fe_contact", "GearPair"),
+    "Housing": ("dynamics.joints.housing", "Housing"),
+    "InputWarning": ("lineofaction.gearbox.workbench", "InputWarning"),
+    "Integration": ("dynamics.scene", "Integration"),
+    "InternalGearPair": ("fe_contact", "InternalGearPair"),
+    "JobFailed": ("lineofaction.gearbox.problems", "JobFailed"),
+    "listen": ("lineofaction.gearbox.workbench", "listen"),
+    "Material": ("fe_contact", "Material"),
+    "modes": ("lineofaction.gearbox.workbench", "modes"),
+    "noise": ("lineofaction.gearbox.workbench", "noise"),
+    "open_unit": ("lineofaction.gearbox.workbench", "open_unit"),
+    "optimize": ("lineofaction.gearbox.workbench", "optimize"),
+    "Outputs": ("dynamics.scene", "Outputs"),
+    "PitchDeviation": ("fe_contact", "PitchDeviation"),
+    "PlanetarySet": ("dynamics.scene", "PlanetarySet"),
+    "read": ("lineofaction.gearbox.workbench", "read"),
+    "response": ("lineofaction.gearbox.workbench", "response"),
+    "RingGear": ("fe_contact", "RingGear"),
+    "RollingBearing": ("dynamics.bearings.rolling_bearing", "RollingBearing"),
+    "root_stress": ("lineofaction.gearbox.workbench", "root_stress"),
+    "RunResult": ("dynamics.results", "RunResult"),
+    "scatter": ("lineofaction.gearbox.workbench", "scatter"),
+    "Scene": ("lineofaction.gearbox.schemas.scene", "SceneInput"),
+    "sensitivity": ("lineofaction.gearbox.workbench", "sensitivity"),
+    "simulate": ("lineofaction.gearbox.workbench", "simulate"),
+    "Status": ("fe_contact.types", "Status"),
+    "steady": ("lineofaction.gearbox.workbench", "steady"),
+    "SteDatabase": ("fe_contact", "SteDatabase"),
+    "study": ("lineofaction.gearbox.workbench", "study"),
+    "sweep": ("lineofaction.gearbox.workbench", "sweep"),
+    "TimeLaw": ("dynamics.loads.time_law", "TimeLaw"),
+    "Tolerances": ("fe_contact", "Tolerances"),
+    "Unit": ("lineofaction.gearbox.from_rexs.opened", "OpenedUnit"),
+    "vibration": ("lineofaction.gearbox.workbench", "vibration"),
+    "write": ("lineofaction.report.written", "write"),
+}
+
+__all__ = [
+    "AsyncClient",
+    "BadInput",
+    "BoreSeat",
+    "Bushing",
+    "Case",
+    "Client",
+    "Estimate",
+    "FlankGrid",
+    "FlankModification",
+    "Gear",
+    "GearBlank",
+    "GearPair",
+    "Housing",
+    "InputWarning",
+    "Integration",
+    "InternalGearPair",
+    "JobFailed",
+    "Material",
+    "Outputs",
+    "PitchDeviation",
+    "PlanetarySet",
+    "RingGear",
+    "RollingBearing",
+    "RunResult",
+    "Scene",
+    "Status",
+    "SteDatabase",
+    "TimeLaw",
+    "Tolerances",
+    "Unit",
+    "ablate",
+    "analyze",
+    "deflect",
+    "facts",
+    "flank",
+    "frontier",
+    "listen",
+    "modes",
+    "noise",
+    "open_unit",
+    "optimize",
+    "read",
+    "response",
+    "root_stress",
+    "scatter",
+    "sensitivity",
+    "simulate",
+    "steady",
+    "study",
+    "sweep",
+    "vibration",
+    "write",
+]
+
+
+def __getattr__(name: str) -> object:
+    """Load a name on first use."""
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    module, own = _HOME[name]
+    value = globals()[name] = getattr(import_module(module), own)
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

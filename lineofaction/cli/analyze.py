@@ -8,9 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from bounds import engineering
-from fe_contact.analysis import ste_database
 from fe_contact.analysis.run_plan import PlannedLevel, RunPlan
-from fe_contact.options import Run
 from fe_contact.planning.cost_model import STAGES
 from fe_contact.ste import SteDatabase
 from fe_contact.workers import InProcess, Workers
@@ -27,17 +25,12 @@ from lineofaction.cli.output import (
 )
 from lineofaction.gearbox.convert.answers import summary_json
 from lineofaction.gearbox.convert.case import (
-    analysis_options,
-    boundary_errors,
     case_at,
-    case_json,
-    table_axes,
 )
-from lineofaction.gearbox.convert.checks import check_case
 from lineofaction.gearbox.convert.drafts import draft_line
 from lineofaction.gearbox.convert.effect_lines import assumption_lines, ledger_lines
 from lineofaction.gearbox.convert.plan import plan_of
-from lineofaction.gearbox.convert.plausibility import case_warnings, phrased_database
+from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.convert.task_workers import ExecutorChoice, open_executor
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import JobFailed
@@ -47,6 +40,7 @@ from lineofaction.gearbox.schemas.lines import located
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.warning import left_out_warnings
 from lineofaction.gearbox.subjects import scene_of
+from lineofaction.gearbox.tabled_scene import database_of
 from lineofaction.gearbox.units import MM, NM, UM
 from lineofaction.report.tables.static_part import static_headlines
 
@@ -177,17 +171,7 @@ def analyzed(
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> SteDatabase:
     """Compute the database of a case in this process; condensed gears are kept in the user's cache."""
-    pair = check_case(case)
-    with boundary_errors():
-        database = ste_database(
-            pair,
-            table_axes(case),
-            analysis_options(case),
-            Run(workers, cache_home() / "compliance", report),
-            case=case_json(case),
-            on_draft=_print_draft,
-        )
-    return phrased_database(database, case)
+    return database_of(case, cache_home(), report, workers, _print_draft)
 
 
 def _show(summary: dict[str, Any]) -> None:

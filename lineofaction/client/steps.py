@@ -83,13 +83,3 @@ class Course(Generic[T]):
     def fail(self, error: BaseException) -> None:
         """Give what an action raised; the operation decides what becomes of it."""
         self._advance, self._given = self._steps.throw, error
-
-
-def finished(steps: Steps[T]) -> T:
-    """Return the result of an operation that wants nothing of network and clock."""
-    try:
-        action = next(steps)
-    except StopIteration as end:
-        result: T = end.value
-        return result
-    raise AssertionError(f"there is nobody to perform {action}")

@@ -93,6 +93,29 @@ def case_of_mesh(mesh: MeshInput, field: str, folder: Path) -> schemas.Case | No
         raise error.within(f"{field}.case_file") from None
 
 
+def with_own_cases(scene: schemas.SceneInput, folder: Path) -> schemas.SceneInput:
+    """Return the scene with the cases in its files written out; raises `BadInput`."""
+    cases = [case_of_mesh(mesh, f"meshes[{i}]", folder) for i, mesh in enumerate(scene.meshes)]
+    meshes = (
+        mesh if case is None else mesh.model_copy(update={"case": case, "case_file": None})
+        for mesh, case in zip(scene.meshes, cases, strict=True)
+    )
+    return scene.model_copy(update={"meshes": tuple(meshes)})
+
+
+def with_own_files(scene: schemas.SceneInput, folder: Path) -> schemas.SceneInput:
+    """Return the scene with its cases written out, and the files that it still names by their whole paths."""
+    own = with_own_cases(scene, folder)
+    meshes = tuple(_in_folder(mesh, "database_file", folder) for mesh in own.meshes)
+    housings = tuple(_in_folder(part, "modes_file", folder) for part in own.housings)
+    return own.model_copy(update={"meshes": meshes, "housings": housings})
+
+
+def _in_folder(part: Any, field: str, folder: Path) -> Any:
+    name = getattr(part, field)
+    return part if name is None else part.model_copy(update={field: str(folder / name)})
+
+
 def portable_scene(scene: schemas.SceneInput, folder: Path) -> schemas.SceneInput:
     """Return the scene with its case files written out.
 

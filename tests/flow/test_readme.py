@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -15,15 +16,32 @@ ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 
+WRITE_CASE = """
+import json, pathlib, subprocess, sys
+sys.path.insert(0, {example!r})
+from gear_case import housing_of, seats_of
+import lineofaction as loa
+import warnings
+warnings.simplefilter("ignore")
+from lineofaction.gearbox.from_rexs.files import unit_files
+import tomllib
+scene = unit_files(loa.open_unit("unit.rexs"))["scene.toml"]
+pathlib.Path("scene.toml").write_text(scene)
+subprocess.run([sys.executable, {example!r} + "/gear_case.py", "scene.toml", "gear_case.step"], check=True)
+case = housing_of(seats_of(tomllib.loads(scene)), "gear_case.step", modes=10, element_size_mm=40.0)
+pathlib.Path("gear_case.json").write_text(json.dumps(case))
+"""
+
+
 def blocks(language: str) -> list[str]:
     """Return the code blocks of a language."""
     return re.findall(rf"```{language}\n(.*?)```", README, re.DOTALL)
 
 
-def run_python(code: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    """Run a block in an interpreter of its own, warnings being errors."""
+def run_python(code: str, folder: Path, warnings: str = "error") -> subprocess.CompletedProcess[str]:
+    """Run a block in an interpreter of its own."""
     done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", code],
+        [sys.executable, "-W", warnings, "-c", code],
         cwd=folder,
         env=os.environ | {"OMP_NUM_THREADS": "1", "XDG_CACHE_HOME": str(folder / "cache")},
         capture_output=True,
@@ -36,11 +54,22 @@ def run_python(code: str, folder: Path) -> subprocess.CompletedProcess[str]:
 
 def test_the_helical_example_has_five_lines_and_runs(tmp_path: Path, condensed_bodies: Path) -> None:
     find_condensed(condensed_bodies, tmp_path / "cache" / "lineofaction")
-    (code,) = blocks("python")
+    code = blocks("python")[0]
     assert len([line for line in code.splitlines() if line]) == 5
     value, error = map(float, re.findall(r"=([\d.e-]+)", run_python(code, tmp_path).stdout))
     assert value == pytest.approx(0.56e-6, abs=error)  # docs/tutorials/helical-ev-pair.md
     assert error < 0.2 * value
+
+
+@pytest.mark.nightly
+def test_a_unit_sounds_in_six_lines_without_a_server(tmp_path: Path) -> None:
+    example = ROOT / "examples" / "two_stage"
+    shutil.copyfile(example / "two_stage.rexs", tmp_path / "unit.rexs")
+    run_python(WRITE_CASE.format(example=str(example)), tmp_path)
+    code = blocks("python")[1]
+    assert len([line for line in code.splitlines() if line and not line.startswith("import")]) <= 6
+    assert "level" in run_python(code, tmp_path, "default").stdout
+    assert (tmp_path / "noise.html").stat().st_size > 10_000
 
 
 def test_a_new_user_finds_the_program_and_the_examples() -> None:

@@ -1,0 +1,131 @@
+"""STE databases of cases and of the meshes of scenes, computed in this process."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+from fe_contact.analysis import ste_database
+from fe_contact.options import Run
+from fe_contact.ste import PairFacts, SteDatabase
+from fe_contact.workers import InProcess, Workers
+from host import cpu_seconds
+from lineofaction.gearbox.convert.case import analysis_options, boundary_errors, case_json, table_axes
+from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.housings import housings_in
+from lineofaction.gearbox.convert.plausibility import case_warnings, phrased_database, scene_warnings, within
+from lineofaction.gearbox.convert.scene import TabledScene, check_scene, dynamic_scene
+from lineofaction.gearbox.convert.topology import facts_of
+from lineofaction.gearbox.mesh_tables import Steps
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.schemas.scene_meshes import MeshInput
+from lineofaction.gearbox.subjects import case_of_mesh, with_own_cases, without_modes_files
+from model_studies.progress import Progress, silent
+
+Warn = Callable[[Iterable[dict[str, Any]]], object]
+TableOf = Callable[[int, MeshInput], SteDatabase]
+
+
+def database_of(
+    case: Case,
+    home: Path,
+    progress: Progress = silent,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
+    on_draft: Callable[[SteDatabase, str], None] | None = None,
+) -> SteDatabase:
+    """Compute the STE database of a case; condensed gears are kept in `home`, the folder of caches.
+
+    Raises
+    ------
+    BadInput
+        No such pair exists, or not under these loads.
+    """
+    pair = check_case(case)
+    with boundary_errors():
+        database = ste_database(
+            pair,
+            table_axes(case),
+            analysis_options(case),
+            Run(workers, home / "compliance", progress),
+            case=case_json(case),
+            on_draft=on_draft,
+        )
+    return phrased_database(database, case)
+
+
+class ComputedTables:
+    """A source of tables that computes them in this process, and holds none.
+
+    Parameters
+    ----------
+    compute : callable
+        ``compute(case)``, the database of a case.
+    """
+
+    def __init__(self, compute: Callable[[Case], SteDatabase]) -> None:
+        self._compute = compute
+
+    def by_hash(self, key: str) -> Steps[SteDatabase]:
+        """Refuse: only a service knows hashes."""
+        yield from ()
+        advice = "Name the service that holds it: --service http://127.0.0.1:8321"
+        raise BadInput.of("database_hash", key, "used together with a service", advice)
+
+    def by_case(self, case: Case) -> Steps[SteDatabase]:
+        """Compute."""
+        yield from ()
+        return self._compute(case)
+
+
+def tabled_scene(
+    scene: SceneInput, folder: Path, table_of: TableOf, home: Path, progress: Progress, warn: Warn
+) -> TabledScene:
+    """Return a scene with its tables, housings reduced; all is checked before anything is computed.
+
+    Parameters
+    ----------
+    scene : SceneInput
+    folder : Path
+        What the files that the scene names are relative to.
+    table_of : callable
+        ``table_of(index, mesh)``, the database of a mesh.
+    home : Path
+        Folder of the caches.
+    progress : callable
+        Called as progress(stage, fraction).
+    warn : callable
+        Takes what is implausible about cases and scene.
+
+    Raises
+    ------
+    BadInput
+        No such scene, or it does not move; a file of it cannot be used.
+    JobFailed
+        A table has failed points.
+    """
+    began = cpu_seconds()
+    facts = {mesh.name: _facts(i, mesh, folder, table_of, warn) for i, mesh in scene.with_database}
+    warn(scene_warnings(scene, check_scene(scene, facts)))
+    housings = housings_in(scene, home, folder, progress)
+    databases = {mesh.name: table_of(i, mesh) for i, mesh in scene.with_database}
+    built = dynamic_scene(scene, databases, housings)
+    warn(scene_warnings(scene, built, {name: table.metadata.warnings for name, table in databases.items()}))
+    return TabledScene(
+        without_modes_files(with_own_cases(scene, folder)), databases, built, housings, cpu_seconds() - began
+    )
+
+
+def _facts(index: int, mesh: MeshInput, folder: Path, table_of: TableOf, warn: Warn) -> PairFacts:
+    """Return the facts of a mesh's pair; of a case without computing anything."""
+    field = f"meshes[{index}]"
+    case = case_of_mesh(mesh, field, folder)
+    if case is None:
+        return table_of(index, mesh).facts
+    try:
+        warn(within(warning, field) for warning in case_warnings(case))
+        return facts_of(check_case(case))
+    except BadInput as error:
+        raise error.within(f"{field}.case") from None

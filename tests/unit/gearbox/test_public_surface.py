@@ -1,0 +1,69 @@
+"""`import lineofaction as loa`: its names, what they load, and that they compute without a server."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import lineofaction as loa
+from lineofaction.gearbox.registry import STUDIES
+from lineofaction.gearbox.schemas import Case
+
+ROOT = Path(__file__).parents[3]
+EXAMPLES = ROOT / "examples"
+MOST_NAMES = 60
+
+
+def test_every_name_is_there_and_they_are_few() -> None:
+    assert len(loa.__all__) == len(set(loa.__all__)) <= MOST_NAMES
+    for name in loa.__all__:
+        assert getattr(loa, name) is not None
+    with pytest.raises(AttributeError, match="no_such"):
+        _ = loa.no_such
+
+
+def test_the_import_loads_nothing() -> None:
+    code = "import json, sys, lineofaction; print(json.dumps(sorted(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    loaded = {name.partition(".")[0] for name in json.loads(done.stdout)}
+    assert not loaded & {"numpy", "scipy", "pydantic", "fe_contact", "dynamics", "service"}
+
+
+def test_every_study_is_a_function() -> None:
+    for study in STUDIES.values():
+        function = getattr(loa, study.package)
+        assert study.description in (function.__doc__ or "")
+
+
+def test_a_case_is_read_with_values_over_it_and_refused_by_field() -> None:
+    case = loa.read(EXAMPLES / "palermo_spur_20_20.toml", {"pair.pinion.tip_relief_um": 7})
+    assert isinstance(case, Case) and case.pair.pinion.tip_relief_um == 7
+    with pytest.raises(loa.BadInput, match=r"pair\.pinion\.teeth"):
+        loa.read(EXAMPLES / "palermo_spur_20_20.toml", {"pair.pinion.teeth": 2})
+
+
+def test_modes_of_a_scene_equal_those_of_dynamics(tmp_path: Path) -> None:
+    """The function converts, checks and computes as the parts do one by one."""
+    from dynamics.assembly.assemble import assemble  # noqa: PLC0415
+    from dynamics.linearize import modal_analysis  # noqa: PLC0415
+    from lineofaction.gearbox.workbench import tabled  # noqa: PLC0415
+
+    scene = EXAMPLES / "jeffcott_scene.toml"
+    found = loa.modes(scene)
+    assert found.frequency.tolist() == modal_analysis(assemble(tabled(scene).scene)).frequency.tolist()
+    assert "modes" in loa.facts(found)
+    loa.write(found, tmp_path / "modes.nc")
+    loa.write(found, tmp_path / "modes.json")
+    assert json.loads((tmp_path / "modes.json").read_text()) == loa.facts(found)
+    with pytest.raises(loa.BadInput, match="ending"):
+        loa.write(found, tmp_path / "modes.xyz")
+
+
+def test_a_unit_without_a_scene_is_refused() -> None:
+    unit = loa.Unit((), None, (), (), ())
+    with pytest.raises(loa.BadInput, match="scene"):
+        loa.modes(unit)
