@@ -47,6 +47,7 @@ RUN set -eu; packages=$(python -c "import sysconfig; print(sysconfig.get_path('p
 # ---- run: no compiler, no package manager of Python, no root -------------------------------------------------------
 # gmsh is linked against OpenGL but draws nothing here: Mesa's drivers (200 MB) go again.
 FROM ${BASE} AS run
+ARG VERSION
 RUN apt-get update \
     && apt-get install -y --no-install-recommends \
         tini libglu1-mesa libgl1 libxcursor1 libxft2 libxinerama1 libgomp1 \
@@ -57,14 +58,14 @@ RUN apt-get update \
     && install -d -o lineofaction -g lineofaction /data /data/cache /data/service /data/service/compliance /results
 COPY --from=build /opt/lineofaction /opt/lineofaction
 
-# The compiled loops are cached beside the data, so that they survive the container.
+# The compiled loops are cached beside the data, so that they survive the container, by version: they name modules.
 ENV PATH=/opt/lineofaction/bin:$PATH \
     PYTHONUNBUFFERED=1 \
     LOA_HOST=127.0.0.1 \
     LOA_PORT=8321 \
     LOA_MANAGEMENT_PORT=8322 \
     LOA_DATA_DIRECTORY=/data/service \
-    NUMBA_CACHE_DIR=/data/cache/numba \
+    NUMBA_CACHE_DIR=/data/cache/compiled-${VERSION} \
     XDG_CACHE_HOME=/data/cache \
     MPLCONFIGDIR=/data/cache/matplotlib \
     OMP_NUM_THREADS=1

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from bounds import Declared, Kind, between, declared, described, required
-from dynamics.bearings import BallBearing, RollerBearing, seat
+from dynamics.bearings import seat
+from dynamics.bearings.ball_bearing import BallBearing
 from dynamics.bearings.bushing import Bushing
-from dynamics.bearings.roller_bearing import BOTH, LOCATING, check_locating
+from dynamics.bearings.roller_bearing import BOTH, LOCATING, RollerBearing, check_locating
 from dynamics.checks import declared_fields
 from dynamics.errors import InputError
 

@@ -11,19 +11,26 @@ import signal
 import socket
 import sys
 import threading
+from importlib import import_module
+from importlib.util import find_spec
 
 import structlog
 from service_fakes import REGISTRY
 
-from lineofaction.gearbox.problems import DatabaseUnavailable
 from service.queue.machinery import job_machinery
 from service.settings import load_settings
 from service.store import DirectoryLock
 
+OLD = find_spec("service.cli") is not None
+"""Of 0.2 and before: the service was all that there was."""
+DatabaseUnavailable = import_module(
+    "service.problems" if OLD else "lineofaction.gearbox.problems"
+).DatabaseUnavailable
+
 
 def serve(works: bool, descriptor: int) -> None:
     """Answer on the socket until stopped."""
-    from lineofaction.cli.serve import http_server  # noqa: PLC0415
+    http_server = import_module(f"{'service' if OLD else 'lineofaction'}.cli.serve").http_server
     from service import app as application  # noqa: PLC0415 (start-up time: working needs no web framework)
 
     application.warm_up = lambda: None

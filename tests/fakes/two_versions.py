@@ -21,6 +21,13 @@ import rfc8785
 from killed_part import Part
 from running_service import PATIENCE_S, REFERENCES, until
 
+_VERB = """
+from importlib import import_module
+from importlib.util import find_spec
+old = find_spec("service.cli")  # where the command line was until 0.2
+import_module("service.cli" if old else "lineofaction.cli").main()
+"""
+
 _FAKES = Path(__file__).resolve().parent
 _TRIES = (httpx2.TransportError, ConnectionError)
 
@@ -112,7 +119,7 @@ class RollingService:
 
     def upgrade(self, version: Version) -> None:
         """Bring the database up to the schema of a version, as its `loa database upgrade` does."""
-        words = [sys.executable, "-c", "from lineofaction.cli import main; main()", "database", "upgrade"]
+        words = [sys.executable, "-c", _VERB, "database", "upgrade"]
         environment = self._environment(version, "upgrade")
         subprocess.run(words, env=environment, check=True, capture_output=True, timeout=PATIENCE_S)
 
