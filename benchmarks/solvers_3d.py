@@ -15,7 +15,7 @@ import scipy.sparse as sp
 from fe_contact import Gear
 from fe_contact.compliance import Pardiso, SuperLuMetis, flank_compliance_3d
 from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
-from fe_contact.compliance.sector_tree import sector_tree
+from fe_contact.compliance.elimination_tree import sector_tree
 from fe_contact.compliance.substructure import condense
 from fe_contact.mesh import SectorRecipe, quad_sector, swept_sector
 

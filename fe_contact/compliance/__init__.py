@@ -8,11 +8,10 @@ from fe_contact.compliance.cyclic_compliance import (
     predict_cost,
 )
 from fe_contact.compliance.finite_width import FiniteWidthCompliance, finite_width_compliances
-from fe_contact.compliance.flank import ComplianceChecks, FlankCompliance
-from fe_contact.compliance.flank_3d import FlankCompliance3D
+from fe_contact.compliance.flank import ComplianceChecks, FlankCompliance, FlankCompliance3D
 from fe_contact.compliance.flank_compliance_2d import flank_compliance, flank_compliances
-from fe_contact.compliance.kept import free_ends_kept, section_kept, solid_kept
-from fe_contact.compliance.plane import PlaneHypothesis
+from fe_contact.compliance.plane_elasticity import PlaneHypothesis
+from fe_contact.compliance.remote_condensation import free_ends_kept, section_kept, solid_kept
 from fe_contact.compliance.root_stress import RootStressChecks, UnitRootStress
 from fe_contact.compliance.solvers import Pardiso, Solver, SuperLuColamd, SuperLuMetis
 from fe_contact.compliance.unit_root_stress import (

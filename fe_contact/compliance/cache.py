@@ -17,8 +17,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from fe_contact.cache_reads import COMPLIANCE_READS
-from fe_contact.compliance.flank import ComplianceChecks, FlankCompliance
-from fe_contact.compliance.flank_3d import FlankCompliance3D
+from fe_contact.compliance.flank import ComplianceChecks, FlankCompliance, FlankCompliance3D
 from fe_contact.compliance.root_stress import RootStressChecks, UnitRootStress
 from fe_contact.types import Json
 

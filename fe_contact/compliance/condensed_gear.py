@@ -1,16 +1,18 @@
-"""A whole gear with all teeth real, solved on the freedoms of one tooth sector."""
+"""A gear condensed to its flanks over the face, and the laws that it must keep."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
+from scipy.linalg import cho_factor, cho_solve
 
-from fe_contact.compliance.checks_3d import CondensedGear, probe_loads
-from fe_contact.compliance.cyclic_ring import FreeTurn, HeldSector, close_ring, hold_sector
+from fe_contact.compliance.cyclic_ring import FreeTurn, HeldSector, RingSolution, close_ring, hold_sector
+from fe_contact.compliance.elimination_tree import sector_tree
+from fe_contact.compliance.flank import ComplianceChecks, left_by_rounding
 from fe_contact.compliance.sector_stiffness import ElementStiffness, flank_frames, sector_stiffness, twist
-from fe_contact.compliance.sector_tree import sector_tree
 from fe_contact.compliance.substructure import Condensation, condense
 from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.mesh.quad_sector import QuadSector
@@ -18,7 +20,199 @@ from fe_contact.mesh.recipe import SectorRecipe
 from fe_contact.mesh.sector_grid import BoreSupport
 from fe_contact.mesh.swept_sector import SweptSector, swept_sector
 from fe_contact.stage_clock import StageClock
-from fe_contact.types import FloatArray
+from fe_contact.types import FloatArray, IntArray
+
+# Checks of a condensed three-dimensional gear on its uncondensed mesh, by the field of one load.
+
+
+# Share of a uniform pressure that the nodes of an eight-node face carry, by plane and profile node.
+FACE_SHARES = np.array([[-1.0, 4.0, -1.0], [4.0, 0.0, 4.0], [-1.0, 4.0, -1.0]]) / 12.0
+INVERSE_ITERATIONS = 60
+
+
+@dataclass(frozen=True)
+class CondensedGear:
+    """All that the checks need of one solved gear.
+
+    Attributes
+    ----------
+    sector : SweptSector
+        Mesh of one sector.
+    stiffness : ElementStiffness
+        Its element matrices.
+    condensation : Condensation
+        The sector on its kept freedoms: flank, left cut, right cut.
+    held : HeldSector
+        The sector on its cuts.
+    ring : RingSolution
+        The gear under the loads `probe_loads`.
+    """
+
+    sector: SweptSector
+    stiffness: ElementStiffness
+    condensation: Condensation
+    held: HeldSector
+    ring: RingSolution
+
+    def flank(self, tooth: int, loads: FloatArray) -> FloatArray:
+        """Return the flank displacements (nf, p) of a tooth under the probe `loads` (nf, p) on tooth 0."""
+        own = self.held.flank @ loads if tooth == 0 else 0.0
+        return np.asarray(own + self.held.transmitted.T @ self.cuts(tooth))
+
+    def cuts(self, tooth: int) -> FloatArray:
+        """Return the displacement of the left and right cut of a tooth under the probe loads, (2 nc, p)."""
+        return np.concatenate([self.ring.left[tooth], self.ring.left[tooth - 1]])
+
+    def cut_forces(self, tooth: int) -> FloatArray:
+        """Return the forces that move an unloaded sector's cuts as they move, (2 nc, p)."""
+        return self.held.cuts @ self.cuts(tooth)
+
+
+def pressure_forces(s: FloatArray, z: FloatArray, index: IntArray, loaded: FloatArray) -> FloatArray:
+    """Return the consistent forces (nf,) of a pressure of `loaded` (L, elements) per unit of s and z."""
+    forces = np.zeros(index.max() + 1)
+    areas = loaded * np.diff(z)[:, None] * (s[2::2] - s[:-2:2])
+    planes, profile = len(index) - 2, len(s) - 2
+    for i in range(3):
+        for j in range(3):
+            nodes = index[i : i + planes : 2, j : j + profile : 2]
+            if i != 1 or j != 1:
+                np.add.at(forces, nodes, FACE_SHARES[i, j] * areas)
+    return forces
+
+
+def probe_loads(s: FloatArray, z: FloatArray, index: IntArray, s_form: float) -> FloatArray:
+    """Return two loads (nf, 2): unit pressure on the whole involute, and on its uppermost layer.
+
+    Elements that begin below `s_form` carry nothing, since their normals miss the base circle.
+    """
+    on = np.broadcast_to(s[:-2:2] >= s_form, (len(z) - 1, len(s) // 2)).astype(float)
+    end = np.zeros_like(on)
+    end[-1] = on[-1]
+    return np.stack([pressure_forces(s, z, index, part) for part in (on, end)], axis=1)
+
+
+def gear_checks(gear: CondensedGear, loads: FloatArray, lever: float, bore_radius: float) -> ComplianceChecks:
+    """Check a gear.
+
+    Parameters
+    ----------
+    gear : CondensedGear
+        Solved for the probe loads `loads` (nf, 2), `probe_loads`.
+    lever : float
+        Moment about the axis per unit force along the involute's inward normal, r_b cos(beta_b), m.
+    bore_radius : float
+        m.
+    """
+    load = loads[:, :1]
+    values = np.concatenate([gear.flank(0, loads)[:, :1], gear.cuts(0)[:, :1]])
+    field = gear.condensation.expand(values)[:, 0]
+    forces = element_forces(gear.sector, gear.stiffness, field)
+    moved = [
+        float(np.sum(gear.cuts(j)[:, 0] * gear.cut_forces(j)[:, 0])) for j in range(1, len(gear.ring.left))
+    ]
+    restraining = gear.ring.restraining
+    moved.append(float(np.sum(gear.ring.left[:, :, 0] @ restraining[:, 0])))
+    inside = float(np.sum(field[gear.sector.element_freedoms] * forces * (gear.sector.element_freedoms >= 0)))
+    works = [inside + sum(moved), float(load[:, 0] @ values[: len(load), 0])]
+    works.append(float(load[:, 0] @ gear.ring.blocks[0] @ load[:, 0]))
+    moment = bore_moment(gear, loads, bore_radius)
+    left = left_by_rounding(_stiffness_alone(gear.sector, gear.stiffness), field, load, works[0])
+    return ComplianceChecks(
+        residual=residual(gear, forces, load[:, 0]),
+        reciprocity=reciprocity(gear, loads),
+        bore_moment=abs(moment / (lever * float(load.sum())) - 1.0),
+        energy=float(np.ptp(works) / works[0]),
+        least_eigenvalue=least_eigenvalue(gear.ring.blocks[0]),
+        residual_rounding=left[0],
+        energy_rounding=left[1],
+    )
+
+
+def _stiffness_alone(sector: SweptSector, stiffness: ElementStiffness) -> FloatArray:
+    """Return the stiffness (n,) of each freedom with all others held: the diagonal, N/m."""
+    free = sector.element_freedoms >= 0
+    diagonals = np.einsum("mii->mi", stiffness.matrices)[stiffness.of_element]
+    added = np.bincount(sector.element_freedoms[free], diagonals[free], minlength=sector.size)
+    return added.astype(float)
+
+
+def element_forces(sector: SweptSector, stiffness: ElementStiffness, field: FloatArray) -> FloatArray:
+    """Return the nodal forces (e, 60) of all elements under the displacement `field` (n,)."""
+    local = np.where(sector.element_freedoms >= 0, field[sector.element_freedoms], 0.0)
+    forces = np.empty_like(local)
+    for batch in sector.batches:
+        first = stiffness.of_element[batch.elements[0, 0]]
+        matrices = stiffness.matrices[first : first + len(batch.quads)]
+        forces[batch.elements] = np.einsum("mij,cmj->cmi", matrices, local[batch.elements])
+    return forces
+
+
+def residual(gear: CondensedGear, forces: FloatArray, load: FloatArray) -> float:
+    """Return the norm of f - K u over that of f, on all free freedoms of the loaded sector with both cuts.
+
+    `forces` (e, 60) are those of its elements. The neighbors act on the cuts by their condensed stiffness.
+    """
+    sector = gear.sector
+    free = sector.element_freedoms >= 0
+    inside = np.bincount(sector.element_freedoms[free], forces[free], minlength=sector.size)
+    out: FloatArray = -inside.astype(float)
+    out[sector.loaded] += load
+    size = gear.held.cut_size
+    out[sector.left] -= gear.cut_forces(1)[size:, 0]
+    out[sector.right] -= gear.cut_forces(-1)[:size, 0]
+    for cut in (sector.left, sector.right):
+        out[cut] -= gear.ring.restraining[:, 0]
+    return float(np.linalg.norm(out) / np.linalg.norm(load))
+
+
+def bore_moment(gear: CondensedGear, loads: FloatArray, bore_radius: float) -> float:
+    """Return the moment about the axis that the bore takes up under the first probe load, N m.
+
+    The load is along the outward normal of the right flank, which turns the gear clockwise; so the reactions
+    turn it counter-clockwise, positive. The sum over all sectors is the field of harmonic 0. What a key will
+    take up is here taken by the restraint of the ring.
+    """
+    if gear.ring.restraint:
+        return -len(gear.ring.left) * float(gear.ring.turn @ gear.ring.restraining[:, 0])
+    cuts = np.tile(gear.ring.left.sum(axis=0), (2, 1))[:, :1]
+    flank = gear.held.flank @ loads[:, :1] + gear.held.transmitted.T @ cuts
+    field = gear.condensation.expand(np.concatenate([flank, cuts]))[:, 0]
+    forces = element_forces(gear.sector, gear.stiffness, field).reshape(-1, 20, 3)
+    nodes = gear.sector.nodes[:, gear.sector.grid.bore]
+    on_bore = np.isin(gear.sector.elements, nodes[nodes >= 0])
+    on_bore[gear.sector.bodies :] = False  # an elastic seat takes up what the bodies pass to it
+    return bore_radius * float(forces[on_bore][:, 1].sum())
+
+
+def reciprocity(gear: CondensedGear, loads: FloatArray) -> float:
+    """Return how far the work of one probe load on the other's displacement, tooth to tooth, is not mutual.
+
+    Also the asymmetry of S_0 over its largest entry.
+    """
+    reach = len(gear.ring.blocks) - 1
+    works = {m: loads.T @ gear.flank(m, loads) for m in range(-reach, reach + 1)}
+    scale = float(np.abs(works[0]).max())
+    mutual = max(float(np.abs(works[m] - works[-m].T).max()) for m in range(reach + 1)) / scale
+    own = gear.ring.blocks[0]
+    return max(mutual, float(np.abs(own - own.T).max() / np.abs(own).max()))
+
+
+def least_eigenvalue(matrix: FloatArray) -> float:
+    """Return the least eigenvalue of a symmetric matrix by inverse iteration, minus its norm if none."""
+    try:
+        factor = cho_factor(matrix, lower=True)
+    except np.linalg.LinAlgError:
+        return -float(np.linalg.norm(matrix))
+    vector = np.cos(np.arange(len(matrix), dtype=float))  # of no particular shape, and the same every time
+    value = np.inf
+    for _ in range(INVERSE_ITERATIONS):
+        vector /= np.linalg.norm(vector)
+        vector = cho_solve(factor, vector)
+        last, value = value, 1.0 / float(np.linalg.norm(vector))
+        if abs(last - value) <= 1e-3 * value:
+            break
+    return value
 
 
 def condensed_gear(

@@ -21,11 +21,8 @@ from fe_contact.compliance.cache import (
     read_compliance,
     write_compliance,
 )
-from fe_contact.compliance.elimination_tree import EliminationTree
-from fe_contact.compliance.flank import refuse_broken_laws
-from fe_contact.compliance.flank_3d import FlankCompliance3D
-from fe_contact.compliance.sector_tree import sector_tree
-from fe_contact.compliance.usual_reach import usual_reach
+from fe_contact.compliance.elimination_tree import EliminationTree, sector_tree
+from fe_contact.compliance.flank import FlankCompliance3D, refuse_broken_laws
 from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.mesh.quad_sector import quad_sector, sector_outline
 from fe_contact.mesh.recipe import SectorRecipe
@@ -35,6 +32,19 @@ from fe_contact.stage_clock import StageClock
 from fe_contact.types import Json
 from model_studies.host_speed import kept_speed
 from model_studies.progress import Report, by_cost, unreported
+
+# The distance of teeth whose flanks can carry load at once.
+
+
+def usual_reach(gear: Toothing) -> int:
+    """Return the largest distance of two teeth that can carry load at once.
+
+    That is the length of the involute and the lead of the helix over the face, in base pitches.
+    """
+    across = abs(math.tan(gear.base_helix_angle)) * gear.face_width
+    length = abs(gear.tip_roll_length - gear.form_roll_length) + across
+    return min(max(1, math.ceil(length / gear.base_pitch)), gear.teeth // 2)
+
 
 # Prediction of the cost of a three-dimensional flank compliance.
 
@@ -283,8 +293,7 @@ def compute_flank_compliance_3d(
 ) -> FlankCompliance3D:
     """Mesh, condense, close the ring and check; no cache. `report` is called with the fraction done."""
     # A cached result needs neither skfem nor numba.
-    from fe_contact.compliance.checks_3d import gear_checks  # noqa: PLC0415
-    from fe_contact.compliance.condensed_gear import condensed_gear  # noqa: PLC0415
+    from fe_contact.compliance.condensed_gear import condensed_gear, gear_checks  # noqa: PLC0415
     from fe_contact.compliance.keyed_bore import key_update  # noqa: PLC0415
     from fe_contact.compliance.sector_stiffness import twist  # noqa: PLC0415
 

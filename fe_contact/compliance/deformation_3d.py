@@ -12,18 +12,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.compliance.checks_3d import CondensedGear, element_forces
-from fe_contact.compliance.condensed_gear import condensed_gear
+from fe_contact.compliance.condensed_gear import CondensedGear, condensed_gear, element_forces
 from fe_contact.compliance.deformed_gear import DeformedGear, nodal_mean, stress_of, turn_about_axis
-from fe_contact.compliance.hanging_nodes import coarse_face
-from fe_contact.compliance.hexahedron import (
+from fe_contact.compliance.sector_stiffness import (
     REFERENCE,
     SECTION,
+    coarse_face,
     cylindrical_frames,
+    flank_frames,
     gradients_at,
+    lame_parameters,
     layer_nodes,
+    twist,
 )
-from fe_contact.compliance.sector_stiffness import flank_frames, lame_parameters, twist
 from fe_contact.errors import InputError
 from fe_contact.geometry import Toothing
 from fe_contact.mesh.quad_sector import QuadSector, quad_sector

@@ -1,8 +1,4 @@
-"""Nested bisection of a structured mesh: in which order freedoms are eliminated, and what that costs.
-
-The symbolic half of the substructuring; it needs the topology only. A *front* gathers the freedoms of a group
-of elements; those that no other element has are eliminated, the others go up to the group it is half of.
-"""
+"""The elimination of a body by nested dissection, and that of a swept tooth sector."""
 
 from __future__ import annotations
 
@@ -11,7 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fe_contact.mesh.swept_sector import SweptSector
 from fe_contact.types import BoolArray, FloatArray, IntArray
+
+# Nested bisection of a structured mesh: in which order freedoms are eliminated, and what that costs.
+
 
 LEAF = 16  # elements gathered in one front: fewer cost more interpreter time, more cost more operations
 OFF_CENTRE = 8.0  # dislike of unequal halves against a short cut
@@ -192,3 +192,11 @@ class _Builder:
         count = int(self._seen[np.unique(theirs[theirs >= 0])].sum())
         self._seen[mine] = False
         return count
+
+
+def sector_tree(sector: SweptSector) -> EliminationTree:
+    """Return the elimination that keeps loaded freedoms, left cut and right cut, in this order."""
+    kept = np.concatenate([sector.loaded, sector.left, sector.right])
+    free = sector.freedoms.max(axis=1) >= 0
+    nodes = np.where(free[sector.elements], sector.elements, -1)
+    return elimination_tree(nodes, sector.element_freedoms, sector.place, kept)

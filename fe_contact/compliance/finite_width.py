@@ -24,8 +24,7 @@ from pathlib import Path
 import numpy as np
 
 from fe_contact.compliance.cyclic_compliance import compliance_key_3d, flank_compliance_3d
-from fe_contact.compliance.flank import FlankCompliance
-from fe_contact.compliance.flank_3d import FlankCompliance3D
+from fe_contact.compliance.flank import FlankCompliance, FlankCompliance3D
 from fe_contact.errors import InputError
 from fe_contact.geometry import Toothing
 from fe_contact.mesh import SectorRecipe

@@ -19,8 +19,8 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_contact.body.bore_seat import Key
-from fe_contact.compliance.checks_3d import CondensedGear
-from fe_contact.compliance.hanging_nodes import face_functions
+from fe_contact.compliance.condensed_gear import CondensedGear
+from fe_contact.compliance.sector_stiffness import face_functions
 from fe_contact.geometry import Toothing
 from fe_contact.mesh.swept_sector import LOWER_FACE, SweptSector, between_ends
 from fe_contact.types import FloatArray, IntArray

@@ -12,17 +12,20 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from fe_contact.compliance.checks_2d import field_under, uniform_pressure
-from fe_contact.compliance.flank_compliance_2d import condensed_ring, tooth_indices
-from fe_contact.compliance.plane import PlaneHypothesis
-from fe_contact.compliance.ring_2d import Ring
+from fe_contact.compliance.flank_compliance_2d import (
+    condensed_ring,
+    field_under,
+    tooth_indices,
+    uniform_pressure,
+)
+from fe_contact.compliance.plane_elasticity import PlaneHypothesis
+from fe_contact.compliance.ring_2d import Ring, freedoms
 from fe_contact.compliance.root_stress import (
     RootStressChecks,
     UnitRootStress,
     refuse_broken_stress,
     relative_difference,
 )
-from fe_contact.compliance.sector_2d import freedoms
 from fe_contact.compliance.solvers import Solver
 from fe_contact.compliance.surface_stress import COMPONENTS, between_nodes, edge_stress, triangle_root
 from fe_contact.geometry import Toothing, tooth_profile

@@ -15,17 +15,21 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.linalg import blas
 
-from fe_contact.compliance.checks_3d import CondensedGear, element_forces, residual
-from fe_contact.compliance.condensed_gear import CondensedTooth, condensed_tooth
+from fe_contact.compliance.condensed_gear import (
+    CondensedGear,
+    CondensedTooth,
+    condensed_tooth,
+    element_forces,
+    residual,
+)
 from fe_contact.compliance.cyclic_ring import LeftCuts, RingSolution, left_cuts, row_space
-from fe_contact.compliance.hexahedron import above, cylindrical_frames
 from fe_contact.compliance.root_stress import (
     RootStressChecks,
     UnitRootStress,
     refuse_broken_stress,
     relative_difference,
 )
-from fe_contact.compliance.sector_stiffness import flank_frames, twist
+from fe_contact.compliance.sector_stiffness import above, cylindrical_frames, flank_frames, twist
 from fe_contact.compliance.substructure import Condensation
 from fe_contact.compliance.surface_stress import (
     ACROSS,

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy.sparse as sp
 
-from fe_contact.compliance.plane import PlaneHypothesis
+from fe_contact.compliance.plane_elasticity import PlaneHypothesis
 from fe_contact.geometry.flank_profile import FlankProfile
 from fe_contact.material import Material
 from fe_contact.mesh.quad_sector import QuadSector

@@ -9,12 +9,11 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from fe_contact.compliance.cache import content_hash, read_compliance, write_compliance
-from fe_contact.compliance.cyclic_compliance import SOLVER, compliance_key_3d
+from fe_contact.compliance.cyclic_compliance import SOLVER, compliance_key_3d, usual_reach
 from fe_contact.compliance.flank_compliance_2d import compliance_key, condensed_teeth
-from fe_contact.compliance.plane import PlaneHypothesis
+from fe_contact.compliance.plane_elasticity import PlaneHypothesis
 from fe_contact.compliance.root_stress import UnitRootStress
 from fe_contact.compliance.solvers import Solver, SuperLuMetis
-from fe_contact.compliance.usual_reach import usual_reach
 from fe_contact.geometry import Toothing
 from fe_contact.geometry.seated_gear import refuse_key
 from fe_contact.mesh import MeshRecipe, SectorRecipe

@@ -1,25 +1,18 @@
 """Loaded contact: which teeth touch, what each carries, how far the driven gear lags."""
 
 import host.analysis  # noqa: F401 (says what to install)
-from fe_contact.contact.added_compliance import with_compliances
-from fe_contact.contact.adjoint import Adjoint, adjoint, force_changes
-from fe_contact.contact.assembly import contact_problem
+from fe_contact.contact.adjoint import Adjoint, CarryingStrips, adjoint, force_changes
+from fe_contact.contact.assembly import contact_problem, face_contact_problem, in_pitches, with_compliances
 from fe_contact.contact.candidates import (
     PatchRule,
     contact_candidates,
     teeth_in_reach,
     with_gaps,
 )
-from fe_contact.contact.carrying_strips import CarryingStrips
-from fe_contact.contact.face_assembly import face_contact_problem
-from fe_contact.contact.flank_forces import face_flank_forces, plane_flank_forces
+from fe_contact.contact.flank_forces import at_edges, contact_pressure, face_flank_forces, plane_flank_forces
 from fe_contact.contact.model import Break, ComplianceTerm, ContactModel, GapTerm, ToothGap
-from fe_contact.contact.pitches import in_pitches
-from fe_contact.contact.pressure import at_edges, contact_pressure
-from fe_contact.contact.problem import Candidates, ContactProblem, LoadedSlices
-from fe_contact.contact.slices import Slices
-from fe_contact.contact.solution import ContactSolution
-from fe_contact.contact.sweep import Start, solve_contact
+from fe_contact.contact.problem import Candidates, ContactProblem, LoadedSlices, Slices
+from fe_contact.contact.sweep import ContactSolution, Start, solve_contact
 from fe_contact.contact.touch import flank_coordinate
 
 __all__ = [

@@ -1,42 +1,36 @@
-"""Derivatives of the transmission error from the solved contact, by its adjoint.
-
-Let every contact q be moved apart by a little: dg_q (m,) in m. With the notation of `newton`, forces and
-deflection answer by
-
-    dh = N'dF,    dF = D (m dd - dg - N K dh),    n'dF = 0,
-
-so that dd = sum_q w_q dg_q with the weights
-
-    w = D (n - N K u) t,    (1 + N'DN K) u = N'D n,    t = 1/(n - N K u)'D m the tangent dSTE/dload:
-
-one more right-hand side of Newton's matrix gives the derivatives by everything that moves flanks apart. The
-local approach of a contact is stationary in its strip, so that a change of the flanks counts by its mean over
-the strip (docs/theory/contact.md, "Derivatives").
-"""
+"""Derivatives of the contact: the adjoint, the strips that carry, and changes of the flanks under them."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
 
-from fe_contact.contact.elimination import dot, eliminate
 from fe_contact.contact.local_law import approach, carrying_strip
+from fe_contact.contact.model import Break, GapTerm
 from fe_contact.contact.newton import NewtonSystem, empty_system, newton_system
 from fe_contact.contact.point_problem import (
     PointProblem,
     PointProblems,
     State,
+    dot,
+    eliminate,
     motion_at,
     move,
     point_problems,
     press,
     problem_at,
 )
-from fe_contact.contact.problem import ContactProblem
-from fe_contact.contact.solution import ContactSolution
-from fe_contact.types import FloatArray, Status
+from fe_contact.contact.problem import Candidates, ContactProblem
+from fe_contact.contact.strip import past_break
+from fe_contact.contact.sweep import ContactSolution
+from fe_contact.contact.touch import rolls_at
+from fe_contact.geometry import ParallelAxes
+from fe_contact.types import FloatArray, IntArray, Status
+
+# Derivatives of the transmission error from the solved contact, by its adjoint.
 
 
 @dataclass(frozen=True)
@@ -175,3 +169,177 @@ def _answers(problem: PointProblem, force: FloatArray, opened: FloatArray) -> Fl
         lag = dot(problem.torque_arm, followed[a + 1], m) / stiff
         answers[a] = lag * followed[0] - followed[a + 1]
     return answers
+
+
+_NODE = math.sqrt(0.75)
+"""Outer ones of three samples in parts of half a strip, the third in its middle."""
+_POINTS = 8
+"""Of a strip at which a change is spread over the flank."""
+
+
+@dataclass(frozen=True)
+class CarryingStrips:
+    """The k strips that carry, of all positions, loads and candidates.
+
+    Attributes
+    ----------
+    pair : GearPair or InternalGearPair
+    shape : (int, int, int)
+        Numbers of positions, loads and candidates.
+    index : ndarray of int, shape (k,)
+        Of each among all of these, flattened.
+    s_1, s_2 : ndarray, shape (k,)
+        Flank coordinates of the touching points, m.
+    face : ndarray, shape (k,)
+        Distance from the pinion's mid-face, m.
+    middle, half : ndarray, shape (k,)
+        Of the strip from the touching point on, m.
+    arm, normal : ndarray, shape (k,), and float
+        Normal approach taken away per gap opened on the line of action: at the touching point, and by what
+        is removed over the strip beyond that.
+    weight : ndarray, shape (k,)
+        dSTE per normal approach taken away.
+    """
+
+    pair: ParallelAxes
+    shape: tuple[int, int, int]
+    index: IntArray
+    s_1: FloatArray
+    s_2: FloatArray
+    face: FloatArray
+    middle: FloatArray
+    half: FloatArray
+    arm: FloatArray
+    normal: float
+    weight: FloatArray
+
+    @classmethod
+    def of(cls, pair: ParallelAxes, candidates: Candidates, adjoint: Adjoint) -> CarryingStrips:
+        """Gather them from a solution of these candidates."""
+        at = np.nonzero(adjoint.weight)
+        strips = adjoint.middle[at], adjoint.half[at], adjoint.weight[at]
+        return cls.at(pair, candidates, adjoint.weight.shape[1], at, *strips)
+
+    @classmethod
+    def at(
+        cls,
+        pair: ParallelAxes,
+        candidates: Candidates,
+        loads: int,
+        at: tuple[IntArray, ...],
+        middle: FloatArray,
+        half: FloatArray,
+        weight: FloatArray,
+    ) -> CarryingStrips:
+        """Take k strips at the positions, loads and candidates `at`, of so many loads."""
+        p, _, m = at
+        touch, shape = candidates.touch, (candidates.position.size, loads, candidates.pair.size)
+        return cls(
+            pair,
+            shape,
+            np.ravel_multi_index(at, shape),
+            touch.s_1[p, m],
+            touch.s_2[p, m],
+            candidates.face_position[m],
+            middle,
+            half,
+            candidates.motion_arm[p, m],
+            math.cos(candidates.base_helix_angle),
+            weight,
+        )
+
+    @property
+    def row(self) -> IntArray:
+        """Position and load of each strip, flattened."""
+        return self.index // self.shape[2]
+
+    def opened(self, gap: GapTerm) -> FloatArray:
+        """Return the normal approach (k,) in m that a small gap between the flanks takes away.
+
+        Linear in the gap. Between its breaks the gap counts as a parabola over each strip.
+        """
+        there, mean = self._removed(gap)
+        return np.asarray(self.arm * there + self.normal * (mean - there))
+
+    def change(self, opened: FloatArray) -> FloatArray:
+        """Return what normal approach taken away (k,) in m adds to the transmission error, (P, L) in m."""
+        rows = self.shape[:2]
+        return np.asarray(np.bincount(self.row, self.weight * opened, math.prod(rows)).reshape(rows))
+
+    def _removed(self, gap: GapTerm) -> tuple[FloatArray, FloatArray]:
+        """Return the gap at the touching points and its mean over the strips (k,), m."""
+        if not gap.along_profile:
+            steady = np.asarray(gap(self.pair, *rolls_at(self.pair, self.s_1, self.s_2), self.face))
+            return steady, steady
+        x = self.middle + _NODE * self.half * np.array([[-1.0], [0.0], [1.0]])
+        breaks = [(each, each.distance(self.s_1, self.s_2)) for each in gap.breaks(self.pair, self.face)]
+        smooth = gap(self.pair, *rolls_at(self.pair, self.s_1 + x, self.s_2 - x), self.face)
+        smooth = smooth - sum(each.height(x - distance) for each, distance in breaks)
+        slope = (smooth[2] - smooth[0]) / (2.0 * _NODE)
+        bend = (smooth[2] - 2.0 * smooth[1] + smooth[0]) / _NODE**2
+        back = -self.middle / self.half
+        there = smooth[1] + back * (slope + 0.5 * back * bend)
+        mean = smooth[1] + 0.25 * bend
+        there = there + sum(each.height(-distance) for each, distance in breaks)
+        mean = mean + sum(self._mean_height(each, distance) for each, distance in breaks)
+        return there, mean
+
+    def _mean_height(self, each: Break, distance: FloatArray) -> FloatArray:
+        """Return what a break removes on the mean over the strips (k,), m; `distance` from touch."""
+        beyond = each.side * (distance - self.middle)  # from the middle to the break
+        jump, bend = (np.broadcast_to(value, beyond.shape) for value in (each.jump, each.bend))
+        return _mean_past_break(beyond, self.half, jump, bend)
+
+    def on_flank(
+        self, gear: int, roll_length: FloatArray, face_position: FloatArray, rows: FloatArray
+    ) -> FloatArray:
+        """Return what material removed at each node of a grid on a flank does, bilinear between nodes.
+
+        Parameters
+        ----------
+        gear : int
+            0 is the pinion, 1 the wheel.
+        roll_length, face_position : ndarray, shapes (R,), (Z,)
+            Increasing, m; face positions count from the gear's own mid-face. What is beyond the outer nodes
+            counts to them.
+        rows : ndarray, shape (Q, P, L)
+            Quantities as sums over positions and loads of the transmission error.
+
+        Returns
+        -------
+        ndarray, shape (Q, R, Z)
+            Change of each quantity per m removed at a node.
+        """
+        angle = np.pi * ((np.arange(_POINTS) + 0.5) / _POINTS - 0.5)
+        x = self.middle + self.half * np.sin(angle)[:, None]
+        value = np.broadcast_to(self.weight * self.arm / _POINTS, x.shape)
+        by_node = np.zeros((len(rows), roll_length.size, face_position.size))
+        roll = rolls_at(self.pair, self.s_1 + x, self.s_2 - x)[gear]
+        along = np.broadcast_to(self.face - gear * self.pair.axial_offset, x.shape)
+        (i, part), (j, other) = _between(roll_length, roll), _between(face_position, along)
+        weight = rows.reshape(len(rows), -1)[:, self.row]
+        for a, in_roll in ((0, 1.0 - part), (1, part)):
+            for b, in_face in ((0, 1.0 - other), (1, other)):
+                node = (i + a) * face_position.size + j + b
+                part_of_node = value * in_roll * in_face
+                for k, each in enumerate(weight):
+                    spread = np.bincount(node.ravel(), (each * part_of_node).ravel(), by_node[k].size)
+                    by_node[k] += spread.reshape(by_node[k].shape)
+        return by_node
+
+
+@njit(cache=True, error_model="numpy")
+def _mean_past_break(beyond: FloatArray, half: FloatArray, jump: FloatArray, bend: FloatArray) -> FloatArray:
+    """Return the means over strips (k,) of jump d + bend d^2/2 past a break, m."""
+    means = np.zeros(beyond.size)
+    for i in range(beyond.size):
+        if beyond[i] < half[i]:
+            _, _, ramp, _, square = past_break(beyond[i], half[i])
+            means[i] = (jump[i] * ramp + 0.5 * bend[i] * square) / math.pi
+    return means
+
+
+def _between(nodes: FloatArray, at: FloatArray) -> tuple[IntArray, FloatArray]:
+    """Return the interval of each place, and the part of it that lies before; outside: at an end."""
+    i = np.clip(np.searchsorted(nodes, at, side="right") - 1, 0, nodes.size - 2)
+    return i, np.clip((at - nodes[i]) / (nodes[i + 1] - nodes[i]), 0.0, 1.0)

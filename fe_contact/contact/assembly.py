@@ -1,16 +1,178 @@
-"""Compliance between the loaded slices: C_ij = b_i' S_1 b_j + b_i' S_2 b_j."""
+"""Contact problems put together: plane, over the face, with what carries the gears, in several pitches."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
-from fe_contact.compliance import FlankCompliance
-from fe_contact.contact.patch import load_vector
+from fe_contact.compliance import FlankCompliance, FlankCompliance3D
+from fe_contact.contact.face_patch import FaceGrid, FaceLoads, add_compliance, face_loads
+from fe_contact.contact.model import ContactModel
+from fe_contact.contact.patch import Patches, load_vector
 from fe_contact.contact.problem import Candidates, ContactProblem
+from fe_contact.contact.touch import Touch, rolls_at
+from fe_contact.geometry import ParallelAxes
 from fe_contact.types import BoolArray, FloatArray, IntArray
+
+# The same positions in several base pitches: other teeth, hence other gaps, but the same compliance.
+
+
+def in_pitches(problem: ContactProblem, model: ContactModel, pitch: IntArray) -> ContactProblem:
+    """Put the positions of a problem into whole base pitches, and add the gaps of the teeth that meet there.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+        P positions in [0, 1), with all other gaps in it.
+    model : ContactModel
+        Its `tooth_gaps` are added.
+    pitch : ndarray of int, shape (R,)
+        Whole base pitches, R a multiple of P: row r is position r modulo P in this pitch.
+
+    Returns
+    -------
+    ContactProblem
+        R positions; its compliance stays that of the P positions.
+
+    Notes
+    -----
+    Pair j of pitch m is the pair of teeth that meets (m - j)-th: one pitch later each pair has moved on to
+    the place of the next one. The touching points stay those of perfect pitches: micrometers of rolling are
+    nothing to the curvatures there.
+    """
+    candidates = problem.candidates
+    times = pitch.size // candidates.position.size
+    touch = _repeated(candidates.touch, times)
+    if model.tooth_gaps:
+        meeting = pitch[:, None] - candidates.pair
+        touch = replace(touch, gap=touch.gap + sum(term(meeting) for term in model.tooth_gaps))
+    moved = replace(
+        candidates,
+        position=np.tile(candidates.position, times) + pitch,
+        touch=touch,
+        width=np.concatenate([candidates.width] * times),
+    )
+    return problem.touching(moved)
+
+
+def _repeated(touch: Touch, times: int) -> Touch:
+    """Write arrays (P, m) or (P, m, B) out so many times, one below the other."""
+    tiled: dict[str, FloatArray] = {
+        name: np.concatenate([values] * times) for name, values in vars(touch).items()
+    }
+    return Touch(**tiled)
+
+
+# Compliance of what carries the gears, added to that of the teeth and bodies.
+
+
+def with_compliances(pair: ParallelAxes, problem: ContactProblem, model: ContactModel) -> ContactProblem:
+    """Add the compliance terms of the model, at the touching points of plain involutes.
+
+    They couple all slices of all pairs, whether or not the teeth themselves are coupled. Without terms
+    the problem is returned as it is.
+    """
+    if not model.compliances:
+        return problem
+    slices = problem.candidates.slices
+    touch, face = slices.touch, slices.face_position
+    roll_1, roll_2 = rolls_at(pair, touch.s_1, touch.s_2)
+    added = sum(term(pair, roll_1, roll_2, face) for term in model.compliances)
+    return replace(problem, compliance=problem.compliance + added)
+
+
+# Compliance between the contact candidates of gears of finite width.
+
+
+def face_contact_problem(
+    candidates: Candidates,
+    compliances: tuple[FlankCompliance3D, FlankCompliance3D],
+    axial_offset: float = 0.0,
+    couple_teeth: bool = True,
+) -> ContactProblem:
+    """Assemble the compliance between slices from condensed flanks; pairs, teeth as in `contact_problem`.
+
+    Parameters
+    ----------
+    candidates : Candidates
+        Pressing on n slices of the tooth pairs.
+    compliances : (FlankCompliance3D, FlankCompliance3D)
+        Driving and driven gear.
+    axial_offset : float
+        Distance of the driven gear's mid-face from the driving gear's, m.
+    couple_teeth : bool
+        False drops what the load on one tooth moves on another.
+    """
+    slices = candidates.slices
+    compliance = np.zeros((*slices.present.shape, slices.pair.size))
+    touch, face = slices.touch, slices.face_position
+    sides = (
+        (slices.patch_1, touch.lever_1, -slices.pair, face),
+        (slices.patch_2, touch.lever_2, slices.pair, face - axial_offset),
+    )
+    for flank, (patches, lever, teeth, along) in zip(compliances, sides, strict=True):
+        reach = flank.blocks if couple_teeth else flank.blocks[:1]
+        grid = FaceGrid(flank.s, flank.z, flank.index)
+        low, high = along - 0.5 * slices.slice_width, along + 0.5 * slices.slice_width
+        bounds = (np.maximum(low, flank.z[0]), np.minimum(high, flank.z[-1]))
+        key = KeyedFlanks(flank.key_rows, flank.key_core, couple_teeth)
+        _face_assembly_add_gear(grid, reach, key, patches, lever, teeth, bounds, slices.present, compliance)
+    first, second = (flank.contact_modulus for flank in compliances)
+    contact_modulus = 1.0 / (1.0 / first + 1.0 / second)
+    return ContactProblem(
+        candidates, compliance, contact_modulus, 2.0 / (math.pi * first), 2.0 / (math.pi * second)
+    )
+
+
+class KeyedFlanks(NamedTuple):
+    """Contribution of a keyed bore: rows (2 s + 1, q, f) by tooth from -s to s, core (q, q)."""
+
+    rows: FloatArray
+    core: FloatArray
+    couple_teeth: bool
+
+    def compliance(self, tooth: IntArray, loads: FaceLoads) -> FloatArray:
+        """Return what is added between patches (n, n) on the teeth (n,)."""
+        rows = self.rows[tooth + len(self.rows) // 2]
+        moved = np.empty((len(tooth), rows.shape[1]))
+        for i, (row, nodes, forces, used) in enumerate(
+            zip(rows, loads.nodes, loads.forces, loads.used, strict=True)
+        ):
+            moved[i] = row[:, nodes[:used]] @ forces[:used]
+        added = moved @ self.core @ moved.T
+        return added if self.couple_teeth else np.where(tooth[:, None] == tooth, added, 0.0)
+
+
+def _face_assembly_add_gear(
+    grid: FaceGrid,
+    blocks: FloatArray,
+    key: KeyedFlanks,
+    patches: Patches,
+    lever: FloatArray,
+    teeth: IntArray,
+    bounds: tuple[FloatArray, FloatArray],
+    present: BoolArray,
+    out: FloatArray,
+) -> None:
+    """Add the compliance of one gear at every position."""
+    low, high = bounds
+    for p in range(len(present)):
+        here = np.flatnonzero(present[p])
+        loads = face_loads(
+            grid,
+            *patches.by_slice(p, here),
+            low[here],
+            high[here],
+        )
+        local = np.zeros((here.size, here.size))
+        add_compliance(blocks, teeth[here], loads, lever[p, here], local)
+        if len(key.rows):
+            local += key.compliance(teeth[here], loads) * np.outer(lever[p, here], lever[p, here])
+        out[p][np.ix_(here, here)] += local
 
 
 def contact_problem(

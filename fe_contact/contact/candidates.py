@@ -9,8 +9,7 @@ import numpy as np
 
 from fe_contact.contact.model import ContactModel
 from fe_contact.contact.patch import Patches, tip_patches
-from fe_contact.contact.problem import Candidates, LoadedSlices
-from fe_contact.contact.slices import Slices
+from fe_contact.contact.problem import Candidates, LoadedSlices, Slices
 from fe_contact.contact.touch import Touch, conjugate_touch, flank_coordinate, modified_touch
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.hertz import wedge_softness

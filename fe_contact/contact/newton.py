@@ -24,9 +24,18 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from fe_contact.contact.elimination import dot, eliminate
 from fe_contact.contact.local_law import approach
-from fe_contact.contact.point_problem import PointProblem, State, evaluate, motion_at, move, press, stiffness
+from fe_contact.contact.point_problem import (
+    PointProblem,
+    State,
+    dot,
+    eliminate,
+    evaluate,
+    motion_at,
+    move,
+    press,
+    stiffness,
+)
 from fe_contact.types import FloatArray, IntArray
 
 CONVERGED, ITERATION_LIMIT, SINGULAR, OUT_OF_MODEL = 0, 1, 2, 3

@@ -6,11 +6,88 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from fe_contact.contact.patch import Patches
 from fe_contact.contact.strip import Gap
 from fe_contact.contact.touch import Touch
+from fe_contact.geometry import ParallelAxes
 from fe_contact.types import BoolArray, FloatArray, IntArray
+
+# Slices of the common face width, and the points of the contact line within them.
+
+
+POINTS = 6
+"""Points of a slice: ten change the ripple of helical pairs by 1 to 2 nm at most."""
+
+
+@dataclass(frozen=True)
+class Slices:
+    """Slices of equal width over the common face width.
+
+    Attributes
+    ----------
+    center : ndarray, shape (K,)
+        Distance of the middle of each slice from the pinion's mid-face, m.
+    width : float
+        Along the face, m.
+    points : int
+        Of the contact line in each slice.
+    """
+
+    center: FloatArray
+    width: float
+    points: int = 1
+
+    @classmethod
+    def of_pair(cls, pair: ParallelAxes, count: int, points: int | None = None) -> Slices:
+        """Divide the common face width of `pair` into `count` slices; one slice is the plane model."""
+        width = pair.face_width / count
+        center = pair.common_face_center + (np.arange(count) - 0.5 * (count - 1)) * width
+        return cls(np.asarray(center, dtype=float), width, points or (1 if count == 1 else POINTS))
+
+    @property
+    def point_width(self) -> float:
+        """Part of the face that a point stands for, m."""
+        return self.width / self.points
+
+    @property
+    def point_center(self) -> FloatArray:
+        """Distance of the points (K Q,) from the pinion's mid-face, m."""
+        within = (np.arange(self.points) - 0.5 * (self.points - 1)) * self.point_width
+        return np.asarray((self.center[:, None] + within).ravel())
+
+    @property
+    def blend(self) -> FloatArray:
+        """Contribution of the mean motions of the slices at each point, (K Q, K).
+
+        The derivative of the cubic spline through the sums of the slices before each: smooth over the face,
+        with the means of the slices as they are.
+        """
+        count = self.center.size
+        ends = np.arange(count + 1.0)
+        sums = np.tril(np.ones((count + 1, count)), -1)
+        at = (self.point_center - self.center[0]) / self.width + 0.5
+        return np.asarray(CubicSpline(ends, sums)(at, 1))
+
+
+# Condition of the compliance between the candidates.
+
+
+def condition_numbers(compliance: FloatArray) -> FloatArray:
+    """Return the condition numbers (Q,) of compliances (Q, n, n), infinite where one is not definite.
+
+    Candidates that do not exist at a position have no compliance there and are left out.
+    """
+    real = np.einsum("qii->qi", compliance) != 0.0
+    number = np.full(len(compliance), np.inf)
+    for members in {mask.tobytes(): mask for mask in real}.values():
+        alike = np.flatnonzero((real == members).all(axis=1))
+        columns = np.flatnonzero(members)
+        eigenvalues = np.linalg.eigvalsh(compliance[np.ix_(alike, columns, columns)])
+        least, largest = eigenvalues[:, 0], eigenvalues[:, -1]
+        number[alike] = np.divide(largest, least, out=number[alike], where=least > 0.0)
+    return number
 
 
 @dataclass(frozen=True)
@@ -104,7 +181,7 @@ class Candidates:
     slices : LoadedSlices
         On which they press, at Q positions: position p at row p modulo Q.
     blend : ndarray, shape (points of a pair, slices of a pair)
-        Parts of the force of each point on the slices of its pair; see `fe_contact.contact.slices`.
+        Parts of the force of each point on the slices of its pair; see `fe_contact.contact.problem`.
     """
 
     position: FloatArray

@@ -12,7 +12,7 @@ from fe_contact.full_contact.loaded_position import (
     version_of,
 )
 from fe_contact.full_contact.over_face import solve_full_contact_over_face
-from fe_contact.full_contact.point import FullContactPoint
+from fe_contact.full_contact.table import FullContactPoint
 from fe_contact.full_contact.validity import refusal, refusal_over_face
 
 __all__ = [

@@ -12,11 +12,10 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from fe_contact.full_contact.condensation.placed_mesh import placed_bodies
-from fe_contact.full_contact.condensation.resolution import Resolution
-from fe_contact.full_contact.condensation.sites import Range, contact_sites
+from fe_contact.full_contact.condensation.sites import Range, Resolution, contact_sites
 from fe_contact.full_contact.input_deck import HELD, MM, TURNING, Loading, input_deck, numbered_bodies
 from fe_contact.full_contact.placed_pair import PlacedPair, no_load_gap, placed_pair
-from fe_contact.full_contact.point import FullContactPoint
+from fe_contact.full_contact.table import FullContactPoint
 from fe_contact.geometry import ParallelAxes
 from fe_contact.hertz import contact_modulus, peak_pressure
 from fe_contact.types import FloatArray, IntArray, Status

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_contact.full_contact.condensation.modified_flank import removed_at_roll
 from fe_contact.full_contact.condensation.placed_mesh import PlacedBody
+from fe_contact.full_contact.condensation.sites import removed_at_roll
 from fe_contact.geometry import ParallelAxes
 from fe_contact.mesh.quadratic import SIDES, rotated
 from fe_contact.types import IntArray

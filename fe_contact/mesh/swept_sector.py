@@ -126,7 +126,7 @@ def _broken(width: float, usual: float, group: int, growth: float, breaks: Seque
     return Layers(np.concatenate(ends), kind, np.concatenate(thickness)[first])
 
 
-# 20-node hexahedra stacked across the face on the quadrilaterals of a section, by equal matrices.
+# 20-node hexahedra _stacked across the face on the quadrilaterals of a section, by equal matrices.
 
 
 # Nodes of an element that lie above the side 0-1 of its quadrilateral, towards the bore.
@@ -162,7 +162,7 @@ Stack = tuple[tuple[Batch, ...], IntArray, FloatArray]
 """Elements by equal matrices; their nodes (e, 20); column, row and layer of each, (e, 3)."""
 
 
-def stacked(
+def _stacked(
     grid: SectorGrid,
     layers: Layers,
     nodes: IntArray,
@@ -203,7 +203,7 @@ def stacked(
     return tuple(batches), np.concatenate(elements), np.concatenate(position)
 
 
-def with_seat(
+def _with_seat(
     grid: SectorGrid, layers: Layers, bodies: Stack, ends: tuple[float, float], elastic: bool
 ) -> Stack:
     """Add the elements of a seat between axial positions `ends` in m: the nodes of the bodies above them."""
@@ -372,8 +372,8 @@ def swept_sector(
     extent = _extents(grid, layers, web)
     exists = _existing(grid, node_level, extent, planes)
     nodes = np.where(exists, np.cumsum(exists).reshape(exists.shape) - 1, -1)
-    batches, elements, position = stacked(grid, layers, nodes, level, node_level, extent)
-    batches, elements, position = with_seat(
+    batches, elements, position = _stacked(grid, layers, nodes, level, node_level, extent)
+    batches, elements, position = _with_seat(
         grid, layers, (batches, elements, position), support.seat.ends(face_width), support.seat.elastic
     )
     held = support.held(grid, between_ends(layers.ends))

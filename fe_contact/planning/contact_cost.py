@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from fe_contact.contact import ContactModel
-from fe_contact.contact.slices import POINTS
+from fe_contact.contact.problem import POINTS
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.discretization import FaceDiscretization
 from fe_contact.planning.plan import Plan

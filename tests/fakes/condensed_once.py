@@ -18,8 +18,7 @@ import pytest
 
 from fe_contact.compliance import cyclic_compliance, flank_compliance_2d
 from fe_contact.compliance.cache import read_compliance, write_compliance
-from fe_contact.compliance.flank import FlankCompliance
-from fe_contact.compliance.flank_3d import FlankCompliance3D
+from fe_contact.compliance.flank import FlankCompliance, FlankCompliance3D
 
 FOLDER = "LOA_TEST_CONDENSED_BODIES"
 """Names the folder to a warm process."""

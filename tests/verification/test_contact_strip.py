@@ -11,8 +11,8 @@ import math
 import numpy as np
 import pytest
 
-from fe_contact.contact.least_gap import moved_gap, touching_places
 from fe_contact.contact.strip import Gap, half_strip, strip_load
+from fe_contact.contact.touch import moved_gap, touching_places
 
 MODULUS = 115e9
 RADIUS = 6e-3

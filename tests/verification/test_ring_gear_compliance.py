@@ -10,10 +10,10 @@ import pytest
 import scipy.sparse as sp
 
 from fe_contact.compliance import PlaneHypothesis, SuperLuMetis, flank_compliance, flank_compliance_3d
-from fe_contact.compliance.checks_2d import uniform_pressure
-from fe_contact.compliance.checks_3d import pressure_forces
-from fe_contact.compliance.elasticity_2d import stiffness_matrix
-from fe_contact.compliance.sector_2d import freedoms
+from fe_contact.compliance.condensed_gear import pressure_forces
+from fe_contact.compliance.flank_compliance_2d import uniform_pressure
+from fe_contact.compliance.plane_elasticity import stiffness_matrix
+from fe_contact.compliance.ring_2d import freedoms
 from fe_contact.geometry import RingGear, tooth_profile
 from fe_contact.mesh import MeshRecipe, PlaneStrain, SectorRecipe, mesh_gear
 from fe_contact.mesh.quadratic import rotated

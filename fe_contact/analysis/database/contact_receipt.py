@@ -9,7 +9,7 @@ import numpy as np
 
 from fe_contact.analysis.estimates.error_estimate import worst_residual
 from fe_contact.contact import ContactProblem, ContactSolution
-from fe_contact.contact.condition import condition_numbers
+from fe_contact.contact.problem import condition_numbers
 from fe_contact.types import FloatArray, Json, Status
 
 FEW_ITERATIONS = 40

@@ -25,7 +25,7 @@ from fe_contact.contact import (
     Start,
     solve_contact,
 )
-from fe_contact.contact.condition import condition_numbers
+from fe_contact.contact.problem import condition_numbers
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning import Plan
 from fe_contact.planning.contact_cost import unit_work

@@ -10,7 +10,7 @@ import numpy as np
 from bounds import DEPTHS, Text, at_least, warn_of
 from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.request.request import Checked, Request
-from fe_contact.compliance.rounding import LARGEST_ROUNDING, least_face_width
+from fe_contact.compliance.flank import LARGEST_ROUNDING, least_face_width
 from fe_contact.contact import ContactModel
 from fe_contact.effects import ContactScene, LedgerEntry, compose
 from fe_contact.effects.influence import EstimatedInfluence, estimate_influences

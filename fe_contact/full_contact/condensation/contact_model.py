@@ -12,13 +12,11 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse.linalg import SuperLU, splu
 
 from fe_contact.errors import SolveError
-from fe_contact.full_contact.condensation.active_set import ContactSystem
-from fe_contact.full_contact.condensation.dissection import dissected, mesh_graph
-from fe_contact.full_contact.condensation.flank_curve import FlankCurve
 from fe_contact.full_contact.condensation.linearized_contact import (
     LEAST_FACING,
     Configuration,
     ContactGeometry,
+    ContactSystem,
     LinearizedContact,
     Solution,
     rotation,
@@ -26,8 +24,8 @@ from fe_contact.full_contact.condensation.linearized_contact import (
 )
 from fe_contact.full_contact.condensation.placed_mesh import PlacedBody
 from fe_contact.full_contact.condensation.sites import ContactSite
-from fe_contact.full_contact.condensation.stiffness import plane_strain_stiffness
-from fe_contact.full_contact.condensation.weak_gap import WeakGap, weak_gap
+from fe_contact.full_contact.condensation.stiffness import dissected, mesh_graph, plane_strain_stiffness
+from fe_contact.full_contact.condensation.weak_gap import FlankCurve, WeakGap, weak_gap
 from fe_contact.geometry import ParallelAxes, tooth_profile
 from fe_contact.material import Material
 from fe_contact.types import BoolArray, FloatArray, IntArray

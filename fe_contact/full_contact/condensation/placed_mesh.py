@@ -10,9 +10,13 @@ from itertools import pairwise
 import numpy as np
 
 from fe_contact.flank.involute import involute_normal
-from fe_contact.full_contact.condensation.modified_flank import kinks, modified_flank
-from fe_contact.full_contact.condensation.resolution import Resolution
-from fe_contact.full_contact.condensation.sites import ContactSite, SizedStrip
+from fe_contact.full_contact.condensation.sites import (
+    ContactSite,
+    Resolution,
+    SizedStrip,
+    kinks,
+    modified_flank,
+)
 from fe_contact.geometry import ParallelAxes, Toothing, tooth_profile
 from fe_contact.mesh.gear_mesh import real_teeth
 from fe_contact.mesh.outline import Outline, Piece, arc, divide, middles, piece, spread

@@ -9,19 +9,18 @@ import numpy as np
 
 from fe_contact.checks import finite, positive
 from fe_contact.errors import InputError, MeshError, SolveError
-from fe_contact.full_contact.condensation.active_set import ActiveSetSolution, solve_active_set
 from fe_contact.full_contact.condensation.contact_model import ContactModel, PlaneStrain, softness
 from fe_contact.full_contact.condensation.linearized_contact import (
+    ActiveSetSolution,
     Configuration,
     ContactGeometry,
     LinearizedContact,
     Solution,
+    solve_active_set,
 )
 from fe_contact.full_contact.condensation.placed_mesh import placed_bodies
-from fe_contact.full_contact.condensation.resolution import Resolution
-from fe_contact.full_contact.condensation.sites import Range, contact_sites, least_gap_left_out
-from fe_contact.full_contact.condensation.table import FullContactTable
-from fe_contact.full_contact.point import FullContactPoint
+from fe_contact.full_contact.condensation.sites import Range, Resolution, contact_sites, least_gap_left_out
+from fe_contact.full_contact.table import FullContactPoint, FullContactTable
 from fe_contact.full_contact.validity import refusal
 from fe_contact.geometry import ParallelAxes
 from fe_contact.stage_clock import StageClock

@@ -16,16 +16,16 @@ from scipy.linalg import LinAlgError, cho_factor, cho_solve, cholesky, solve_tri
 from scipy.linalg.blas import dsyrk
 
 from fe_contact.errors import SolveError
-from fe_contact.full_contact.condensation.dissection import dissected, mesh_graph
 from fe_contact.full_contact.condensation.placed_mesh import PlacedBody
+from fe_contact.full_contact.condensation.stiffness import dissected, mesh_graph
 from fe_contact.full_contact.over_face.extruded_stiffness import (
     ExtrudedStiffness,
+    Layers,
     X,
     Y,
     Z,
     extruded_stiffness,
 )
-from fe_contact.full_contact.over_face.layers import Layers
 from fe_contact.material import Material
 from fe_contact.types import FloatArray, IntArray
 

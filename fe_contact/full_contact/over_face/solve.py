@@ -12,27 +12,29 @@ from scipy.optimize import brentq
 
 from fe_contact.checks import finite
 from fe_contact.errors import InputError
-from fe_contact.full_contact.condensation.active_set import ContactSystem
 from fe_contact.full_contact.condensation.contact_model import softness
-from fe_contact.full_contact.condensation.flank_curve import FlankCurve
 from fe_contact.full_contact.condensation.linearized_contact import (
     LEAST_FACING,
     Configuration,
     ContactGeometry,
+    ContactSystem,
     LinearizedContact,
     Solution,
     rotation,
     turned_back,
 )
-from fe_contact.full_contact.condensation.modified_flank import material_removed, removed_at_roll
 from fe_contact.full_contact.condensation.placed_mesh import PlacedBody
-from fe_contact.full_contact.condensation.resolution import Resolution
-from fe_contact.full_contact.condensation.sites import ContactSite
+from fe_contact.full_contact.condensation.sites import (
+    ContactSite,
+    Resolution,
+    material_removed,
+    removed_at_roll,
+)
 from fe_contact.full_contact.condensation.solve import Report, contact_tables, resolutions
-from fe_contact.full_contact.condensation.table import FullContactTable
-from fe_contact.full_contact.condensation.weak_gap import WeakGap, weak_gap
+from fe_contact.full_contact.condensation.weak_gap import FlankCurve, WeakGap, weak_gap
 from fe_contact.full_contact.over_face.extruded_body import ExtrudedBody, extruded_body
-from fe_contact.full_contact.over_face.layers import Layers, graded_layers
+from fe_contact.full_contact.over_face.extruded_stiffness import Layers, graded_layers
+from fe_contact.full_contact.table import FullContactTable
 from fe_contact.full_contact.validity import refusal_over_face
 from fe_contact.geometry import ParallelAxes, tooth_profile
 from fe_contact.types import BoolArray, FloatArray

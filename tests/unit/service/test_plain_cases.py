@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from bounds import PlausibilityWarning
-from fe_contact.compliance.rounding import LARGEST_ROUNDING, disc_rounding
+from fe_contact.compliance.flank import LARGEST_ROUNDING, disc_rounding
 from fe_contact.material import Material
 from lineofaction.gearbox.convert.checks import THICK, check_case, check_plain_case
 from lineofaction.gearbox.problems import BadInput

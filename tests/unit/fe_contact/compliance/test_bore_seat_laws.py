@@ -12,7 +12,7 @@ from compliance_gears import HELICAL, SPUR, coarse
 
 import fe_contact.compliance.cyclic_compliance as flow
 from fe_contact.compliance import FlankCompliance3D, flank_compliance_3d
-from fe_contact.compliance.checks_3d import probe_loads
+from fe_contact.compliance.condensed_gear import probe_loads
 from fe_contact.compliance.sector_stiffness import face_mass
 from fe_contact.errors import InfeasibleGeometry, InputError
 from fe_contact.geometry import BoreSeat, Gear, seat_compliance

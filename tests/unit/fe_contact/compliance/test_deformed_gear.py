@@ -11,11 +11,9 @@ import pytest
 from compliance_gears import HELICAL, SPUR, coarse
 
 from fe_contact.compliance import PlaneHypothesis, flank_compliance, flank_compliance_3d
-from fe_contact.compliance.deformation_2d import deformed_sections, element_stress
 from fe_contact.compliance.deformation_3d import SectorElements, deformed_solids, sector_elements
-from fe_contact.compliance.deformed_gear import DeformedGear, stress_of
-from fe_contact.compliance.hexahedron import REFERENCE, gradients_at
-from fe_contact.compliance.sector_stiffness import lame_parameters
+from fe_contact.compliance.deformed_gear import DeformedGear, deformed_sections, element_stress, stress_of
+from fe_contact.compliance.sector_stiffness import REFERENCE, gradients_at, lame_parameters
 from fe_contact.errors import InputError
 from fe_contact.geometry import BoreSeat, Gear, GearBlank, Key, RingGear, Toothing, tooth_profile
 from fe_contact.mesh import MeshRecipe, mesh_gear, quad_sector, swept_sector

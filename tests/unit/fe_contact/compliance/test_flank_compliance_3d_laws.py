@@ -19,7 +19,7 @@ from fe_contact.compliance import (
     flank_compliance_3d,
     flank_compliances_3d,
 )
-from fe_contact.compliance.checks_3d import least_eigenvalue, pressure_forces
+from fe_contact.compliance.condensed_gear import least_eigenvalue, pressure_forces
 from fe_contact.compliance.flank import ComplianceChecks, refuse_broken_laws
 from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
 from fe_contact.errors import InputError, SolveError

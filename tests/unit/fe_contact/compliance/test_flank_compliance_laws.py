@@ -23,10 +23,10 @@ from fe_contact.compliance import (
     flank_compliance,
     flank_compliances,
 )
-from fe_contact.compliance.checks_2d import uniform_pressure
-from fe_contact.compliance.elasticity_2d import stiffness_matrix
 from fe_contact.compliance.flank import refuse_broken_laws
-from fe_contact.compliance.sector_2d import freedoms, inward_loads
+from fe_contact.compliance.flank_compliance_2d import uniform_pressure
+from fe_contact.compliance.plane_elasticity import stiffness_matrix
+from fe_contact.compliance.ring_2d import freedoms, inward_loads
 from fe_contact.errors import InputError, SolveError
 from fe_contact.geometry import Gear, RingGear, Toothing
 from fe_contact.material import Material

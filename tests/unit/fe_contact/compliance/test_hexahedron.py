@@ -9,14 +9,16 @@ import pytest
 from skfem import Basis, ElementHex2, ElementHexS2, ElementVector, MeshHex, MeshHex2
 from skfem.models.elasticity import linear_elasticity
 
-from fe_contact.compliance.hexahedron import (
+from fe_contact.compliance.sector_stiffness import (
     REFERENCE,
     cylindrical_frames,
+    flank_frames,
     in_frames,
     layer_nodes,
+    sector_stiffness,
     stiffness_of,
+    twist,
 )
-from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
 from fe_contact.errors import MeshError
 from fe_contact.geometry import BoreSeat, Gear
 from fe_contact.mesh import QuadSector, SectorRecipe, SweptSector, quad_sector, swept_sector

@@ -12,12 +12,12 @@ import scipy.sparse as sp
 from compliance_gears import HELICAL, SPUR, coarse
 
 from fe_contact.compliance import FlankCompliance3D, SuperLuMetis, flank_compliance_3d
-from fe_contact.compliance.checks_3d import probe_loads
+from fe_contact.compliance.condensed_gear import probe_loads
 from fe_contact.compliance.deformation_3d import deformed_solids
 from fe_contact.compliance.keyed_bore import key_points
 from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
 from fe_contact.compliance.unit_root_stress import unit_root_stress_3d
-from fe_contact.contact.face_assembly import KeyedFlanks
+from fe_contact.contact.assembly import KeyedFlanks
 from fe_contact.contact.face_patch import FaceGrid, add_compliance, face_loads
 from fe_contact.errors import InfeasibleGeometry, InputError
 from fe_contact.geometry import BoreSeat, Gear, Key

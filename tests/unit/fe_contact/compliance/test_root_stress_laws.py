@@ -17,11 +17,11 @@ import fe_contact.compliance.condensed_gear as gear_module
 import fe_contact.compliance.root_stress_3d as face_module
 import fe_contact.compliance.sector_stiffness as stiffness_module
 from fe_contact.compliance import PlaneHypothesis, SuperLuMetis
-from fe_contact.compliance.checks_3d import pressure_forces
-from fe_contact.compliance.elasticity_2d import stiffness_matrix
+from fe_contact.compliance.condensed_gear import pressure_forces
+from fe_contact.compliance.plane_elasticity import stiffness_matrix
+from fe_contact.compliance.ring_2d import freedoms, inward_loads
 from fe_contact.compliance.root_stress import UnitRootStress, refuse_broken_stress
 from fe_contact.compliance.root_stress_3d import compute_root_stress_3d, root_functionals
-from fe_contact.compliance.sector_2d import freedoms, inward_loads
 from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
 from fe_contact.compliance.surface_stress import edge_stress, quad_root, triangle_root
 from fe_contact.compliance.unit_root_stress import (

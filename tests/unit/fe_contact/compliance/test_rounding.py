@@ -10,7 +10,7 @@ import pytest
 from fe_contact import Gear, GearPair
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.compliance import flank_compliance_3d
-from fe_contact.compliance.rounding import (
+from fe_contact.compliance.flank import (
     EPSILON,
     LARGEST_ROUNDING,
     disc_rounding,

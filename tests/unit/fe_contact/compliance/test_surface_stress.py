@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from fe_contact.compliance import PlaneHypothesis
-from fe_contact.compliance.elasticity_2d import stiffness_matrix
+from fe_contact.compliance.plane_elasticity import stiffness_matrix
 from fe_contact.compliance.surface_stress import (
     ACROSS,
     ALONG,

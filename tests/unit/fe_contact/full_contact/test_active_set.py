@@ -7,7 +7,7 @@ import itertools
 import numpy as np
 import pytest
 
-from fe_contact.full_contact.condensation.active_set import ContactSystem, solve_active_set
+from fe_contact.full_contact.condensation.linearized_contact import ContactSystem, solve_active_set
 
 
 def system(seed: int, hats: int = 7) -> ContactSystem:

@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 from contact_blocks import DEPTH, WIDTH, block
 
-from fe_contact.full_contact.condensation.active_set import ContactSystem, solve_active_set
 from fe_contact.full_contact.condensation.contact_model import CondensedBody, condensed_body
-from fe_contact.full_contact.condensation.flank_curve import FlankCurve
-from fe_contact.full_contact.condensation.weak_gap import WeakGap, weak_gap
+from fe_contact.full_contact.condensation.linearized_contact import ContactSystem, solve_active_set
+from fe_contact.full_contact.condensation.weak_gap import FlankCurve, WeakGap, weak_gap
 from fe_contact.material import Material
 
 FORCE = 4e5  # N/m

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fe_contact.contact.condition import condition_numbers
+from fe_contact.contact.problem import condition_numbers
 
 
 def test_condition_numbers_leave_out_what_is_no_candidate() -> None:

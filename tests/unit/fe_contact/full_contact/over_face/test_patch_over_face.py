@@ -10,13 +10,17 @@ import scipy.sparse as sp
 from contact_blocks import DEPTH, WIDTH, block
 from scipy.sparse.linalg import spsolve
 
-from fe_contact.full_contact.condensation.active_set import ContactSystem, solve_active_set
 from fe_contact.full_contact.condensation.contact_model import condensed_body, freedoms
-from fe_contact.full_contact.condensation.flank_curve import FlankCurve
-from fe_contact.full_contact.condensation.weak_gap import WeakGap, weak_gap
+from fe_contact.full_contact.condensation.linearized_contact import ContactSystem, solve_active_set
+from fe_contact.full_contact.condensation.weak_gap import FlankCurve, WeakGap, weak_gap
 from fe_contact.full_contact.over_face.extruded_body import ExtrudedBody, extruded_body
-from fe_contact.full_contact.over_face.extruded_stiffness import X, Z, extruded_stiffness
-from fe_contact.full_contact.over_face.layers import Layers, graded_layers
+from fe_contact.full_contact.over_face.extruded_stiffness import (
+    Layers,
+    X,
+    Z,
+    extruded_stiffness,
+    graded_layers,
+)
 from fe_contact.full_contact.over_face.solve import FaceGap, face_gap
 from fe_contact.material import Material
 from fe_contact.types import FloatArray

@@ -18,7 +18,7 @@ from fe_contact.full_contact import (
     solve_full_contact_over_face,
 )
 from fe_contact.full_contact.condensation.contact_model import softness
-from fe_contact.full_contact.over_face.layers import graded_layers
+from fe_contact.full_contact.over_face.extruded_stiffness import graded_layers
 from fe_contact.full_contact.over_face.solve import WholeFace
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
