@@ -14,7 +14,7 @@ from dataclasses import replace
 from pathlib import Path
 from fe_contact import Gear, GearPair, InternalGearPair, RingGear, analyze
 from fe_contact.geometry import BoreSeat, GearBlank, PitchDeviation
-from fe_contact.analysis.studies.warm_up import warm_up
+from fe_contact.analysis.studies.frontier import warm_up
 
 def pair(first, second, module, modules, helix=0.0, bore=0.5):
     def gear(teeth, angle):

@@ -13,7 +13,7 @@ import numpy as np
 
 from benchmarks.figures import Figure
 from fe_contact import Gear, GearPair, analyze
-from fe_contact.analysis.studies.warm_up import warm_up
+from fe_contact.analysis.studies.frontier import warm_up
 
 SUBJECT = "receipts, compliance cached"
 TARGET = 30.0

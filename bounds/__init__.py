@@ -20,7 +20,7 @@ from bounds.bound import (
     one_of,
     up_to,
 )
-from bounds.checks import Checks
+from bounds.checks import Checks, RefusedValue, inside
 from bounds.declared import (
     DEPTHS,
     Declared,
@@ -33,9 +33,7 @@ from bounds.declared import (
     written,
 )
 from bounds.plausibility import Check, Checklist, Finding, PlausibilityWarning, finding_of, warn_of
-from bounds.reader import Reader
-from bounds.refused import RefusedValue, inside
-from bounds.text import FieldName, Quantity, SiNote, Text, Words
+from bounds.text import FieldName, Quantity, Reader, SiNote, Text, Words
 from bounds.unit import Unit, engineering, leftover
 
 __all__ = [

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass
 
-from bounds.reader import Reader
-from bounds.text import NOTHING, Text, Words
+from bounds.text import NOTHING, Reader, Text, Words
 
 LIMIT_SLACK = 1e-12
 """Relative rounding of a computed limit, which its printed form does not show."""

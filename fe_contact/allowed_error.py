@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bounds import SiNote, engineering
-from fe_contact.checks import within
+from fe_contact.errors import within
 from fe_contact.types import FloatArray
 
 LARGEST_RELATIVE, LARGEST_FLOOR = 0.5, 1e-3

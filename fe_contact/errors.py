@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from typing import Any, Self
 
-from bounds import RefusedValue, Words
+from bounds import Checks, RefusedValue, Words
 
 
 class FeContactError(Exception):
@@ -67,3 +67,16 @@ class WorkersLost(FeContactError):
 
 class DatabaseError(FeContactError):
     """A file is not an STE database this version can read."""
+
+
+# Checks of single values, each raising one clear `InputError`; see `bounds.Checks`.
+
+_CHECKS = Checks(InputError)
+
+finite = _CHECKS.finite
+positive = _CHECKS.positive
+within = _CHECKS.within
+integer = _CHECKS.integer
+increasing = _CHECKS.increasing
+chosen = _CHECKS.chosen
+declared_fields = _CHECKS.declared_fields

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from bounds import Declared, Kind, between, declared, described
-from fe_contact.checks import declared_fields, positive
+from fe_contact.errors import declared_fields, positive
 
 _YOUNG = Declared(Kind.STIFFNESS, "Pa", between(1e6, 2e12), "Young's modulus; steel is 210", 210e9)
 _POISSON = Declared(Kind.RATIO, "", between(0.0, 0.499), "Poisson's ratio; steel is 0.3", 0.3)

@@ -11,13 +11,18 @@ from __future__ import annotations
 import sys
 from importlib.util import find_spec
 
-from host.child_environment import child_environment
-from host.confinement import READING, Limits, confine, missing_protections
+from host.confinement import READING, Limits, confine, limit_file_size, limit_memory, missing_protections
 from host.directories import default_cache_directory
 from host.ending import Ended, ending_signal
-from host.extras import MissingExtra, missing_extra, require
-from host.json_child import ChildFailed, ChildOutOfMemory, ask_child
-from host.limits import limit_file_size, limit_memory
+from host.extras import MissingExtra, Unavailable, missing_extra, require
+from host.json_child import (
+    ONE_THREAD,
+    ChildFailed,
+    ChildOutOfMemory,
+    ask_child,
+    child_environment,
+    keep_to_one_thread,
+)
 from host.proc import family_cpu_seconds, memory_figure, processes_in
 from host.sessions import (
     halt,
@@ -32,8 +37,6 @@ from host.sessions import (
     require_sessions,
 )
 from host.signal_handlers import handlers_kept
-from host.threads import ONE_THREAD, keep_to_one_thread
-from host.unavailable import Unavailable
 
 if sys.platform == "win32" or find_spec("fcntl") is None or find_spec("resource") is None:
     from host.windows import (

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-from host.unavailable import Unavailable
+from host.extras import Unavailable
 
 _PROC = Path("/proc")
 

@@ -8,7 +8,7 @@ import subprocess
 import sys
 
 from host.ending import RESIDENT_UNIT, Ended
-from host.unavailable import Unavailable
+from host.extras import Unavailable
 
 
 def require_sessions() -> None:

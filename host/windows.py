@@ -9,7 +9,7 @@ import threading
 import time
 from typing import Any
 
-from host.unavailable import Unavailable
+from host.extras import Unavailable
 
 _KILLED = 1
 """Exit code of a process that ended itself after its time."""

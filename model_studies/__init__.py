@@ -8,11 +8,21 @@ A library hands in what its variants compute and by which figures they are compa
 from __future__ import annotations
 
 from model_studies.ablation import Ablation, EffectAblation, Figures
-from model_studies.fidelity import Fidelity, Outcome, against_finest, run_fidelities
-from model_studies.frontier import FidelityResult, Frontier, front_of, knee_above, knee_of
+from model_studies.frontier import (
+    Fidelity,
+    FidelityResult,
+    Frontier,
+    LeftOut,
+    Outcome,
+    against_finest,
+    front_of,
+    knee_above,
+    knee_of,
+    run_fidelities,
+    run_variants,
+)
 from model_studies.progress import Progress, silent
 from model_studies.record import NOT_STORED, Record, called, in_unit
-from model_studies.variants import LeftOut, run_variants
 
 __all__ = [
     "NOT_STORED",

@@ -16,7 +16,7 @@ from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
 import numpy as np
 
 from model_studies.array_file import Stored, read_arrays, write_arrays
-from model_studies.netcdf_input import DAMAGE, UnreadableFile
+from model_studies.netcdf import DAMAGE, UnreadableFile
 
 IN_VARIABLE = "variable"
 """Stands in the JSON for what is in a variable."""

@@ -19,7 +19,7 @@ from dynamics.integrators.method_choice import EVALUATIONS
 from dynamics.scene import Scene
 from dynamics.types import FloatArray, Json
 from model_studies import Outcome, Progress, against_finest, in_unit, knee_above, run_fidelities, silent
-from model_studies.fidelity import Errors
+from model_studies.frontier import Errors
 
 FIGURES = ("rms_error", "transmission_error_orders", "bearing_force_orders")
 NAN = float("nan")

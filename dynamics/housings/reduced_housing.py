@@ -223,7 +223,7 @@ class ReducedHousing:
         ResultError
             The file is missing, damaged, or no reduced housing.
         """
-        from model_studies.netcdf_input import UnreadableFile  # noqa: PLC0415 (start-up time)
+        from model_studies.netcdf import UnreadableFile  # noqa: PLC0415 (start-up time)
         from model_studies.record_file import read_record  # noqa: PLC0415
 
         try:

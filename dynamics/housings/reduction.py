@@ -31,7 +31,7 @@ from dynamics.housings.tetrahedral_mesh import TetrahedralMesh
 from dynamics.types import FloatArray, IntArray
 from dynamics.work_cost import Cost, measured, on_this_host
 from model_studies.kept_file import kept_in
-from model_studies.netcdf_input import UnreadableFile
+from model_studies.netcdf import UnreadableFile
 from model_studies.record_file import read_record, write_record
 
 # Component mode synthesis: free modes and residual flexibility, in coordinates of Craig and Bampton.

@@ -11,7 +11,7 @@ import numpy as np
 
 from dynamics.errors import ResultError
 from model_studies.array_file import Stored, read_arrays, write_arrays
-from model_studies.netcdf_input import UnreadableFile
+from model_studies.netcdf import UnreadableFile
 
 __all__ = ["ArrayFile", "Stored"]
 

@@ -19,7 +19,7 @@ from dynamics.results.energy_audit import EnergyAudit
 from dynamics.results.run_result import RunResult, StepStatistics
 from dynamics.results.series import LABELS, SERIES, Series, over_time
 from dynamics.types import FloatArray, RunStatus
-from model_studies.netcdf_input import DAMAGE, UnreadableFile, read_dataset
+from model_studies.netcdf import DAMAGE, UnreadableFile, read_dataset
 
 if TYPE_CHECKING:
     import xarray

@@ -2,12 +2,15 @@
 
 from fe_contact.analysis.analyze import analyze, ste_database
 from fe_contact.analysis.flanks.deformed_pair import DeformedPair, deformed_pairs
-from fe_contact.analysis.flanks.flank_file import ContactPattern, contact_pattern
-from fe_contact.analysis.flanks.flank_results import flank_results
-from fe_contact.analysis.flanks.load_distribution import LoadDistribution, load_distribution
-from fe_contact.analysis.flanks.pressure_map import pressure_map
-from fe_contact.analysis.flanks.root_stress import RootStress, root_stress
-from fe_contact.analysis.flanks.root_stress_history import RootPassage, RootPeak, RootStressHistory
+from fe_contact.analysis.flanks.flank_file import ContactPattern, contact_pattern, flank_results
+from fe_contact.analysis.flanks.load_distribution import LoadDistribution, load_distribution, pressure_map
+from fe_contact.analysis.flanks.root_stress import (
+    RootPassage,
+    RootPeak,
+    RootStress,
+    RootStressHistory,
+    root_stress,
+)
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.live.condensed_request import condensed_pair
 from fe_contact.analysis.request.request_check import check_request

@@ -7,12 +7,10 @@ from pathlib import Path
 
 from bounds import engineering
 from fe_contact.analysis.checks.effect_ledger import effect_ledger
-from fe_contact.analysis.request.decided import Decided, model_name
-from fe_contact.analysis.request.model_choice import decide
+from fe_contact.analysis.request.model_choice import Decided, decide, expected_curves, model_name
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_request
-from fe_contact.analysis.request.ripple import expected_curves
-from fe_contact.checks import positive
+from fe_contact.errors import positive
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import LEVELS, AnalysisOptions, TableAxes
 from fe_contact.planning import (

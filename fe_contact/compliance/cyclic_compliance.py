@@ -12,7 +12,6 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import blas
 
-from fe_contact.checks import integer
 from fe_contact.compliance.cache import (
     KEPT_KEYS,
     content_hash,
@@ -23,6 +22,7 @@ from fe_contact.compliance.cache import (
 )
 from fe_contact.compliance.elimination_tree import EliminationTree, sector_tree
 from fe_contact.compliance.flank import FlankCompliance3D, refuse_broken_laws
+from fe_contact.errors import integer
 from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.mesh.quad_sector import quad_sector, sector_outline
 from fe_contact.mesh.recipe import SectorRecipe

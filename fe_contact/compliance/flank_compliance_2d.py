@@ -11,7 +11,6 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.linalg import eigh
 
-from fe_contact.checks import integer
 from fe_contact.compliance.cache import (
     KEPT_KEYS,
     content_hash,
@@ -28,7 +27,7 @@ from fe_contact.compliance.flank import (
 from fe_contact.compliance.plane_elasticity import PlaneHypothesis
 from fe_contact.compliance.ring_2d import Ring, assemble_ring, condense_sector, flank_matrix, rotation
 from fe_contact.compliance.solvers import Solver, SuperLuMetis
-from fe_contact.errors import InputError
+from fe_contact.errors import InputError, integer
 from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.mesh import GearMesh, MeshRecipe, mesh_gear
 from fe_contact.stage_clock import StageClock

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fe_contact.body.bore_seat import Key
+from fe_contact.body import Key
 from fe_contact.compliance.condensed_gear import CondensedGear
 from fe_contact.compliance.sector_stiffness import face_functions
 from fe_contact.geometry import Toothing

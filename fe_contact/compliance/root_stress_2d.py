@@ -29,7 +29,7 @@ from fe_contact.compliance.root_stress import (
 from fe_contact.compliance.solvers import Solver
 from fe_contact.compliance.surface_stress import COMPONENTS, between_nodes, edge_stress, triangle_root
 from fe_contact.geometry import Toothing, tooth_profile
-from fe_contact.geometry.root_tangent import tangent_angle
+from fe_contact.geometry.flank_profile import tangent_angle
 from fe_contact.mesh import MeshRecipe, mesh_gear
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, IntArray

@@ -42,7 +42,7 @@ from fe_contact.compliance.surface_stress import (
     quad_root,
 )
 from fe_contact.geometry import Toothing, tooth_profile
-from fe_contact.geometry.root_tangent import tangent_angle
+from fe_contact.geometry.flank_profile import tangent_angle
 from fe_contact.mesh.quad_sector import QuadSector, quad_sector
 from fe_contact.mesh.recipe import SectorRecipe
 from fe_contact.mesh.sector_grid import BoreSupport

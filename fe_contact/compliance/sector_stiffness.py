@@ -9,7 +9,7 @@ import numpy as np
 from skfem import ElementHexS2
 from skfem.quadrature import get_quadrature
 
-from fe_contact.body.bore_seat import BoreSeat
+from fe_contact.body import BoreSeat
 from fe_contact.errors import MeshError
 from fe_contact.geometry import Toothing
 from fe_contact.material import Material

@@ -15,7 +15,7 @@ from fe_contact.compliance.plane_elasticity import PlaneHypothesis
 from fe_contact.compliance.root_stress import UnitRootStress
 from fe_contact.compliance.solvers import Solver, SuperLuMetis
 from fe_contact.geometry import Toothing
-from fe_contact.geometry.seated_gear import refuse_key
+from fe_contact.geometry.gear import refuse_key
 from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.mesh.sector_grid import BoreSupport, bore_support
 

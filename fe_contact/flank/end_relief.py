@@ -11,10 +11,8 @@ from typing import ClassVar
 import numpy as np
 
 from bounds import Direction
-from fe_contact.flank.fields import amount, length, shape
-from fe_contact.flank.relief import FaceRelief
-from fe_contact.flank.relief_shape import Shape
-from fe_contact.flank.tooth import Tooth
+from fe_contact.flank.part import Tooth
+from fe_contact.flank.relief import FaceRelief, Shape, amount, length, shape
 from fe_contact.types import FloatArray
 
 _FACE = Direction.FACE

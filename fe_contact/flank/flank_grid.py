@@ -10,8 +10,7 @@ from typing import Literal
 import numpy as np
 
 from bounds import SiNote
-from fe_contact.checks import increasing, within
-from fe_contact.errors import InputError
+from fe_contact.errors import InputError, increasing, within
 from fe_contact.types import FloatArray
 
 _LARGEST = 0.01  # m; catches micrometers given as meters

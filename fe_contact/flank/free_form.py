@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 from bounds import Declared, Direction, Kind, Quantity, Text, declared
 from fe_contact.errors import InputError
-from fe_contact.flank.part import FlankPart, involute
-from fe_contact.flank.tooth import Tooth
+from fe_contact.flank.part import FlankPart, Tooth, involute
 from fe_contact.types import FloatArray
 
 if TYPE_CHECKING:

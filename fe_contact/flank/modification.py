@@ -24,10 +24,9 @@ from fe_contact.flank.end_relief import (
     HelixCrowningNonDatumFace,
 )
 from fe_contact.flank.free_form import FreeForm
-from fe_contact.flank.part import FlankPart, ReliefStart, involute
+from fe_contact.flank.part import FlankPart, ReliefStart, Tooth, involute
 from fe_contact.flank.polynomial import FlankTwist, HelixCrowning, HelixSlope, ProfileCrowning, ProfileSlope
 from fe_contact.flank.tip_relief import ProfileCrowningRoot, ProfileCrowningTip, RootRelief, TipRelief
-from fe_contact.flank.tooth import Tooth
 from fe_contact.flank.triangular_relief import TriangularRootRelief, TriangularTipRelief
 from fe_contact.types import FloatArray
 

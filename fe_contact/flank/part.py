@@ -1,16 +1,76 @@
-"""One flank modification, and what all have in common."""
+"""What a modification of a flank is, and what it needs to know of its tooth."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, reduce
 from operator import or_
+from typing import Protocol
 
 from bounds import Direction, Kind, SiNote, above, declarations
-from fe_contact.checks import declared_fields
-from fe_contact.errors import InputError
-from fe_contact.flank.tooth import Tooth
+from fe_contact.errors import InputError, declared_fields
 from fe_contact.types import FloatArray
+
+# The properties that a modification reads of the gear whose flanks it changes.
+
+
+class Tooth(Protocol):
+    """Sizes of a gear's teeth, lengths in m and angles in rad; `fe_contact.geometry` has the gears."""
+
+    @property
+    def sign(self) -> int:
+        """-1 for a ring gear, else 1."""
+        ...
+
+    @property
+    def normal_module(self) -> float:
+        """m_n."""
+        ...
+
+    @property
+    def face_width(self) -> float:
+        """B."""
+        ...
+
+    @property
+    def base_radius(self) -> float:
+        """r_b."""
+        ...
+
+    @property
+    def base_helix_angle(self) -> float:
+        """beta_b; > 0: right hand."""
+        ...
+
+    @property
+    def base_thickness_half_angle(self) -> float:
+        """Half the angle of a tooth at the base circle."""
+        ...
+
+    @property
+    def form_radius(self) -> float:
+        """d_Ff / 2: where involute and fillet meet."""
+        ...
+
+    @property
+    def form_roll_length(self) -> float:
+        """Roll length there."""
+        ...
+
+    @property
+    def tip_radius(self) -> float:
+        """d_a / 2."""
+        ...
+
+    @property
+    def tip_roll_length(self) -> float:
+        """Roll length there."""
+        ...
+
+    def roll_length(self, radius: float) -> float:
+        """Roll length at a radius from the base radius on."""
+        ...
+
 
 _ACTING = (Kind.AMOUNT, Kind.SLOPE, Kind.EDGE)
 
@@ -42,7 +102,7 @@ class ReliefStart:
 class FlankPart:
     """One departure of a gear's flanks from the involute helicoid.
 
-    A modification is a dataclass of declared fields (`fe_contact.flank.fields`) that says what it
+    A modification is a dataclass of declared fields (`fe_contact.flank.relief`) that says what it
     removes. All of it is neutral while its amounts, slopes and edges are zero.
 
     Raises

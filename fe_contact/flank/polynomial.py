@@ -8,9 +8,8 @@ from typing import ClassVar
 import numpy as np
 
 from bounds import Direction, declarations
-from fe_contact.flank.fields import amount, slope
-from fe_contact.flank.part import FlankPart
-from fe_contact.flank.tooth import Tooth
+from fe_contact.flank.part import FlankPart, Tooth
+from fe_contact.flank.relief import amount, slope
 from fe_contact.types import FloatArray
 
 

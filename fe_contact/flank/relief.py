@@ -2,19 +2,100 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from bounds import SiNote, at_most, declarations
-from fe_contact.checks import within
-from fe_contact.errors import InputError
-from fe_contact.flank.part import FlankPart, ReliefStart
-from fe_contact.flank.relief_shape import SHAPES, ReliefShape
-from fe_contact.flank.tooth import Tooth
+from bounds import Declared, Direction, Kind, SiNote, at_most, between, declarations, declared, one_of
+from fe_contact.errors import InputError, within
+from fe_contact.flank.part import FlankPart, ReliefStart, Tooth
 from fe_contact.types import FloatArray
+
+# The laws by which a relief grows from nothing to its amount.
+
+Shape = Literal["linear", "parabolic", "circular", "exponential", "logarithmic"]
+"""Names of the shapes, those of REXS 2.0 (attribute ``shape_of_relief``)."""
+
+_GROWTH = math.e - 1.0
+
+
+@dataclass(frozen=True)
+class ReliefShape:
+    """The depth of a relief over the fraction of its length, both 0 where it starts and 1 at its end.
+
+    Attributes
+    ----------
+    depth : callable
+        Depth (...) at fractions (...) from 0 to 1, of a relief whose amount is `ratio` times its length.
+    slope : float
+        Derivative of the depth where it starts; 0 = tangential.
+    bend : callable
+        Second derivative there, of the ratio.
+    """
+
+    depth: Callable[[FloatArray, float], FloatArray]
+    slope: float
+    bend: Callable[[float], float]
+
+    def __call__(self, fraction: FloatArray, ratio: float) -> FloatArray:
+        """Relative depth at fractions of the length: 0 before it starts, 1 from its end on."""
+        return self.depth(np.clip(fraction, 0.0, 1.0), ratio)
+
+
+def _arc(fraction: FloatArray, ratio: float) -> FloatArray:
+    """Arc of a circle of radius (1 + ratio^2) / (2 ratio) lengths, in a form that holds for a flat one."""
+    diameter = 1.0 + ratio**2
+    rise = np.sqrt(diameter**2 - (2.0 * ratio * fraction) ** 2)
+    return np.asarray(2.0 * fraction**2 / (diameter + rise))
+
+
+SHAPES: dict[Shape, ReliefShape] = {
+    "linear": ReliefShape(lambda u, _: u, 1.0, lambda _: 0.0),
+    "parabolic": ReliefShape(lambda u, _: u**2, 0.0, lambda _: 2.0),
+    "circular": ReliefShape(_arc, 0.0, lambda ratio: 2.0 / (1.0 + ratio**2)),
+    "exponential": ReliefShape(lambda u, _: np.expm1(u) / _GROWTH, 1.0 / _GROWTH, lambda _: 1.0 / _GROWTH),
+    "logarithmic": ReliefShape(lambda u, _: np.log1p(_GROWTH * u), _GROWTH, lambda _: -(_GROWTH**2)),
+}
+"""The shapes by their names.
+
+The arc touches the involute where it starts. Exponential is (e^u - 1)/(e - 1), logarithmic its mirror image
+at the diagonal, ln(1 + (e - 1) u): the laws of these names without a further parameter.
+"""
+
+
+# Declarations of the figures of flank modifications: depths in m, lengths in m, laws by name.
+
+_DEEPEST = 1e-3  # m; catches micrometers given as meters
+_LONGEST = 10.0  # m; what a gear has room for depends on the gear
+
+
+def amount(along: Direction, description: str, example: float, *, later: bool = False) -> Any:
+    """Return the field of material removed in m, >= 0."""
+    bound = between(0.0, _DEEPEST)
+    return declared(0.0, Declared(Kind.AMOUNT, "m", bound, description, example, along, later=later))
+
+
+def slope(along: Direction, description: str, example: float) -> Any:
+    """Return the field of a difference of material removed in m, of either sign."""
+    bound = between(-_DEEPEST, _DEEPEST)
+    return declared(0.0, Declared(Kind.SLOPE, "m", bound, description, example, along))
+
+
+def length(along: Direction, description: str, example: float, *, later: bool = False) -> Any:
+    """Return the field ``x_length`` of the length in m over which the amount ``x`` acts."""
+    bound = between(0.0, _LONGEST)
+    return declared(0.0, Declared(Kind.LENGTH, "m", bound, description, example, along, later=later))
+
+
+def shape(along: Direction, description: str, *, later: bool = False) -> Any:
+    """Return the field ``x_shape`` of the law of a relief over its length."""
+    bound = one_of(tuple(SHAPES))
+    return declared("linear", Declared(Kind.SHAPE, "", bound, description, "linear", along, later=later))
+
 
 _LENGTHS = SiNote("Lengths are in m: 1 mm is 0.001.")
 

@@ -6,9 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from bounds import Direction
-from fe_contact.flank.fields import amount, length, shape
-from fe_contact.flank.relief import ProfileRelief
-from fe_contact.flank.relief_shape import Shape
+from fe_contact.flank.relief import ProfileRelief, Shape, amount, length, shape
 
 _PROFILE = Direction.PROFILE
 

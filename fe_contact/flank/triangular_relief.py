@@ -15,11 +15,8 @@ import numpy as np
 
 from bounds import Direction
 from fe_contact.errors import InputError
-from fe_contact.flank.fields import amount, length, shape
-from fe_contact.flank.part import ReliefStart, involute
-from fe_contact.flank.relief import ProfileRelief
-from fe_contact.flank.relief_shape import Shape
-from fe_contact.flank.tooth import Tooth
+from fe_contact.flank.part import ReliefStart, Tooth, involute
+from fe_contact.flank.relief import ProfileRelief, Shape, amount, length, shape
 from fe_contact.types import FloatArray
 
 _FLANK = Direction.PROFILE | Direction.FACE

@@ -6,8 +6,7 @@ import math
 from dataclasses import dataclass
 
 from bounds import Declared, Kind, at_most, between, declared, described, required, up_to
-from fe_contact.checks import declared_fields
-from fe_contact.errors import InfeasibleGeometry
+from fe_contact.errors import InfeasibleGeometry, declared_fields
 
 NORMAL_MODULE = Declared(Kind.LENGTH, "m", up_to(10.0), "Normal module m_n", 0.004)
 PRESSURE_ANGLE = Declared(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from fe_contact.checks import positive
+from fe_contact.errors import positive
 from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.gear_pair import GearPair
 from fe_contact.geometry.toothing import Toothing

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, NoReturn
 import numpy as np
 
 from bounds import LIMIT_SLACK, FieldName, Quantity, SiNote, Text, Words, at_least, at_most, below, exactly
-from fe_contact.checks import declared_fields, finite
-from fe_contact.errors import InfeasibleGeometry
+from fe_contact.errors import InfeasibleGeometry, declared_fields, finite
 from fe_contact.flank.modification import UNMODIFIED
 from fe_contact.geometry.backlash import (
     base_radius_sum,

@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING, ClassVar, Self
 import numpy as np
 
 from bounds import Declared, Kind, SiNote, between, declared, described, integers, required, up_to
-from fe_contact.body.bore_seat import CLAMPED, BoreSeat
-from fe_contact.checks import declared_fields, within
-from fe_contact.errors import InputError
+from fe_contact.body import CLAMPED, BoreSeat
+from fe_contact.errors import InputError, declared_fields, within
 from fe_contact.flank.involute import involute_function, roll_length_at_radius
 from fe_contact.flank.modification import UNMODIFIED, FlankModification
 from fe_contact.geometry.basic_rack import ADDENDUM, DEDENDUM, NORMAL_MODULE, PRESSURE_ANGLE, ROOT_RADIUS
@@ -25,9 +24,8 @@ from fe_contact.material import STEEL, Material
 from fe_contact.types import FloatArray
 
 if TYPE_CHECKING:
-    from fe_contact.body.gear_blank import Web
-    from fe_contact.geometry.fillet_curve import FilletCurve
-    from fe_contact.geometry.form_point import FormPoint
+    from fe_contact.body import Web
+    from fe_contact.geometry.fillet_curve import FilletCurve, FormPoint
     from fe_contact.types import Json
 
 # Pitch deviations of single teeth (ISO 1328-1).

@@ -10,8 +10,7 @@ from itertools import pairwise
 from typing import Protocol
 
 from bounds import at_most
-from fe_contact.checks import integer, positive, within
-from fe_contact.errors import InputError
+from fe_contact.errors import InputError, integer, positive, within
 from fe_contact.types import Json
 
 # The recipe of a gear's mesh: element sizes, real teeth, limits.

@@ -9,8 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
-from fe_contact.body.bore_seat import CLAMPED, BoreSeat
-from fe_contact.body.gear_blank import ROUNDING
+from fe_contact.body import CLAMPED, ROUNDING, BoreSeat
 from fe_contact.geometry import Toothing
 from fe_contact.types import BoolArray, FloatArray, IntArray
 

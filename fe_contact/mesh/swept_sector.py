@@ -16,8 +16,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from fe_contact.body.bore_seat import CLAMPED, BoreSeat
-from fe_contact.body.gear_blank import ROUNDING, Web
+from fe_contact.body import CLAMPED, ROUNDING, BoreSeat, Web
 from fe_contact.errors import InputError
 from fe_contact.mesh.recipe import SectorRecipe
 from fe_contact.mesh.sector_grid import BoreSupport, ClampedBore, SectorGrid

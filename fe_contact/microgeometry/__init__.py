@@ -1,13 +1,10 @@
 """Studies of micro-geometry: many designs of one pair on one compliance."""
 
-from fe_contact.microgeometry.confirmation import ConfirmedDesign
-from fe_contact.microgeometry.curve_derivatives import CurveDerivatives, FlankDerivatives, curve_derivatives
-from fe_contact.microgeometry.harris_map import HarrisMap
-from fe_contact.microgeometry.iso1328 import iso1328_tolerances
+from fe_contact.microgeometry.confirmation import ConfirmedDesign, HarrisMap
+from fe_contact.microgeometry.linearized_design import CurveDerivatives, FlankDerivatives, curve_derivatives
 from fe_contact.microgeometry.objective import Limits, Objective, WeightedMean, Worst
-from fe_contact.microgeometry.optimization import Optimization, Outcome, Perturbation
+from fe_contact.microgeometry.optimization import Optimization, OptimizationRequest, Outcome, Perturbation
 from fe_contact.microgeometry.optimize import optimize
-from fe_contact.microgeometry.request import OptimizationRequest
 from fe_contact.microgeometry.scatter import GaussHermite, Scatter, ScatterNodes, SobolSample
 from fe_contact.microgeometry.search import Ended, Search, SearchRun
 from fe_contact.microgeometry.search_method import (
@@ -16,10 +13,9 @@ from fe_contact.microgeometry.search_method import (
     NelderMead,
     SequentialLinearProgramming,
 )
-from fe_contact.microgeometry.sweep import Sweep, sweep
-from fe_contact.microgeometry.sweep_request import SweepAxis, SweepRequest
+from fe_contact.microgeometry.sweep import Sweep, SweepAxis, SweepRequest, sweep
 from fe_contact.microgeometry.tolerance_study import Sampling, ToleranceStudy, scatter
-from fe_contact.microgeometry.tolerances import Tolerances
+from fe_contact.microgeometry.tolerances import Tolerances, iso1328_tolerances
 from fe_contact.microgeometry.variables import QUANTITIES, DesignVariable
 
 __all__ = [

@@ -18,16 +18,14 @@ from fe_contact.microgeometry.confirmation import ConfirmedDesign, confirm
 from fe_contact.microgeometry.design_problem import DesignProblem
 from fe_contact.microgeometry.design_study import DesignStudy
 from fe_contact.microgeometry.evaluator import Evaluator
-from fe_contact.microgeometry.optimization import Perturbation
-from fe_contact.microgeometry.request import OptimizationRequest
+from fe_contact.microgeometry.optimization import OptimizationRequest, Perturbation
 from fe_contact.microgeometry.scatter import Scatter
 from fe_contact.microgeometry.search import Cancel, Search, SearchRun, search_from
 from fe_contact.microgeometry.search_method import SequentialLinearProgramming
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.stage_clock import StageClock
-from fe_contact.ste.content_hash import content_hash
-from fe_contact.ste.facts import SCHEMA_VERSION
+from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from fe_contact.types import FloatArray
 
 # Assessed designs on disk: a search that was killed, or may use more evaluations, continues.

@@ -9,9 +9,8 @@ from typing import Protocol
 import numpy as np
 
 from fe_contact.microgeometry.evaluator import Evaluation, Evaluator
-from fe_contact.microgeometry.linear_merit import LinearMerit
 from fe_contact.microgeometry.linearized_design import linearized
-from fe_contact.microgeometry.objective import Limits, Objective
+from fe_contact.microgeometry.objective import Limits, LinearMerit, Objective
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.types import FloatArray
 

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
+from fe_contact.analysis.live.condensed_pair import CondensedPair
+from fe_contact.analysis.request.request import Checked
 from fe_contact.contact import CarryingStrips, ContactProblem, ContactSolution, adjoint, force_changes
+from fe_contact.effects.misalignment import MisalignmentGap
+from fe_contact.effects.modification_gap import ModificationGap
+from fe_contact.errors import InputError, SolveError
+from fe_contact.flank.modification import UNMODIFIED
 from fe_contact.geometry import ParallelAxes
-from fe_contact.microgeometry.curve_derivatives import opened_by
 from fe_contact.microgeometry.evaluator import (
     Evaluation,
     Evaluator,
@@ -21,9 +27,221 @@ from fe_contact.microgeometry.evaluator import (
     on_edges,
     over_face,
 )
-from fe_contact.microgeometry.linear_merit import Rows
-from fe_contact.microgeometry.objective import Limits
+from fe_contact.microgeometry.objective import Limits, Rows
+from fe_contact.microgeometry.scatter import MISALIGNMENT
+from fe_contact.microgeometry.variables import (
+    ACROSS_FACE,
+    GEARS,
+    LENGTHS,
+    QUANTITIES,
+    SLOPES,
+    effect_of,
+    figure,
+    gear_and_quantity,
+    lacks_length,
+)
+from fe_contact.ste.curve_quantities import FIRST_HARMONIC, MEAN, PEAK_TO_PEAK, quantity_derivatives
 from fe_contact.types import FloatArray
+
+# Derivatives of transmission-error curves by the flanks, the alignment and the torque.
+#
+# They come from the factors of the solved contact (`fe_contact.contact.adjoint`): a curve by a dozen figures
+# of its flanks costs about a third of the curve more.
+
+CENTER_DISTANCE, TORQUE = "center_distance_change", "torque"
+AMOUNT_STEP, LENGTH_STEP = 1e-6, 1e-4
+"""Of differences of the flanks: in m, by which the gap is linear in its amounts; and in parts of a length."""
+DISTANCE_STEP = 1e-7
+"""To a larger center distance in m, at which the curve is solved: other places of the flanks touch there."""
+
+
+@dataclass(frozen=True)
+class FlankDerivatives:
+    """Derivatives by the flank itself: by material removed at the nodes of a grid, bilinear between them.
+
+    Attributes
+    ----------
+    roll_length, face_position : ndarray, shapes (R,), (Z,)
+        m, from the gear's mid-face.
+    mean, peak_to_peak : ndarray, shape (F, R, Z)
+        m/m.
+    harmonics : ndarray, shape (20, F, R, Z)
+        Of the amplitudes, m/m.
+    """
+
+    roll_length: FloatArray
+    face_position: FloatArray
+    mean: FloatArray
+    peak_to_peak: FloatArray
+    harmonics: FloatArray
+
+
+@dataclass(frozen=True)
+class CurveDerivatives:
+    """Curves at F torques and their derivatives by A figures.
+
+    Attributes
+    ----------
+    names : tuple of str
+        ``gear.quantity``, "misalignment", "center_distance_change" or "torque".
+    torque : ndarray, shape (F,)
+        On the driving gear, N m.
+    position : ndarray, shape (P,)
+        Base pitches.
+    ste : ndarray, shape (P, F)
+        m.
+    by : ndarray, shape (A, P, F)
+        dSTE/dfigure, m/m; by the torque in m/(N m).
+    mean, peak_to_peak : ndarray, shape (A, F)
+        Of the curve's mean and peak-to-peak.
+    harmonics : ndarray, shape (A, 20, F)
+        Of the amplitudes of the mesh harmonics.
+    """
+
+    names: tuple[str, ...]
+    torque: FloatArray
+    position: FloatArray
+    ste: FloatArray
+    by: FloatArray
+    mean: FloatArray
+    peak_to_peak: FloatArray
+    harmonics: FloatArray
+    _strips: CarryingStrips = field(repr=False)
+    _quantities: FloatArray = field(repr=False)
+
+    def on_flank(self, gear: str, profile: int = 21, face: int = 21) -> FlankDerivatives:
+        """Return the derivatives by the flank of "pinion" or "wheel" on a grid of so many nodes.
+
+        The grid spans the involute and the face width; in the plane the whole face is one.
+        """
+        pair = self._strips.pair
+        toothing = getattr(pair, gear)
+        ends = toothing.form_roll_length, toothing.tip_roll_length
+        roll = np.linspace(min(ends), max(ends), profile)
+        across = 0.5 * toothing.face_width * np.linspace(-1.0, 1.0, face)
+        levels = np.eye(self.torque.size)
+        rows = np.einsum("qpf,fg->qgpf", self._quantities, levels).reshape(-1, *self.ste.shape)
+        slopes = self._strips.on_flank(GEARS.index(gear), roll, across, rows)
+        slopes = slopes.reshape(-1, self.torque.size, profile, face)
+        return FlankDerivatives(roll, across, slopes[MEAN], slopes[PEAK_TO_PEAK], slopes[FIRST_HARMONIC:])
+
+
+def curve_derivatives(
+    bodies: CondensedPair,
+    pair: ParallelAxes,
+    torques: Sequence[float] | FloatArray,
+    by: Sequence[str] | None = None,
+    misalignment: float = 0.0,
+    center_distance_change: float = 0.0,
+) -> CurveDerivatives:
+    """Solve the curves of flanks on condensed bodies, with their derivatives.
+
+    Parameters
+    ----------
+    bodies : CondensedPair
+    pair : GearPair or InternalGearPair
+        The same macro geometry with any flank modification.
+    torques : sequence of float
+        On the driving gear in N m, increasing, > 0.
+    by : sequence of str, optional
+        Figures, by name: ``gear.quantity`` of `QUANTITIES`, "misalignment", "center_distance_change" and
+        "torque"; default: all figures of the flanks that act, the misalignment where it can, and the torque.
+        A figure that is zero and cannot be negative is given its derivative to the one side.
+    misalignment, center_distance_change : float
+        m.
+
+    Raises
+    ------
+    InputError
+        As `CondensedPair.table`, or a name whose effect is off, or a relief without its length.
+    SolveError
+        The contact of a position cannot be solved.
+
+    Notes
+    -----
+    By the center distance the curve is solved once more, as its compliance changes.
+    """
+    loads = np.asarray(torques, dtype=float)
+    solved = bodies.solve(pair, loads, misalignment, center_distance_change)
+    checked, problem, solution = solved.checked, solved.problem, solved.solution
+    _require_solved(solution)
+    names = _all_names(pair, checked) if by is None else tuple(by)
+    for name in names:
+        _check_name(name, pair, checked)
+    strips = CarryingStrips.of(solved.pair, problem.candidates, adjoint(problem, solution))
+
+    def derivative(name: str) -> FloatArray:
+        if name == TORQUE:
+            return np.asarray(solution.tangent * (solution.load / loads))
+        if name == CENTER_DISTANCE:
+            further = bodies.solve(pair, loads, misalignment, center_distance_change + DISTANCE_STEP).solution
+            _require_solved(further)
+            return (further.deflection - solution.deflection) / DISTANCE_STEP
+        return strips.change(opened_by(strips, pair, name))
+
+    derivatives = np.stack([derivative(name) for name in names])
+    curves, period = solution.deflection.T, checked.model.period
+    weights = np.stack([quantity_derivatives(curve, period) for curve in curves], axis=-1)
+    changes = np.einsum("qpf,apf->aqf", weights, derivatives)
+    of_quantities = changes[:, MEAN], changes[:, PEAK_TO_PEAK], changes[:, FIRST_HARMONIC:]
+    position, ste = problem.candidates.position, solution.deflection
+    return CurveDerivatives(names, loads, position, ste, derivatives, *of_quantities, strips, weights)
+
+
+def _all_names(pair: ParallelAxes, checked: Checked) -> tuple[str, ...]:
+    """Return everything that acts and costs no further curve."""
+    flanks = [f"{gear}.{quantity}" for gear in GEARS for quantity in QUANTITIES]
+    named = (
+        *(name for name in flanks if not lacks_length(pair, name.removesuffix("_length"))),
+        MISALIGNMENT,
+        TORQUE,
+    )
+    return tuple(name for name in named if _acts(name, checked))
+
+
+def _acts(name: str, checked: Checked) -> bool:
+    """Whether a figure has an effect in the model of the bodies."""
+    if name in (TORQUE, CENTER_DISTANCE):
+        return True
+    request = checked.request
+    effect = request.named(name) or effect_of(name, request.registry)
+    across = name == MISALIGNMENT or name.partition(".")[2] in ACROSS_FACE
+    return request.choices.get(effect) != "off" and (checked.model.across_face or not across)
+
+
+def _check_name(name: str, pair: ParallelAxes, checked: Checked) -> None:
+    """Refuse what is no figure, or does not act."""
+    if name not in (MISALIGNMENT, CENTER_DISTANCE, TORQUE):
+        gear_and_quantity("by", name)
+        if lacks_length(pair, name.removesuffix("_length")):
+            raise InputError("by", name, "a relief that has a length", "Give the flank its length.")
+    if not _acts(name, checked):
+        advice = "Analyze the pair over the face width, and leave the effect at auto."
+        raise InputError("by", name, "a figure whose effect the table has", advice)
+
+
+def _require_solved(solution: ContactSolution) -> None:
+    """Refuse to differentiate what is not solved."""
+    if not solution.converged:
+        raise SolveError("the contact of a position cannot be solved", solution.status)
+
+
+def opened_by(strips: CarryingStrips, pair: ParallelAxes, name: str) -> FloatArray:
+    """Return the normal approach that a figure of the flanks or the misalignment takes away, (k,)."""
+    if name == MISALIGNMENT:
+        return strips.opened(MisalignmentGap(1.0))
+    gear, quantity = gear_and_quantity("by", name)
+    value = figure(pair, name)
+    step = LENGTH_STEP * value if quantity in LENGTHS else AMOUNT_STEP
+    low = value - step if quantity in SLOPES else max(value - step, 0.0)
+    above, below = (strips.opened(_gap(pair, gear, {quantity: end})) for end in (value + step, low))
+    return (above - below) / (value + step - low)
+
+
+def _gap(pair: ParallelAxes, gear: str, figures: Mapping[str, Any]) -> ModificationGap:
+    changed = replace(getattr(pair, gear).modification, **figures)
+    return ModificationGap(**(dict.fromkeys(GEARS, UNMODIFIED) | {gear: changed}))
+
 
 NEAR = 0.8
 """Pressures from this part of the largest on are followed."""

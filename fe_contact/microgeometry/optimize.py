@@ -10,14 +10,13 @@ from scipy.stats import qmc
 
 from bounds import engineering
 from fe_contact.microgeometry.choice import SLACK, Choice, choose, perturbation, posed
-from fe_contact.microgeometry.counted_merit import Cancelled
+from fe_contact.microgeometry.confirmation import rising
 from fe_contact.microgeometry.design_problem import DesignProblem
 from fe_contact.microgeometry.design_study import DesignStudy, design_study
-from fe_contact.microgeometry.harris_map import rising
-from fe_contact.microgeometry.optimization import Optimization, Outcome, Perturbation
-from fe_contact.microgeometry.request import OptimizationRequest
+from fe_contact.microgeometry.optimization import Optimization, OptimizationRequest, Outcome, Perturbation
 from fe_contact.microgeometry.scatter import MISALIGNMENT
 from fe_contact.microgeometry.search import Cancel, Ended, Search, SearchRun, never, search_from
+from fe_contact.microgeometry.search_method import Cancelled
 from fe_contact.microgeometry.variables import GEARS, QUANTITIES
 from fe_contact.options import Run
 from fe_contact.stage_clock import StageClock

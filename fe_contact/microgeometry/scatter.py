@@ -11,8 +11,7 @@ from scipy.special import roots_hermitenorm
 from scipy.stats import norm, qmc
 
 from bounds import SiNote, at_least
-from fe_contact.checks import finite, integer, positive
-from fe_contact.errors import InputError
+from fe_contact.errors import InputError, finite, integer, positive
 from fe_contact.microgeometry.variables import gear_and_quantity
 from fe_contact.types import FloatArray, Json
 from model_studies import Record, called, in_unit

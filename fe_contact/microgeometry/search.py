@@ -8,10 +8,16 @@ from enum import StrEnum
 
 import numpy as np
 
-from fe_contact.checks import integer
-from fe_contact.microgeometry.counted_merit import Budget, BudgetUsed, Cancelled, CountedMerit
+from fe_contact.errors import integer
 from fe_contact.microgeometry.design_problem import Assessed, DesignProblem
-from fe_contact.microgeometry.search_method import Method, SequentialLinearProgramming
+from fe_contact.microgeometry.search_method import (
+    Budget,
+    BudgetUsed,
+    Cancelled,
+    CountedMerit,
+    Method,
+    SequentialLinearProgramming,
+)
 from fe_contact.types import FloatArray, Json
 from host import cpu_seconds
 

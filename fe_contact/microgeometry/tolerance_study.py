@@ -7,8 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from fe_contact.checks import integer, within
-from fe_contact.errors import SolveError
+from fe_contact.errors import SolveError, integer, within
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.confirmation import full_table, ripple_errors
 from fe_contact.microgeometry.design_study import DesignSpace, design_study

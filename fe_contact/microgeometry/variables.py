@@ -7,9 +7,8 @@ from dataclasses import dataclass, field, replace
 from functools import reduce
 
 from bounds import Direction, Kind, SiNote, Text, above, at_least
-from fe_contact.checks import finite
 from fe_contact.effects import Effect, named
-from fe_contact.errors import InputError
+from fe_contact.errors import InputError, finite
 from fe_contact.flank.modification import FLANK_FIELDS, fields_of
 from fe_contact.geometry import ParallelAxes
 from model_studies import Record, in_unit

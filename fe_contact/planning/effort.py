@@ -11,8 +11,7 @@ from __future__ import annotations
 from fe_contact.contact import ContactModel
 from fe_contact.geometry import ParallelAxes
 from fe_contact.mesh import SectorRecipe
-from fe_contact.planning.contact_cost import contact_seconds
-from fe_contact.planning.cost_model import section_cost
+from fe_contact.planning.cost_model import contact_seconds, section_cost
 from fe_contact.planning.discretization import FaceDiscretization
 from fe_contact.planning.plan import Plan
 

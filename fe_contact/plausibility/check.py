@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from bounds import Check, Checklist
+from collections.abc import Sequence
+
+from bounds import Check, Checklist, Finding
 
 _PARTS = (
     Check("module", "normal module", 0.05e-3, 0.1, "m", "DIN 780-1 and ISO 54: 0.05 to 60 mm"),
@@ -195,3 +197,20 @@ CHECKS: dict[str, Check] = {check.name: check for check in (*_PARTS, *_DEVIATION
 """All checks by name."""
 
 assessed = Checklist(CHECKS).assessed
+
+
+# Findings of a request beside those of its results.
+
+SOLVED = ("hertz_pressure", "transmission_error")
+"""Checks that a table answers by its own figures."""
+
+
+def merged(requested: Sequence[Finding], solved: Sequence[Finding]) -> tuple[Finding, ...]:
+    """Return the findings of a request and of its results: what is solved replaces what was estimated."""
+    return (*(finding for finding in requested if finding.check not in SOLVED), *solved)
+
+
+def unexpected(requested: Sequence[Finding], solved: Sequence[Finding]) -> tuple[Finding, ...]:
+    """Return the findings of results that those of the request did not announce."""
+    expected = {finding.check for finding in requested}
+    return tuple(finding for finding in solved if finding.check not in expected)

@@ -1,13 +1,12 @@
 """STE databases: storage, C1 interpolation, force extraction. Light: xarray is imported for files only."""
 
 from fe_contact.ste.curve import Curve
-from fe_contact.ste.database import SteDatabase
+from fe_contact.ste.curve_quantities import Spectrum
+from fe_contact.ste.database import HeldOutError, SteDatabase, held_out_error
 from fe_contact.ste.facts import SCHEMA_VERSION, Metadata, PairFacts
 from fe_contact.ste.force_table import ForceTable
-from fe_contact.ste.held_out import HeldOutError, held_out_error
 from fe_contact.ste.mesh_force import ForceSample, MeshForce, Validity
 from fe_contact.ste.repair import Repair
-from fe_contact.ste.spectrum import Spectrum
 
 __all__ = [
     "SCHEMA_VERSION",

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from fe_contact.ste.extraction import force_table
 from fe_contact.ste.fields import SteFields
+from fe_contact.ste.force_table import LevelGrid
 from fe_contact.ste.interpolation import Axis
-from fe_contact.ste.level_grid import LevelGrid
 from fe_contact.ste.mesh_force import MeshForce
 from fe_contact.types import FloatArray, IntArray
 

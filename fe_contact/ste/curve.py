@@ -10,12 +10,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from bounds import Text, between
 from fe_contact.errors import InputError
-from fe_contact.ste.curve_errors import all_sources, errors_by_source
+from fe_contact.ste.curve_errors import OperatingPoint, all_sources, errors_by_source
+from fe_contact.ste.curve_quantities import HARMONICS, Spectrum, even_positions, spectrum
 from fe_contact.ste.fields import SteFields
 from fe_contact.ste.interpolation import Axis, interpolate
-from fe_contact.ste.loads import OperatingPoint
 from fe_contact.ste.mesh_force import MeshForce
-from fe_contact.ste.spectrum import HARMONICS, Spectrum, even_positions, spectrum
 from fe_contact.types import Estimate, FloatArray
 
 # Load shares and error bands between the stored points.

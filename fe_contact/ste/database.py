@@ -3,27 +3,30 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, TypedDict, Unpack
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bounds import between
+from fe_contact.errors import InputError
 from fe_contact.ste import curve as curves
 from fe_contact.ste import extraction, netcdf, repair
 from fe_contact.ste.curve import Curve
+from fe_contact.ste.curve_errors import default_value, operating_point
+from fe_contact.ste.curve_quantities import Spectrum
 from fe_contact.ste.fields import SteFields
-from fe_contact.ste.force_table import ForceTable
-from fe_contact.ste.level_grid import LevelGrid
-from fe_contact.ste.loads import default_value, operating_point
+from fe_contact.ste.force_table import ForceTable, LevelGrid
 from fe_contact.ste.mesh_force import ForceSample, MeshForce
-from fe_contact.ste.spectrum import Spectrum
 from fe_contact.types import Estimate, FloatArray
 
 if TYPE_CHECKING:
     import xarray
+
 
 # The derivatives along all axes of a mesh-force table: plain arrays that make it C1 in every coordinate.
 
@@ -201,3 +204,109 @@ class SteDatabase(SteFields):
             if center_distance_change is None
             else center_distance_change,
         )
+
+
+# Error of a table's interpolation, measured at points it does not hold.
+
+
+@dataclass(frozen=True)
+class HeldOutError:
+    """Difference between a table's interpolant and solves at other points.
+
+    Attributes
+    ----------
+    maximum, rms : float
+        m, over all held-out points.
+    relative_maximum, relative_rms : float
+        The largest over the loads and alignments, each by its own held-out peak-to-peak.
+    position, force, misalignment, center_distance_change : float
+        Where the maximum is (base pitches, N, m, m).
+    """
+
+    maximum: float
+    rms: float
+    relative_maximum: float
+    relative_rms: float
+    position: float
+    force: float
+    misalignment: float
+    center_distance_change: float
+
+
+def held_out_error(database: SteDatabase, other: SteDatabase) -> HeldOutError:
+    """Compare the interpolant of `database` with what `other` stores at its own positions and loads.
+
+    Raises
+    ------
+    InputError
+        If `other` reaches beyond the loads or alignments of `database`, or holds too few positions for a
+        peak-to-peak.
+    SolveError
+        If either table has failed points.
+    """
+    other.require_complete()
+    _require_inside(database, other)
+    grid = np.meshgrid(
+        other.position, other.force, other.misalignment, other.center_distance_change, indexing="ij"
+    )
+    truth = other.static_transmission_error
+    error = np.abs(database.ste(*grid) - truth)
+    swing = np.ptp(truth, axis=0)
+    worst = np.unravel_index(int(np.argmax(error)), error.shape)
+    return HeldOutError(
+        float(error.max()),
+        _rms(error.ravel()),
+        _relative(error.max(axis=0), swing),
+        _relative(np.sqrt(np.mean(error**2, axis=0)), swing),
+        *(float(axis[worst]) for axis in grid),
+    )
+
+
+def _require_inside(database: SteDatabase, other: SteDatabase) -> None:
+    """Refuse held-out points that the table does not answer for."""
+    for name in ("force", "misalignment", "center_distance_change"):
+        inner, outer = getattr(other, name), getattr(database, name)
+        if inner[0] < outer[0] or inner[-1] > outer[-1]:
+            raise InputError(f"other.{name}", inner.tolist(), between(float(outer[0]), float(outer[-1])))
+    if other.position.size < 2:
+        raise InputError("other.position", other.position.tolist(), "two or more positions")
+
+
+def _rms(values: FloatArray) -> float:
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def _relative(error: FloatArray, swing: FloatArray) -> float:
+    """Largest ratio; no error is zero also of a curve without ripple."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return float(np.max(np.where(error == 0.0, 0.0, error / swing)))
+
+
+# Tables of single misalignments as one table over all of them.
+
+AXIS = "misalignment"
+
+
+def joined_over_misalignment(tables: Sequence[SteDatabase]) -> SteDatabase:
+    """Return the table over the misalignments of `tables`, in their order.
+
+    Facts and metadata are those of the first.
+
+    Parameters
+    ----------
+    tables : sequence of SteDatabase
+        Alike but for their misalignments, which increase from one to the next.
+
+    Raises
+    ------
+    DatabaseError
+        If their other axes have different sizes or the misalignments do not increase.
+    """
+    along = {
+        name: dimensions.index(AXIS) for name, dimensions in tables[0].stored.items() if AXIS in dimensions
+    }
+    joined: dict[str, Any] = {
+        name: np.concatenate([getattr(table, name) for table in tables], axis=axis)
+        for name, axis in along.items()
+    }
+    return replace(tables[0], **joined)

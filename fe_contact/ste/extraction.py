@@ -11,10 +11,14 @@ from numpy.typing import NDArray
 
 from fe_contact.errors import DatabaseError
 from fe_contact.ste.fields import SteFields
-from fe_contact.ste.force_cubic import ForceCubic
-from fe_contact.ste.force_table import ForceTable
+from fe_contact.ste.force_table import (
+    ForceCubic,
+    ForceTable,
+    deflection_grid,
+    monotone_stiffness,
+    stiffness_grid,
+)
 from fe_contact.ste.interpolation import Axis, monotone_slopes, ordered_slopes
-from fe_contact.ste.level_grid import deflection_grid, monotone_stiffness, stiffness_grid
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
 # Levels between the stored loads, with the kink where a further tooth pair comes into contact.

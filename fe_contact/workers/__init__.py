@@ -5,10 +5,7 @@ the caller, whatever the number of workers, and results come in the order of the
 """
 
 from fe_contact.workers.dask_cluster import ByDask, dask_workers
-from fe_contact.workers.executor import ByExecutor
-from fe_contact.workers.in_process import InProcess, Workers
-from fe_contact.workers.or_here import OrHere
+from fe_contact.workers.executor import ByExecutor, InProcess, OrHere, RunCost, Workers
 from fe_contact.workers.remembering import Remembering
-from fe_contact.workers.run_cost import RunCost
 
 __all__ = ["ByDask", "ByExecutor", "InProcess", "OrHere", "Remembering", "RunCost", "Workers", "dask_workers"]

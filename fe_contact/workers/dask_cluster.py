@@ -10,8 +10,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from fe_contact.errors import InputError, WorkersLost
-from fe_contact.workers.packed import KEPT, Packed
-from fe_contact.workers.run_cost import RunCost, do_task
+from fe_contact.workers.executor import KEPT, Packed, RunCost, do_task
 
 if TYPE_CHECKING:
     from distributed import Client

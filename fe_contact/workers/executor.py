@@ -1,19 +1,138 @@
-"""Tasks by an executor of the standard library, such as a pool of processes of this machine."""
+"""Executors of tasks, and what travels to them: in this process, or by a pool of the standard library."""
 
 from __future__ import annotations
 
+import hashlib
+import pickle
+import shutil
+import tempfile
+import threading
+import time
+import weakref
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future
 from dataclasses import dataclass, field
-from typing import Any, TypeVar
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Generic, Protocol, TypeVar
 
 from fe_contact.errors import WorkersLost
-from fe_contact.workers.packed import KEPT, Packed, PassedFiles
-from fe_contact.workers.run_cost import RunCost, do_task
+from host import children_cpu_seconds, peak_memory
+
+# Arguments that tasks share, pickled once.
+
+KEPT = 2
+"""Shared things that a thread of a worker keeps: what it prepared of one serves all its tasks."""
+_local = threading.local()
+
+
+@dataclass(frozen=True)
+class Packed:
+    """Something pickled, with its digest; in a file if that is given."""
+
+    content: bytes
+    digest: str
+    file: Path | None = None
+
+    @classmethod
+    def of(cls, shared: object) -> Packed:
+        """Pickle it."""
+        content = pickle.dumps(shared, protocol=pickle.HIGHEST_PROTOCOL)
+        return cls(content, hashlib.sha256(content).hexdigest())
+
+    def in_file(self, folder: Path) -> Packed:
+        """Put it into a file of the folder."""
+        file = folder / self.digest
+        file.write_bytes(self.content)
+        return Packed(b"", self.digest, file)
+
+    def unpacked(self) -> Any:
+        """Return it; the same object for all tasks of a thread, so that what it keeps is kept."""
+        known: dict[str, Any] = _local.__dict__.setdefault("known", {})
+        if self.digest not in known:
+            while len(known) >= KEPT:
+                known.pop(next(iter(known)))
+            content = self.content if self.file is None else self.file.read_bytes()
+            known[self.digest] = pickle.loads(content)
+        return known[self.digest]
+
+
+class PassedFiles:
+    """A folder for what goes to other processes of this machine; it ends with the last reference to it."""
+
+    @cached_property
+    def path(self) -> Path:
+        """The folder, made when first requested."""
+        path = Path(tempfile.mkdtemp(prefix="lineofaction-"))
+        weakref.finalize(self, shutil.rmtree, path, ignore_errors=True)
+        return path
+
+
+# Cost of tasks to the workers that did them.
+
+R = TypeVar("R")
+
+
+@dataclass
+class RunCost:
+    """Cost of remote tasks so far; the only state here that changes.
+
+    Work that is lost with its worker is not in it: nobody can tell.
+
+    Attributes
+    ----------
+    tasks : int
+    cpu_seconds : float
+        Of the threads that did them and of the processes they started. A worker that does its tasks in its
+        main thread, as those of a pool of processes, has no others: then of all its threads.
+    peak_memory_bytes : int
+        Largest resident memory of any of their processes.
+    lost : str
+        Why they were lost, and the rest was done here; empty if they were not.
+    """
+
+    tasks: int = 0
+    cpu_seconds: float = 0.0
+    peak_memory_bytes: int = 0
+    lost: str = ""
+
+    def since(self, before: RunCost) -> RunCost:
+        """Return what was spent after another reading of the same; the peak is that of all."""
+        cpu_seconds = self.cpu_seconds - before.cpu_seconds
+        return RunCost(self.tasks - before.tasks, cpu_seconds, self.peak_memory_bytes, self.lost)
+
+    def add(self, done: Done[R]) -> R:
+        """Count a task, and return its result."""
+        self.tasks += 1
+        self.cpu_seconds += done.cpu_seconds
+        self.peak_memory_bytes = max(self.peak_memory_bytes, done.peak_memory_bytes)
+        return done.result
+
+
+@dataclass(frozen=True)
+class Done(Generic[R]):
+    """The result of one task, and what it cost its worker."""
+
+    result: R
+    cpu_seconds: float
+    peak_memory_bytes: int
+
+
+def do_task(function: Callable[[Any, Any], R], packed: Packed, item: Any) -> Done[R]:
+    """Do one task, on a worker."""
+    begun = _cpu_seconds()
+    result = function(packed.unpacked(), item)
+    return Done(result, _cpu_seconds() - begun, peak_memory())
+
+
+def _cpu_seconds() -> float:
+    alone = threading.current_thread() is threading.main_thread()
+    own = time.process_time() if alone else time.thread_time()
+    return own + children_cpu_seconds()
+
 
 S = TypeVar("S")
 T = TypeVar("T")
-R = TypeVar("R")
 
 LARGE = 100_000
 """Bytes; what tasks share beyond that goes by a file and not with each of them."""
@@ -77,3 +196,79 @@ def _lost(done: int, of: int) -> WorkersLost:
     """Say what is known of a pool that broke."""
     reason = "A process of the pool ended during the run; it may have run out of memory"
     return WorkersLost(f"{reason}: {done} of {of} tasks were done.")
+
+
+# The protocol of workers, and the simplest of them: this process.
+
+
+class Workers(Protocol):
+    """Runs independent tasks."""
+
+    @property
+    def cost(self) -> RunCost:
+        """Cost of remote tasks, beside the CPU time of this process."""
+        ...
+
+    def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
+        """Yield ``function(shared, item)`` of every item, in their order.
+
+        The function is one of a module; `shared`, items and results can be pickled. The same object shared by
+        several runs is sent once.
+
+        Raises
+        ------
+        WorkersLost
+            There is nobody left to do the tasks.
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class InProcess:
+    """One task after the other, here."""
+
+    @property
+    def cost(self) -> RunCost:
+        """Nothing: all is done here."""
+        return RunCost()
+
+    def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
+        """Yield results as they are computed."""
+        return (function(shared, item) for item in items)
+
+
+# Tasks by others as long as there are any, then here: the results are the same.
+
+
+@dataclass(frozen=True)
+class OrHere:
+    """Workers that may be lost; what they leave is done in this process.
+
+    Attributes
+    ----------
+    others : Workers
+    told : callable
+        Called once, with the reason, when they are lost; nobody looks for them again.
+    """
+
+    others: Workers
+    told: Callable[[WorkersLost], None]
+
+    @property
+    def cost(self) -> RunCost:
+        """Cost of the tasks that the other workers did."""
+        return self.others.cost
+
+    def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
+        """Yield the results of the others, and from where they are lost those of this process."""
+        done = 0
+        if not self.cost.lost:
+            try:
+                for result in self.others.run(function, shared, items):
+                    yield result
+                    done += 1
+            except WorkersLost as error:
+                self.cost.lost = str(error)
+                self.told(error)
+        for item in items[done:]:
+            yield function(shared, item)

@@ -6,8 +6,7 @@ import math
 from dataclasses import dataclass, replace
 
 from fe_contact.geometry import Gear
-from fe_contact.geometry.backlash import reference_center_distance
-from fe_contact.geometry.balanced_shift import balanced_shifts
+from fe_contact.geometry.backlash import balanced_shifts, reference_center_distance
 from lineofaction.cli.options import PairWishes as Wanted
 from lineofaction.gearbox.units import DEGREE, MM
 

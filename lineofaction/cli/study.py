@@ -14,7 +14,7 @@ from bounds import engineering
 from dynamics.results import RunResult
 from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.workers import Remembering, Workers
-from fe_contact.workers.content import content_digest
+from fe_contact.workers.remembering import content_digest
 from host import cpu_seconds
 from host.directories import cache_home
 from lineofaction.cli.analyze import assessed_scene

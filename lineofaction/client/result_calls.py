@@ -97,7 +97,7 @@ class ResultCalls(Surface):
         """
         file = yield from ResultCalls.fetch_file(self, key, kind)
         with libraries():
-            from model_studies.netcdf_input import read_dataset  # noqa: PLC0415 (keeps the client light)
+            from model_studies.netcdf import read_dataset  # noqa: PLC0415 (keeps the client light)
 
             return read_dataset(file)
 

@@ -12,7 +12,7 @@ from typing import Any, Literal
 import numpy as np
 
 from fe_contact.analysis import analyze
-from fe_contact.analysis.studies.warm_up import warm_up
+from fe_contact.analysis.studies.frontier import warm_up
 from fe_contact.geometry import (
     FlankGrid,
     FlankModification,

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
-from model_studies.netcdf_input import opened
+from model_studies.netcdf import opened
 from service.store.database import instant, now
 from service.store.deployment import Deployment
 from service.store.files import KeptFile, ResultName

@@ -8,8 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from fe_contact.solver_version import SOLVER_VERSION
-from fe_contact.ste.content_hash import content_hash
-from fe_contact.ste.facts import SCHEMA_VERSION
+from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from lineofaction.gearbox.convert.checks import check_case
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from service.schemas.execute import AnalyzeInputs, SimulateInputs

@@ -22,7 +22,7 @@ REMAINS = {
     ("dynamics/results/case.py", "flexible_shafts"): "heading of the case that a result echoes",
     ("fe_contact/planning/discretization.py", "finite_width"): "key of the hash by which tables are stored",
     ("fe_contact/ste/curve_errors.py", "finite_width"): "source of an error in stored tables",
-    ("fe_contact/analysis/estimates/curve_error_estimate.py", "finite_width"): "the same source",
+    ("fe_contact/analysis/estimates/assessed_table.py", "finite_width"): "the same source",
     ("lineofaction/gearbox/convert/scene.py", "shaft_deflection"): "the ledger of a stored table",
     ("lineofaction/gearbox/studies/sensitivity/run.py", "corner_contact"): "field of the study's result",
     ("lineofaction/gearbox/studies/sensitivity/stored.py", "corner_contact"): "the same field in its file",

@@ -4,7 +4,7 @@ import pytest
 
 from dynamics.shafts import BeamSection
 from fe_contact import STEEL
-from fe_contact.body.shaft import Shaft
+from fe_contact.body import Shaft
 from lineofaction.gearbox.schemas.gear_body import MaterialInput
 from lineofaction.gearbox.schemas.scene_shafts import SectionInput
 

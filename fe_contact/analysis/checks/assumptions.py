@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
 from bounds import engineering
 from fe_contact.allowed_error import AllowedError
-from fe_contact.analysis.pairs.operating_points import OperatingPoint, OperatingPoints
+from fe_contact.analysis.pairs.pair_contact import OperatingPoint, OperatingPoints
 from fe_contact.analysis.pairs.solved_operating_points import assemble_remotely
 from fe_contact.analysis.request.request import Checked
-from fe_contact.analysis.tables.solved_table import SolvedTable
+from fe_contact.analysis.request.request_check import check_asked
+from fe_contact.analysis.tables import SolvedTable
 from fe_contact.contact import Candidates, ContactProblem, ContactSolution
 from fe_contact.effects.across_face import across_face
 from fe_contact.effects.influence import EstimatedInfluence, estimate_influence
 from fe_contact.effects.misalignment import MisalignmentGap
+from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.geometry.printed_data import backlash_rounding
 from fe_contact.planning import Plan, left_out
+from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, Json
 
 # Depth of tip edges inside the mating flanks in a contact that was solved without them.
@@ -303,3 +306,60 @@ def _over_nodes(run: SolvedRun, figure: Callable[..., Any]) -> FloatArray:
 def violated(assumptions: Sequence[Assumption]) -> tuple[Assumption, ...]:
     """Return those that do not hold."""
     return tuple(assumption for assumption in assumptions if assumption.holds is False)
+
+
+# Repetition of a run that shows that something it took for granted is wrong.
+
+Run = TypeVar("Run", bound=SolvedRun)
+
+
+def settled(
+    run: Run,
+    check: Callable[[Run], tuple[Assumption, ...]],
+    repeat: Callable[[Run, Mapping[str, str]], Run],
+    clock: StageClock,
+) -> tuple[Run, tuple[Assumption, ...], list[Json]]:
+    """Check what a run took for granted; where that is wrong, do as the caller chose.
+
+    An automatic effect that turns out to be needed is switched on and the run made `repeat` with the effects
+    and reasons given. What was requested by name is only reported.
+
+    Returns
+    -------
+    run
+        The last one.
+    assumptions : tuple of Assumption
+        Of the last one.
+    repeated : list of dict
+        What was turned on each time, and the CPU seconds it took.
+
+    Raises
+    ------
+    SolveError
+        An assumption does not hold and `on_violation` is "fail".
+    """
+    repeated: list[Json] = []
+    while True:
+        with clock.stage("assumptions"):
+            assumptions = check(run)
+        wrong = violated(assumptions)
+        request = run.checked.request
+        if wrong and request.options.on_violation == "fail":
+            reasons = "; ".join(f"{flaw.what}: {flaw.reason}" for flaw in wrong)
+            raise SolveError(f"violated assumptions: {reasons}")
+        automatic = {entry.name for entry in run.checked.ledger if entry.choice == "auto" and not entry.on}
+        needed = {flaw.effect: f"{flaw.what}: {flaw.reason}" for flaw in wrong if flaw.effect in automatic}
+        if not needed or request.options.on_violation != "repeat":
+            return run, assumptions, repeated
+        before = sum(clock.seconds.values())
+        run = repeat(run, needed)
+        repeated.append({"turned_on": needed, "cpu_seconds": sum(clock.seconds.values()) - before})
+
+
+def with_effects(checked: Checked, needed: Mapping[str, str], *, whole_table: bool = True) -> Checked:
+    """Return the request with effects switched on that a run showed to be needed."""
+    request = checked.request
+    reasons = {name: f"on after a run without it: {reason}" for name, reason in needed.items()}
+    neglected = {name: reason for name, reason in request.neglected.items() if name not in needed}
+    turned_on = {**request.turned_on, **reasons}
+    return check_asked(replace(request, neglected=neglected, turned_on=turned_on), whole_table=whole_table)

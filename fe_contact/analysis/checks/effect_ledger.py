@@ -8,11 +8,10 @@ from pathlib import Path
 
 from bounds import engineering
 from fe_contact.analysis.checks.assumptions import Assumption
-from fe_contact.analysis.request.influences import Influences, estimated_influences
-from fe_contact.analysis.request.request import Checked
+from fe_contact.analysis.request.request import Checked, Influences, estimated_influences
 from fe_contact.analysis.request.request_check import check_asked
 from fe_contact.effects import LedgerEntry
-from fe_contact.effects.flipping import flipped
+from fe_contact.effects.composer import flipped
 from fe_contact.effects.influence import Influence
 from fe_contact.errors import InputError
 from fe_contact.planning import Plan, make_plan, planned, predict_run

@@ -3,34 +3,144 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache, partial
 from importlib.metadata import version
 
+import numpy as np
+
 from bounds import Finding
-from fe_contact.analysis.checks.assumptions import check_assumptions
+from fe_contact.allowed_error import AllowedError
+from fe_contact.analysis.checks.assumptions import check_assumptions, settled, with_effects
 from fe_contact.analysis.checks.effect_ledger import effect_ledger
-from fe_contact.analysis.checks.repetition import settled, with_effects
-from fe_contact.analysis.database.contact_receipt import contact_receipt
-from fe_contact.analysis.database.tolerance_receipt import tolerance_receipt
 from fe_contact.analysis.estimates.assessed_table import AssessedTable, assessed_table, unassessed_table
-from fe_contact.analysis.request.decided import Decided
-from fe_contact.analysis.request.influences import Influences, started_influences
-from fe_contact.analysis.request.request import Checked, Request
-from fe_contact.analysis.tables.solved_table import SolvedTable, condensed_bodies, solve_table
+from fe_contact.analysis.estimates.error_estimate import worst_residual
+from fe_contact.analysis.request.model_choice import Decided
+from fe_contact.analysis.request.request import Checked, Influences, Request, started_influences
+from fe_contact.analysis.tables import SolvedTable, condensed_bodies, solve_table
+from fe_contact.contact import ContactProblem, ContactSolution
+from fe_contact.contact.problem import condition_numbers
 from fe_contact.options import Run
 from fe_contact.planning.cost_model import log_name
 from fe_contact.plausibility import merged, table_findings
 from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
-from fe_contact.ste.content_hash import content_hash
-from fe_contact.ste.facts import SCHEMA_VERSION
-from fe_contact.types import Json
+from fe_contact.ste.curve_errors import AT_NODES, BETWEEN_NODES, all_sources
+from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK, mean_of_curves
+from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
+from fe_contact.types import FloatArray, Json, Status
 from fe_contact.workers import InProcess, RunCost
 from model_studies.progress import by_cost
 from model_studies.run_log import record
+
+# The contact solver in the receipt: how hard the points were, and which failed.
+
+FEW_ITERATIONS = 40
+"""Iterations that a point is expected to need at most; those beyond are counted."""
+
+Solved = Sequence[tuple[ContactProblem, ContactSolution]]
+
+
+def contact_receipt(
+    solved: Solved, support: Solved, *, condition: bool = True, known: FloatArray | None = None
+) -> Json:
+    """Return figures over all places of a table, at its own loads and at the support loads.
+
+    Parameters
+    ----------
+    solved, support : sequence of (ContactProblem, ContactSolution)
+        Of every place. Support loads that failed anywhere are not in the table, and are named here.
+    condition : bool
+        Whether the condition number is computed, which takes some per cent of the contact; else it is None.
+    known : ndarray, optional
+        Condition numbers that were found with the solutions.
+    """
+    solutions = [solution for _, solution in solved]
+    iterations = np.concatenate([solution.iterations.ravel() for solution in solutions])
+    left_out = ~np.all([s.status == Status.CONVERGED for _, s in support], axis=(0, 1))
+    return {
+        "newton_iterations_max": int(iterations.max()),
+        "newton_iterations_mean": float(iterations.mean()),
+        f"newton_points_over_{FEW_ITERATIONS}": int(np.count_nonzero(iterations > FEW_ITERATIONS)),
+        "residuals_max": max(worst_residual(solution) for solution in solutions),
+        "condition_number_max": _worst_condition(solved, known) if condition else None,
+        "patch_outgrown_points": sum(int(solution.beyond.sum()) for solution in solutions),
+        "failed_points": failed_points(solutions),
+        "support_loads_left_out": support[0][1].load[left_out].tolist(),
+    }
+
+
+def failed_points(solutions: Sequence[ContactSolution]) -> dict[str, int]:
+    """Return how many points failed, by the name of their status; empty if none did."""
+    codes = Counter(int(code) for solution in solutions for code in solution.status.ravel() if code)
+    return {Status(code).name: count for code, count in sorted(codes.items())}
+
+
+def _worst_condition(solved: Solved, known: FloatArray | None = None) -> float | None:
+    """Return the largest condition number of the compliance between candidates; None if one is not definite.
+
+    Operating points of one center distance share their compliance, which is assessed once.
+    """
+    if known is None:
+        shared = {id(problem.compliance): problem.compliance for problem, _ in solved}
+        known = np.array([condition_numbers(compliance).max() for compliance in shared.values()])
+    worst = float(known.max())
+    return worst if np.isfinite(worst) else None
+
+
+# The tolerance that was requested, held against the errors that were measured.
+
+
+def error_shares(table: SteDatabase, allowed: AllowedError) -> FloatArray:
+    """Return the errors of mean and peak-to-peak by source in parts of what is allowed.
+
+    Returns
+    -------
+    ndarray, shape (9, 2, F, M, D)
+        Sources in the order of `SOURCES`; those between nodes stand at the lower node of their interval. NaN
+        where not estimated and at failed points.
+    """
+    ste = table.static_transmission_error
+    values = np.stack([mean_of_curves(table.position, ste, table.period), np.ptp(ste, axis=0)])
+    return np.asarray(table.curve_error[:, [MEAN, PEAK_TO_PEAK]] / allowed.of(values))
+
+
+def tolerance_receipt(table: SteDatabase, allowed: AllowedError) -> Json:
+    """Hold the errors of mean and peak-to-peak at all nodes of a table against the tolerance.
+
+    Returns
+    -------
+    dict
+        `relative`, `floor_m`: the tolerance. `used`: the largest error over what is allowed. `met`: whether
+        that is at most 1. Both are None where errors were not estimated; a failed point keeps nothing.
+        `between_nodes`: the axes between whose nodes interpolation alone takes more than is allowed.
+    """
+    shares = error_shares(table, allowed)
+    total = all_sources(shares[: len(AT_NODES)])
+    used = float(np.max(total))
+    limits = {"relative": allowed.relative, "floor_m": allowed.floor}
+    if np.isnan(total).all():
+        return limits | {"used": None, "met": None}
+    kept = {"used": used if np.isfinite(used) else None, "met": used <= 1.0}
+    return limits | kept | {"between_nodes": _between_nodes(table, shares)}
+
+
+def _between_nodes(table: SteDatabase, shares: FloatArray) -> list[Json]:
+    """Return the worst interval of each axis that takes more than is allowed; more nodes are the caller's."""
+    axes = zip(BETWEEN_NODES, (table.force, table.misalignment, table.center_distance_change), strict=True)
+    beyond = []
+    for i, (name, nodes) in enumerate(axes):
+        by_interval = np.moveaxis(shares[len(AT_NODES) + i], 1 + i, 0)[:-1]
+        worst = np.nan_to_num(by_interval).max(axis=(1, 2, 3), initial=0.0)
+        if worst.size and worst.max() > 1.0:
+            k = int(np.argmax(worst))
+            interval = [float(nodes[k]), float(nodes[k + 1])]
+            beyond.append({"axis": name, "used": float(worst[k]), "between": interval})
+    return beyond
+
 
 PACKAGES = ("lineofaction", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
 

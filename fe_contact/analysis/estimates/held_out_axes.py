@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_contact.analysis.pairs.operating_points import OperatingPoint, OperatingPoints, operating_points
+from fe_contact.analysis.pairs.pair_contact import OperatingPoint, OperatingPoints, operating_points
 from fe_contact.analysis.pairs.solved_operating_points import Solved, deflected_operating_points
 from fe_contact.contact import Start
 from fe_contact.effects import ContactScene

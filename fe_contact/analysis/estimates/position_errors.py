@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.analysis.pairs.operating_points import OperatingPoints
+from fe_contact.analysis.pairs.pair_contact import OperatingPoints
 from fe_contact.analysis.pairs.solved_operating_points import deflected_operating_points
-from fe_contact.analysis.tables.position_nodes import PositionNodes
+from fe_contact.analysis.tables import PositionNodes
 from fe_contact.contact import ContactSolution
 from fe_contact.planning import NodeRule, Plan
 from fe_contact.sampled import LOADS, sample_of, spread
@@ -186,3 +186,49 @@ def _told(nodes: PositionNodes, curves: FloatArray, loads: int) -> PositionError
 
 def _knots(nodes: PositionNodes, period: int) -> FloatArray:
     return (np.arange(period)[:, None] + nodes.position).ravel()
+
+
+# Errors between even positions, measured by half of them: nothing is solved for it.
+#
+# Curves through every second position are held against those through all. What the second half changed is
+# carried on to what a third would; corners between the positions, which it may have passed by, are looked for
+# by themselves.
+
+LEFT_BY_HALF = 0.75
+"""Error of all positions over what half of them changes: 1/3 for second order, and more for kinks, which may
+stand anywhere in an interval."""
+PASSED_BY = 1.25
+"""Peak-to-peak that is missed over the corners at which chords beside an interval meet: flanks bend towards
+them. Both parts were set on the pairs of docs/accuracy.md ("Constants"), against eight times as many
+positions on the same meshes."""
+
+
+def errors_by_halves(knots: FloatArray, values: FloatArray, period: int) -> PositionErrors:
+    """Assess even positions by themselves.
+
+    Parameters
+    ----------
+    knots : ndarray, shape (K,)
+        Base pitches, equally spaced in [0, period).
+    values : ndarray, shape (K, F)
+        STE in m; NaN where a solution failed.
+    period : int
+        Base pitches.
+
+    Returns
+    -------
+    PositionErrors
+        Bands (K, F) from what each position's neighbors miss of it; of the curves (22, F) the larger change
+        of the two halves.
+    """
+    change = np.maximum(*(_changed(knots, values, slice(first, None, 2), period) for first in (0, 1)))
+    curves = LEFT_BY_HALF * change
+    curves[PEAK_TO_PEAK] = np.maximum(curves[PEAK_TO_PEAK], PASSED_BY * missed_peaks(knots, values, period))
+    missed = NEXT_SPACING * predicted_failure(Axis(knots, float(period)), values)
+    beside = np.maximum(missed, np.maximum(np.roll(missed, 1, axis=0), np.roll(missed, -1, axis=0)))
+    return PositionErrors(beside, curves)
+
+
+def _changed(knots: FloatArray, values: FloatArray, half: slice, period: int) -> FloatArray:
+    """Return what the other half of the positions changes, (22, F) in m."""
+    return quantity_changes(knots[half], values[half], values, period, knots)

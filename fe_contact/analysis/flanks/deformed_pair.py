@@ -15,10 +15,10 @@ from fe_contact.analysis.flanks.solved_operating_point import (
     solve_operating_point,
 )
 from fe_contact.analysis.request.request_check import check_point
-from fe_contact.checks import integer
 from fe_contact.compliance.deformation_3d import deformed_solids
 from fe_contact.compliance.deformed_gear import DeformedGear, deformed_sections
 from fe_contact.contact import face_flank_forces, plane_flank_forces
+from fe_contact.errors import integer
 from fe_contact.geometry import ParallelAxes, tooth_profile
 from fe_contact.mesh.export import write_cells
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run

@@ -3,21 +3,32 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from fe_contact.analysis.flanks.flank_scene import FlankScene
-from fe_contact.analysis.flanks.load_distribution import LoadDistribution
+from bounds import Finding, warn_of
+from fe_contact.analysis.database.compute_database import software_versions
+from fe_contact.analysis.flanks.load_distribution import FlankScene, LoadDistribution, load_distribution
+from fe_contact.analysis.flanks.solved_operating_point import solved_point
+from fe_contact.analysis.request.request import Checked
+from fe_contact.geometry import ParallelAxes
+from fe_contact.options import AnalysisOptions, OperatingPoint, Run
+from fe_contact.plausibility import flank_findings, merged, unexpected
+from fe_contact.solver_version import SOLVER_VERSION
+from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata
-from fe_contact.ste.netcdf_file import FileFormat, digest, json_attribute
+from fe_contact.ste.facts import content_hash
+from fe_contact.ste.netcdf import FileFormat, digest, json_attribute
 from fe_contact.types import FloatArray, Json
-from model_studies.netcdf_content import NetcdfContent, Variable
+from model_studies.netcdf import NetcdfContent, Variable
 
 if TYPE_CHECKING:
     from fe_contact.analysis.flanks.load_distribution import LoadDistribution
+
 
 # Contact pattern: the largest pressure that each point of the unrolled flank meets over the mesh cycle.
 
@@ -178,3 +189,76 @@ def _attributes(results: LoadDistribution, arrays: dict[str, Any]) -> Json:
         **{name: getattr(results, name) for name in _SCALARS},
         "data_sha256": digest(arrays),
     }
+
+
+# Flank results: what happens on the flanks of a gear pair at one load and one alignment.
+
+
+def flank_results(
+    pair: ParallelAxes,
+    point: OperatingPoint,
+    options: AnalysisOptions = AnalysisOptions(),  # noqa: B008 (frozen)
+    run: Run = Run(),  # noqa: B008 (frozen)
+    *,
+    at: ArrayLike | None = None,
+    case: Json | None = None,
+) -> LoadDistribution:
+    """Solve the contact of one load and alignment, and return load, pressure and gap on the flanks.
+
+    Parameters
+    ----------
+    pair : GearPair or InternalGearPair
+    point : OperatingPoint
+    options : AnalysisOptions
+        `positions` and `receipt` are ignored.
+    run : Run
+        Workers are not used.
+    at : array_like, optional
+        Positions in base pitches; default: 64 over one mesh cycle, as `contact_pattern` needs them. Teeth
+        with pitch deviations are those that mesh there: the first ones of the lists in 0 to 1.
+    case : dict, optional
+        The case as the caller phrased it, echoed and hashed; default: the request in SI units.
+
+    Raises
+    ------
+    InputError
+        A value that cannot be used, by field name.
+    MeshError, SolveError No acceptable mesh, positions without a solution, or a violated assumption if
+    `on_violation` is "fail".
+    """
+    solved, receipt = solved_point(pair, point, options, at, StageClock(run.workers.cost), run)
+    checked, request = solved.checked, solved.checked.request
+    results = load_distribution(
+        solved.contact.pair,
+        solved.problem,
+        solved.solution,
+        misalignment=float(request.misalignment[0]),
+        center_distance_change=float(request.center_distance_change[0]),
+        metadata=Metadata(receipt=receipt),
+    )
+    warn_of(unexpected(request.findings, _findings(results)))
+    return replace(results, metadata=_metadata(checked, results, case))
+
+
+def _findings(results: LoadDistribution) -> tuple[Finding, ...]:
+    return flank_findings(float(np.max(results.clear_pressure, initial=0.0)))
+
+
+def _metadata(checked: Checked, results: LoadDistribution, case: Json | None) -> Metadata:
+    """Everything about the making; the hash is of all that decides the result."""
+    scene = results.scene
+    request: Json = {
+        "case": case or checked.request.to_json(),
+        "normal_force": scene.normal_force,
+        "misalignment": scene.misalignment,
+        "center_distance_change": scene.center_distance_change,
+        "position": results.position.tolist(),
+    }
+    return replace(
+        results.metadata,
+        case=request["case"],
+        effect_ledger=[entry.to_json() for entry in checked.ledger],
+        content_hash=content_hash({"flank_results": request}, SOLVER_VERSION, SCHEMA_VERSION),
+        software_versions=software_versions(),
+        warnings=[finding.to_json() for finding in merged(checked.request.findings, _findings(results))],
+    )

@@ -3,21 +3,95 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fe_contact.analysis.flanks.flank_scene import FlankScene, flank_scene
+from fe_contact.analysis.pairs.tabulate import pair_facts
 from fe_contact.contact import ContactProblem, ContactSolution, at_edges, contact_pressure
 from fe_contact.contact.touch import rolls_at
+from fe_contact.errors import DatabaseError
 from fe_contact.geometry import ParallelAxes
-from fe_contact.ste import Metadata
-from fe_contact.types import BoolArray, FloatArray, IntArray
+from fe_contact.ste import Metadata, PairFacts
+from fe_contact.types import BoolArray, FloatArray, IntArray, Json
 
 if TYPE_CHECKING:
     import xarray
+
+
+# The scene of flank results: the load, the alignment, and the marks on both flanks.
+
+Both = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class FlankScene:
+    """One load and one alignment of one pair. Roll lengths are of (pinion, wheel), each on its own flank.
+
+    Attributes
+    ----------
+    normal_force, torque : float
+        F_bn in N and the torque on the driving gear in N m.
+    misalignment, center_distance_change : float
+        m.
+    start_of_active_profile, pitch_point, tip : (float, float)
+        Roll lengths where the mating tip meets the flank, at the pitch point and at the own tip, m.
+    path_of_contact : tuple of float
+        Points A, B, C, D, E as roll lengths of the driving gear, m.
+    common_face : (float, float)
+        Ends of the common face, as distances from the pinion's mid-face, m.
+    facts : PairFacts
+    """
+
+    normal_force: float
+    torque: float
+    misalignment: float
+    center_distance_change: float
+    start_of_active_profile: Both
+    pitch_point: Both
+    tip: Both
+    path_of_contact: tuple[float, float, float, float, float]
+    common_face: Both
+    facts: PairFacts
+
+    def to_json(self) -> Json:
+        """Return plain JSON with the same names."""
+        return asdict(self)
+
+    @classmethod
+    def from_json(cls, content: Json) -> FlankScene:
+        """Read back what `to_json` wrote; `DatabaseError` if it is something else."""
+        try:
+            plain: Json = {name: tuple(v) if isinstance(v, list) else v for name, v in content.items()}
+            plain["facts"] = PairFacts.from_json(content["facts"])
+            return cls(**plain)
+        except (TypeError, ValueError, KeyError, AttributeError) as error:
+            raise DatabaseError("the scene of the flank results is not readable") from error
+
+
+def flank_scene(
+    pair: ParallelAxes, normal_force: float, misalignment: float = 0.0, center_distance_change: float = 0.0
+) -> FlankScene:
+    """Describe a pair that stands at its changed center distance, under a normal force in N."""
+    path = pair.path_of_contact
+    start, pitch, end = (
+        (rolled, float(pair.roll_lengths(pair.position(rolled))[1]))
+        for rolled in (path.start, path.pitch_point, path.end)
+    )
+    return FlankScene(
+        normal_force=float(normal_force),
+        torque=float(pair.torque(normal_force)),
+        misalignment=float(misalignment),
+        center_distance_change=float(center_distance_change),
+        start_of_active_profile=(start[0], end[1]),
+        pitch_point=pitch,
+        tip=(pair.pinion.tip_roll_length, pair.wheel.tip_roll_length),
+        path_of_contact=path.points,
+        common_face=pair.common_face,
+        facts=pair_facts(pair),
+    )
 
 
 @dataclass(frozen=True)
@@ -235,3 +309,49 @@ def _over_mean_of(values: FloatArray, among: BoolArray) -> FloatArray:
     total = values.sum(axis=-1)
     scale = np.where(total > 0.0, total, np.nan)
     return np.asarray(values.max(axis=-1) * among.sum(axis=-1) / scale)
+
+
+# Pressure over the unrolled flank, between what was computed.
+
+ROWS = 96  # along the profile
+_SAME = 0.01  # of the mean distance of contacts; nearer ones, as on a tip edge, stand on one place
+
+
+def pressure_map(flanks: LoadDistribution, roll: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return roll lengths (R,), m, and the largest pressure (R, K), Pa, that passes over a flank there.
+
+    Along the profile the pressure is interpolated between the contacts at neighboring positions, at every
+    face position by itself. Contacts on the path and those of either tip edge pass one after the other.
+
+    Parameters
+    ----------
+    flanks : LoadDistribution
+    roll : ndarray, shape (P, N, K)
+        Roll lengths on this flank, m.
+    """
+    on_path, edge = flanks.on_path, ~flanks.on_path & (flanks.force > 0.0)
+    touched = roll[on_path | edge]
+    low, high = float(touched.min()), float(touched.max())
+    lower = roll < 0.5 * (low + high)
+    rows = np.linspace(low, high, ROWS if high > low else 1)
+    pressure = np.zeros((rows.size, flanks.face_position.size))
+    for part in (on_path, edge & lower, edge & ~lower):
+        if part.any():
+            ends = float(roll[part].min()), float(roll[part].max())
+            for k in np.flatnonzero(part.any(axis=(0, 1))):
+                here = part[:, :, k]
+                passing = _between(rows, roll[:, :, k][here], flanks.pressure[:, :, k][here], ends)
+                pressure[:, k] = np.maximum(pressure[:, k], passing)
+    return rows, pressure
+
+
+def _between(
+    rows: FloatArray, roll: FloatArray, pressure: FloatArray, ends: tuple[float, float]
+) -> FloatArray:
+    """Interpolate a pressure between the places (n,) where it is known, held to both ends, 0 beyond."""
+    place = _SAME * (ends[1] - ends[0]) / roll.size or 1.0
+    knots, index = np.unique(np.round((roll - ends[0]) / place), return_inverse=True)
+    largest = np.zeros(knots.size)
+    np.maximum.at(largest, index, pressure)
+    reached = (rows >= ends[0]) & (rows <= ends[1])
+    return np.asarray(np.where(reached, np.interp(rows, ends[0] + place * knots, largest), 0.0))

@@ -9,15 +9,17 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_contact.analysis.checks.assumptions import check_one_place
-from fe_contact.analysis.checks.repetition import settled, with_effects
-from fe_contact.analysis.pairs.operating_points import OperatingPoints, operating_points
-from fe_contact.analysis.pairs.pair_contact import PairContact, pair_contact
+from fe_contact.analysis.checks.assumptions import check_one_place, settled, with_effects
+from fe_contact.analysis.pairs.pair_contact import (
+    OperatingPoints,
+    PairContact,
+    operating_points,
+    pair_contact,
+)
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_point
-from fe_contact.checks import finite
 from fe_contact.contact import ContactProblem, ContactSolution
-from fe_contact.errors import InputError, SolveError
+from fe_contact.errors import InputError, SolveError, finite
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
 from fe_contact.planning import Plan, planned

@@ -28,7 +28,7 @@ from fe_contact.contact import (
 from fe_contact.contact.problem import condition_numbers
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning import Plan
-from fe_contact.planning.contact_cost import unit_work
+from fe_contact.planning.cost_model import unit_work
 from fe_contact.types import FloatArray, IntArray
 from fe_contact.workers import Workers
 from model_studies.progress import Report, unreported

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from fe_contact.analysis.pairs.contact_lines import TASK_SECONDS, Line, SolvedLine, deflections, solved_lines
-from fe_contact.analysis.pairs.operating_points import OperatingPoint, OperatingPoints
+from fe_contact.analysis.pairs.pair_contact import OperatingPoint, OperatingPoints
 from fe_contact.contact import Candidates, ContactModel, ContactProblem, ContactSolution, Start
 from fe_contact.types import FloatArray, IntArray
 from fe_contact.workers import InProcess, Workers

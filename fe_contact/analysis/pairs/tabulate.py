@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fe_contact.analysis.pairs.operating_points import OperatingPoints
+from fe_contact.analysis.pairs.pair_contact import OperatingPoints
 from fe_contact.contact import ContactProblem, ContactSolution, at_edges, contact_pressure
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import PairFacts

@@ -8,17 +8,148 @@ model, or an explicit choice of one of the two effects that tell the models apar
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from bounds import engineering
-from fe_contact.analysis.request.decided import Decided, model_name
+from fe_contact.analysis.pairs.pair_contact import operating_points
+from fe_contact.analysis.pairs.slice_springs import SliceLaw, SpringContact, parabolic_stiffness
 from fe_contact.analysis.request.request import Checked, Request
 from fe_contact.analysis.request.request_check import check_asked
-from fe_contact.analysis.request.ripple import expected_curves
 from fe_contact.effects.influence import estimate_influence
 from fe_contact.options import LEVELS, AnalysisOptions
-from fe_contact.planning import ExpectedCurves, MeshChoice, chosen_mesh, make_plan
+from fe_contact.planning import (
+    ExpectedCurves,
+    FaceDiscretization,
+    MeshChoice,
+    MeshOption,
+    NodeRule,
+    Plan,
+    Prediction,
+    chosen_mesh,
+    expected_error,
+    make_plan,
+    predict_run,
+)
+from fe_contact.planning.effort import effort
+from fe_contact.sampled import ALIGNMENTS, LOADS, sample_of
+from fe_contact.types import FloatArray, Json
+
+# Expected mean and ripple of the transmission error, before anything is computed.
+#
+# Errors of meshes and slices are parts of the mean transmission error; requested is a part of peak-to-peak,
+# which may be half of the mean or a thousandth. Uncoupled slices tell which in hundredths of a second.
+# Without the coupling of the teeth and the bodies their mean is 0.55 to 0.94 of that of finite elements
+# (median 0.78), their ripple 0.8 to 1.4 times it where it is above 5 % of the mean (docs/frontier.md,
+# "Plan").
+
+LAW = SliceLaw(parabolic_stiffness, with_gaps=True)
+POSITIONS = 32
+COUPLED_MEAN, COUPLED_RIPPLE = 1.3, 0.85
+"""Mean under load and ripple of coupled teeth over those of uncoupled slices."""
+UNSEEN_RIPPLE = 0.007
+"""Ripple in parts of the mean that uncoupled slices do not see: they cancel where coupled teeth do not."""
+
+
+def expected_curves(checked: Checked) -> ExpectedCurves | None:
+    """Solve some loads and alignments of a request by thin slices, in its first base pitch.
+
+    None for internal pairs, which the stiffness of the slices does not know, and where shafts couple them.
+    """
+    request, model = checked.request, checked.model
+    if request.pair.internal or model.compliances:
+        return None
+    plan = make_plan(request.pair, request.load, request.options, model)
+    scene = replace(
+        request.scene,
+        misalignment=_some(request.misalignment, ALIGNMENTS),
+        center_distance_change=_some(request.center_distance_change, ALIGNMENTS),
+    )
+    points = operating_points(scene, checked.decided, SpringContact(request.pair, plan, law=LAW)).places
+    position, load = np.arange(POSITIONS) / POSITIONS, _some(request.load, LOADS)
+    solved = [point.solve(position, load)[1] for point in points]
+    # errors grow with what the load adds: a misaligned pair leads at no load
+    unloaded = np.concatenate([np.full(load.size, np.mean(thin.no_load)) for thin in solved])
+    added = COUPLED_MEAN * (np.concatenate([np.mean(thin.deflection, axis=0) for thin in solved]) - unloaded)
+    slices = np.concatenate([np.ptp(thin.deflection, axis=0) for thin in solved])
+    mean = np.abs(unloaded + added)
+    ripple = np.hypot(COUPLED_RIPPLE * slices, UNSEEN_RIPPLE * added)
+    return ExpectedCurves(np.tile(load, len(solved)), added, mean, ripple, request.options.allowed)
+
+
+def _some(axis: FloatArray, most: int) -> FloatArray:
+    return axis[sample_of(axis.size, most)]
+
+
+# A request with the model and the mesh that were decided for it.
+
+
+@dataclass(frozen=True)
+class Decided:
+    """A request with its model and mesh.
+
+    Attributes
+    ----------
+    checked : Checked
+        With the chosen model, and a ledger that says why.
+    mesh : MeshChoice
+    plan : Plan
+    wished : Decided, optional
+        What the tolerance needs, where the time does not allow it.
+    """
+
+    checked: Checked
+    mesh: MeshChoice
+    plan: Plan
+    wished: Decided | None = None
+
+    def in_slices(self, count: int) -> Decided:
+        """Return the same model and mesh in another number of slices; itself in the plane."""
+        if not isinstance(self.plan.discretization, FaceDiscretization):
+            return self
+        made = self.plan.discretization.in_slices(count)
+        mesh = replace(self.mesh, option=replace(self.mesh.option, slices=made.slices))
+        return replace(self, mesh=mesh, plan=replace(self.plan, discretization=made))
+
+    @property
+    def usual_nodes(self) -> NodeRule:
+        """The rule by which positions are placed before any refinement."""
+        return self._plan(self.plan.level, None).nodes
+
+    def refined(self, level: str, slices: int, nodes: NodeRule, reason: str) -> Decided:
+        """Return the same model on another mesh, in other slices, with its positions placed by `nodes`."""
+        plan = replace(self._plan(level, slices), nodes=nodes)
+        request, model = self.checked.request, self.checked.model
+        error = expected_error(request.pair, plan, expected_curves(self.checked))
+        work = effort(request.pair, plan, model, request.alignments)
+        option = MeshOption(level, plan.discretization.slices, error, work)
+        return replace(self, mesh=MeshChoice(option, True, reason), plan=plan)
+
+    def predicted(self, cache: Path | None) -> Prediction:
+        """Predict what the run costs, with the compliances that are in the cache."""
+        request = self.checked.request
+        return predict_run(request.pair, self.plan, self.checked.model, request.alignments, cache)
+
+    def _plan(self, level: str, slices: int | None) -> Plan:
+        request = self.checked.request
+        return make_plan(request.pair, request.load, request.options, self.checked.model, level, slices)
+
+    def to_json(self) -> Json:
+        """Return what was chosen, as plain JSON."""
+        return {"model": model_name(self.checked)} | self.mesh.to_json()
+
+
+def model_name(checked: Checked) -> str:
+    """Name the model of a request in words."""
+    if checked.model.across_face:
+        return "three dimensions"
+    if checked.request.options.model == "plane_stress":
+        return "plane stress"
+    corrected = "plane strain corrected for the finite width"
+    return corrected if checked.model.finite_width else "plane strain"
+
 
 WIDTH_SHARE = 0.8
 """Part of the tolerance that the estimated change by the finite width may reach: estimates for

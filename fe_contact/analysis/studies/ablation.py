@@ -11,14 +11,12 @@ import numpy as np
 import model_studies
 from fe_contact.analysis.checks.effect_ledger import toggled
 from fe_contact.analysis.database.compute_database import compute_database
-from fe_contact.analysis.request.influences import estimated_influences
 from fe_contact.analysis.request.model_choice import decide
-from fe_contact.analysis.request.request import Checked
+from fe_contact.analysis.request.request import Checked, estimated_influences
 from fe_contact.analysis.request.request_check import check_asked, check_request
-from fe_contact.checks import chosen
 from fe_contact.effects import EFFECTS, LedgerEntry
 from fe_contact.effects.influence import Influence
-from fe_contact.errors import InputError, MeshError, SolveError
+from fe_contact.errors import InputError, MeshError, SolveError, chosen
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.planning import planned, predict_run

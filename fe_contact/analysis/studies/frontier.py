@@ -4,31 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from itertools import product
 from typing import Any
 
 import numpy as np
 
 import model_studies
+from fe_contact.analysis.analyze import analyze
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.studies.accuracy_study import FIDELITIES, Fidelity
-from fe_contact.analysis.studies.accuracy_study.full_contact import (
-    ORIGIN,
-    FullContactLevel,
-    known_full_contact,
-)
 from fe_contact.analysis.studies.measured_full_contact import (
     NAME,
+    ORIGIN,
+    FullContactLevel,
     MeasuredFullContact,
     full_contact_refusal,
+    known_full_contact,
     measure_full_contact,
 )
-from fe_contact.analysis.studies.warm_up import warm_up
-from fe_contact.checks import chosen, integer
-from fe_contact.errors import MeshError, SolveError
-from fe_contact.geometry import ParallelAxes
+from fe_contact.errors import MeshError, SolveError, chosen, integer
+from fe_contact.geometry import Gear, GearPair, ParallelAxes
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray, Json
@@ -42,7 +40,19 @@ from model_studies import (
     run_fidelities,
     silent,
 )
-from model_studies.fidelity import Errors
+from model_studies.frontier import Errors
+
+# Loading, and at the first use compiling, what a measured run shall not pay for.
+
+
+@lru_cache(maxsize=2)
+def warm_up(*, across_face: bool) -> None:
+    """Analyze a narrow pair once per process, in the plane and, if requested, over the face."""
+    gear = Gear(teeth=20, normal_module=1e-3, face_width=2e-3, bore_diameter=10e-3)
+    pair = GearPair(gear, gear, center_distance=20e-3)
+    for model in ("auto", "3d") if across_face else ("auto",):
+        analyze(pair, normal_forces=[10.0], level="draft", model=model, positions=8)
+
 
 # The result of a fidelity of the accuracy study on a case, and its distance from the finest one.
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.checks import integer, within
+from fe_contact.errors import integer, within
 from fe_contact.geometry import CornerContact, ParallelAxes, Toothing, corner_contact, tooth_profile
 from fe_contact.hertz import contact_modulus, half_width
 from fe_contact.types import FloatArray

@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_contact.checks import finite, positive
-from fe_contact.errors import InputError, MeshError, SolveError
+from fe_contact.errors import InputError, MeshError, SolveError, finite, positive
 from fe_contact.full_contact.condensation.contact_model import ContactModel, PlaneStrain, softness
 from fe_contact.full_contact.condensation.linearized_contact import (
     ActiveSetSolution,

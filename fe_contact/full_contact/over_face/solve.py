@@ -10,8 +10,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.optimize import brentq
 
-from fe_contact.checks import finite
-from fe_contact.errors import InputError
+from fe_contact.errors import InputError, finite
 from fe_contact.full_contact.condensation.contact_model import softness
 from fe_contact.full_contact.condensation.linearized_contact import (
     LEAST_FACING,

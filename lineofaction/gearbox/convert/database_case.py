@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from model_studies.netcdf_input import opened
+from model_studies.netcdf import opened
 
 
 def case_of_file(file: Path) -> dict[str, Any] | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from fe_contact.effects.influence.influence import TRIFLE
+from fe_contact.effects.influence.estimate import TRIFLE
 from lineofaction.gearbox.units import UM, boundary_text
 
 Entry = Mapping[str, Any]

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from bounds import engineering
-from fe_contact.effects.influence.influence import TRIFLE
+from fe_contact.effects.influence.estimate import TRIFLE
 from lineofaction.gearbox.convert.effect_lines import run_lines
 from lineofaction.gearbox.convert.effect_sizes import trifles_title
 

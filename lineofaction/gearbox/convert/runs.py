@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from model_studies.netcdf_input import opened_netcdf
+from model_studies.netcdf import opened_netcdf
 
 
 def staged(report: Callable[[str, float], None]) -> Callable[[float, str], None]:

@@ -9,7 +9,7 @@ from typing import Any
 
 import h5netcdf
 
-from model_studies.netcdf_input import opened_netcdf
+from model_studies.netcdf import opened_netcdf
 
 Json = dict[str, Any]
 WARNINGS = "warnings"

@@ -24,7 +24,7 @@ from dynamics.shafts.inertia import Inertia
 from dynamics.shafts.shaft import Shaft as TurningShaft
 from dynamics.solid_housing import Material as HousingMaterial
 from dynamics.solid_housing import ReductionSettings, SeatWall
-from fe_contact.body.shaft import Shaft
+from fe_contact.body import Shaft
 from fe_contact.flank.modification import FlankModification
 from fe_contact.geometry import Gear, GearPair, RingGear
 from fe_contact.geometry.toothing import MATING

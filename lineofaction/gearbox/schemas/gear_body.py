@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fe_contact.body.shaft import Shaft
+from fe_contact.body import Shaft
 from fe_contact.material import Material
 from lineofaction.gearbox.schemas.declared import declared_in, with_fields
 from lineofaction.gearbox.schemas.model import BoundaryModel

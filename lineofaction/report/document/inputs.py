@@ -18,7 +18,7 @@ from lineofaction.gearbox.registry import STUDIES, Study
 from lineofaction.report.drawing.page import Page
 from lineofaction.report.presentation import presentation_of
 from lineofaction.report.runs.run_view import RunView
-from model_studies.netcdf_input import UnreadableFile, opened_netcdf
+from model_studies.netcdf import UnreadableFile, opened_netcdf
 
 
 def stored_study(attributes: Mapping[str, object]) -> Study | None:

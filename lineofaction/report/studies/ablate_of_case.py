@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fe_contact.analysis.studies.ablation import Ablation, EffectAblation
-from fe_contact.effects.influence.influence import TRIFLE, Influence, signed
+from fe_contact.effects.influence.estimate import TRIFLE, Influence, signed
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Dash, Line, Note, Panel, Table, number
 from lineofaction.report.drawing.placing import placed

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from fe_contact.analysis.studies.accuracy_study.full_contact import ORIGIN
 from fe_contact.analysis.studies.frontier import Frontier
-from fe_contact.analysis.studies.measured_full_contact import PLANE, PROGRAM, MeasuredFullContact
+from fe_contact.analysis.studies.measured_full_contact import ORIGIN, PLANE, PROGRAM, MeasuredFullContact
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import number
 from lineofaction.report.studies.frontier_peer import Peer

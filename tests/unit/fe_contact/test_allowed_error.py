@@ -10,7 +10,7 @@ import pytest
 from fe_contact import AllowedError, FlankModification, Gear, GearPair, analyze
 from fe_contact.analysis import check_request
 from fe_contact.analysis.request.model_choice import decide
-from fe_contact.analysis.tables.position_nodes import adaptive_nodes
+from fe_contact.analysis.tables import adaptive_nodes
 from fe_contact.errors import InputError
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning import NodeRule

@@ -16,7 +16,7 @@ from fe_contact import Gear, GearPair, PitchDeviation, analyze
 from fe_contact.analysis.pairs import contact_lines, solved_operating_points
 from fe_contact.geometry import FlankModification, Shaft
 from fe_contact.workers import Remembering, RunCost
-from fe_contact.workers.content import content_digest
+from fe_contact.workers.remembering import content_digest
 
 ASKED: dict[str, Any] = {"torques": [60.0, 150.0], "level": "draft", "positions": 24, "pitches": 1}
 

@@ -29,7 +29,7 @@ from fe_contact.microgeometry import (
 )
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.workers import ByExecutor, InProcess, Workers, dask_workers
-from fe_contact.workers.packed import Packed
+from fe_contact.workers.executor import Packed
 
 DRAFT: dict[str, Any] = {"level": "draft", "model": "plane_strain"}
 SLOPES = Tolerances(0.0, {"pinion.profile_slope": 10e-6, "wheel.profile_slope": 5e-6})

@@ -21,9 +21,9 @@ from lineofaction.gearbox.convert.database_case import case_of_file
 from lineofaction.gearbox.convert.runs import run_json
 from lineofaction.gearbox.convert.stamp import stamped
 from lineofaction.report.document.inputs import file_attributes
-from model_studies import netcdf_input
+from model_studies import netcdf as netcdf_input
 from model_studies.array_file import Stored, read_arrays, write_arrays
-from model_studies.netcdf_input import UnreadableFile, opened, read_dataset
+from model_studies.netcdf import UnreadableFile, opened, read_dataset
 
 
 def write_own(file: Path) -> None:

@@ -15,7 +15,7 @@ import xarray
 
 from bounds.types import FloatArray, IntArray
 from model_studies import NOT_STORED, in_unit
-from model_studies.netcdf_input import UnreadableFile
+from model_studies.netcdf import UnreadableFile
 from model_studies.record_file import read_record, write_record
 
 SCHEMA = "a study of cups"

@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from fe_contact.analysis.studies.accuracy_study.full_contact import (
+from fe_contact.analysis.studies.frontier import FidelityResult, Frontier
+from fe_contact.analysis.studies.measured_full_contact import (
     FULL_CONTACT,
     MEASURED_GEAR,
+    PLANE,
+    MeasuredFullContact,
     known_full_contact,
 )
-from fe_contact.analysis.studies.frontier import FidelityResult, Frontier
-from fe_contact.analysis.studies.measured_full_contact import PLANE, MeasuredFullContact
 from fe_contact.full_contact import FullContactPoint, FullContactTable
 from fe_contact.geometry import FlankModification, GearPair
 from fe_contact.types import Status

@@ -11,9 +11,9 @@ import pytest
 
 from fe_contact import Gear, GearPair, root_stress
 from fe_contact.geometry import tooth_profile
-from fe_contact.geometry.root_tangent import critical_section
+from fe_contact.geometry.flank_profile import critical_section
 from fe_contact.options import AnalysisOptions, OperatingPoint
-from fe_contact.plausibility.nominal_load import nominal_root_stresses
+from fe_contact.plausibility.pair_checks import nominal_root_stresses
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "reference"))
 from iso6336_root_stress import RootSection, nominal_stress, root_section

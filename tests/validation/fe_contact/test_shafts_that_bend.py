@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair, Shaft, SteDatabase, analyze
-from fe_contact.effects.shaft_compliance import SeatCompliance
+from fe_contact.effects.shaft_deflection import SeatCompliance
 
 pytestmark = pytest.mark.usefixtures("coarse_sectors")
 

@@ -11,9 +11,9 @@ import pytest
 
 from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.analysis import check_request
-from fe_contact.analysis.pairs.operating_points import OperatingPoint, operating_points
+from fe_contact.analysis.pairs.pair_contact import OperatingPoint, operating_points
 from fe_contact.analysis.request.model_choice import decide
-from fe_contact.analysis.tables.solved_table import condensed_bodies
+from fe_contact.analysis.tables import condensed_bodies
 from fe_contact.contact import ContactModel, PatchRule, Slices, contact_candidates, solve_contact
 from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.stage_clock import StageClock

@@ -18,7 +18,7 @@ from fe_contact.contact import (
     solve_contact,
     with_compliances,
 )
-from fe_contact.effects.shaft_compliance import SeatCompliance, ShaftCompliance
+from fe_contact.effects.shaft_deflection import SeatCompliance, ShaftCompliance
 from fe_contact.geometry import Shaft
 
 SOURCE = "thin slices on a beam, closed form"

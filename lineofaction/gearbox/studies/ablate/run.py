@@ -9,8 +9,8 @@ from dynamics.ablation import Ablation as SceneAblation
 from dynamics.ablation import ablate as ablate_scene
 from dynamics.effects import EFFECTS as SCENE_EFFECTS
 from fe_contact.analysis.studies.ablation import Ablation, ablate
-from fe_contact.checks import chosen
 from fe_contact.effects import EFFECTS
+from fe_contact.errors import chosen
 from fe_contact.options import Run
 from lineofaction.gearbox.convert.case import analysis_options, boundary_errors, gear_pair, table_axes
 from lineofaction.gearbox.convert.checks import check_case

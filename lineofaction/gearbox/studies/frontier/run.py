@@ -10,7 +10,7 @@ from dynamics.accuracy import frontier as frontier_of_scene
 from dynamics.accuracy.fidelities import FIDELITIES as SCENE_FIDELITIES
 from fe_contact.analysis.studies.accuracy_study import FIDELITIES
 from fe_contact.analysis.studies.frontier import Frontier, frontier
-from fe_contact.checks import chosen
+from fe_contact.errors import chosen
 from lineofaction.gearbox.convert.case import boundary_errors, gear_pair, study_options, table_axes
 from lineofaction.gearbox.convert.checks import check_case
 from lineofaction.gearbox.convert.scene import TabledScene

@@ -33,7 +33,7 @@ from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.noise import Inputs
 from lineofaction.gearbox.studies.noise.flank_figures import flank_figures, flank_scenes
 from lineofaction.gearbox.units import RPM
-from model_studies.variants import run_variants
+from model_studies.frontier import run_variants
 
 Json = dict[str, Any]
 STEPS = {"housing_frequency": 0.02}

@@ -26,8 +26,7 @@ from fe_contact.microgeometry import (
     Worst,
     optimize,
 )
-from fe_contact.microgeometry.confirmation import ConfirmedDesign
-from fe_contact.microgeometry.harris_map import HarrisMap
+from fe_contact.microgeometry.confirmation import ConfirmedDesign, HarrisMap
 from fe_contact.microgeometry.search import never
 from fe_contact.options import Run
 from lineofaction.gearbox.convert.case import analysis_options, boundary_errors, gear_pair

@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from fe_contact.analysis import RootStressHistory, root_stress
-from fe_contact.analysis.flanks.root_stress_history import ROOTS, RootPassage, RootPeak
+from fe_contact.analysis.flanks.root_stress import ROOTS, RootPassage, RootPeak
 from fe_contact.options import Run
-from fe_contact.plausibility.nominal_load import nominal_root_stresses
+from fe_contact.plausibility.pair_checks import nominal_root_stresses
 from lineofaction.gearbox.convert.case import (
     analysis_options,
     boundary_errors,

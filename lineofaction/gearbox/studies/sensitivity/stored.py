@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from fe_contact.analysis.studies.sensitivity import RippleCurve, Sensitivity
-from fe_contact.ste.netcdf_file import FileFormat, digest, json_attribute
-from model_studies.netcdf_content import NetcdfContent, Variable
+from fe_contact.ste.netcdf import FileFormat, digest, json_attribute
+from model_studies.netcdf import NetcdfContent, Variable
 
 FORMAT = "lineofaction sensitivity study"
 SCHEMA_VERSION = 1

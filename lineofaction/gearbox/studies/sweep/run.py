@@ -13,8 +13,15 @@ import numpy as np
 from bounds import Kind
 from fe_contact.flank.modification import FlankModification
 from fe_contact.geometry import ParallelAxes
-from fe_contact.microgeometry.sweep import Sweep, SweptQuantity, sweep
-from fe_contact.microgeometry.sweep_request import CENTER_DISTANCE, TORQUE, SweepAxis, SweepRequest
+from fe_contact.microgeometry.sweep import (
+    CENTER_DISTANCE,
+    TORQUE,
+    Sweep,
+    SweepAxis,
+    SweepRequest,
+    SweptQuantity,
+    sweep,
+)
 from fe_contact.microgeometry.variables import GEARS, figure
 from fe_contact.options import Run
 from fe_contact.types import BoolArray, FloatArray

@@ -20,7 +20,7 @@ from fe_contact.contact import (
     solve_contact,
 )
 from fe_contact.contact.point_problem import point_problems
-from fe_contact.effects.influence.slice_model import Springs
+from fe_contact.effects.influence.deflection_budget import Springs
 
 M = 3e-3
 GEAR = Gear(teeth=24, normal_module=M, face_width=8 * M, bore_diameter=12 * M, helix_angle=0.3)

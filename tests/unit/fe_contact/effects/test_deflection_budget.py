@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from fe_contact import FlankModification, Gear, GearPair
-from fe_contact.body.shaft import Shaft, Shafts
+from fe_contact.body import Shaft, Shafts
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.effects.influence import DeflectionBudget, deflection_budget
-from fe_contact.effects.influence.slice_model import Springs
-from fe_contact.effects.influence.tooth_bending import half_plane, tooth_bending
+from fe_contact.effects.influence.deflection_budget import Springs
+from fe_contact.effects.influence.slice_compliance import half_plane, tooth_bending
 from fe_contact.hertz import contact_modulus, half_width, relative_radius
 
 PLANE = {"face_load_distribution": "off", "finite_width": "off", "corner_contact": "off"}

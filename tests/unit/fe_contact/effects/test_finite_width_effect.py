@@ -13,7 +13,7 @@ from fe_contact.analysis import check_request
 from fe_contact.effects import EFFECTS, ContactScene
 from fe_contact.effects.face_load_distribution import FaceLoadDistribution
 from fe_contact.effects.finite_width import FiniteWidth
-from fe_contact.geometry.finite_width import finite_width_excess
+from fe_contact.geometry.web_compliance import finite_width_excess
 from fe_contact.material import Material
 from fe_contact.planning import make_plan
 

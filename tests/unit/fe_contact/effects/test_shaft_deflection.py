@@ -13,8 +13,7 @@ from fe_contact.contact import ContactModel, ContactProblem, PatchRule, Slices, 
 from fe_contact.contact import with_compliances as with_added
 from fe_contact.contact.touch import rolls_at
 from fe_contact.effects import EFFECTS, ContactScene, compose
-from fe_contact.effects.shaft_compliance import SeatCompliance, ShaftCompliance
-from fe_contact.effects.shaft_deflection import ShaftDeflection
+from fe_contact.effects.shaft_deflection import SeatCompliance, ShaftCompliance, ShaftDeflection
 from fe_contact.errors import InputError
 from fe_contact.geometry import Gear, GearPair, InternalGearPair, ParallelAxes, RingGear, Shaft
 

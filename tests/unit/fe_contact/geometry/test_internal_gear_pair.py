@@ -12,7 +12,7 @@ from fe_contact.errors import InfeasibleGeometry, InputError
 from fe_contact.flank.involute import involute_function
 from fe_contact.geometry import Gear
 from fe_contact.geometry.backlash import reference_center_distance
-from fe_contact.geometry.internal_gear_pair import InternalGearPair
+from fe_contact.geometry.gear_pair import InternalGearPair
 from fe_contact.geometry.ring_gear import RingGear
 
 MODULE = 4e-3

@@ -11,8 +11,10 @@ import pytest
 
 from fe_contact.errors import InfeasibleGeometry
 from fe_contact.flank.involute import involute_function
-from fe_contact.geometry import Gear, internal_gear_pair
-from fe_contact.geometry.internal_gear_pair import (
+from fe_contact.geometry import Gear
+from fe_contact.geometry import gear_pair as internal_gear_pair
+from fe_contact.geometry.flank_profile import ToothProfile, tooth_profile
+from fe_contact.geometry.gear_pair import (
     InternalGearPair,
     flank_angle,
     pinion_edge_path,
@@ -20,9 +22,7 @@ from fe_contact.geometry.internal_gear_pair import (
     tip_interference,
     trochoidal_interference,
 )
-from fe_contact.geometry.ring_gear import RingGear
-from fe_contact.geometry.tooth_profile import ToothProfile, tooth_profile
-from fe_contact.geometry.trimming import radial_clearance
+from fe_contact.geometry.ring_gear import RingGear, radial_clearance
 from fe_contact.types import FloatArray
 
 MODULE = 4e-3

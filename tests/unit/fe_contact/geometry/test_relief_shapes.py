@@ -12,7 +12,7 @@ from scipy.integrate import quad
 
 from bounds import at_most
 from fe_contact.errors import InputError
-from fe_contact.flank.relief_shape import SHAPES, Shape
+from fe_contact.flank.relief import SHAPES, Shape
 from fe_contact.geometry import FlankModification, Gear, GearPair, InternalGearPair, RingGear
 
 BY_SHAPE = pytest.mark.parametrize("shape", SHAPES)

@@ -10,8 +10,8 @@ from scipy.spatial import cKDTree
 
 from fe_contact.errors import InputError
 from fe_contact.flank.involute import involute_point
+from fe_contact.geometry.flank_profile import ToothProfile, tooth_profile
 from fe_contact.geometry.ring_gear import RingGear
-from fe_contact.geometry.tooth_profile import ToothProfile, tooth_profile
 from fe_contact.types import FloatArray
 
 RINGS: list[dict[str, Any]] = [

@@ -21,7 +21,7 @@ from fe_contact.microgeometry import (
 )
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.workers import RunCost
-from fe_contact.workers.run_cost import Done
+from fe_contact.workers.executor import Done
 
 DRAFT: dict[str, Any] = {"level": "draft", "model": "plane_strain"}
 DEAR = 1000.0

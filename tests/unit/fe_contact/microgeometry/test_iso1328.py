@@ -16,7 +16,7 @@ import pytest
 from fe_contact import Gear, GearPair
 from fe_contact.errors import InputError
 from fe_contact.microgeometry import iso1328_tolerances
-from fe_contact.microgeometry.iso1328 import helix_slope_tolerance, profile_slope_tolerance, rounded
+from fe_contact.microgeometry.tolerances import helix_slope_tolerance, profile_slope_tolerance, rounded
 
 
 def gear_of(module_mm: float, teeth: int, width_mm: float, helix_deg: float = 0.0) -> Gear:

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fe_contact.microgeometry.linear_merit import LinearMerit
-from fe_contact.microgeometry.objective import Objective, WeightedMean, Worst
+from fe_contact.microgeometry.objective import LinearMerit, Objective, WeightedMean, Worst
 
 DIMENSIONS, NODES, POSITIONS, LOADS = 3, 2, 20, 2
 LOW, HIGH = np.full(DIMENSIONS, -0.2), np.array([0.2, 0.1, 0.0])

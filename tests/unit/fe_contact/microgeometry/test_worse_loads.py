@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from fe_contact.microgeometry import Search, SearchRun
+from fe_contact.microgeometry.confirmation import HarrisMap, rising
 from fe_contact.microgeometry.design_problem import Assessed
-from fe_contact.microgeometry.harris_map import HarrisMap, rising
 from fe_contact.microgeometry.optimization import Outcome
 from fe_contact.microgeometry.optimize import conclusion
 from fe_contact.microgeometry.search import Ended

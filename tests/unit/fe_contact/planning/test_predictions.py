@@ -17,7 +17,7 @@ from fe_contact.compliance.cache import kept_size
 from fe_contact.errors import InputError
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning import cost_model, predict_run
-from fe_contact.planning.contact_cost import contact_bytes, contact_seconds, expected_positions
+from fe_contact.planning.cost_model import contact_bytes, contact_seconds, expected_positions
 from fe_contact.planning.planned import ExpectedError, MeshOption, mesh_for_time, mesh_for_tolerance
 from model_studies.run_log import FILE as LOG
 

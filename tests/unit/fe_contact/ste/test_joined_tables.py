@@ -6,7 +6,7 @@ import pytest
 from sliced_face import sliced_database
 
 from fe_contact.errors import DatabaseError
-from fe_contact.ste.joined import joined_over_misalignment
+from fe_contact.ste.database import joined_over_misalignment
 
 M = (-20e-6, 0.0, 15e-6)
 

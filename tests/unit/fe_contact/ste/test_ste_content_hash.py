@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fe_contact.errors import InputError
-from fe_contact.ste.content_hash import content_hash
+from fe_contact.ste.facts import content_hash
 
 
 def test_is_sha256_of_the_canonical_text():

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fe_contact.ste import level_grid
+from fe_contact.ste import force_table as level_grid
+from fe_contact.ste.force_table import deflection_grid, monotone_stiffness, stiffness_grid
 from fe_contact.ste.interpolation import Axis, monotone_slopes, ordered_slopes
-from fe_contact.ste.level_grid import deflection_grid, monotone_stiffness, stiffness_grid
 
 SEEDS = range(8)
 

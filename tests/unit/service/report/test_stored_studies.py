@@ -29,7 +29,7 @@ from fe_contact.microgeometry import (
     optimize,
     scatter,
 )
-from fe_contact.microgeometry.harris_map import HarrisMap
+from fe_contact.microgeometry.confirmation import HarrisMap
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray

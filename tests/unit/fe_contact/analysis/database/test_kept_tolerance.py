@@ -15,9 +15,9 @@ from fe_contact import AllowedError, Gear, GearPair, SteDatabase, analyze
 from fe_contact.analysis import check_request
 from fe_contact.analysis.database import kept_tolerance
 from fe_contact.analysis.database.compute_database import Computed, compute_database, compute_pass
-from fe_contact.analysis.estimates import curve_error_estimate, error_estimate
-from fe_contact.analysis.request.decided import Decided
-from fe_contact.analysis.request.model_choice import decide
+from fe_contact.analysis.estimates import assessed_table as curve_error_estimate
+from fe_contact.analysis.estimates import error_estimate
+from fe_contact.analysis.request.model_choice import Decided, decide
 from fe_contact.errors import MeshError, SolveError
 from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.planning import model_error

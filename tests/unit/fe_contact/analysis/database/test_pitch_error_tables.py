@@ -11,8 +11,7 @@ from analysis_requests import table_request
 from fe_contact import Gear, GearPair, PitchDeviation, analyze, flank_results
 from fe_contact.analysis import check_request
 from fe_contact.analysis.estimates.position_errors import measured_nodes
-from fe_contact.analysis.tables.position_nodes import adaptive_nodes
-from fe_contact.analysis.tables.solved_table import assessed_windows
+from fe_contact.analysis.tables import adaptive_nodes, assessed_windows
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.errors import InputError
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run, TableAxes

@@ -10,9 +10,8 @@ import pytest
 from analysis_requests import table_request
 
 from fe_contact import AllowedError, FlankModification, Gear, GearPair, Material
-from fe_contact.analysis.database.refinement import AIM, MESH_STEP, Refinement, next_pass
-from fe_contact.analysis.request.decided import Decided
-from fe_contact.analysis.request.model_choice import decide
+from fe_contact.analysis.database.kept_tolerance import AIM, MESH_STEP, Refinement, next_pass
+from fe_contact.analysis.request.model_choice import Decided, decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.planning.discretization import SLICE_ORDER
 from fe_contact.ste.curve_errors import AT_NODES, SOURCES

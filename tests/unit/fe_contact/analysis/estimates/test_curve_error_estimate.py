@@ -11,7 +11,7 @@ import pytest
 from fe_contact import FlankModification, Gear, GearPair, analyze
 from fe_contact.analysis import check_request
 from fe_contact.analysis.database.compute_database import compute_database
-from fe_contact.analysis.estimates.curve_error_estimate import HARMONIC_SHARE
+from fe_contact.analysis.estimates.assessed_table import HARMONIC_SHARE
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.options import LEVELS, AnalysisOptions, Run, TableAxes
 from fe_contact.planning.discretization import SLICE_ORDER, face_discretization

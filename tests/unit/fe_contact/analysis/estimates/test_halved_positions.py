@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fe_contact.analysis.estimates.halved_positions import errors_by_halves
+from fe_contact.analysis.estimates.position_errors import errors_by_halves
 from fe_contact.ste.curve_quantities import PEAK_TO_PEAK, quantity_changes
 from fe_contact.types import FloatArray
 

@@ -12,8 +12,7 @@ from analysis_requests import point_request
 from numpy.typing import ArrayLike
 
 from fe_contact import Gear, GearPair, RootStress, root_stress
-from fe_contact.analysis.flanks.root_stress import pair_histories
-from fe_contact.analysis.flanks.root_stress_history import crests
+from fe_contact.analysis.flanks.root_stress import crests, pair_histories
 from fe_contact.analysis.flanks.solved_operating_point import SolvedOperatingPoint, solve_operating_point
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.compliance import unit_root_stress, unit_root_stress_3d
@@ -21,7 +20,7 @@ from fe_contact.errors import InputError
 from fe_contact.geometry import InternalGearPair, RingGear
 from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run, TableAxes
-from fe_contact.planning.root_recipes import finer_root
+from fe_contact.planning.planned import finer_root
 from fe_contact.stage_clock import StageClock
 
 FORCE = 2000.0

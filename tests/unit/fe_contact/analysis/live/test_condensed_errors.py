@@ -10,10 +10,10 @@ import pytest
 
 from fe_contact import Gear, GearPair, analyze
 from fe_contact.analysis import CondensedPair, condensed_pair
+from fe_contact.analysis.live.condensed_contacts import left_by_patches
 from fe_contact.analysis.pairs.pair_contact import PairContact
-from fe_contact.analysis.pairs.wider_patches import left_by_patches
 from fe_contact.geometry import FlankModification
-from fe_contact.geometry.finite_width import finite_width_excess
+from fe_contact.geometry.web_compliance import finite_width_excess
 from fe_contact.planning import LEFT_OUT
 from fe_contact.ste import SteDatabase
 from fe_contact.ste.curve_errors import AT_NODES, SOURCES

@@ -7,8 +7,7 @@ import pytest
 from analysis_requests import table_request
 
 from fe_contact import Gear, GearPair
-from fe_contact.analysis.pairs.operating_points import OperatingPoints, operating_points
-from fe_contact.analysis.pairs.pair_contact import PairContact
+from fe_contact.analysis.pairs.pair_contact import OperatingPoints, PairContact, operating_points
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.planning import make_plan
 

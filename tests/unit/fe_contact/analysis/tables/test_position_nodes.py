@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fe_contact.analysis.tables.position_nodes import adaptive_nodes
+from fe_contact.analysis.tables import adaptive_nodes
 from fe_contact.planning import NodeRule
 from fe_contact.ste.interpolation import Axis, interpolate
 

@@ -1,1 +1,0 @@
-"""Positions of a table, and what is solved at them."""
