@@ -12,11 +12,18 @@ from typing import Any
 
 import pytest
 
+import lineofaction as loa
+
 ROOT = Path(__file__).parents[2]
+_OURS = "from (fe_contact|dynamics|service)|import lineofaction"
 PAGES = sorted(
     page
     for page in (ROOT / "README.md", *(ROOT / "docs").rglob("*.md"))
-    if re.search(r"```python\n.*?^from (fe_contact|dynamics|service)", page.read_text("utf-8"), re.M | re.S)
+    if re.search(
+        r"```python\n.*?^(from (fe_contact|dynamics|service)|import lineofaction)",
+        page.read_text("utf-8"),
+        re.M | re.S,
+    )
 )
 
 
@@ -28,8 +35,8 @@ def examples(page: Path) -> Iterator[ast.Module]:
 
 
 def imported(example: ast.Module) -> dict[str, Any]:
-    """Import what an example imports of the project."""
-    return {
+    """Import what an example imports of the project; names of ``loa`` under ``loa.NAME``."""
+    return {f"loa.{name}": getattr(loa, name) for name in loa.__all__} | {
         alias.asname or alias.name: getattr(import_module(node.module), alias.name)
         for node in ast.walk(example)
         if isinstance(node, ast.ImportFrom) and node.module
@@ -43,9 +50,9 @@ def test_every_call_fits_its_signature(page: Path) -> None:
     for example in examples(page):
         names = imported(example)
         for call in (node for node in ast.walk(example) if isinstance(node, ast.Call)):
-            if isinstance(call.func, ast.Name) and call.func.id in names:
-                given = {one.arg: None for one in call.keywords if one.arg}
-                inspect.signature(names[call.func.id]).bind(*call.args, **given)
+            if (name := ast.unparse(call.func)) in names:
+                keywords = {one.arg: None for one in call.keywords if one.arg}
+                inspect.signature(names[name]).bind(*call.args, **keywords)
 
 
 def test_pages_with_examples_are_found() -> None:

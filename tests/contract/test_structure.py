@@ -1,0 +1,69 @@
+"""The structure of the house: no import points up, the picture is drawn from it, and budgets hold."""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+SPEC = importlib.util.spec_from_file_location("structure", ROOT / "scripts" / "structure.py")
+assert SPEC is not None and SPEC.loader is not None
+structure = importlib.util.module_from_spec(SPEC)
+SPEC.loader.exec_module(structure)
+
+BUDGETS = {
+    ("fe_contact",): (40_200, 930),
+    ("dynamics",): (42_600, 1020),
+    ("lineofaction.gearbox",): (24_700, 710),
+    ("lineofaction.report",): (12_000, 295),
+    ("service",): (16_500, 420),
+    ("lineofaction.client",): (2_900, 65),
+    ("lineofaction.cli",): (5_100, 110),
+    ("lineofaction.hardcases",): (4_200, 55),
+    ("bounds", "host", "model_studies"): (3_500, 135),
+}
+"""Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
+MOST_FILES = 1029
+LONGEST = 500
+LONGER = {
+    "lineofaction/report/tables/over_torque.py": 529,
+    "lineofaction/hardcases/dynamics/stepping.py": 510,
+}
+"""Files above it: they get no longer, and none joins them."""
+
+
+@pytest.mark.parametrize("houses", BUDGETS, ids=" ".join)
+def test_a_house_keeps_its_budget(houses: tuple[str, ...]) -> None:
+    texts = [file.read_text("utf-8") for house in houses for file in structure.files_of(house)]
+    lines = sum(text.count("\n") for text in texts)
+    names = sum(public_names(text) for text in texts)
+    most_lines, most_names = BUDGETS[houses]
+    assert (lines <= most_lines, names <= most_names) == (True, True), (lines, names)
+
+
+def test_files_are_few_and_none_is_long() -> None:
+    files = [file for house in structure.HOUSES for file in structure.files_of(house)]
+    assert len(files) <= MOST_FILES
+    sizes = {str(file.relative_to(ROOT)): file.read_text("utf-8").count("\n") for file in files}
+    assert {name for name, size in sizes.items() if size > LONGER.get(name, LONGEST)} == set()
+
+
+def test_every_house_is_on_a_floor_and_no_import_points_up() -> None:
+    packages = {path.parent.name for path in ROOT.glob("*/py.typed")} - {"lineofaction"}
+    packages |= {f"lineofaction.{path.parent.name}" for path in (ROOT / "lineofaction").glob("*/__init__.py")}
+    assert packages == set(structure.HOUSES)
+    assert structure.upward() == []
+
+
+def test_the_picture_is_drawn_from_the_imports() -> None:
+    drawn = (ROOT / "docs" / "images" / "structure.svg").read_text("utf-8")
+    assert drawn == structure.drawing(), "python scripts/structure.py docs/images/structure.svg"
+
+
+def public_names(text: str) -> int:
+    """Count functions and classes at the top of a file without an underscore."""
+    kinds = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
+    return sum(isinstance(node, kinds) and not node.name.startswith("_") for node in ast.parse(text).body)
