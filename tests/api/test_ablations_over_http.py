@@ -130,7 +130,3 @@ def test_bad_inputs_are_refused_by_name_before_there_is_a_job(
 def test_a_case_beside_a_scene_is_refused(served: Served, scene: SceneInput) -> None:
     with pytest.raises(BadInput, match=r"case.*left out beside one"):
         served.client.submit("ablate", {"case": CASE, "scene": scene.model_dump(mode="json")})
-
-
-def test_a_hash_of_another_kind_is_not_found(served: Served) -> None:
-    served.has_no("/v1/ablations")

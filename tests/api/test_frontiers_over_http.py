@@ -167,7 +167,3 @@ def test_bad_inputs_are_refused_by_name_before_there_is_a_job(
     served: Served, inputs: dict[str, Any], field: str
 ) -> None:
     served.refuses("frontier", inputs, field)
-
-
-def test_a_hash_of_another_kind_is_not_found(served: Served) -> None:
-    served.has_no("/v1/frontiers")

@@ -99,16 +99,15 @@ def test_modes_are_those_of_python(
 
 
 @pytest.mark.parametrize(
-    ("name", "further", "path", "result"),
+    ("name", "further", "result"),
     [
-        ("response", {"speed_rpm": [300.0, 600.0], "orders": 3}, "responses", ForcedResponse),
+        ("response", {"speed_rpm": [300.0, 600.0], "orders": 3}, ForcedResponse),
         (
             "steady",
             {"speed_rpm": [3000.0, 3200.0], "settling_periods": 2},
-            "steadies",
             SteadyStates,
         ),
-        ("study", STUDY, "results", Study),
+        ("study", STUDY, Study),
     ],
 )
 def test_the_work_of_a_study_is_served_as_figures_and_as_its_file(
@@ -117,7 +116,6 @@ def test_the_work_of_a_study_is_served_as_figures_and_as_its_file(
     tmp_path: Path,
     name: str,
     further: dict[str, Any],
-    path: str,
     result: Any,
 ) -> None:
     """The work itself, in this process: a child is a matter of the jobs, which the modes go through."""
@@ -139,7 +137,7 @@ def test_the_work_of_a_study_is_served_as_figures_and_as_its_file(
     job = client.submit(process.id, scene_inputs(scene) | further)
     assert job.status == "successful"
     found = result.from_netcdf(client.fetch_file(client.result(job.id).key, process.kind))
-    answer = http.get(f"/v1/{path}/{product.key}").json()
+    answer = http.get(f"/v1/results/{product.key}").json()
     assert {name: answer[name] for name in figures(found)} == figures(found)
 
 
@@ -188,10 +186,3 @@ def test_bad_inputs_are_refused_by_name_before_there_is_a_job(
         client.submit(process, scene_inputs(scene) | further)
     assert any(field in fault.field for fault in caught.value.faults), caught.value.faults
     assert len(http.get("/v1/jobs").json()["jobs"]) == jobs
-
-
-def test_a_hash_of_another_kind_is_not_found(served: tuple[LineOfActionClient, TestClient]) -> None:
-    _, http = served
-    for path in ("modes", "responses", "steadies"):
-        assert http.get(f"/v1/{path}/{KEY}").status_code == 404
-        assert http.get(f"/v1/{path}/nonsense").status_code == 422

@@ -159,10 +159,3 @@ def test_both_processes_are_described(served: tuple[LineOfActionClient, TestClie
     assert set(inputs) == {
         "case", "torque_n_m", "normal_force_n", "misalignment_um", "center_distance_change_mm",
     }  # fmt: skip
-
-
-def test_a_hash_of_another_kind_is_not_found(served: tuple[LineOfActionClient, TestClient]) -> None:
-    _, http = served
-    for path in ("flanks", "sensitivities"):
-        assert http.get(f"/v1/{path}/{'ab' * 32}").status_code == 404
-        assert http.get(f"/v1/{path}/nonsense").status_code == 422

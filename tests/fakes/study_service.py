@@ -71,11 +71,6 @@ class Served:
         assert any(field in fault.field for fault in caught.value.faults), caught.value.faults
         assert len(self.http.get("/v1/jobs").json()["jobs"]) == jobs
 
-    def has_no(self, path: str) -> None:
-        """Check that a hash of another kind is not found, and what is no hash is refused."""
-        assert self.http.get(f"{path}/{KEY}").status_code == 404
-        assert self.http.get(f"{path}/nonsense").status_code == 422
-
 
 @contextmanager
 def empty_service(data: Path) -> Iterator[tuple[LineOfActionClient, TestClient]]:

@@ -29,7 +29,7 @@ scene = unit_files(loa.open_unit("unit.rexs"))["scene.toml"]
 pathlib.Path("scene.toml").write_text(scene)
 subprocess.run([sys.executable, {example!r} + "/gear_case.py", "scene.toml", "gear_case.step"], check=True)
 case = housing_of(seats_of(tomllib.loads(scene)), "gear_case.step", modes=10, element_size_mm=40.0)
-pathlib.Path("gear_case.json").write_text(json.dumps(case))
+pathlib.Path("housings.json").write_text(json.dumps([case]))
 """
 
 
@@ -69,7 +69,6 @@ def test_a_unit_sounds_in_six_lines_without_a_server(tmp_path: Path) -> None:
     code = blocks("python")[1]
     assert len([line for line in code.splitlines() if line and not line.startswith("import")]) <= 6
     assert "level" in run_python(code, tmp_path, "default").stdout
-    assert (tmp_path / "noise.html").stat().st_size > 10_000
 
 
 def test_a_new_user_finds_the_program_and_the_examples() -> None:

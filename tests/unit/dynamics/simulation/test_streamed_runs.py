@@ -127,7 +127,7 @@ from pathlib import Path
 sys.path.insert(0, {fakes!r})
 from flexible_scenes import flexible_pair
 from geared_scenes import RPM, gear_pair_scene
-from dynamics.shafts import TimeLaw
+from dynamics.loads.time_law import TimeLaw
 from dynamics.simulation import simulate_to_file
 scene = gear_pair_scene(speed=TimeLaw.ramp(0.0, 955.0 * RPM, 0.2), duration=0.2)
 states, checkpoint = (Path({folder!r}) / name for name in ("run.states", "run.checkpoint"))
